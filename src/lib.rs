@@ -1,0 +1,3 @@
+//! Dynamics of soft elastic bodies.
+
+pub mod ode;
