@@ -1,0 +1,135 @@
+//! The inside of a step: first slope, initial step size, stages, acceptance.
+
+use std::mem::swap;
+
+use super::tableau::{self, A2, A3, A4, A5, A6, B, C, Measure, Trial, advance};
+use super::{DormandPrince, Error};
+use crate::ode::{Failure, Ode};
+
+/// Why a trial step gave no error estimate.
+pub(super) enum Setback {
+    Refused(String),
+    NonFinite { t: f64, component: usize, value: f64 },
+}
+
+impl Setback {
+    pub(super) fn into_error(self, t: f64, step: f64) -> Error {
+        match self {
+            Self::Refused(message) => Error::Refused { t, step, message },
+            Self::NonFinite { t, component, value } => {
+                Error::NonFinite { t, step, component, value }
+            }
+        }
+    }
+}
+
+impl<S: Ode> DormandPrince<S> {
+    /// Evaluates f(t, y), where no smaller step can help.
+    pub(super) fn evaluate_slope(&mut self) -> Result<(), Error> {
+        let t = self.t;
+        self.statistics.rhs_evaluations += 1;
+        let outcome = self.system.rhs(t, &self.y, &mut self.k[0]);
+        if let Some(setback) = classify(outcome, t, 0.0)? {
+            return Err(setback.into_error(t, 0.0));
+        }
+        if let Some(setback) = non_finite(t, &self.k[0]) {
+            return Err(setback.into_error(t, 0.0));
+        }
+        self.slope_known = true;
+        Ok(())
+    }
+
+    /// Initial step size after HNW I, section II.4, "Starting step size".
+    pub(super) fn estimate_initial_step(&mut self) -> Result<f64, Error> {
+        let (rtol, atol) = (self.options.rtol, &self.atol);
+        let [slope, trial_slope, ..] = &mut self.k;
+        let state_size = tableau::norm([1.0], [&self.y], &self.y, rtol, atol);
+        let slope_size = tableau::norm([1.0], [slope], &self.y, rtol, atol);
+        let mut h = if state_size < 1e-5 || slope_size < 1e-5 {
+            1e-6
+        } else {
+            0.01 * state_size / slope_size
+        };
+        h = h.min(self.options.max_step);
+        if let Some(stop) = self.stop_time {
+            h = h.min(stop - self.t);
+        }
+        advance(&mut self.argument, &self.y, h, [1.0], [slope]);
+        self.statistics.rhs_evaluations += 1;
+        let outcome = self.system.rhs(self.t + h, &self.argument, trial_slope);
+        if classify(outcome, self.t + h, h)?.is_some() {
+            return Ok(h);
+        }
+        let curvature = tableau::norm([1.0, -1.0], [trial_slope, slope], &self.y, rtol, atol) / h;
+        let largest = slope_size.max(curvature);
+        let from_error =
+            if largest <= 1e-15 { (1e-3 * h).max(1e-6) } else { (0.01 / largest).powf(0.2) };
+        // A slope that is not finite makes `from_error` NaN or 0; the steps find out why.
+        Ok(if from_error > 0.0 { from_error.min(100.0 * h) } else { h })
+    }
+
+    /// Evaluates stages 2 to 7 of a step to `t_new`; `y_old` then holds the new solution.
+    ///
+    /// The inner result is the error estimate, or why there is none.
+    pub(super) fn try_step(
+        &mut self,
+        t_new: f64,
+        h: f64,
+    ) -> Result<Result<Measure, Setback>, Error> {
+        let (y, g, y_new) = (&self.y, &mut self.argument, &mut self.y_old);
+        let [k1, k2, k3, k4, k5, k6, k7] = &mut self.k;
+        let (t, statistics, system) = (self.t, &mut self.statistics, &mut self.system);
+        let mut rhs = |t: f64, y: &[f64], k: &mut [f64]| {
+            statistics.rhs_evaluations += 1;
+            classify(system.rhs(t, y, k), t, h)
+        };
+        macro_rules! stage {
+            ($k:ident at $t:expr, $y:ident from $a:ident of $($other:ident),+) => {
+                advance($y, y, h, $a, [$(&*$other),+]);
+                if let Some(setback) = rhs($t, $y, $k)? {
+                    return Ok(Err(setback));
+                }
+            };
+        }
+        stage!(k2 at t + C[1] * h, g from A2 of k1);
+        stage!(k3 at t + C[2] * h, g from A3 of k1, k2);
+        stage!(k4 at t + C[3] * h, g from A4 of k1, k2, k3);
+        stage!(k5 at t + C[4] * h, g from A5 of k1, k2, k3, k4);
+        stage!(k6 at t_new, g from A6 of k1, k2, k3, k4, k5);
+        stage!(k7 at t_new, y_new from B of k1, k3, k4, k5, k6);
+        let (rtol, atol) = (self.options.rtol, self.atol.as_slice());
+        let stages = [&**k1, k3, k4, k5, k6, k7];
+        let measure = Trial { h, y, y_new, g6: g, k: stages, rtol, atol }.measure();
+        if measure.error.is_finite() {
+            return Ok(Ok(measure));
+        }
+        // Look for the first culprit only now that there is one.
+        let found = self.k.iter().zip(C).find_map(|(k, c)| non_finite(t + c * h, k));
+        // Finite stages whose combination overflows: the step is far too long.
+        Ok(found.map_or(Ok(Measure { error: f64::MAX, rate: 0.0 }), Err))
+    }
+
+    pub(super) fn accept(&mut self, t_new: f64, h: f64, measure: Measure) {
+        self.monitor.accepted(t_new, h, measure);
+        self.statistics.steps += 1;
+        self.statistics.last_step = h;
+        (self.t_old, self.t) = (self.t, t_new);
+        swap(&mut self.y, &mut self.y_old);
+        let [first, .., last] = &mut self.k;
+        swap(first, last);
+    }
+}
+
+/// Separates what a smaller step may heal from what ends the integration.
+fn classify(outcome: Result<(), Failure>, t: f64, step: f64) -> Result<Option<Setback>, Error> {
+    match outcome {
+        Ok(()) => Ok(None),
+        Err(Failure::Recoverable(message)) => Ok(Some(Setback::Refused(message))),
+        Err(Failure::Fatal(source)) => Err(Error::Rhs { t, step, source }),
+    }
+}
+
+fn non_finite(t: f64, slope: &[f64]) -> Option<Setback> {
+    let component = slope.iter().position(|value| !value.is_finite())?;
+    Some(Setback::NonFinite { t, component, value: slope[component] })
+}
