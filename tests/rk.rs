@@ -56,12 +56,12 @@ fn scattered(count: u32) -> impl Iterator<Item = f64> {
 fn the_order_of_the_solution_is_five() {
     let error = |h: f64| {
         let mut solver = DormandPrince::new(logistic, 0.0, &[0.1], &fixed_step(h)).unwrap();
-        (solver.solve_to(4.0).unwrap()[0] - logistic_exact(4.0)).abs()
+        (solver.solve_to(2.0).unwrap()[0] - logistic_exact(2.0)).abs()
     };
-    // Observed order between successive halvings; 0.25 is what higher terms leave at these h.
-    for h in [0.5, 0.25, 0.125] {
+    // Observed order between successive halvings; 0.2 is what higher terms leave at these h.
+    for h in [0.125, 0.0625] {
         let order = (error(h) / error(h / 2.0)).log2();
-        assert!((order - 5.0).abs() < 0.25, "order {order} at h = {h}");
+        assert!((order - 5.0).abs() < 0.2, "order {order} at h = {h}");
     }
 }
 
@@ -190,12 +190,12 @@ fn stability_limit() -> f64 {
 #[test]
 fn on_a_stiff_problem_stability_limits_the_step_and_the_notice_says_so() {
     for lambda in [1e3, 1e4, 1e5] {
-        let mut solver =
-            DormandPrince::new(prothero(lambda), 0.0, &[0.0], &Options::default()).unwrap();
+        let options = Options::default().rtol(1e-4).atol(1e-7);
+        let mut solver = DormandPrince::new(prothero(lambda), 0.0, &[0.0], &options).unwrap();
         let y = solver.solve_to(1.5).unwrap()[0];
-        // Slow, but right: rtol 1e-6 on a solution of size 1, with damping in place of growth.
+        // Slow, but right: rtol 1e-4 on a solution of size at most 1, errors damped.
         let exact = prothero_exact(lambda, 1.5);
-        assert!((y - exact).abs() < 1e-6, "y = {y}, exact {exact}");
+        assert!((y - exact).abs() < 1e-4, "y = {y}, exact {exact}");
 
         let statistics = solver.statistics();
         let expected = 1.5 * lambda / stability_limit();
@@ -211,7 +211,7 @@ fn on_a_stiff_problem_stability_limits_the_step_and_the_notice_says_so() {
         assert!((limit.step * lambda / stability_limit() - 1.0).abs() < 0.2, "{limit:?}");
         assert!(limit.time < 0.2, "{limit:?}");
         assert_eq!(limit.steps, statistics.stability_limited_steps);
-        assert!(limit.steps as f64 > 0.5 * expected, "{limit:?}");
+        assert!(limit.steps as f64 > 0.9 * expected, "{limit:?}");
         let notice = limit.to_string();
         assert!(notice.contains("implicit"), "{notice}");
     }
@@ -263,8 +263,10 @@ fn a_step_cut_short_by_the_stop_time_does_not_slow_the_next() {
         solver.statistics().steps
     };
     let free = solve(&[]);
-    // The extra step per stop, and one for the changed places of the others.
-    assert!(solve(&[1.0, 1.0 + 1e-9, 1.0 + 2e-9]) <= free + 4, "{free} steps without stops");
+    // One extra step for each stop and a few because the others moved; growing again from 1e-9
+    // would take ten.
+    let stopped = solve(&[1.0, 1.0 + 1e-9, 1.0 + 2e-9]);
+    assert!(stopped <= free + 6, "{stopped} steps with stops, {free} without");
 }
 
 #[test]
