@@ -171,6 +171,28 @@ fn each_component_has_its_absolute_tolerance() {
     assert!(run(&[1.0, 1e6], vec![1e-8, 1e-8].into()) > 3 * same);
 }
 
+#[test]
+fn the_first_step_knows_the_time_scale() {
+    let first_step = |rate: f64| {
+        let decay = move |_t: f64, y: &[f64], ydot: &mut [f64]| {
+            ydot[0] = -rate * y[0];
+            Ok(())
+        };
+        let mut solver = DormandPrince::new(decay, 0.0, &[1.0], &Options::default()).unwrap();
+        solver.step().unwrap();
+        assert_eq!(solver.statistics().rejected_steps, 0);
+        rate * solver.t()
+    };
+    let reference = first_step(1.0);
+    // The error estimate for y' = -y is about z^5/1000 at step z: rtol 1e-6 allows z = 0.25. The
+    // first guess is meant to be cautious, but not by more than a factor of ten.
+    assert!((0.025..0.25).contains(&reference), "{reference}");
+    for rate in [1e-9, 1e-3, 1e3, 1e9] {
+        let scaled = first_step(rate);
+        assert!((scaled / reference - 1.0).abs() < 1e-9, "{scaled} {reference}");
+    }
+}
+
 /// Where |R(-x)| = 1 for the stability polynomial of the method: 3.3066 by bisection.
 fn stability_limit() -> f64 {
     let r = |x: f64| {
