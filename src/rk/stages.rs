@@ -61,10 +61,11 @@ impl<S: Ode> DormandPrince<S> {
             return Ok(h);
         }
         let curvature = tableau::norm([1.0, -1.0], [trial_slope, slope], &self.y, rtol, atol) / h;
-        let largest = slope_size.max(curvature);
-        let from_error =
-            if largest <= 1e-15 { (1e-3 * h).max(1e-6) } else { (0.01 / largest).powf(0.2) };
-        // A slope that is not finite makes `from_error` NaN or 0; the steps find out why.
+        // y' changes on the time scale T = |y'| / |y''|, so that the error of a step of order 5 is
+        // about (h/T)^5 |y'| T; the book has T = 1, which is only right for some unit of time.
+        let time_scale = slope_size / curvature;
+        let from_error = time_scale * (0.01 / (slope_size * time_scale)).powf(0.2);
+        // Not a number or zero when the slopes vanish or are not finite: h will do.
         Ok(if from_error > 0.0 { from_error.min(100.0 * h) } else { h })
     }
 
