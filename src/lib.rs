@@ -2,3 +2,8 @@
 
 pub mod ode;
 pub mod rk;
+
+/// Compiles the code blocks of the README.
+#[doc = include_str!("../README.md")]
+#[cfg(doctest)]
+pub struct ReadmeDoctests;

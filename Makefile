@@ -1,0 +1,39 @@
+.DEFAULT_GOAL := help
+.PHONY: help setup demo test bench docs valgrind clean
+
+VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
+	--errors-for-leak-kinds=definite,indirect
+
+help: ## Show this list
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 18
+
+setup: ## Install the Debian packages of packages.txt that are missing
+	@scripts/setup.sh
+
+demo: setup ## The jumping square, 4 x 4 and 10 x 10 nodes: a table here, pictures in out/
+	cargo run --release --example square_jump -- --nodes 4
+	cargo run --release --example square_jump -- --nodes 10
+	@echo "The pictures are in $(CURDIR)/out:"
+	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
+
+test: setup ## Every check: format, lints, tests, documentation and its examples
+	cargo fmt --check
+	cargo clippy --all-targets -- -D warnings
+	cargo test
+	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps
+
+bench: setup ## Benchmarks
+	cargo bench
+
+docs: setup ## Documentation of the library
+	cargo doc --no-deps
+	@echo "Open $(CURDIR)/target/doc/pliant/index.html"
+
+# The runner of the test binary is valgrind; PLIANT_LIFECYCLE_ROUNDS sets how many solvers live.
+valgrind: ## Thousands of SUNDIALS solvers under valgrind: no leak, no invalid access
+	@scripts/setup.sh valgrind
+	cargo test --test sundials_lifecycle --config 'target."cfg(all())".runner = "$(VALGRIND)"'
+
+clean: ## Remove everything built and every picture made
+	cargo clean
+	rm -rf out
