@@ -1,3 +1,4 @@
 //! Dynamics of soft elastic bodies.
 
 pub mod ode;
+pub mod sundials;
