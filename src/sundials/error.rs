@@ -141,9 +141,7 @@ impl Cause {
                 "the nonlinear iteration does not converge at the smallest step".into()
             }
             Self::LinearSolver => "the Newton matrix can not be factorized".into(),
-            Self::InconsistentStart => {
-                "the initial values do not satisfy the equations".into()
-            }
+            Self::InconsistentStart => "the initial values do not satisfy the equations".into(),
             Self::Other => "SUNDIALS gave up".into(),
         }
     }

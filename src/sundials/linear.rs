@@ -2,7 +2,9 @@
 
 use std::ffi::c_void;
 
-use super::{context::Context, error::Error, ffi, matrix::Matrix, pattern::Pattern, vector::Vector};
+use super::{
+    context::Context, error::Error, ffi, matrix::Matrix, pattern::Pattern, vector::Vector,
+};
 
 /// Where the entries of a Jacobian come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,9 +62,7 @@ impl LinearSolver {
     /// Whether the matrix is filled by a callback (and not by SUNDIALS' difference quotients).
     pub(super) fn has_jacobian_callback(&self) -> bool {
         match self {
-            Self::Dense(jacobian) | Self::Band { jacobian, .. } => {
-                *jacobian == Jacobian::Supplied
-            }
+            Self::Dense(jacobian) | Self::Band { jacobian, .. } => *jacobian == Jacobian::Supplied,
             Self::Klu(_) | Self::Custom => true,
         }
     }
@@ -103,9 +103,7 @@ impl Linear {
         let (y, m, c) = (template.raw(), matrix.raw(), context.raw());
         let (function, raw) = match kind {
             // SAFETY: vector, matrix and context are alive and fit together.
-            LinearSolver::Dense(_) => {
-                ("SUNLinSol_Dense", unsafe { ffi::SUNLinSol_Dense(y, m, c) })
-            }
+            LinearSolver::Dense(_) => ("SUNLinSol_Dense", unsafe { ffi::SUNLinSol_Dense(y, m, c) }),
             // SAFETY: as above.
             LinearSolver::Band { .. } => {
                 ("SUNLinSol_Band", unsafe { ffi::SUNLinSol_Band(y, m, c) })
@@ -142,7 +140,11 @@ impl Drop for RawSolver {
 ///
 /// # Safety
 /// `context` is alive.
-unsafe fn custom(context: ffi::SUNContext, solve: Solve, data: *mut c_void) -> ffi::SUNLinearSolver {
+unsafe fn custom(
+    context: ffi::SUNContext,
+    solve: Solve,
+    data: *mut c_void,
+) -> ffi::SUNLinearSolver {
     extern "C" fn kind(_: ffi::SUNLinearSolver) -> ffi::SUNLinearSolver_Type {
         ffi::SUNLinearSolver_Type_SUNLINEARSOLVER_DIRECT
     }

@@ -135,7 +135,11 @@ impl StepOptions {
             ));
         }
         if self.max_steps == 0 || self.max_steps > i32::MAX as u32 {
-            return Err(Error::input("max_steps", self.max_steps, "it lies between 1 and 2^31 - 1"));
+            return Err(Error::input(
+                "max_steps",
+                self.max_steps,
+                "it lies between 1 and 2^31 - 1",
+            ));
         }
         if let Some(coefficient) = self.convergence_coefficient
             && !(coefficient > 0.0 && coefficient.is_finite())
@@ -228,8 +232,7 @@ impl StopTime {
 
     /// What to hand to C before it integrates from `t` towards `target`, if anything.
     pub(super) fn news(&mut self, t: f64, target: f64) -> Option<f64> {
-        std::mem::take(&mut self.stale)
-            .then(|| self.time.unwrap_or(f64::MAX.copysign(target - t)))
+        std::mem::take(&mut self.stale).then(|| self.time.unwrap_or(f64::MAX.copysign(target - t)))
     }
 }
 

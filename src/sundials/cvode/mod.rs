@@ -146,16 +146,14 @@ impl<S: Ode> Cvode<S> {
         self.host.get_mut().troubles.clear();
         // SAFETY: memory, vector and everything registered with the memory are alive; `&mut self`
         // keeps others away while callbacks use the host.
-        let code = unsafe {
-            ffi::CVode(self.memory.0, target, self.y.raw(), &raw mut self.t, task)
-        };
+        let code =
+            unsafe { ffi::CVode(self.memory.0, target, self.y.raw(), &raw mut self.t, task) };
         self.host.get_mut().troubles.resume_panic();
         match code {
             ffi::CV_ROOT_RETURN => {
                 // SAFETY: there are as many places as root functions.
-                let code = unsafe {
-                    ffi::CVodeGetRootInfo(self.memory.0, self.roots_found.as_mut_ptr())
-                };
+                let code =
+                    unsafe { ffi::CVodeGetRootInfo(self.memory.0, self.roots_found.as_mut_ptr()) };
                 self.host.accept("CVodeGetRootInfo", code)?;
                 Ok(Reached::Root)
             }
@@ -278,7 +276,9 @@ impl<S: Ode> Cvode<S> {
             ffi::CV_TOO_MUCH_WORK => (Cause::TooManySteps, false),
             ffi::CV_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
             ffi::CV_ERR_FAILURE => (Cause::ErrorTest, false),
-            ffi::CV_CONV_FAILURE if setup::is_singular(self.memory.0) => (Cause::LinearSolver, true),
+            ffi::CV_CONV_FAILURE if setup::is_singular(self.memory.0) => {
+                (Cause::LinearSolver, true)
+            }
             ffi::CV_CONV_FAILURE => (Cause::Convergence, true),
             ffi::CV_LINIT_FAIL | ffi::CV_LSETUP_FAIL | ffi::CV_LSOLVE_FAIL => {
                 (Cause::LinearSolver, true)

@@ -106,9 +106,13 @@ impl CvodeOptions {
             return Err(Error::input("max_steps_between_setups", 0, "it is at least 1"));
         }
         match &self.nonlinear_solver {
-            NonlinearSolver::FixedPoint { acceleration } if *acceleration > 100 => Err(
-                Error::input("acceleration", acceleration, "a few iterates are enough, at most 100"),
-            ),
+            NonlinearSolver::FixedPoint { acceleration } if *acceleration > 100 => {
+                Err(Error::input(
+                    "acceleration",
+                    acceleration,
+                    "a few iterates are enough, at most 100",
+                ))
+            }
             NonlinearSolver::FixedPoint { .. } => Ok(()),
             NonlinearSolver::Newton(solver) => solver.check(y0.len()),
         }

@@ -36,6 +36,7 @@ pub struct Ida<S> {
     host: HostBox<S>,
     _context: Context,
     t: f64,
+    knows_algebraic: bool,
     stop_time: StopTime,
     roots_found: Vec<i32>,
 }
@@ -44,6 +45,16 @@ pub struct Ida<S> {
 // SUNContext; SUNDIALS keeps no thread-local state. The system has to be `Send` itself. Troubles
 // that wait in the host are `Send`.
 unsafe impl<S: Send> Send for Ida<S> {}
+
+/// Which initial values [`Ida::consistent_start`] may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InitialCondition {
+    /// The algebraic unknowns and the derivatives of the differential ones; differential unknowns
+    /// stay (`IDA_YA_YDP_INIT`). Needs [`IdaOptions::differential`].
+    Algebraic,
+    /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`).
+    State,
+}
 
 /// Owns the memory block of IDA.
 struct Memory(*mut c_void);
@@ -56,26 +67,82 @@ impl Drop for Memory {
 }
 
 impl<S: Dae> Ida<S> {
-    /// A solver for `system`, starting at time `t0` from `y0`.
+    /// A solver for `system`, starting at time `t0` from the state `y0` and its time derivative
+    /// `yp0`, which have to satisfy the equations (see [`consistent_start`](Self::consistent_start)).
     ///
     /// # Errors
     /// [`Error::Input`] for options or initial values that can not be used.
-    pub fn new(system: S, t0: f64, y0: &[f64], options: &IdaOptions) -> Result<Self, Error> {
-        setup::new(system, t0, y0, options)
+    pub fn new(
+        system: S,
+        t0: f64,
+        y0: &[f64],
+        yp0: &[f64],
+        options: &IdaOptions,
+    ) -> Result<Self, Error> {
+        setup::new(system, t0, y0, yp0, options)
     }
 
-    /// Starts again at time `t` from `y`, with the same system and options, keeping all
+    /// Corrects the initial values so that they satisfy the equations; call it before the first
+    /// step. `first_output` is a time at which output will be wanted: it tells the direction and
+    /// scale of time. [`y`](Self::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
+    ///
+    /// # Errors
+    /// [`Error::Integration`] with [`Cause::InconsistentStart`] if no such values were found;
+    /// [`Error::Input`] if steps were taken already, or it is not known which unknowns are
+    /// algebraic.
+    ///
+    /// # Panics
+    /// A panic of the system passes through.
+    pub fn consistent_start(
+        &mut self,
+        unknown: InitialCondition,
+        first_output: f64,
+    ) -> Result<(), Error> {
+        check_finite("first_output", &[first_output])?;
+        if first_output == self.t {
+            let mend = "it is a later time than the start";
+            return Err(Error::input("first_output", first_output, mend));
+        }
+        if unknown == InitialCondition::Algebraic && !self.knows_algebraic {
+            let mend = "the option `differential` has to say which unknowns are algebraic";
+            return Err(Error::input("unknown", "InitialCondition::Algebraic", mend));
+        }
+        if self.statistics().steps > 0 {
+            let mend = "initial values can only be corrected before the first step";
+            return Err(Error::input("steps taken", self.statistics().steps, mend));
+        }
+        let task = match unknown {
+            InitialCondition::Algebraic => ffi::IDA_YA_YDP_INIT,
+            InitialCondition::State => ffi::IDA_Y_INIT,
+        };
+        self.host.get_mut().troubles.clear();
+        // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
+        // others away while callbacks use the host.
+        let code = unsafe { ffi::IDACalcIC(self.memory.0, task, first_output) };
+        self.host.get_mut().troubles.resume_panic();
+        if code < 0 {
+            return Err(self.stopped(code));
+        }
+        // SAFETY: memory and vectors are alive.
+        let code = unsafe { ffi::IDAGetConsistentIC(self.memory.0, self.y.raw(), self.yp.raw()) };
+        self.host.accept("IDAGetConsistentIC", code)
+    }
+
+    /// Starts again at time `t` from `y` and its time derivative `yp`, with the same system and options, keeping all
     /// allocations. Counters start at zero; a stop time is forgotten. (`IDAReInit`)
     ///
     /// # Errors
-    /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
-    pub fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+    /// [`Error::Input`] if a number is not finite or a length is wrong.
+    pub fn reinit(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
         check_length("length of y", y.len(), self.y.as_slice().len())?;
         check_finite("t", &[t])?;
+        check_length("length of yp", yp.len(), y.len())?;
         check_finite("y", y)?;
+        check_finite("yp", yp)?;
         self.y.as_mut_slice().copy_from_slice(y);
-        // SAFETY: memory and vector are alive; IDA copies the vector.
-        let code = unsafe { ffi::IDAReInit(self.memory.0, t, self.y.raw()) };
+        self.yp.as_mut_slice().copy_from_slice(yp);
+        // SAFETY: memory and vectors are alive; IDA copies the vectors.
+        let code = unsafe { ffi::IDAReInit(self.memory.0, t, self.y.raw(), self.yp.raw()) };
         self.host.accept("IDAReInit", code)?;
         self.t = t;
         self.stop_time.set(None);
@@ -124,15 +191,14 @@ impl<S: Dae> Ida<S> {
         // SAFETY: memory, vector and everything registered with the memory are alive; `&mut self`
         // keeps others away while callbacks use the host.
         let code = unsafe {
-            ffi::IDASolve(self.memory.0, target, self.y.raw(), &raw mut self.t, task)
+            ffi::IDASolve(self.memory.0, target, &raw mut self.t, self.y.raw(), self.yp.raw(), task)
         };
         self.host.get_mut().troubles.resume_panic();
         match code {
             ffi::IDA_ROOT_RETURN => {
                 // SAFETY: there are as many places as root functions.
-                let code = unsafe {
-                    ffi::IDAGetRootInfo(self.memory.0, self.roots_found.as_mut_ptr())
-                };
+                let code =
+                    unsafe { ffi::IDAGetRootInfo(self.memory.0, self.roots_found.as_mut_ptr()) };
                 self.host.accept("IDAGetRootInfo", code)?;
                 Ok(Reached::Root)
             }
@@ -143,9 +209,7 @@ impl<S: Dae> Ida<S> {
                 }
                 Ok(if stopped { Reached::StopTime } else { Reached::Time })
             }
-            ffi::IDA_ILL_INPUT | ffi::IDA_TOO_CLOSE | ffi::IDA_BAD_T => {
-                self.host.accept("IDASolve", code).map(|()| Reached::Time)
-            }
+            ffi::IDA_ILL_INPUT => self.host.accept("IDASolve", code).map(|()| Reached::Time),
             code => Err(self.stopped(code)),
         }
     }
@@ -160,6 +224,12 @@ impl<S: Dae> Ida<S> {
     #[must_use]
     pub fn y(&self) -> &[f64] {
         self.y.as_slice()
+    }
+
+    /// The time derivative of the state at time [`t`](Self::t).
+    #[must_use]
+    pub fn yp(&self) -> &[f64] {
+        self.yp.as_slice()
     }
 
     /// The times between which [`interpolate`](Self::interpolate) works: start and end of the
@@ -254,9 +324,13 @@ impl<S: Dae> Ida<S> {
         let (otherwise, blame_retries) = match code {
             ffi::IDA_TOO_MUCH_WORK => (Cause::TooManySteps, false),
             ffi::IDA_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
-            ffi::IDA_ERR_FAILURE => (Cause::ErrorTest, false),
-            ffi::IDA_CONV_FAILURE if setup::is_singular(self.memory.0) => (Cause::LinearSolver, true),
-            ffi::IDA_CONV_FAILURE => (Cause::Convergence, true),
+            ffi::IDA_LINESEARCH_FAIL | ffi::IDA_NO_RECOVERY => (Cause::InconsistentStart, true),
+            ffi::IDA_CONV_FAIL if setup::is_singular(self.memory.0) => (Cause::LinearSolver, true),
+            ffi::IDA_ERR_FAIL | ffi::IDA_CONV_FAIL if statistics.steps == 0 => {
+                (Cause::InconsistentStart, true)
+            }
+            ffi::IDA_ERR_FAIL => (Cause::ErrorTest, false),
+            ffi::IDA_CONV_FAIL => (Cause::Convergence, true),
             ffi::IDA_LINIT_FAIL | ffi::IDA_LSETUP_FAIL | ffi::IDA_LSOLVE_FAIL => {
                 (Cause::LinearSolver, true)
             }

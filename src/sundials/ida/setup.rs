@@ -1,11 +1,11 @@
-//! Building a IDA solver, and reading its counters.
+//! Building an IDA solver, and reading its counters.
 
 use std::ffi::c_void;
 
 use super::{
-    Ida, FixedPoint, Memory,
-    callbacks::{jacobian, newton_setup, newton_solve, rhs, roots},
-    options::{IdaOptions, Multistep, NonlinearSolver},
+    Ida, Memory,
+    callbacks::{jacobian, newton_solve, residual, roots},
+    options::IdaOptions,
 };
 use crate::{
     ode::Dae,
@@ -14,8 +14,8 @@ use crate::{
         error::Error,
         ffi,
         host::{Host, HostBox, keep_message},
-        linear::{Linear, LinearSolver},
-        options::{AbsoluteTolerance, StopTime, check_start},
+        linear::Linear,
+        options::{AbsoluteTolerance, StopTime, check_finite, check_length, check_start},
         statistics::Statistics,
         vector::Vector,
     },
@@ -25,42 +25,30 @@ pub(super) fn new<S: Dae>(
     system: S,
     t0: f64,
     y0: &[f64],
+    yp0: &[f64],
     options: &IdaOptions,
 ) -> Result<Ida<S>, Error> {
     check_start(t0, y0)?;
+    check_length("length of yp0", yp0.len(), y0.len())?;
+    check_finite("yp0", yp0)?;
     options.check(y0)?;
 
     let context = Context::new()?;
     let y = Vector::from_slice(y0, &context)?;
+    let yp = Vector::from_slice(yp0, &context)?;
     let scratch = Vector::from_slice(y0, &context)?;
     let root_count = system.root_count();
-    let solver = options.linear_solver().cloned();
+    let solver = Some(options.linear_solver.clone());
     let mut host = HostBox::new(Host::new(system, y0.len(), root_count, solver));
     let data = host.as_ptr();
 
     // Locals are dropped in reverse order, so on an error below the memory goes first.
-    let (mut linear, mut fixed_point) = (None, None);
-    match &options.nonlinear_solver {
-        NonlinearSolver::Newton(solver) => {
-            // SAFETY: the content of the solver is the host that `newton_solve` expects, and the
-            // host outlives the solver.
-            let made = unsafe { Linear::new(solver, &y, &context, newton_solve::<S>, data)? };
-            linear = Some(made);
-        }
-        NonlinearSolver::FixedPoint { acceleration } => {
-            fixed_point = Some(FixedPoint::new(&y, *acceleration, &context)?);
-        }
-    }
+    // SAFETY: the content of a custom solver is the host that `newton_solve` expects, and the
+    // host outlives the solver.
+    let linear =
+        unsafe { Linear::new(&options.linear_solver, &y, &context, newton_solve::<S>, data)? };
     // SAFETY: the context is alive.
-    let memory = Memory(unsafe {
-        ffi::IDACreate(
-            match options.method {
-                Multistep::Bdf => ffi::IDA_BDF,
-                Multistep::Adams => ffi::IDA_ADAMS,
-            },
-            context.raw(),
-        )
-    });
+    let memory = Memory(unsafe { ffi::IDACreate(context.raw()) });
     if memory.0.is_null() {
         return Err(Error::out_of_memory("IDACreate"));
     }
@@ -71,7 +59,7 @@ pub(super) fn new<S: Dae>(
     unsafe {
         let code = ffi::IDASetErrHandlerFn(ida, Some(keep_message::<S>), data);
         host.accept("IDASetErrHandlerFn", code)?;
-        let code = ffi::IDAInit(ida, Some(rhs::<S>), t0, y.raw());
+        let code = ffi::IDAInit(ida, Some(residual::<S>), t0, y.raw(), yp.raw());
         host.accept("IDAInit", code)?;
         let code = ffi::IDASetUserData(ida, data);
         host.accept("IDASetUserData", code)?;
@@ -88,29 +76,42 @@ pub(super) fn new<S: Dae>(
         if root_count > 0 {
             let code = ffi::IDARootInit(ida, root_count as i32, Some(roots::<S>));
             host.accept("IDARootInit", code)?;
-            let code = ffi::IDASetNoInactiveRootWarn(cv);
+            let code = ffi::IDASetNoInactiveRootWarn(ida);
             host.accept("IDASetNoInactiveRootWarn", code)?;
         }
     }
     set_step_options(&mut host, ida, options)?;
 
-    if let (Some(linear), Some(solver)) = (&linear, options.linear_solver()) {
-        attach(&mut host, ida, solver, linear)?;
+    // SAFETY: memory, solver and matrix are alive, and the memory is dropped first; the callback
+    // fits the registered host.
+    unsafe {
+        let code = ffi::IDASetLinearSolver(ida, linear.solver(), linear.matrix());
+        host.accept("IDASetLinearSolver", code)?;
+        if options.linear_solver.has_jacobian_callback() {
+            let code = ffi::IDASetJacFn(ida, Some(jacobian::<S>));
+            host.accept("IDASetJacFn", code)?;
+        }
     }
-    if let Some(fixed_point) = &fixed_point {
-        // SAFETY: memory and solver are alive, and the memory is dropped first.
-        let code = unsafe { ffi::IDASetNonlinearSolver(ida, fixed_point.0) };
-        host.accept("IDASetNonlinearSolver", code)?;
+    if let Some(differential) = &options.differential {
+        let id: Vec<f64> = differential.iter().map(|&d| f64::from(u8::from(d))).collect();
+        let id = Vector::from_slice(&id, &context)?;
+        // SAFETY: the memory is alive, and IDA keeps a copy of the vector.
+        unsafe {
+            host.accept("IDASetId", ffi::IDASetId(ida, id.raw()))?;
+            let suppress = i32::from(options.suppress_algebraic);
+            host.accept("IDASetSuppressAlg", ffi::IDASetSuppressAlg(ida, suppress))?;
+        }
     }
     Ok(Ida {
         memory,
-        _fixed_point: fixed_point,
         _linear: linear,
         y,
+        yp,
         scratch,
         host,
         _context: context,
         t: t0,
+        knows_algebraic: options.differential.is_some(),
         stop_time: StopTime::default(),
         roots_found: vec![0; root_count],
     })
@@ -142,35 +143,6 @@ fn set_step_options<S>(
             let code = ffi::IDASetNonlinConvCoef(ida, coefficient);
             host.accept("IDASetNonlinConvCoef", code)?;
         }
-        if options.stability_limit_detection {
-            host.accept("IDASetStabLimDet", ffi::IDASetStabLimDet(ida, 1))?;
-        }
-        if let Some(steps) = options.max_steps_between_setups {
-            let code = ffi::IDASetLSetupFrequency(ida, i64::from(steps));
-            host.accept("IDASetLSetupFrequency", code)?;
-        }
-    }
-    Ok(())
-}
-
-/// Registers the linear solver and the callback that fills its matrix.
-fn attach<S: Dae>(
-    host: &mut HostBox<S>,
-    ida: *mut c_void,
-    solver: &LinearSolver,
-    linear: &Linear,
-) -> Result<(), Error> {
-    // SAFETY: memory, solver and matrix are alive, and the memory is dropped first.
-    let code = unsafe { ffi::IDASetLinearSolver(ida, linear.solver(), linear.matrix()) };
-    host.accept("IDASetLinearSolver", code)?;
-    if matches!(solver, LinearSolver::Custom) {
-        // SAFETY: the callback fits the registered host.
-        let code = unsafe { ffi::IDASetLinSysFn(ida, Some(newton_setup::<S>)) };
-        host.accept("IDASetLinSysFn", code)?;
-    } else if solver.has_jacobian_callback() {
-        // SAFETY: the callback fits the registered host.
-        let code = unsafe { ffi::IDASetJacFn(ida, Some(jacobian::<S>)) };
-        host.accept("IDASetJacFn", code)?;
     }
     Ok(())
 }
@@ -188,7 +160,7 @@ pub(super) fn statistics(ida: *mut c_void, t: f64) -> Statistics {
     let mut s = Statistics::default();
     let [mut steps, mut evaluations, mut setups, mut error_fails] = [0; 4];
     let [mut iterations, mut nonlinear_fails, mut step_fails] = [0; 3];
-    let [mut jacobians, mut quotients, mut roots, mut reductions] = [0; 4];
+    let [mut jacobians, mut quotients, mut roots] = [0; 3];
     let [mut last_order, mut current_order] = [0; 2];
     // SAFETY: the memory is alive, every result has a place. Functions which do not apply, say to
     // a solver without Jacobian, leave theirs untouched.
@@ -209,9 +181,8 @@ pub(super) fn statistics(ida: *mut c_void, t: f64) -> Statistics {
         ffi::IDAGetNonlinSolvStats(ida, &raw mut iterations, &raw mut nonlinear_fails);
         ffi::IDAGetNumStepSolveFails(ida, &raw mut step_fails);
         ffi::IDAGetNumJacEvals(ida, &raw mut jacobians);
-        ffi::IDAGetNumLinRhsEvals(ida, &raw mut quotients);
+        ffi::IDAGetNumLinResEvals(ida, &raw mut quotients);
         ffi::IDAGetNumGEvals(ida, &raw mut roots);
-        ffi::IDAGetNumStabLimOrderReds(ida, &raw mut reductions);
         ffi::IDAGetTolScaleFactor(ida, &raw mut s.tolerance_scale);
     }
     if steps == 0 {
@@ -227,7 +198,6 @@ pub(super) fn statistics(ida: *mut c_void, t: f64) -> Statistics {
     s.step_failures = step_fails as u64;
     s.error_test_failures = error_fails as u64;
     s.root_evaluations = roots as u64;
-    s.stability_reductions = reductions as u64;
     s.last_order = last_order as u32;
     s.current_order = current_order as u32;
     s
