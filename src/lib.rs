@@ -1,4 +1,5 @@
 //! Dynamics of soft elastic bodies.
 
 pub mod ode;
+pub mod samples;
 pub mod sundials;

@@ -201,7 +201,6 @@ pub(super) use shared_builder_methods;
 
 /// Where an integration call came to an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[must_use]
 pub enum Reached {
     /// At the requested time, or, for a single step, at the end of the step.
     Time,

@@ -1,6 +1,5 @@
 //! CVODE: stiff and non-stiff systems of ordinary differential equations.
 
-pub(super) mod callbacks;
 mod options;
 mod setup;
 

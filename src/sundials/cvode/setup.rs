@@ -4,7 +4,6 @@ use std::ffi::c_void;
 
 use super::{
     Cvode, FixedPoint, Memory,
-    callbacks::{jacobian, newton_setup, newton_solve, rhs, roots},
     options::{CvodeOptions, Multistep, NonlinearSolver},
 };
 use crate::{
@@ -15,6 +14,7 @@ use crate::{
         ffi,
         host::{Host, HostBox, keep_message},
         linear::{Linear, LinearSolver},
+        ode_callbacks::{jacobian, newton_setup, newton_solve, rhs, roots},
         options::{AbsoluteTolerance, StopTime, check_start},
         statistics::Statistics,
         vector::Vector,

@@ -1,6 +1,5 @@
 //! IDA: systems of differential-algebraic equations.
 
-pub(super) mod callbacks;
 mod options;
 mod setup;
 

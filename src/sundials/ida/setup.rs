@@ -2,15 +2,12 @@
 
 use std::ffi::c_void;
 
-use super::{
-    Ida, Memory,
-    callbacks::{jacobian, newton_solve, residual, roots},
-    options::IdaOptions,
-};
+use super::{Ida, Memory, options::IdaOptions};
 use crate::{
     ode::Dae,
     sundials::{
         context::Context,
+        dae_callbacks::{jacobian, newton_solve, residual, roots},
         error::Error,
         ffi,
         host::{Host, HostBox, keep_message},

@@ -1,20 +1,18 @@
-//! The C functions through which CVODE calls an [`Ode`].
+//! The C functions through which CVODE (and ARKODE) calls an [`Ode`].
 //!
 //! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
 //! that is what their SAFETY comments refer to.
 
 use std::ffi::c_void;
 
-use crate::{
-    ode::Ode,
-    sundials::{
-        error::Callback,
-        ffi,
-        host::{Host, STOP, linear_solver_code},
-        matrix::{self, Entries},
-        vector::{slice, slice_mut},
-    },
+use super::{
+    error::Callback,
+    ffi,
+    host::{Host, STOP, linear_solver_code},
+    matrix::{self, Entries},
+    vector::{slice, slice_mut},
 };
+use crate::ode::Ode;
 
 /// `CVRhsFn`
 pub(super) unsafe extern "C" fn rhs<S: Ode>(

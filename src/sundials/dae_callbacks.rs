@@ -5,16 +5,14 @@
 
 use std::ffi::c_void;
 
-use crate::{
-    ode::Dae,
-    sundials::{
-        error::Callback,
-        ffi,
-        host::{Host, STOP, linear_solver_code},
-        matrix::{self, Entries},
-        vector::{slice, slice_mut},
-    },
+use super::{
+    error::Callback,
+    ffi,
+    host::{Host, STOP, linear_solver_code},
+    matrix::{self, Entries},
+    vector::{slice, slice_mut},
 };
+use crate::ode::Dae;
 
 /// `IDAResFn`
 pub(super) unsafe extern "C" fn residual<S: Dae>(
