@@ -2,6 +2,8 @@
 
 pub mod ode;
 pub mod rk;
+pub mod samples;
+pub mod sundials;
 
 /// Compiles the code blocks of the README.
 #[doc = include_str!("../README.md")]
