@@ -276,22 +276,18 @@ fn check_path(row: &Row, phase: &str, dimension: usize, t: f64) -> Result<(), Er
 }
 
 fn reject_double_rows(rows: &[Row], dimension: usize, phase: &str, t: f64) -> Result<(), Error> {
-    let mut order: Vec<&Row> = rows.iter().filter(|row| row.nodal().is_some()).collect();
-    order.sort_by_key(|row| row.terms[0].0);
-    for pair in order.windows(2) {
-        if pair[0].terms[0].0 == pair[1].terms[0].0 {
-            let same = pair[0].prescribed(t) == pair[1].prescribed(t);
-            let problem = if same {
-                "are given twice: leave one of them out"
-            } else {
-                "contradict each other (two different motions): leave one of them out"
-            };
-            return Err(Error::Constraint {
-                phase: phase.into(),
-                nodes: pair[0].label(dimension),
-                problem: problem.into(),
-            });
-        }
-    }
-    Ok(())
+    let mut nodal: Vec<&Row> = rows.iter().filter(|row| row.nodal().is_some()).collect();
+    nodal.sort_by_key(|row| row.terms[0].0);
+    let doubles = || nodal.windows(2).filter(|pair| pair[0].terms[0].0 == pair[1].terms[0].0);
+    let contradicts = |pair: &&[&Row]| pair[0].prescribed(t) != pair[1].prescribed(t);
+    let (pair, problem) = match (doubles().find(contradicts), doubles().next()) {
+        (Some(pair), _) => (pair, "contradict each other (two different motions)"),
+        (None, Some(pair)) => (pair, "are given twice"),
+        (None, None) => return Ok(()),
+    };
+    Err(Error::Constraint {
+        phase: phase.into(),
+        nodes: pair[0].label(dimension),
+        problem: format!("{problem}: leave one of them out"),
+    })
 }

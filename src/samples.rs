@@ -2,6 +2,12 @@
 //!
 //! Errors are meant relative to the reference, componentwise: [`Reference::error`].
 
+mod scenes;
+
+pub use scenes::{
+    BEAM_MATERIAL, SQUARE_MATERIAL, beam_jump, pushed_nodes, square_jump, square_press,
+};
+
 use faer::MatMut;
 
 use crate::{

@@ -82,7 +82,8 @@ impl BodyBuilder {
     /// Assembles the body.
     ///
     /// # Errors
-    /// A material out of range, a missing or misplaced thickness or area, an inverted or flat cell.
+    /// A material out of range, a missing or misplaced thickness or area, an inverted or flat cell,
+    /// a node without a cell.
     pub fn build(self) -> Result<Body, Error> {
         self.material.validate()?;
         let section = self.section()?;
@@ -95,7 +96,15 @@ impl BodyBuilder {
             viscous: reduced(material.viscous()),
         };
         let (inertia, [stiffness, damping]) = assemble(&mesh, section, moduli, &pattern)?;
-        Ok(Body { mesh, material, strain, section, inertia, stiffness, damping })
+        let body = Body { mesh, material, strain, section, inertia, stiffness, damping };
+        match body.nodal_masses().iter().position(|&mass| mass == 0.0) {
+            Some(node) => Err(Error::input(
+                "node",
+                node + 1,
+                "it belongs to no cell, so that nothing holds it: leave it out of the mesh",
+            )),
+            None => Ok(body),
+        }
     }
 
     fn section(&self) -> Result<f64, Error> {

@@ -218,3 +218,97 @@ impl Force for Contact {
         Reservoir::Contact
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::mesh::Cells;
+    use crate::sparse::NodePattern;
+
+    /// Slope 3:4 through (0, 0.1): half of a 2 x 2 grid of nodes lies inside.
+    fn contact(adhesion: bool) -> Contact {
+        let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
+        let slope = Obstacle::half_plane([0.0, 0.1], [-3.0, 4.0]);
+        let slope = slope.stiffness(50.0).damping(7.0).friction(3.0).adhesion(adhesion);
+        Contact::new(&mesh, slope.validated(2).unwrap())
+    }
+
+    const U: [f64; 8] = [0.02, -0.05, -0.03, 0.04, 0.01, 0.02, 0.03, -0.01];
+    const V: [f64; 8] = [0.3, -0.4, 0.7, 0.9, -0.5, 0.2, -0.1, 0.8];
+
+    fn forces(contact: &Contact, u: &[f64], v: &[f64]) -> NodalForces {
+        let mut forces = NodalForces::zeros(8);
+        contact.add_forces(0.0, u, v, &mut forces);
+        forces
+    }
+
+    /// Hirai (4.4.2), written out for node 2, the one at (1, 0).
+    #[test]
+    fn the_law_of_the_documents() {
+        let forces = forces(&contact(true), &U, &V);
+        let (n, x) = ([-0.6, 0.8], [1.0 + U[2], 0.0 + U[3] - 0.1]);
+        let distance = n[0] * x[0] + n[1] * x[1];
+        let rate = n[0] * V[2] + n[1] * V[3];
+        assert!(distance < 0.0);
+        for i in 0..2 {
+            let sliding = V[2 + i] - rate * n[i];
+            assert!((forces.conservative[2 + i] - -50.0 * distance * n[i]).abs() < 1e-13);
+            let expected = -7.0 * rate * n[i] - 3.0 * sliding;
+            assert!((forces.dissipative[2 + i] - expected).abs() < 1e-13);
+        }
+        // node 3 at (0, 1) is outside
+        assert_eq!(forces.conservative[4..6], [0.0; 2]);
+        assert_eq!(forces.dissipative[4..6], [0.0; 2]);
+    }
+
+    #[test]
+    fn tangents_are_derivatives_and_the_potential_has_the_force() {
+        for (adhesion, speed) in [(true, 1.0), (false, 1.0), (false, 100.0)] {
+            let contact = contact(adhesion);
+            let v = V.map(|v| speed * v);
+            let pattern = Arc::new(NodePattern::new(4, [[0, 1, 2, 3].as_slice()].into_iter()));
+            let mut stiffness = BlockMatrix::zeros(&pattern, 2);
+            let mut damping = BlockMatrix::zeros(&pattern, 2);
+            contact.add_tangents(0.0, &U, &v, &mut stiffness, &mut damping);
+            let h = 1e-6;
+            for j in 0..8 {
+                let moved = |x: &[f64; 8], by: f64| {
+                    let mut x = *x;
+                    x[j] += by;
+                    x
+                };
+                let total =
+                    |forces: NodalForces, i: usize| forces.conservative[i] + forces.dissipative[i];
+                for i in 0..8 {
+                    let by_u = total(forces(&contact, &moved(&U, h), &v), i)
+                        - total(forces(&contact, &moved(&U, -h), &v), i);
+                    let by_v = total(forces(&contact, &U, &moved(&v, h)), i)
+                        - total(forces(&contact, &U, &moved(&v, -h)), i);
+                    // piecewise linear: central differences are exact up to round-off
+                    assert!((stiffness.get(i, j) + by_u / (2.0 * h)).abs() < 1e-7, "({i}, {j})");
+                    assert!((damping.get(i, j) + by_v / (2.0 * h)).abs() < 1e-7, "({i}, {j})");
+                }
+                let slope =
+                    contact.potential(0.0, &moved(&U, h)) - contact.potential(0.0, &moved(&U, -h));
+                let force = forces(&contact, &U, &v).conservative[j];
+                assert!((force + slope / (2.0 * h)).abs() < 1e-8);
+            }
+        }
+    }
+
+    /// A node that separates faster than the spring can push is pulled back by the damper, but
+    /// not without adhesion.
+    #[test]
+    fn without_adhesion_the_normal_force_never_pulls() {
+        let away = [0.0, 0.0, -60.0, 80.0, 0.0, 0.0, 0.0, 0.0];
+        let normal_force = |adhesion| {
+            let forces = forces(&contact(adhesion), &U, &away);
+            let along = |f: &[f64]| -0.6 * f[2] + 0.8 * f[3];
+            along(&forces.conservative) + along(&forces.dissipative)
+        };
+        assert!(normal_force(true) < -600.0);
+        assert!(normal_force(false).abs() < 1e-12);
+    }
+}

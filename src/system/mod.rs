@@ -22,6 +22,8 @@ mod dae;
 mod newton;
 mod ode;
 mod reduced;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 
@@ -108,9 +110,11 @@ impl System {
                     nodes: rows[row].label(dimension),
                     problem: "follow from the other constraints: leave this row out".into(),
                 },
-                None => {
-                    Error::input("mesh", "inertia matrix without inertia", "a node has no cell")
-                }
+                None => Error::input(
+                    "material.density",
+                    body.material().density,
+                    "with this mesh it gives masses beyond the range of double precision",
+                ),
             });
         }
         let nonlinear = forces.iter().any(|force| force.is_nonlinear());

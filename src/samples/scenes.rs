@@ -1,0 +1,87 @@
+//! Scenes of Hirai, *Computing Dynamic Deformation*.
+
+use crate::body::{Body, BodyBuilder};
+use crate::error::Error;
+use crate::force::Obstacle;
+use crate::material::Material;
+use crate::mesh::{Cells, Mesh};
+use crate::scene::{Phase, Scene};
+
+/// Material of the square: E = 1 MPa, c = 40 Pa s, nu = 0.48, rho = 1 g/cm^3.
+pub const SQUARE_MATERIAL: Material =
+    Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+
+/// Material of the beam: E = 50 kPa, c = 0.2 kPa s, rho = 1 g/cm^3.
+pub const BEAM_MATERIAL: Material =
+    Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 200.0 };
+
+/// Figs 4.3 and 4.4: an elastic square of 30 cm, `nodes` x `nodes`, 1 cm thick. Its bottom is
+/// fixed and the middle third of its top pressed down at 16 cm/s until 0.5 s, held until 1 s,
+/// and released until 2 s.
+///
+/// # Errors
+/// Fewer than 4 nodes: the top has no middle third then.
+pub fn square_press(nodes: usize) -> Result<Scene, Error> {
+    let scene = Scene::new(square(nodes)?.build()?);
+    Ok(press(scene, nodes).phase(Phase::until(2.0).named("released").hold("bottom")))
+}
+
+/// Figs 4.5 and 4.6: the same square, but at 1 s everything is released over a floor of
+/// 100 N/m per node on 4 nodes, as stiff altogether on more, and the square jumps until 1.5 s.
+///
+/// # Errors
+/// As [`square_press`].
+pub fn square_jump(nodes: usize) -> Result<Scene, Error> {
+    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(400.0 / nodes as f64);
+    let scene = Scene::new(square(nodes)?.build()?).obstacle(floor);
+    Ok(press(scene, nodes).phase(Phase::until(1.5).named("free")))
+}
+
+/// Fig. 4.1: an elastic bar of 10 cm and 2 cm^2, 6 nodes, standing on the floor. Its top is
+/// pressed with 2 N until 0.2 s; then it jumps off a floor of 0.1 MPa/cm, until 0.6 s.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn beam_jump() -> Result<Scene, Error> {
+    let body = Body::new(Mesh::bar(0.10, 6)?, BEAM_MATERIAL).area(2e-4).build()?;
+    let push = Phase::until(0.2).named("push").hold("left").load("right", [-2.0]);
+    Ok(Scene::new(body)
+        .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
+        .phase(push.without_contact())
+        .phase(Phase::until(0.6).named("free")))
+}
+
+/// Numbers (from 1) of the nodes in the middle third of the top edge of the square.
+pub fn pushed_nodes(nodes: usize) -> Vec<usize> {
+    let first = nodes * (nodes - 1);
+    (first + nodes / 3 + 1..=first + nodes - nodes / 3).collect()
+}
+
+fn square(nodes: usize) -> Result<BodyBuilder, Error> {
+    if nodes < 4 {
+        return Err(Error::input("nodes", nodes, "the square needs 4 nodes along a side at least"));
+    }
+    let mesh = Mesh::rectangle([0.30, 0.30], [nodes, nodes], Cells::Triangles)?;
+    Ok(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01))
+}
+
+/// The phases in which the square is pressed and held, bottom fixed.
+fn press(scene: Scene, nodes: usize) -> Scene {
+    let pushed = pushed_nodes(nodes);
+    let push = Phase::until(0.5).named("push").hold("bottom");
+    let hold = Phase::until(1.0).named("hold").hold("bottom").hold(pushed.clone());
+    scene
+        .phase(push.move_nodes(pushed, [0.0, -0.16]).without_contact())
+        .phase(hold.without_contact())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::pushed_nodes;
+
+    #[test]
+    fn the_middle_third_of_the_top_is_pushed() {
+        assert_eq!(pushed_nodes(4), [14, 15]);
+        assert_eq!(pushed_nodes(10), [94, 95, 96, 97]);
+    }
+}

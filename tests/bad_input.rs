@@ -1,0 +1,206 @@
+//! What bad input gets: an error that names the input, its value and the mend; never a panic.
+
+use pliant::samples::{SQUARE_MATERIAL, square_press};
+use pliant::{
+    Axis, Body, Cells, Error, Material, Mesh, Method, Obstacle, Phase, Plane, Prescribed, Sampling,
+    Scene, Selection, Solver, Trajectory,
+};
+
+fn grid() -> Mesh {
+    Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap()
+}
+
+fn scene() -> Scene {
+    Scene::new(Body::new(grid(), SQUARE_MATERIAL).thickness(0.01).build().unwrap())
+}
+
+fn simulate(scene: &Scene) -> Result<Trajectory, Error> {
+    scene.simulate(&Solver::default(), &Sampling::every(0.1))
+}
+
+/// The message of the error says all of `parts`.
+#[track_caller]
+fn says<T>(result: Result<T, Error>, parts: &[&str]) {
+    let Err(error) = result else { panic!("accepted; expected {parts:?}") };
+    let message = error.to_string();
+    println!("{message}");
+    for part in parts {
+        assert!(message.contains(part), "\"{part}\" is missing from: {message}");
+    }
+}
+
+#[test]
+fn meshes() {
+    let rectangle = |size, nodes| Mesh::rectangle(size, nodes, Cells::Triangles);
+    says(rectangle([0.0, 0.3], [4, 4]), &["rectangle.size[0] = 0", "above 0", "(m)"]);
+    says(rectangle([0.3, f64::NAN], [4, 4]), &["rectangle.size[1] = NaN"]);
+    says(rectangle([0.3, 0.3], [4, 1]), &["rectangle.nodes[1] = 1", "at least 2"]);
+    says(Mesh::bar(-1.0, 5), &["bar.length = -1"]);
+    let triangle = |positions: [f64; 6], cell: [usize; 3]| {
+        let kind = grid().kind();
+        let mesh = Mesh::new(2, positions.into(), kind, cell.into())?;
+        Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()
+    };
+    let corners = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+    assert!(triangle(corners, [0, 1, 2]).is_ok());
+    says(triangle(corners, [0, 2, 1]), &["cell 1", "[1, 3, 2]", "clockwise", "other way round"]);
+    says(triangle([0.0, 0.0, 1.0, 0.0, 2.0, 0.0], [0, 1, 2]), &["cell 1", "flat"]);
+    says(triangle(corners, [0, 1, 3]), &["node of cell 1 = 4", "1 to 3"]);
+    says(triangle(corners, [0, 1, 1]), &["cell 1", "flat"]);
+    says(triangle([0.0, 0.0, f64::INFINITY, 0.0, 0.0, 1.0], [0, 1, 2]), &["mesh.positions", "inf"]);
+}
+
+#[test]
+fn loose_nodes() {
+    let mut positions = grid().positions().to_vec();
+    positions.extend([1.0, 1.0]);
+    let cells = grid().cells().flatten().copied().collect();
+    let mesh = Mesh::new(2, positions, grid().kind(), cells).unwrap();
+    says(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build(), &["node", "17", "no cell"]);
+}
+
+#[test]
+fn materials_and_sections() {
+    let body = |material| Body::new(grid(), material).thickness(0.01).build();
+    let good = SQUARE_MATERIAL;
+    says(body(Material { poisson: 0.5, ..good }), &["material.poisson = 0.5", "below 0.5"]);
+    says(body(Material { density: -1000.0, ..good }), &["material.density = -1000", "kg/m^3"]);
+    says(body(Material { young: f64::NAN, ..good }), &["material.young = NaN", "Pa"]);
+    says(body(Material { viscosity: -1.0, ..good }), &["material.viscosity = -1", "Pa s"]);
+    says(Body::new(grid(), good).build(), &["thickness", "missing"]);
+    says(Body::new(grid(), good).thickness(0.0).build(), &["thickness = 0"]);
+    says(Body::new(grid(), good).area(1.0).build(), &["area = 1", "Triangle"]);
+    let bar = || Mesh::bar(0.1, 6).unwrap();
+    says(Body::new(bar(), good).build(), &["area", "missing"]);
+    says(Body::new(bar(), good).thickness(1.0).plane(Plane::Stress).build(), &["thickness = 1"]);
+}
+
+#[test]
+fn selections() {
+    let hold = |nodes: Selection| simulate(&scene().phase(Phase::until(0.1).hold(nodes)));
+    says(hold([17].into()), &["node = 17", "1 to 16"]);
+    says(hold([0].into()), &["node = 0", "count from 1"]);
+    says(hold("buttom".into()), &["\"buttom\"", "bottom"]);
+    says(hold(vec![].into()), &["contains no node"]);
+    says(hold([3, 3].into()), &["node = 3", "twice"]);
+    let nowhere = Selection::Box { min: vec![5.0, 5.0], max: vec![6.0, 6.0] };
+    says(hold(nowhere), &["contains no node"]);
+}
+
+#[test]
+fn constraints() {
+    let run = |phase: Phase| simulate(&scene().phase(phase.named("press")));
+    let hold = || Phase::until(0.1).hold("bottom");
+    says(run(hold().move_nodes([4], [0.0, 0.1])), &["press", "node 4", "contradict"]);
+    says(run(hold().hold([4])), &["press", "node 4", "given twice"]);
+    says(run(hold().move_nodes([14], [0.1])), &["velocity", "[0.1]", "2 component"]);
+    says(run(hold().move_nodes([14], [0.0, f64::NAN])), &["velocity", "NaN"]);
+    says(run(hold().hold_axes([14], [Axis::Z])), &["axis", "Z", "2 dimension"]);
+    says(
+        run(hold().hold_combination([(14, Axis::X, 0.0), (15, Axis::X, 1.0)])),
+        &["coefficient of a constraint row = 0"],
+    );
+    let twice = [(14, Axis::X, 1.0), (15, Axis::X, 1.0)];
+    says(
+        run(hold().hold_combination(twice).hold_combination(twice)),
+        &["press", "node 14 x + node 15 x", "leave this row out"],
+    );
+}
+
+/// NaN in b(t): at the start it is bad input; later the integration stops and keeps what it has.
+#[test]
+fn nan_in_a_path() {
+    let path = |from: f64| {
+        move |t: f64| Prescribed {
+            displacement: if t < from { -0.01 * t * t } else { f64::NAN },
+            velocity: -0.02 * t,
+            acceleration: -0.02,
+        }
+    };
+    let scene = |from| {
+        let phase = Phase::until(0.5).named("probe").hold("bottom");
+        scene().phase(phase.follow([14], Axis::Y, path(from)))
+    };
+    says(simulate(&scene(0.0)), &["probe", "node 14 y", "b = NaN", "t = 0 s"]);
+    for method in Method::ALL {
+        let solver = Solver { method, ..Solver::default() };
+        let result = scene(0.25).simulate(&solver, &Sampling::every(0.1));
+        let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
+        // the last sample before 0.25 s is kept
+        assert_eq!(failure.trajectory.samples().len(), 3, "{method}");
+        assert!((failure.time - 0.25).abs() < 0.05, "{method}: {}", failure.time);
+        says(result, &["probe", method.name(), "t = 0.2", "step", "node 14 y", "b = NaN"]);
+    }
+}
+
+#[test]
+fn phases() {
+    let phase = |until| Phase::until(until).hold("bottom");
+    says(simulate(&scene()), &["number of phases = 0"]);
+    let backwards = scene().phase(phase(0.5)).phase(phase(0.3).named("late"));
+    says(simulate(&backwards), &["end of phase \"late\" = 0.3 s", "after 0.5 s"]);
+    says(simulate(&scene().phase(phase(0.0))), &["end of phase \"phase 1\" = 0 s"]);
+    says(simulate(&scene().phase(phase(f64::NAN))), &["end of phase \"phase 1\" = NaN"]);
+    says(simulate(&scene().phase(phase(0.1).load([1], [1.0]))), &["load = [1.0]", "2 component"]);
+    says(
+        simulate(&scene().phase(phase(0.1).load([1], [1.0, f64::INFINITY]))),
+        &["component 2 of load = inf"],
+    );
+    says(
+        simulate(&scene().phase(phase(0.1).contact_with(["wall"]))),
+        &["contact of phase \"phase 1\" = wall"],
+    );
+    says(simulate(&scene().gravity([9.8]).phase(phase(0.1))), &["gravity = [9.8]", "2 component"]);
+}
+
+#[test]
+fn obstacles() {
+    let with = |obstacle| simulate(&scene().obstacle(obstacle).phase(Phase::until(0.1)));
+    let floor = || Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0);
+    assert!(with(floor()).is_ok());
+    says(with(floor().stiffness(0.0)), &["obstacle \"floor\" stiffness = 0", "N/m"]);
+    says(with(floor().damping(-1.0)), &["obstacle \"floor\" damping = -1"]);
+    says(with(floor().friction(f64::NAN)), &["obstacle \"floor\" friction = NaN"]);
+    let flat = Obstacle::half_plane([0.0, 0.0], [0.0, 0.0]).named("ramp").stiffness(1.0);
+    says(with(flat), &["obstacle \"ramp\" normal", "must not be zero"]);
+    says(with(Obstacle::half_plane([0.0], [0.0, 1.0]).stiffness(1.0)), &["point", "2 component"]);
+    let twice = scene().obstacle(floor()).obstacle(floor()).phase(Phase::until(0.1));
+    says(simulate(&twice), &["obstacle name = \"floor\"", "taken"]);
+}
+
+#[test]
+fn solvers_and_samplings() {
+    let scene = square_press(4).unwrap();
+    let with = |solver: Solver| scene.simulate(&solver, &Sampling::phase_ends());
+    let good = Solver::default;
+    says(with(Solver { rtol: 0.0, ..good() }), &["rtol = 0", "above 0"]);
+    says(with(Solver { rtol: f64::NAN, ..good() }), &["rtol = NaN"]);
+    says(with(Solver { rtol: 1.0, ..good() }), &["rtol = 1", "below 1"]);
+    says(with(Solver { alpha: 0.0, ..good() }), &["alpha = 0", "1/s"]);
+    says(with(Solver { atol_position: Some(-1e-9), ..good() }), &["atol_position = -0.000000001"]);
+    says(with(Solver { max_order: Some(6), ..good() }), &["max_order = 6", "1 to 5"]);
+    says(
+        with(Solver { max_order: Some(2), method: Method::Rk, ..good() }),
+        &["max_order", "leave it out"],
+    );
+    says(with(Solver { max_steps: 0, ..good() }), &["max_steps = 0"]);
+    let sampled = |sampling| scene.simulate(&good(), &sampling);
+    says(sampled(Sampling::every(0.0)), &["sampling step = 0"]);
+    says(sampled(Sampling::at([0.1, 3.0])), &["sampling time = 3", "2 s"]);
+    says("cvode".parse::<Method>(), &["method = \"cvode\"", "cvode-bdf, cvode-adams, ida"]);
+    says(square_press(3), &["nodes = 3", "4 nodes"]);
+}
+
+/// A step limit ends the run with what it has, and says what to do.
+#[test]
+fn step_limits() {
+    let scene = square_press(4).unwrap();
+    for method in Method::ALL {
+        let solver = Solver { method, max_steps: 100, alpha: 1e4, ..Solver::default() };
+        let result = scene.simulate(&solver, &Sampling::every(1e-3));
+        let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
+        assert!(failure.trajectory.samples().len() > 1, "{method}");
+        assert_eq!(failure.trajectory.report().steps(), 100, "{method}");
+        says(result, &["push", method.name(), "100 steps", "max_steps"]);
+    }
+}
