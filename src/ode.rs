@@ -1,7 +1,7 @@
 //! What an integrator is given: systems of ordinary differential equations (ODE) and of
 //! differential-algebraic equations (DAE).
 //!
-//! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method [`crate::rk`].
+//! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method `rk`.
 //! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
 //! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian; a struct implements
 //! the trait when it wants to hand over root functions or a linear solver of its own. An
@@ -57,7 +57,9 @@ impl<'a> BandMut<'a> {
         lower: usize,
         upper: usize,
     ) -> Self {
-        assert!(upper <= diagonal && diagonal + lower < stride && data.len() % stride == 0);
+        assert!(
+            upper <= diagonal && diagonal + lower < stride && data.len().is_multiple_of(stride)
+        );
         Self { data, stride, diagonal, lower, upper }
     }
 

@@ -154,35 +154,30 @@ impl StepOptions {
 macro_rules! shared_builder_methods {
     () => {
         /// Size of the first step; negative when integrating backwards. Default: estimated.
-        #[must_use]
         pub fn initial_step(mut self, h: f64) -> Self {
             self.steps.initial_step = Some(h);
             self
         }
 
         /// Lower bound of |step size|. Default: none.
-        #[must_use]
         pub fn min_step(mut self, h: f64) -> Self {
             self.steps.min_step = Some(h);
             self
         }
 
         /// Upper bound of |step size|. Default: none.
-        #[must_use]
         pub fn max_step(mut self, h: f64) -> Self {
             self.steps.max_step = Some(h);
             self
         }
 
         /// Highest order that may be used. Default: 5 for BDF, 12 for Adams.
-        #[must_use]
         pub fn max_order(mut self, order: u32) -> Self {
             self.steps.max_order = Some(order);
             self
         }
 
         /// Steps allowed in one call of `solve_to`. Default: 100,000.
-        #[must_use]
         pub fn max_steps(mut self, steps: u32) -> Self {
             self.steps.max_steps = steps;
             self
@@ -190,7 +185,6 @@ macro_rules! shared_builder_methods {
 
         /// How much smaller than the local error the error of the nonlinear iteration has to be.
         /// Default: 0.1 in CVODE, 0.33 in IDA.
-        #[must_use]
         pub fn convergence_coefficient(mut self, coefficient: f64) -> Self {
             self.steps.convergence_coefficient = Some(coefficient);
             self
