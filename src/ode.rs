@@ -490,3 +490,33 @@ fn missing(method: &'static str) -> Failure {
         format!("the integrator was configured to call `{method}`, which this system lacks").into(),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::BandMut;
+
+    #[test]
+    fn a_band_stores_its_columns_one_after_another() {
+        // Two lower diagonals, one upper, and one more row above them, as LU needs it.
+        let mut data = [0.0; 5 * 4];
+        let mut band = BandMut::new(&mut data, 5, 2, 2, 1);
+        for (i, j) in [(0, 0), (2, 0), (0, 1), (3, 1), (2, 3)] {
+            band[(i, j)] = (10 * i + j) as f64 + 0.5;
+        }
+        assert_eq!(band[(3, 1)], 31.5);
+        let expected = [
+            [0.0, 0.0, 0.5, 0.0, 20.5],
+            [0.0, 1.5, 0.0, 0.0, 31.5],
+            [0.0; 5],
+            [0.0, 23.5, 0.0, 0.0, 0.0],
+        ];
+        assert_eq!(data, *expected.as_flattened());
+    }
+
+    #[test]
+    #[should_panic(expected = "entry (0, 2) lies outside the band")]
+    fn outside_the_band_there_is_nothing() {
+        let mut data = [0.0; 20];
+        BandMut::new(&mut data, 5, 2, 2, 1)[(0, 2)] = 1.0;
+    }
+}

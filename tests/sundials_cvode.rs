@@ -36,13 +36,23 @@ const DENSE: LinearSolver = LinearSolver::Dense(Jacobian::Supplied);
 fn hires_by_every_linear_solver() {
     let options = CvodeOptions::new(1e-8, 1e-12);
     let klu = LinearSolver::Klu(Hires::new().pattern().clone());
-    let band = LinearSolver::Band { lower: 5, upper: 3, jacobian: Jacobian::DifferenceQuotients };
-    for solver in [DENSE, LinearSolver::Dense(Jacobian::DifferenceQuotients), band, klu] {
+    let band = |jacobian| LinearSolver::Band { lower: 5, upper: 3, jacobian };
+    let mut setups = Vec::new();
+    for solver in [
+        DENSE,
+        LinearSolver::Dense(Jacobian::DifferenceQuotients),
+        band(Jacobian::Supplied),
+        band(Jacobian::DifferenceQuotients),
+        klu,
+    ] {
         print!("{solver:?}: ");
         let options = options.clone().newton(solver);
-        let (error, _) = run(Hires::new(), &Hires::Y0, Hires::REFERENCE, &options);
+        let (error, statistics) = run(Hires::new(), &Hires::Y0, Hires::REFERENCE, &options);
         assert!(error < 2e-6, "{error}");
+        setups.push(statistics.linear_setups);
     }
+    // The same matrices give the same run, but for rounding; wrong ones need many more.
+    assert!(setups.iter().all(|&count| count < setups[0] * 6 / 5), "{setups:?}");
     let options = options.newton(LinearSolver::Custom);
     let (error, _) = run(OwnSolver::new(Hires::new(), 8), &Hires::Y0, Hires::REFERENCE, &options);
     assert!(error < 2e-6, "{error}");

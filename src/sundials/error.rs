@@ -174,7 +174,8 @@ impl Cause {
                 "look for a zero row or column of the Jacobian; a DAE has to be of index 1"
             }
             Self::InconsistentStart => {
-                "evaluate the residual at the start, or let consistent_start find the missing values"
+                "evaluate the residual at the start, or let consistent_start find the missing \
+                 values; if it is right, check a supplied Jacobian"
             }
             Self::Other => "see the message of SUNDIALS",
         }

@@ -5,7 +5,7 @@ mod setup;
 
 pub use options::{CvodeOptions, Multistep};
 
-use std::ffi::c_void;
+use std::{ffi::c_void, fmt};
 
 use super::{
     context::Context,
@@ -43,6 +43,13 @@ pub struct Cvode<S> {
 // SUNContext; SUNDIALS keeps no thread-local state. The system has to be `Send` itself. Troubles
 // that wait in the host are `Send`.
 unsafe impl<S: Send> Send for Cvode<S> {}
+
+impl<S> fmt::Debug for Cvode<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let y = self.y.as_slice();
+        f.debug_struct("Cvode").field("t", &self.t).field("y", &y).finish_non_exhaustive()
+    }
+}
 
 /// Owns the memory block of CVODE.
 struct Memory(*mut c_void);
@@ -138,6 +145,7 @@ impl<S: Ode> Cvode<S> {
         if target == self.t {
             return Ok(Reached::Time);
         }
+        self.check_target(target, task)?;
         if let Some(time) = self.stop_time.news(self.t, target) {
             // SAFETY: the memory is alive.
             let code = unsafe { ffi::CVodeSetStopTime(self.memory.0, time) };
@@ -169,6 +177,21 @@ impl<S: Ode> Cvode<S> {
             }
             code => Err(self.stopped(code)),
         }
+    }
+
+    /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
+    /// step, `step` can not.
+    fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
+        let statistics = self.statistics();
+        let earliest = match task {
+            ffi::CV_ONE_STEP => self.t,
+            _ => statistics.current_time - statistics.last_step,
+        };
+        if (target - earliest) * statistics.last_step < 0.0 {
+            let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
+            return Err(Error::input("target time", target, mend));
+        }
+        Ok(())
     }
 
     /// Time of the state [`y`](Self::y).

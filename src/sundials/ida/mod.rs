@@ -5,7 +5,7 @@ mod setup;
 
 pub use options::IdaOptions;
 
-use std::ffi::c_void;
+use std::{ffi::c_void, fmt};
 
 use super::{
     context::Context,
@@ -53,6 +53,13 @@ pub enum InitialCondition {
     Algebraic,
     /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`).
     State,
+}
+
+impl<S> fmt::Debug for Ida<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let y = self.y.as_slice();
+        f.debug_struct("Ida").field("t", &self.t).field("y", &y).finish_non_exhaustive()
+    }
 }
 
 /// Owns the memory block of IDA.
@@ -182,6 +189,7 @@ impl<S: Dae> Ida<S> {
         if target == self.t {
             return Ok(Reached::Time);
         }
+        self.check_target(target, task)?;
         if let Some(time) = self.stop_time.news(self.t, target) {
             // SAFETY: the memory is alive.
             let code = unsafe { ffi::IDASetStopTime(self.memory.0, time) };
@@ -212,6 +220,21 @@ impl<S: Dae> Ida<S> {
             ffi::IDA_ILL_INPUT => self.host.accept("IDASolve", code).map(|()| Reached::Time),
             code => Err(self.stopped(code)),
         }
+    }
+
+    /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
+    /// step, `step` can not.
+    fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
+        let statistics = self.statistics();
+        let earliest = match task {
+            ffi::IDA_ONE_STEP => self.t,
+            _ => statistics.current_time - statistics.last_step,
+        };
+        if (target - earliest) * statistics.last_step < 0.0 {
+            let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
+            return Err(Error::input("target time", target, mend));
+        }
+        Ok(())
     }
 
     /// Time of the state [`y`](Self::y).
