@@ -5,7 +5,7 @@
 //! point to an installation in an unusual place, `SUITESPARSE_INCLUDE_DIR` to KLU's headers.
 
 use std::{
-    env, fs,
+    env, fs, panic,
     path::{Path, PathBuf},
     process::exit,
 };
@@ -99,9 +99,10 @@ fn check_configuration(header: &Path) {
 }
 
 fn generate_bindings(include_directories: &[&Path]) {
-    let bindings = bindgen::Builder::default()
+    let builder = bindgen::Builder::default()
         .header_contents("sundials_extra.h", HEADERS)
         .clang_args(include_directories.iter().map(|path| format!("-I{}", path.display())))
+        .rust_target(bindgen::RustTarget::stable(88, 0).unwrap_or_default())
         .rust_edition(bindgen::RustEdition::Edition2024)
         .parse_callbacks(Box::new(SignedConstants))
         // Whatever these declarations refer to is defined by `sundials-sys`.
@@ -112,16 +113,18 @@ fn generate_bindings(include_directories: &[&Path]) {
         .allowlist_type("ARK\\w+|_?ARKodeButcherTable\\w*")
         .allowlist_var("ARK_\\w+|ARKSTEP_\\w+|ERKSTEP_\\w+|ARKODE_\\w+")
         .layout_tests(false)
-        .generate_comments(false)
-        .generate();
-    match bindings {
-        Ok(bindings) => {
+        .generate_comments(false);
+    // bindgen panics when it does not find libclang.
+    panic::set_hook(Box::new(|_| ()));
+    match panic::catch_unwind(panic::AssertUnwindSafe(|| builder.generate())) {
+        Ok(Ok(bindings)) => {
             let file = PathBuf::from(env::var_os("OUT_DIR").unwrap()).join("sundials_extra.rs");
             if let Err(error) = bindings.write_to_file(&file) {
                 fail(&format!("{} can not be written: {error}", file.display()));
             }
         }
-        Err(error) => fail(&format!("The SUNDIALS headers can not be translated: {error}")),
+        Ok(Err(error)) => fail(&format!("The SUNDIALS headers can not be translated: {error}")),
+        Err(_) => fail("libclang, which bindgen needs to read C headers, was not found."),
     }
 }
 

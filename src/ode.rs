@@ -1,7 +1,7 @@
 //! What an integrator is given: systems of ordinary differential equations (ODE) and of
 //! differential-algebraic equations (DAE).
 //!
-//! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method [`crate::rk`].
+//! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method `rk`.
 //! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
 //! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian; a struct implements
 //! the trait when it wants to hand over root functions or a linear solver of its own. An
@@ -57,7 +57,9 @@ impl<'a> BandMut<'a> {
         lower: usize,
         upper: usize,
     ) -> Self {
-        assert!(upper <= diagonal && diagonal + lower < stride && data.len() % stride == 0);
+        assert!(
+            upper <= diagonal && diagonal + lower < stride && data.len().is_multiple_of(stride)
+        );
         Self { data, stride, diagonal, lower, upper }
     }
 
@@ -487,4 +489,34 @@ fn missing(method: &'static str) -> Failure {
     Failure::Fatal(
         format!("the integrator was configured to call `{method}`, which this system lacks").into(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::BandMut;
+
+    #[test]
+    fn a_band_stores_its_columns_one_after_another() {
+        // Two lower diagonals, one upper, and one more row above them, as LU needs it.
+        let mut data = [0.0; 5 * 4];
+        let mut band = BandMut::new(&mut data, 5, 2, 2, 1);
+        for (i, j) in [(0, 0), (2, 0), (0, 1), (3, 1), (2, 3)] {
+            band[(i, j)] = (10 * i + j) as f64 + 0.5;
+        }
+        assert_eq!(band[(3, 1)], 31.5);
+        let expected = [
+            [0.0, 0.0, 0.5, 0.0, 20.5],
+            [0.0, 1.5, 0.0, 0.0, 31.5],
+            [0.0; 5],
+            [0.0, 23.5, 0.0, 0.0, 0.0],
+        ];
+        assert_eq!(data, *expected.as_flattened());
+    }
+
+    #[test]
+    #[should_panic(expected = "entry (0, 2) lies outside the band")]
+    fn outside_the_band_there_is_nothing() {
+        let mut data = [0.0; 20];
+        BandMut::new(&mut data, 5, 2, 2, 1)[(0, 2)] = 1.0;
+    }
 }

@@ -36,16 +36,26 @@ const DENSE: LinearSolver = LinearSolver::Dense(Jacobian::Supplied);
 fn hires_by_every_linear_solver() {
     let options = CvodeOptions::new(1e-8, 1e-12);
     let klu = LinearSolver::Klu(Hires::new().pattern().clone());
-    let band = LinearSolver::Band { lower: 5, upper: 3, jacobian: Jacobian::DifferenceQuotients };
-    for solver in [DENSE, LinearSolver::Dense(Jacobian::DifferenceQuotients), band, klu] {
+    let band = |jacobian| LinearSolver::Band { lower: 5, upper: 3, jacobian };
+    let mut setups = Vec::new();
+    for solver in [
+        DENSE,
+        LinearSolver::Dense(Jacobian::DifferenceQuotients),
+        band(Jacobian::Supplied),
+        band(Jacobian::DifferenceQuotients),
+        klu,
+    ] {
         print!("{solver:?}: ");
         let options = options.clone().newton(solver);
-        let (error, _) = run(Hires::new(), &Hires::Y0, Hires::REFERENCE, &options);
-        assert!(error < 1e-5, "{error}");
+        let (error, statistics) = run(Hires::new(), &Hires::Y0, Hires::REFERENCE, &options);
+        assert!(error < 2e-6, "{error}");
+        setups.push(statistics.linear_setups);
     }
+    // The same matrices give the same run, but for rounding; wrong ones need many more.
+    assert!(setups.iter().all(|&count| count < setups[0] * 6 / 5), "{setups:?}");
     let options = options.newton(LinearSolver::Custom);
     let (error, _) = run(OwnSolver::new(Hires::new(), 8), &Hires::Y0, Hires::REFERENCE, &options);
-    assert!(error < 1e-5, "{error}");
+    assert!(error < 2e-6, "{error}");
 }
 
 #[test]
@@ -56,7 +66,7 @@ fn van_der_pol_by_dense_klu_and_its_own_solver() {
         print!("{solver:?}: ");
         let options = options.clone().newton(solver);
         let (error, _) = run(VanDerPol::new(), &VanDerPol::Y0, VanDerPol::REFERENCE, &options);
-        assert!(error < 1e-5, "{error}");
+        assert!(error < 1.5e-6, "{error}");
     }
     let mut solver = Cvode::new(
         OwnSolver::new(VanDerPol::new(), 2),
@@ -67,7 +77,7 @@ fn van_der_pol_by_dense_klu_and_its_own_solver() {
     .unwrap();
     solver.solve_to(VanDerPol::REFERENCE.t).unwrap();
     let error = VanDerPol::REFERENCE.error(solver.y());
-    assert!(error < 1e-5, "{error}");
+    assert!(error < 1.5e-6, "{error}");
     let statistics = solver.statistics();
     let system = solver.into_system();
     assert_eq!(system.setups as u64, statistics.linear_setups);
@@ -117,7 +127,7 @@ fn errors_shrink_with_rtol() {
 
 #[test]
 fn adams_with_fixed_point_iteration_keeps_the_period_of_the_pendulum() {
-    for (rtol, bound) in [(1e-6, 1e-3), (1e-10, 1e-7)] {
+    for (rtol, bound) in [(1e-6, 1e-2), (1e-10, 1e-6)] {
         let options = CvodeOptions::new(rtol, rtol).method(Multistep::Adams).fixed_point(0);
         let mut solver = Cvode::new(Pendulum, 0.0, &Pendulum::Y0, &options).unwrap();
         solver.solve_to(5.0 * Pendulum::PERIOD).unwrap();

@@ -105,3 +105,53 @@ fn an_impossible_start_is_an_error() {
         assert_eq!(error.solver, "IDA");
     }
 }
+
+#[test]
+fn an_inconsistent_start_is_an_error() {
+    // y1 + y2 + y3 is 1.7 and not 1: no step size makes the jump small.
+    let options = IdaOptions::new(1e-6, 1e-9);
+    let mut solver =
+        Ida::new(Robertson::new(), 0.0, &[1.0, 0.0, 0.7], &Robertson::YP0, &options).unwrap();
+    match solver.solve_to(1.0) {
+        Err(Error::Integration(error)) => assert_eq!(error.cause, Cause::InconsistentStart),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn unusable_input_is_named() {
+    let refused = |yp0: &[f64], options: &IdaOptions| match Ida::new(
+        Robertson::new(),
+        0.0,
+        &Robertson::Y0,
+        yp0,
+        options,
+    ) {
+        Err(Error::Input { input, .. }) => input,
+        other => panic!("{other:?} is not an input error"),
+    };
+    let good = IdaOptions::new(1e-6, 1e-9);
+    assert_eq!(refused(&[0.0; 2], &good), "length of yp0");
+    assert_eq!(refused(&[f64::NAN; 3], &good), "yp0");
+    assert_eq!(
+        refused(&Robertson::YP0, &good.clone().suppress_algebraic(true)),
+        "suppress_algebraic"
+    );
+    assert_eq!(
+        refused(&Robertson::YP0, &good.clone().differential([true])),
+        "length of differential"
+    );
+
+    let mut solver =
+        Ida::new(Robertson::new(), 0.0, &Robertson::Y0, &Robertson::YP0, &good).unwrap();
+    for error in [
+        solver.consistent_start(InitialCondition::Algebraic, 1.0).unwrap_err(),
+        solver.consistent_start(InitialCondition::State, 0.0).unwrap_err(),
+        solver.reinit(0.0, &Robertson::Y0, &[0.0]).unwrap_err(),
+    ] {
+        assert!(matches!(error, Error::Input { .. }), "{error:?}");
+    }
+    solver.solve_to(1.0).unwrap();
+    let error = solver.consistent_start(InitialCondition::State, 2.0).unwrap_err();
+    assert!(matches!(error, Error::Input { input: "steps taken", .. }));
+}

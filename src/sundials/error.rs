@@ -129,10 +129,10 @@ impl Cause {
         match self {
             Self::Fatal(callback) => format!("{callback} failed"),
             Self::Rejected { callback, t, message } => {
-                format!("{callback} kept rejecting the trial points, last at t = {t}: {message}")
+                format!("{callback} kept rejecting the trial points, last at t = {t:?}: {message}")
             }
             Self::NotFinite { callback, t, component } => {
-                format!("{callback} returned NaN or infinity at t = {t} in component {component}")
+                format!("{callback} returned NaN or infinity at t = {t:?} in component {component}")
             }
             Self::TooManySteps => "too many steps before the output time".into(),
             Self::TooMuchAccuracy => "the tolerances ask for more than double precision".into(),
@@ -174,7 +174,8 @@ impl Cause {
                 "look for a zero row or column of the Jacobian; a DAE has to be of index 1"
             }
             Self::InconsistentStart => {
-                "evaluate the residual at the start, or let consistent_start find the missing values"
+                "evaluate the residual at the start, or let consistent_start find the missing \
+                 values; if it is right, check a supplied Jacobian"
             }
             Self::Other => "see the message of SUNDIALS",
         }
@@ -207,7 +208,7 @@ impl fmt::Display for IntegrationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} stopped at t = {} (step size {:.3e}, order {}): {}; {}",
+            "{} stopped at t = {:?} (step size {:.3e}, order {}): {}; {}",
             self.solver,
             self.t,
             self.step,

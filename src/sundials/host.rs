@@ -52,7 +52,10 @@ pub(super) struct Host<S> {
 pub(super) struct Troubles {
     panic: Option<Box<dyn Any + Send>>,
     fatal: Option<(Callback, Box<dyn error::Error + Send + Sync>)>,
+    /// Time and reason of the last request for a smaller step.
     retry: Option<(f64, Cause)>,
+    /// How many such requests came in a row for the same time, to rounding.
+    stuck: u32,
     message: String,
 }
 
@@ -60,11 +63,23 @@ pub(super) struct Troubles {
 pub(super) type Source = Option<Box<dyn error::Error + Send + Sync>>;
 
 impl Troubles {
+    /// Notes a request for a smaller step, and gives it up where it does not help any more: near
+    /// a time that can not be passed, SUNDIALS would make steps that are lost in rounding forever.
+    fn retry(&mut self, t: f64, cause: Cause) -> i32 {
+        const MOST: u32 = 30;
+        let same_time = |at: f64| (t - at).abs() <= 4.0 * f64::EPSILON * t.abs();
+        let again = self.retry.as_ref().is_some_and(|(at, _)| same_time(*at));
+        self.stuck = if again { self.stuck + 1 } else { 0 };
+        self.retry = Some((t, cause));
+        if self.stuck < MOST { RETRY } else { STOP }
+    }
+
     /// Forgets everything, keeping allocations.
     pub(super) fn clear(&mut self) {
         self.panic = None;
         self.fatal = None;
         self.retry = None;
+        self.stuck = 0;
         self.message.clear();
     }
 
@@ -120,8 +135,7 @@ impl<S> Host<S> {
         match catch_unwind(AssertUnwindSafe(|| call(&mut self.system))) {
             Ok(Ok(())) => 0,
             Ok(Err(Failure::Recoverable(message))) => {
-                self.troubles.retry = Some((t, Cause::Rejected { callback, t, message }));
-                RETRY
+                self.troubles.retry(t, Cause::Rejected { callback, t, message })
             }
             Ok(Err(Failure::Fatal(error))) => {
                 self.troubles.fatal = Some((callback, error));
@@ -147,15 +161,14 @@ impl<S> Host<S> {
         if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
     }
 
-    /// [`RETRY`] if `output` has a NaN or infinity, 0 otherwise.
+    /// Asks for a smaller step if `output` has a NaN or infinity.
     pub(super) fn check_finite(&mut self, callback: Callback, t: f64, output: &[f64]) -> i32 {
         // A fold without early exit, which the compiler turns into vector instructions.
         if output.iter().fold(true, |finite, x| finite & x.is_finite()) {
             return 0;
         }
         let component = output.iter().position(|x| !x.is_finite()).unwrap_or_default();
-        self.troubles.retry = Some((t, Cause::NotFinite { callback, t, component }));
-        RETRY
+        self.troubles.retry(t, Cause::NotFinite { callback, t, component })
     }
 }
 

@@ -37,6 +37,7 @@ mod error;
 mod ffi;
 mod host;
 mod ida;
+mod kernels;
 mod linear;
 mod matrix;
 mod ode_callbacks;

@@ -154,35 +154,30 @@ impl StepOptions {
 macro_rules! shared_builder_methods {
     () => {
         /// Size of the first step; negative when integrating backwards. Default: estimated.
-        #[must_use]
         pub fn initial_step(mut self, h: f64) -> Self {
             self.steps.initial_step = Some(h);
             self
         }
 
         /// Lower bound of |step size|. Default: none.
-        #[must_use]
         pub fn min_step(mut self, h: f64) -> Self {
             self.steps.min_step = Some(h);
             self
         }
 
         /// Upper bound of |step size|. Default: none.
-        #[must_use]
         pub fn max_step(mut self, h: f64) -> Self {
             self.steps.max_step = Some(h);
             self
         }
 
         /// Highest order that may be used. Default: 5 for BDF, 12 for Adams.
-        #[must_use]
         pub fn max_order(mut self, order: u32) -> Self {
             self.steps.max_order = Some(order);
             self
         }
 
         /// Steps allowed in one call of `solve_to`. Default: 100,000.
-        #[must_use]
         pub fn max_steps(mut self, steps: u32) -> Self {
             self.steps.max_steps = steps;
             self
@@ -190,7 +185,6 @@ macro_rules! shared_builder_methods {
 
         /// How much smaller than the local error the error of the nonlinear iteration has to be.
         /// Default: 0.1 in CVODE, 0.33 in IDA.
-        #[must_use]
         pub fn convergence_coefficient(mut self, coefficient: f64) -> Self {
             self.steps.convergence_coefficient = Some(coefficient);
             self
@@ -237,13 +231,16 @@ impl StopTime {
 
 /// Checks the start of an integration.
 pub(super) fn check_start(t0: f64, y0: &[f64]) -> Result<(), Error> {
-    if !t0.is_finite() {
-        return Err(Error::input("t0", t0, "the start time is finite"));
-    }
+    check_time("t0", t0)?;
     if y0.is_empty() {
         return Err(Error::input("length of y0", 0, "there is at least one unknown"));
     }
     check_finite("y0", y0)
+}
+
+/// Checks that a time is finite.
+pub(super) fn check_time(input: &'static str, t: f64) -> Result<(), Error> {
+    if t.is_finite() { Ok(()) } else { Err(Error::input(input, t, "times are finite")) }
 }
 
 /// Checks that every number of an input is finite.

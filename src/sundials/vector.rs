@@ -2,7 +2,7 @@
 
 use std::slice;
 
-use super::{context::Context, error::Error, ffi};
+use super::{context::Context, error::Error, ffi, kernels};
 
 /// Owns a serial `N_Vector` of `len` numbers.
 pub(super) struct Vector {
@@ -18,6 +18,8 @@ impl Vector {
         if raw.is_null() {
             return Err(Error::out_of_memory("N_VNew_Serial"));
         }
+        // SAFETY: the vector is serial and just made.
+        unsafe { kernels::install(raw) };
         let mut vector = Self { raw, len: values.len() };
         vector.as_mut_slice().copy_from_slice(values);
         Ok(vector)

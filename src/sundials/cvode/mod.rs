@@ -5,7 +5,7 @@ mod setup;
 
 pub use options::{CvodeOptions, Multistep};
 
-use std::ffi::c_void;
+use std::{ffi::c_void, fmt};
 
 use super::{
     context::Context,
@@ -13,7 +13,7 @@ use super::{
     ffi,
     host::HostBox,
     linear::Linear,
-    options::{Reached, StopTime, check_finite, check_length},
+    options::{Reached, StopTime, check_finite, check_length, check_time},
     statistics::Statistics,
     vector::Vector,
 };
@@ -43,6 +43,13 @@ pub struct Cvode<S> {
 // SUNContext; SUNDIALS keeps no thread-local state. The system has to be `Send` itself. Troubles
 // that wait in the host are `Send`.
 unsafe impl<S: Send> Send for Cvode<S> {}
+
+impl<S> fmt::Debug for Cvode<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let y = self.y.as_slice();
+        f.debug_struct("Cvode").field("t", &self.t).field("y", &y).finish_non_exhaustive()
+    }
+}
 
 /// Owns the memory block of CVODE.
 struct Memory(*mut c_void);
@@ -93,7 +100,7 @@ impl<S: Ode> Cvode<S> {
     /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
     pub fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
         check_length("length of y", y.len(), self.y.as_slice().len())?;
-        check_finite("t", &[t])?;
+        check_time("t", t)?;
         check_finite("y", y)?;
         self.y.as_mut_slice().copy_from_slice(y);
         // SAFETY: memory and vector are alive; CVODE copies the vector.
@@ -108,7 +115,8 @@ impl<S: Ode> Cvode<S> {
     /// Integrates to time `t`, or to a root or the stop time if one comes first.
     ///
     /// The steps are as long as the tolerances allow and usually pass `t`; the state at `t` is
-    /// interpolated. (`CVode` with `CV_NORMAL`)
+    /// interpolated, so output times do not change the solution. Only the estimate of the first
+    /// step depends on the first `t`; the option `initial_step` removes that too. (`CVode` with `CV_NORMAL`)
     ///
     /// # Errors
     /// [`Error::Integration`] if the integration stopped, with the reason; [`Error::Input`] if
@@ -133,10 +141,11 @@ impl<S: Ode> Cvode<S> {
     }
 
     fn integrate(&mut self, target: f64, task: i32) -> Result<Reached, Error> {
-        check_finite("target time", &[target])?;
+        check_time("target time", target)?;
         if target == self.t {
             return Ok(Reached::Time);
         }
+        self.check_target(target, task)?;
         if let Some(time) = self.stop_time.news(self.t, target) {
             // SAFETY: the memory is alive.
             let code = unsafe { ffi::CVodeSetStopTime(self.memory.0, time) };
@@ -170,6 +179,21 @@ impl<S: Ode> Cvode<S> {
         }
     }
 
+    /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
+    /// step, `step` can not.
+    fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
+        let statistics = self.statistics();
+        let earliest = match task {
+            ffi::CV_ONE_STEP => self.t,
+            _ => statistics.current_time - statistics.last_step,
+        };
+        if (target - earliest) * statistics.last_step < 0.0 {
+            let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
+            return Err(Error::input("target time", target, mend));
+        }
+        Ok(())
+    }
+
     /// Time of the state [`y`](Self::y).
     #[must_use]
     pub fn t(&self) -> f64 {
@@ -198,7 +222,7 @@ impl<S: Ode> Cvode<S> {
     /// of the last step, or `out` has the wrong length.
     pub fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
         check_length("length of out", out.len(), self.y.as_slice().len())?;
-        check_finite("t", &[t])?;
+        check_time("t", t)?;
         let order = derivative.min(i32::MAX as u32) as i32;
         // SAFETY: memory and vector are alive.
         let code = unsafe { ffi::CVodeGetDky(self.memory.0, t, order, self.scratch.raw()) };
@@ -225,7 +249,7 @@ impl<S: Ode> Cvode<S> {
     /// [`Error::Input`] if `t` is not finite or lies behind the steps already taken.
     pub fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(t) = t {
-            check_finite("stop time", &[t])?;
+            check_time("stop time", t)?;
             let statistics = self.statistics();
             if (t - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
                 let mend = format!("the steps have reached {} already", statistics.current_time);
@@ -272,7 +296,7 @@ impl<S: Ode> Cvode<S> {
     fn stopped(&mut self, code: i32) -> Error {
         let statistics = self.statistics();
         let (otherwise, blame_retries) = match code {
-            ffi::CV_TOO_MUCH_WORK => (Cause::TooManySteps, false),
+            ffi::CV_TOO_MUCH_WORK => (Cause::TooManySteps, true),
             ffi::CV_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
             ffi::CV_ERR_FAILURE => (Cause::ErrorTest, false),
             ffi::CV_CONV_FAILURE if setup::is_singular(self.memory.0) => {

@@ -5,7 +5,7 @@ mod setup;
 
 pub use options::IdaOptions;
 
-use std::ffi::c_void;
+use std::{ffi::c_void, fmt};
 
 use super::{
     context::Context,
@@ -13,7 +13,7 @@ use super::{
     ffi,
     host::HostBox,
     linear::Linear,
-    options::{Reached, StopTime, check_finite, check_length},
+    options::{Reached, StopTime, check_finite, check_length, check_time},
     statistics::Statistics,
     vector::Vector,
 };
@@ -53,6 +53,13 @@ pub enum InitialCondition {
     Algebraic,
     /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`).
     State,
+}
+
+impl<S> fmt::Debug for Ida<S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let y = self.y.as_slice();
+        f.debug_struct("Ida").field("t", &self.t).field("y", &y).finish_non_exhaustive()
+    }
 }
 
 /// Owns the memory block of IDA.
@@ -97,7 +104,7 @@ impl<S: Dae> Ida<S> {
         unknown: InitialCondition,
         first_output: f64,
     ) -> Result<(), Error> {
-        check_finite("first_output", &[first_output])?;
+        check_time("first_output", first_output)?;
         if first_output == self.t {
             let mend = "it is a later time than the start";
             return Err(Error::input("first_output", first_output, mend));
@@ -134,7 +141,7 @@ impl<S: Dae> Ida<S> {
     /// [`Error::Input`] if a number is not finite or a length is wrong.
     pub fn reinit(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
         check_length("length of y", y.len(), self.y.as_slice().len())?;
-        check_finite("t", &[t])?;
+        check_time("t", t)?;
         check_length("length of yp", yp.len(), y.len())?;
         check_finite("y", y)?;
         check_finite("yp", yp)?;
@@ -152,7 +159,8 @@ impl<S: Dae> Ida<S> {
     /// Integrates to time `t`, or to a root or the stop time if one comes first.
     ///
     /// The steps are as long as the tolerances allow and usually pass `t`; the state at `t` is
-    /// interpolated. (`IDASolve` with `IDA_NORMAL`)
+    /// interpolated, so output times do not change the solution. Only the estimate of the first
+    /// step depends on the first `t`; the option `initial_step` removes that too. (`IDASolve` with `IDA_NORMAL`)
     ///
     /// # Errors
     /// [`Error::Integration`] if the integration stopped, with the reason; [`Error::Input`] if
@@ -177,10 +185,11 @@ impl<S: Dae> Ida<S> {
     }
 
     fn integrate(&mut self, target: f64, task: i32) -> Result<Reached, Error> {
-        check_finite("target time", &[target])?;
+        check_time("target time", target)?;
         if target == self.t {
             return Ok(Reached::Time);
         }
+        self.check_target(target, task)?;
         if let Some(time) = self.stop_time.news(self.t, target) {
             // SAFETY: the memory is alive.
             let code = unsafe { ffi::IDASetStopTime(self.memory.0, time) };
@@ -211,6 +220,21 @@ impl<S: Dae> Ida<S> {
             ffi::IDA_ILL_INPUT => self.host.accept("IDASolve", code).map(|()| Reached::Time),
             code => Err(self.stopped(code)),
         }
+    }
+
+    /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
+    /// step, `step` can not.
+    fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
+        let statistics = self.statistics();
+        let earliest = match task {
+            ffi::IDA_ONE_STEP => self.t,
+            _ => statistics.current_time - statistics.last_step,
+        };
+        if (target - earliest) * statistics.last_step < 0.0 {
+            let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
+            return Err(Error::input("target time", target, mend));
+        }
+        Ok(())
     }
 
     /// Time of the state [`y`](Self::y).
@@ -247,7 +271,7 @@ impl<S: Dae> Ida<S> {
     /// of the last step, or `out` has the wrong length.
     pub fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
         check_length("length of out", out.len(), self.y.as_slice().len())?;
-        check_finite("t", &[t])?;
+        check_time("t", t)?;
         let order = derivative.min(i32::MAX as u32) as i32;
         // SAFETY: memory and vector are alive.
         let code = unsafe { ffi::IDAGetDky(self.memory.0, t, order, self.scratch.raw()) };
@@ -274,7 +298,7 @@ impl<S: Dae> Ida<S> {
     /// [`Error::Input`] if `t` is not finite or lies behind the steps already taken.
     pub fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(t) = t {
-            check_finite("stop time", &[t])?;
+            check_time("stop time", t)?;
             let statistics = self.statistics();
             if (t - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
                 let mend = format!("the steps have reached {} already", statistics.current_time);
@@ -321,7 +345,7 @@ impl<S: Dae> Ida<S> {
     fn stopped(&mut self, code: i32) -> Error {
         let statistics = self.statistics();
         let (otherwise, blame_retries) = match code {
-            ffi::IDA_TOO_MUCH_WORK => (Cause::TooManySteps, false),
+            ffi::IDA_TOO_MUCH_WORK => (Cause::TooManySteps, true),
             ffi::IDA_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
             ffi::IDA_LINESEARCH_FAIL | ffi::IDA_NO_RECOVERY => (Cause::InconsistentStart, true),
             ffi::IDA_CONV_FAIL if setup::is_singular(self.memory.0) => (Cause::LinearSolver, true),

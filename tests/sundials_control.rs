@@ -1,0 +1,373 @@
+//! Steering an integration: roots, stop times, dense output, single steps, restarts, threads.
+
+use std::thread;
+
+use pliant::{
+    ode::{BandMut, Borrowed, Dae, Failure, Ode, with_jacobian},
+    samples::{Hires, Robertson},
+    sundials::{Cvode, CvodeOptions, Ida, IdaOptions, Jacobian, LinearSolver, Multistep, Reached},
+};
+
+/// y'' = -y as a system, with the exact solution (cos t, -sin t), and roots of y and of t - 5.
+struct Oscillator {
+    latest: f64,
+}
+
+impl Oscillator {
+    fn new() -> Self {
+        Self { latest: 0.0 }
+    }
+}
+
+impl Ode for Oscillator {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.latest = self.latest.max(t);
+        ydot.copy_from_slice(&[y[1], -y[0]]);
+        Ok(())
+    }
+
+    fn root_count(&self) -> usize {
+        2
+    }
+
+    fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        g.copy_from_slice(&[y[0], t - 5.0]);
+        Ok(())
+    }
+}
+
+impl Dae for Oscillator {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        self.latest = self.latest.max(t);
+        r.copy_from_slice(&[yp[0] - y[1], yp[1] + y[0]]);
+        Ok(())
+    }
+
+    fn root_count(&self) -> usize {
+        2
+    }
+
+    fn roots(&mut self, t: f64, y: &[f64], _yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        Ode::roots(self, t, y, g)
+    }
+}
+
+fn oscillator() -> Cvode<Oscillator> {
+    let options = CvodeOptions::new(1e-9, 1e-9).method(Multistep::Adams);
+    Cvode::new(Oscillator::new(), 0.0, &[1.0, 0.0], &options).unwrap()
+}
+
+fn oscillating_dae() -> Ida<Oscillator> {
+    let options = IdaOptions::new(1e-9, 1e-9);
+    Ida::new(Oscillator::new(), 0.0, &[1.0, 0.0], &[0.0, -1.0], &options).unwrap()
+}
+
+// The two integrators have the same methods; one text tests both.
+macro_rules! for_both {
+    ($solver:ident => $test:block) => {{
+        {
+            let mut $solver = oscillator();
+            $test
+        }
+        {
+            let mut $solver = oscillating_dae();
+            $test
+        }
+    }};
+}
+
+#[test]
+fn roots_are_found_with_their_direction() {
+    use std::f64::consts::FRAC_PI_2;
+    for_both!(solver => {
+        for (t, signs) in [(FRAC_PI_2, [-1, 0]), (3.0 * FRAC_PI_2, [1, 0]), (5.0, [0, 1])] {
+            assert_eq!(solver.solve_to(7.0).unwrap(), Reached::Root);
+            assert!((solver.t() - t).abs() < 1e-6, "{} is not {t}", solver.t());
+            assert_eq!(solver.roots_found(), signs);
+        }
+        assert_eq!(solver.solve_to(7.0).unwrap(), Reached::Time);
+        assert_eq!(solver.t(), 7.0);
+        assert!((solver.y()[0] - 7f64.cos()).abs() < 1e-6);
+        assert!(solver.statistics().root_evaluations > 0);
+    });
+}
+
+#[test]
+fn nothing_is_evaluated_beyond_a_stop_time() {
+    for_both!(solver => {
+        solver.set_stop_time(Some(0.7)).unwrap();
+        assert_eq!(solver.solve_to(1.0).unwrap(), Reached::StopTime);
+        assert_eq!(solver.t(), 0.7);
+        assert_eq!(solver.system().latest, 0.7);
+        assert!((solver.y()[0] - 0.7f64.cos()).abs() < 1e-6);
+        // It holds once.
+        assert_eq!(solver.solve_to(1.0).unwrap(), Reached::Time);
+        // One that is the target.
+        solver.set_stop_time(Some(1.3)).unwrap();
+        assert_eq!(solver.solve_to(1.3).unwrap(), Reached::StopTime);
+        assert_eq!(solver.solve_to(1.4).unwrap(), Reached::Time);
+        assert_eq!(solver.t(), 1.4);
+        // One that is taken back.
+        solver.set_stop_time(Some(1.5)).unwrap();
+        solver.set_stop_time(None).unwrap();
+        assert_eq!(solver.solve_to(1.55).unwrap(), Reached::Time);
+    });
+}
+
+#[test]
+fn a_stop_time_that_is_taken_back_before_going_backwards() {
+    for_both!(solver => {
+        solver.set_stop_time(Some(-0.7)).unwrap();
+        solver.set_stop_time(None).unwrap();
+        assert_eq!(solver.solve_to(-1.0).unwrap(), Reached::Time);
+        assert!((solver.y()[1] + (-1f64).sin()).abs() < 1e-6);
+    });
+}
+
+#[test]
+fn dense_output_is_as_accurate_as_the_steps() {
+    for_both!(solver => {
+        let mut out = [0.0; 2];
+        let (mut at_steps, mut between, mut slopes) = (0f64, 0f64, 0f64);
+        while solver.t() < 1.4 {
+            assert_eq!(solver.step(2.0).unwrap(), Reached::Time);
+            let (start, end) = solver.last_step();
+            assert_eq!(end, solver.t());
+            at_steps = at_steps.max((solver.y()[0] - end.cos()).abs());
+            for i in 0..=4 {
+                let t = start + (end - start) * f64::from(i) / 4.0;
+                solver.interpolate(t, 0, &mut out).unwrap();
+                between = between.max((out[0] - t.cos()).abs());
+                solver.interpolate(t, 1, &mut out).unwrap();
+                slopes = slopes.max((out[0] + t.sin()).abs());
+            }
+        }
+        println!("errors: {at_steps:.1e} at steps, {between:.1e} between, slopes {slopes:.1e}");
+        // The interpolating polynomial has the order of the method; its derivative loses one.
+        assert!(at_steps < 1e-7 && between < 2.0 * at_steps + 1e-9, "{at_steps} {between}");
+        assert!(slopes < 1e-4, "{slopes}");
+    });
+}
+
+#[test]
+fn output_times_do_not_change_the_steps() {
+    let options = CvodeOptions::new(1e-9, 1e-9).initial_step(1e-6);
+    let fresh = || Cvode::new(Oscillator::new(), 0.0, &[1.0, 0.0], &options).unwrap();
+    let mut direct = fresh();
+    direct.solve_to(1.5).unwrap();
+    let mut sampled = fresh();
+    for i in 1..=150 {
+        sampled.solve_to(f64::from(i) * 0.01).unwrap();
+    }
+    assert_eq!(direct.statistics().steps, sampled.statistics().steps);
+    assert_eq!(direct.y(), sampled.y());
+}
+
+#[test]
+fn the_present_time_is_reached_without_a_step() {
+    for_both!(solver => {
+        assert_eq!(solver.solve_to(0.0).unwrap(), Reached::Time);
+        assert_eq!(solver.statistics().steps, 0);
+    });
+}
+
+#[test]
+fn a_restart_repeats_the_run() {
+    for_both!(solver => {
+        solver.solve_to(1.0).unwrap();
+        let (y, statistics) = (solver.y().to_vec(), solver.statistics());
+        solver.set_stop_time(Some(1.1)).unwrap();
+        restart(&mut solver);
+        assert_eq!((solver.t(), solver.y()), (0.0, &[1.0, 0.0][..]));
+        assert_eq!(solver.statistics().steps, 0);
+        solver.solve_to(1.0).unwrap();
+        assert_eq!((solver.y(), solver.statistics()), (&y[..], statistics));
+    });
+}
+
+trait Restart {
+    fn restart(&mut self);
+}
+
+impl Restart for Cvode<Oscillator> {
+    fn restart(&mut self) {
+        self.reinit(0.0, &[1.0, 0.0]).unwrap();
+    }
+}
+
+impl Restart for Ida<Oscillator> {
+    fn restart(&mut self) {
+        self.reinit(0.0, &[1.0, 0.0], &[0.0, -1.0]).unwrap();
+    }
+}
+
+fn restart(solver: &mut impl Restart) {
+    solver.restart();
+}
+
+#[test]
+fn solvers_move_between_threads() {
+    let threads: Vec<_> = (0..4)
+        .map(|i| {
+            let klu = LinearSolver::Klu(Hires::new().pattern().clone());
+            let options = CvodeOptions::new(1e-8, 1e-12).newton(klu);
+            let mut solver = Cvode::new(Hires::new(), 0.0, &Hires::Y0, &options).unwrap();
+            solver.solve_to(f64::from(i) + 1.0).unwrap();
+            thread::spawn(move || {
+                solver.solve_to(Hires::REFERENCE.t).unwrap();
+                solver
+            })
+        })
+        .collect();
+    for thread in threads {
+        let solver = thread.join().unwrap();
+        assert!(Hires::REFERENCE.error(solver.y()) < 2e-6);
+    }
+    const fn is_send<T: Send>() {}
+    const { is_send::<Cvode<Robertson>>() };
+    const { is_send::<Ida<Robertson>>() };
+}
+
+#[test]
+fn a_lent_system_stays_with_its_owner() {
+    let mut system = Oscillator::new();
+    let options = CvodeOptions::new(1e-6, 1e-9);
+    let mut solver = Cvode::new(Borrowed(&mut system), 0.0, &[1.0, 0.0], &options).unwrap();
+    solver.solve_to(1.0).unwrap();
+    drop(solver);
+    assert!(system.latest >= 1.0);
+}
+
+#[test]
+fn options_limit_steps_and_order() {
+    let options = CvodeOptions::new(1e-6, 1e-9)
+        .initial_step(1e-3)
+        .max_step(0.01)
+        .max_order(2)
+        .stability_limit_detection(true)
+        .max_steps_between_setups(5)
+        .convergence_coefficient(0.01);
+    let mut solver = Cvode::new(Oscillator::new(), 0.0, &[1.0, 0.0], &options).unwrap();
+    while solver.t() < 1.0 {
+        solver.step(1.0).unwrap();
+        let statistics = solver.statistics();
+        assert!(statistics.last_step <= 0.01 && statistics.last_order <= 2);
+        assert_eq!(statistics.initial_step, 1e-3);
+    }
+    assert!(solver.statistics().steps >= 100);
+    assert!(solver.statistics().linear_setups >= solver.statistics().steps / 5);
+}
+
+#[test]
+fn a_closure_brings_its_jacobian() {
+    let rhs = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+        ydot[0] = -1e6 * (y[0] - 3.0);
+        Ok(())
+    };
+    let mut calls = 0;
+    let system = with_jacobian(rhs, |_t, _y, _ydot, mut jacobian| {
+        calls += 1;
+        jacobian[(0, 0)] = -1e6;
+        Ok(())
+    });
+    let options = CvodeOptions::new(1e-6, 1e-9).newton(LinearSolver::Dense(Jacobian::Supplied));
+    let mut solver = Cvode::new(system, 0.0, &[0.0], &options).unwrap();
+    solver.solve_to(1.0).unwrap();
+    assert!((solver.y()[0] - 3.0).abs() < 1e-5);
+    let statistics = solver.statistics();
+    assert_eq!(statistics.difference_quotient_evaluations, 0);
+    drop(solver);
+    assert_eq!(calls, statistics.jacobian_evaluations);
+}
+
+/// Heat along a rod with cold ends, by second differences at n inner points, without (ODE) and
+/// with (DAE) an implicit time derivative.
+struct Rod(usize);
+
+impl Ode for Rod {
+    fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let (n, scale) = (self.0, ((self.0 + 1) * (self.0 + 1)) as f64);
+        for i in 0..n {
+            let left = if i > 0 { y[i - 1] } else { 0.0 };
+            let right = if i + 1 < n { y[i + 1] } else { 0.0 };
+            ydot[i] = scale * (left - 2.0 * y[i] + right);
+        }
+        Ok(())
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        mut jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        assert_eq!((jacobian.lower(), jacobian.upper()), (1, 1));
+        let scale = ((self.0 + 1) * (self.0 + 1)) as f64;
+        for i in 0..self.0 {
+            jacobian[(i, i)] = -2.0 * scale;
+            if i > 0 {
+                jacobian[(i - 1, i)] = scale;
+                jacobian[(i, i - 1)] = scale;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Dae for Rod {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        self.rhs(t, y, r)?;
+        for (r, yp) in r.iter_mut().zip(yp) {
+            *r -= yp;
+        }
+        Ok(())
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        mut jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        for i in 0..self.0 {
+            jacobian[(i, i)] = -2.0 * ((self.0 + 1) * (self.0 + 1)) as f64 - cj;
+            if i > 0 {
+                let scale = ((self.0 + 1) * (self.0 + 1)) as f64;
+                jacobian[(i - 1, i)] = scale;
+                jacobian[(i, i - 1)] = scale;
+            }
+        }
+        let _ = (t, y, yp);
+        Ok(())
+    }
+}
+
+#[test]
+fn a_supplied_band_jacobian_solves_the_heat_equation() {
+    // The first sine is an eigenvector of the second differences, so the answer is exact.
+    let n = 50;
+    let sine = |i: usize| (std::f64::consts::PI * (i + 1) as f64 / (n + 1) as f64).sin();
+    let y0: Vec<f64> = (0..n).map(sine).collect();
+    let step = std::f64::consts::PI / (n + 1) as f64;
+    let rate = -2.0 * (1.0 - step.cos()) * ((n + 1) * (n + 1)) as f64;
+    let exact = (0.1 * rate).exp();
+    let error = |y: &[f64]| y.iter().zip(&y0).map(|(y, y0)| (y - exact * y0).abs()).sum::<f64>();
+    let band = LinearSolver::Band { lower: 1, upper: 1, jacobian: Jacobian::Supplied };
+
+    let options = CvodeOptions::new(1e-8, 1e-11).newton(band.clone());
+    let mut solver = Cvode::new(Rod(n), 0.0, &y0, &options).unwrap();
+    solver.solve_to(0.1).unwrap();
+    assert!(error(solver.y()) < 1e-5, "{}", error(solver.y()));
+    assert_eq!(solver.statistics().difference_quotient_evaluations, 0);
+    assert!(solver.statistics().nonlinear_failures < 3);
+
+    let yp0: Vec<f64> = y0.iter().map(|y| rate * y).collect();
+    let options = IdaOptions::new(1e-8, 1e-11).newton(band);
+    let mut solver = Ida::new(Rod(n), 0.0, &y0, &yp0, &options).unwrap();
+    solver.solve_to(0.1).unwrap();
+    assert!(error(solver.y()) < 1e-5, "{}", error(solver.y()));
+    assert!(solver.statistics().nonlinear_failures < 3);
+}
