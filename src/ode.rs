@@ -2,10 +2,15 @@
 //! differential-algebraic equations (DAE).
 //!
 //! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method [`crate::rk`].
-//! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; a struct implements the
-//! trait when it wants to hand over Jacobians, root functions or a linear solver of its own.
+//! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
+//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian; a struct implements
+//! the trait when it wants to hand over root functions or a linear solver of its own. An
+//! integrator owns its system; [`Borrowed`] lends it one instead.
 
-use std::error::Error;
+use std::{
+    error::Error,
+    ops::{Index, IndexMut},
+};
 
 use faer::MatMut;
 
@@ -26,6 +31,74 @@ impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     }
 }
 
+/// A band matrix to be filled: entry (i, j) exists where `j - upper <= i <= j + lower`.
+///
+/// Indexed like a full matrix, `band[(i, j)] = value`; panics outside the band.
+#[derive(Debug)]
+pub struct BandMut<'a> {
+    data: &'a mut [f64],
+    stride: usize,
+    diagonal: usize,
+    lower: usize,
+    upper: usize,
+}
+
+impl<'a> BandMut<'a> {
+    /// A view of `data`: columns of `stride` numbers each, the diagonal entry at place `diagonal`
+    /// of its column.
+    ///
+    /// # Panics
+    /// If a column has no room for the band.
+    #[must_use]
+    pub fn new(
+        data: &'a mut [f64],
+        stride: usize,
+        diagonal: usize,
+        lower: usize,
+        upper: usize,
+    ) -> Self {
+        assert!(upper <= diagonal && diagonal + lower < stride && data.len() % stride == 0);
+        Self { data, stride, diagonal, lower, upper }
+    }
+
+    /// Diagonals below the main one.
+    #[must_use]
+    pub fn lower(&self) -> usize {
+        self.lower
+    }
+
+    /// Diagonals above the main one.
+    #[must_use]
+    pub fn upper(&self) -> usize {
+        self.upper
+    }
+
+    fn place(&self, (i, j): (usize, usize)) -> usize {
+        assert!(
+            i <= j + self.lower && j <= i + self.upper && i < self.data.len() / self.stride,
+            "entry ({i}, {j}) lies outside the band of {} lower and {} upper diagonals",
+            self.lower,
+            self.upper
+        );
+        j * self.stride + self.diagonal + i - j
+    }
+}
+
+impl Index<(usize, usize)> for BandMut<'_> {
+    type Output = f64;
+
+    fn index(&self, entry: (usize, usize)) -> &f64 {
+        &self.data[self.place(entry)]
+    }
+}
+
+impl IndexMut<(usize, usize)> for BandMut<'_> {
+    fn index_mut(&mut self, entry: (usize, usize)) -> &mut f64 {
+        let place = self.place(entry);
+        &mut self.data[place]
+    }
+}
+
 /// y' = f(t, y).
 ///
 /// Only [`rhs`](Self::rhs) is required. The other methods are called when the integrator was
@@ -43,6 +116,17 @@ pub trait Ode {
         _jacobian: MatMut<'_, f64>,
     ) -> Result<(), Failure> {
         Err(missing("dense_jacobian"))
+    }
+
+    /// Writes df/dy into the band matrix `jacobian` (zero on entry); `ydot` is f(t, y).
+    fn banded_jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        _jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        Err(missing("banded_jacobian"))
     }
 
     /// Writes the values of df/dy, column by column, for the sparsity pattern that the linear
@@ -122,6 +206,18 @@ pub trait Dae {
         Err(missing("dense_jacobian"))
     }
 
+    /// Writes dF/dy + cj dF/dy' into the band matrix `jacobian` (zero on entry).
+    fn banded_jacobian(
+        &mut self,
+        _t: f64,
+        _cj: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        Err(missing("banded_jacobian"))
+    }
+
     /// Writes the values of dF/dy + cj dF/dy', column by column, for the sparsity pattern that
     /// the linear solver was given (`values` is zero on entry).
     fn sparse_jacobian(
@@ -168,6 +264,222 @@ where
         residual: &mut [f64],
     ) -> Result<(), Failure> {
         self(t, y, yp, residual)
+    }
+}
+
+/// A right-hand side with its dense Jacobian, made by [`with_jacobian`].
+#[derive(Clone, Debug)]
+pub struct WithJacobian<F, J> {
+    rhs: F,
+    jacobian: J,
+}
+
+/// The ODE y' = rhs(t, y) with the dense Jacobian `jacobian(t, y, ydot, matrix)`.
+///
+/// ```
+/// use pliant::ode::with_jacobian;
+///
+/// let decay = with_jacobian(
+///     |_t, y, ydot| {
+///         ydot[0] = -50.0 * y[0];
+///         Ok(())
+///     },
+///     |_t, _y, _ydot, mut jacobian| {
+///         jacobian[(0, 0)] = -50.0;
+///         Ok(())
+///     },
+/// );
+/// # let _: &dyn pliant::ode::Ode = &decay;
+/// ```
+pub fn with_jacobian<F, J>(rhs: F, jacobian: J) -> WithJacobian<F, J>
+where
+    F: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
+    J: FnMut(f64, &[f64], &[f64], MatMut<'_, f64>) -> Result<(), Failure>,
+{
+    WithJacobian { rhs, jacobian }
+}
+
+impl<F, J> Ode for WithJacobian<F, J>
+where
+    F: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
+    J: FnMut(f64, &[f64], &[f64], MatMut<'_, f64>) -> Result<(), Failure>,
+{
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        (self.rhs)(t, y, ydot)
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        (self.jacobian)(t, y, ydot, jacobian)
+    }
+}
+
+/// A right-hand side with its sparse Jacobian, made by [`with_sparse_jacobian`].
+#[derive(Clone, Debug)]
+pub struct WithSparseJacobian<F, J> {
+    rhs: F,
+    jacobian: J,
+}
+
+/// The ODE y' = rhs(t, y) with a sparse Jacobian: `jacobian(t, y, ydot, values)` writes the values
+/// in the order of the sparsity pattern that the linear solver was given.
+pub fn with_sparse_jacobian<F, J>(rhs: F, jacobian: J) -> WithSparseJacobian<F, J>
+where
+    F: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
+    J: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    WithSparseJacobian { rhs, jacobian }
+}
+
+impl<F, J> Ode for WithSparseJacobian<F, J>
+where
+    F: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
+    J: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        (self.rhs)(t, y, ydot)
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        (self.jacobian)(t, y, ydot, values)
+    }
+}
+
+/// A system lent to an integrator, which otherwise owns it.
+///
+/// (`&mut` of a struct can not be a system by itself: closures already are, and Rust takes
+/// `&mut closure` for a closure.)
+#[derive(Debug)]
+pub struct Borrowed<'a, S: ?Sized>(pub &'a mut S);
+
+impl<S: Ode + ?Sized> Ode for Borrowed<'_, S> {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.0.rhs(t, y, ydot)
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        self.0.dense_jacobian(t, y, ydot, jacobian)
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        self.0.banded_jacobian(t, y, ydot, jacobian)
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.sparse_jacobian(t, y, ydot, values)
+    }
+
+    fn newton_setup(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        gamma: f64,
+        reuse: bool,
+    ) -> Result<bool, Failure> {
+        self.0.newton_setup(t, y, ydot, gamma, reuse)
+    }
+
+    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
+        self.0.newton_solve(r)
+    }
+
+    fn root_count(&self) -> usize {
+        self.0.root_count()
+    }
+
+    fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        self.0.roots(t, y, g)
+    }
+}
+
+impl<S: Dae + ?Sized> Dae for Borrowed<'_, S> {
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.residual(t, y, yp, residual)
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        self.0.dense_jacobian(t, cj, y, yp, jacobian)
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        self.0.banded_jacobian(t, cj, y, yp, jacobian)
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.sparse_jacobian(t, cj, y, yp, values)
+    }
+
+    fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
+        self.0.newton_setup(t, cj, y, yp)
+    }
+
+    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
+        self.0.newton_solve(r)
+    }
+
+    fn root_count(&self) -> usize {
+        self.0.root_count()
+    }
+
+    fn roots(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        self.0.roots(t, y, yp, g)
     }
 }
 

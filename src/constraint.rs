@@ -1,0 +1,297 @@
+//! Constraints R = A^T u - b(t) = 0: what is held and what is moved, and how.
+//!
+//! A constraint on one displacement component of one node (a *nodal* row) is the common case; a
+//! general linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0
+//! (Hirai (4.1.3)); see [`crate::system`].
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::error::Error;
+use crate::mesh::{Mesh, Selection};
+
+/// An axis of space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axis {
+    /// First coordinate.
+    X,
+    /// Second coordinate.
+    Y,
+    /// Third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// Position of the axis among the components of a node: 0, 1 or 2.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// All axes of a space.
+    pub(crate) fn all(dimension: usize) -> &'static [Axis] {
+        &[Self::X, Self::Y, Self::Z][..dimension]
+    }
+}
+
+/// A prescribed displacement at one instant: b, b' and b''.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prescribed {
+    /// Displacement from the natural position (m).
+    pub displacement: f64,
+    /// Its first derivative (m/s).
+    pub velocity: f64,
+    /// Its second derivative (m/s^2).
+    pub acceleration: f64,
+}
+
+/// A prescribed displacement as a smooth function of time (s).
+pub type Path = Arc<dyn Fn(f64) -> Prescribed + Send + Sync>;
+
+/// A constraint as the user of a phase says it.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraint {
+    pub(crate) what: Constrained,
+    pub(crate) how: Motion,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Constrained {
+    /// Components of nodes, each a row of its own.
+    Nodes(Selection, Axes),
+    /// One general row: (node number from 1, axis, coefficient).
+    Row(Vec<(usize, Axis, f64)>),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Axes {
+    All,
+    These(Vec<Axis>),
+}
+
+#[derive(Clone)]
+pub(crate) enum Motion {
+    /// Stay where the phase begins.
+    Hold,
+    /// Move from there with constant velocity (m/s), one per axis (one in all for a general row).
+    Velocity(Vec<f64>),
+    /// Follow a path (all axes alike).
+    Path(Path),
+}
+
+impl fmt::Debug for Motion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Hold => f.write_str("Hold"),
+            Self::Velocity(velocity) => f.debug_tuple("Velocity").field(velocity).finish(),
+            Self::Path(_) => f.write_str("Path"),
+        }
+    }
+}
+
+/// One row of A^T with its b(t), resolved for one phase.
+#[derive(Clone)]
+pub(crate) struct Row {
+    /// Degrees of freedom and coefficients; a single one makes a nodal row.
+    pub(crate) terms: Vec<(usize, f64)>,
+    motion: RowMotion,
+}
+
+#[derive(Clone)]
+enum RowMotion {
+    Linear { start: f64, since: f64, velocity: f64 },
+    Path(Path),
+}
+
+impl Row {
+    /// b, b', b'' at time `t`.
+    pub(crate) fn prescribed(&self, t: f64) -> Prescribed {
+        match &self.motion {
+            RowMotion::Linear { start, since, velocity } => Prescribed {
+                displacement: start + velocity * (t - since),
+                velocity: *velocity,
+                acceleration: 0.0,
+            },
+            RowMotion::Path(path) => path(t),
+        }
+    }
+
+    /// A^T x for this row.
+    pub(crate) fn apply(&self, x: &[f64]) -> f64 {
+        self.terms.iter().map(|&(dof, coefficient)| coefficient * x[dof]).sum()
+    }
+
+    /// The degree of freedom of a nodal row and its coefficient.
+    pub(crate) fn nodal(&self) -> Option<(usize, f64)> {
+        match self.terms[..] {
+            [term] => Some(term),
+            _ => None,
+        }
+    }
+
+    /// The nodes and axes of the row, as a person would name them.
+    pub(crate) fn label(&self, dimension: usize) -> String {
+        let name = |&(dof, _): &(usize, f64)| {
+            format!("node {} {:?}", dof / dimension + 1, Axis::all(dimension)[dof % dimension])
+                .to_lowercase()
+        };
+        self.terms.iter().map(name).collect::<Vec<_>>().join(" + ")
+    }
+}
+
+/// Where the rows of a phase start from: its time and displacements, and the rows of the phase
+/// before it, whose prescribed positions are continued (so that an error of the stabilization is
+/// not carried along).
+pub(crate) struct Start<'a> {
+    pub(crate) time: f64,
+    pub(crate) u: &'a [f64],
+    pub(crate) before: &'a [Row],
+}
+
+impl Start<'_> {
+    /// Displacement A^T u at which a row that stays or moves on begins.
+    fn value(&self, terms: &[(usize, f64)]) -> f64 {
+        let position = |dof: usize| {
+            let told = self.before.iter().find(|row| row.nodal() == Some((dof, 1.0)));
+            told.map_or(self.u[dof], |row| row.prescribed(self.time).displacement)
+        };
+        terms.iter().map(|&(dof, coefficient)| coefficient * position(dof)).sum()
+    }
+}
+
+/// Turns the constraints of a phase into rows.
+///
+/// # Errors
+/// Unknown nodes, axes that the body does not have, a velocity of the wrong length, numbers that
+/// are not finite, the same component constrained twice.
+pub(crate) fn rows(
+    constraints: &[Constraint],
+    mesh: &Mesh,
+    phase: &str,
+    start: &Start,
+) -> Result<Vec<Row>, Error> {
+    let dimension = mesh.dimension();
+    let mut rows: Vec<Row> = Vec::new();
+    for constraint in constraints {
+        match &constraint.what {
+            Constrained::Nodes(selection, axes) => {
+                let axes: &[Axis] = match axes {
+                    Axes::All => Axis::all(dimension),
+                    Axes::These(axes) => axes,
+                };
+                check_axes(axes, dimension)?;
+                check_velocity(&constraint.how, axes.len())?;
+                for node in mesh.select(selection)? {
+                    for (k, axis) in axes.iter().enumerate() {
+                        let terms = vec![(node * dimension + axis.index(), 1.0)];
+                        rows.push(row(terms, &constraint.how, k, start));
+                    }
+                }
+            }
+            Constrained::Row(terms) => {
+                check_velocity(&constraint.how, 1)?;
+                let terms = general_terms(terms, mesh)?;
+                rows.push(row(terms, &constraint.how, 0, start));
+            }
+        }
+    }
+    for row in &rows {
+        check_path(row, phase, dimension, start.time)?;
+    }
+    reject_double_rows(&rows, dimension, phase, start.time)?;
+    Ok(rows)
+}
+
+fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &Start) -> Row {
+    let linear = |velocity: f64| RowMotion::Linear {
+        start: start.value(&terms),
+        since: start.time,
+        velocity,
+    };
+    let motion = match motion {
+        Motion::Hold => linear(0.0),
+        Motion::Velocity(velocity) => linear(velocity[component]),
+        Motion::Path(path) => RowMotion::Path(path.clone()),
+    };
+    Row { terms, motion }
+}
+
+fn check_axes(axes: &[Axis], dimension: usize) -> Result<(), Error> {
+    match axes.iter().find(|axis| axis.index() >= dimension) {
+        Some(axis) => {
+            let mend = format!("the body has {dimension} dimension(s)");
+            Err(Error::input("axis of a constraint", format!("{axis:?}"), mend))
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_velocity(motion: &Motion, components: usize) -> Result<(), Error> {
+    let Motion::Velocity(velocity) = motion else { return Ok(()) };
+    if velocity.len() != components {
+        return Err(Error::input(
+            "velocity of moved nodes",
+            format!("{velocity:?}"),
+            format!("it needs {components} component(s) (m/s)"),
+        ));
+    }
+    crate::error::finite("the velocity of moved nodes", velocity)
+}
+
+fn general_terms(terms: &[(usize, Axis, f64)], mesh: &Mesh) -> Result<Vec<(usize, f64)>, Error> {
+    let dimension = mesh.dimension();
+    let mut resolved: Vec<(usize, f64)> = Vec::new();
+    for &(number, axis, coefficient) in terms {
+        check_axes(&[axis], dimension)?;
+        if !coefficient.is_finite() || coefficient == 0.0 {
+            let mend = "it must be a finite number other than 0";
+            return Err(Error::input("coefficient of a constraint row", coefficient, mend));
+        }
+        let node = mesh.select(&[number].into())?[0];
+        let dof = node * dimension + axis.index();
+        if resolved.iter().any(|&(other, _)| other == dof) {
+            let mend = "it appears twice in one row; add its coefficients";
+            return Err(Error::input("node of a constraint row", number, mend));
+        }
+        resolved.push((dof, coefficient));
+    }
+    if resolved.is_empty() {
+        return Err(Error::input("constraint row", "[]", "it needs one term at least"));
+    }
+    Ok(resolved)
+}
+
+fn check_path(row: &Row, phase: &str, dimension: usize, t: f64) -> Result<(), Error> {
+    let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
+    if [displacement, velocity, acceleration].iter().all(|number| number.is_finite()) {
+        return Ok(());
+    }
+    Err(Error::Constraint {
+        phase: phase.into(),
+        nodes: row.label(dimension),
+        problem: format!(
+            "prescribe b = {displacement}, b' = {velocity}, b'' = {acceleration} at t = {t} s: \
+             the path must give finite numbers"
+        ),
+    })
+}
+
+fn reject_double_rows(rows: &[Row], dimension: usize, phase: &str, t: f64) -> Result<(), Error> {
+    let mut order: Vec<&Row> = rows.iter().filter(|row| row.nodal().is_some()).collect();
+    order.sort_by_key(|row| row.terms[0].0);
+    for pair in order.windows(2) {
+        if pair[0].terms[0].0 == pair[1].terms[0].0 {
+            let same = pair[0].prescribed(t) == pair[1].prescribed(t);
+            let problem = if same {
+                "are given twice: leave one of them out"
+            } else {
+                "contradict each other (two different motions): leave one of them out"
+            };
+            return Err(Error::Constraint {
+                phase: phase.into(),
+                nodes: pair[0].label(dimension),
+                problem: problem.into(),
+            });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,89 @@
+//! Forces beside elasticity and viscosity: one small trait, one file per kind of force.
+
+mod contact;
+mod gravity;
+mod load;
+
+pub(crate) use contact::Contact;
+pub use contact::Obstacle;
+pub(crate) use gravity::Gravity;
+pub(crate) use load::Load;
+
+use crate::sparse::BlockMatrix;
+
+/// Nodal forces (N), kept apart by what they do to the energy of the system.
+#[derive(Debug, Clone)]
+pub struct NodalForces {
+    /// Forces with a potential: -dU/du.
+    pub conservative: Vec<f64>,
+    /// Forces that turn motion into heat: their power -f.v is dissipated.
+    pub dissipative: Vec<f64>,
+    /// Forces from outside: their power f.v is supplied.
+    pub applied: Vec<f64>,
+}
+
+impl NodalForces {
+    pub(crate) fn zeros(dofs: usize) -> Self {
+        let zeros = vec![0.0; dofs];
+        Self { conservative: zeros.clone(), dissipative: zeros.clone(), applied: zeros }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.conservative.fill(0.0);
+        self.dissipative.fill(0.0);
+        self.applied.fill(0.0);
+    }
+
+    /// Writes the sum of all forces.
+    pub(crate) fn add_up(&self, total: &mut [f64]) {
+        let parts = self.conservative.iter().zip(&self.dissipative).zip(&self.applied);
+        total.iter_mut().zip(parts).for_each(|(f, ((c, d), a))| *f = c + d + a);
+    }
+
+    /// Power that is dissipated and power that is supplied (W) at the velocities `v`.
+    pub(crate) fn powers(&self, v: &[f64]) -> (f64, f64) {
+        (-dot(&self.dissipative, v), dot(&self.applied, v))
+    }
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Where the potential energy of a force is accounted for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reservoir {
+    /// Gravitational energy.
+    Gravity,
+    /// Energy stored in penalty springs at obstacles.
+    Contact,
+    /// None: the force has no potential.
+    None,
+}
+
+/// A force that depends on time t (s), displacements u (m) and velocities v (m/s) of the nodes.
+pub trait Force: Send + Sync {
+    /// Adds the force at (t, u, v).
+    fn add_forces(&self, t: f64, u: &[f64], v: &[f64], forces: &mut NodalForces);
+
+    /// Adds -df/du to `stiffness` and -df/dv to `damping`, symmetric. A force whose
+    /// [`is_nonlinear`](Self::is_nonlinear) is false has none.
+    fn add_tangents(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        _stiffness: &mut BlockMatrix,
+        _damping: &mut BlockMatrix,
+    ) {
+    }
+
+    /// Whether the force depends on u or v, so that the Newton matrix must follow it.
+    fn is_nonlinear(&self) -> bool;
+
+    /// Potential energy (J) of the conservative part.
+    fn potential(&self, t: f64, u: &[f64]) -> f64;
+
+    /// Where that energy belongs.
+    fn reservoir(&self) -> Reservoir;
+}

@@ -1,0 +1,202 @@
+//! Meshes: nodes, cells, and named sets of nodes.
+//!
+//! Nodes and cells are counted from 0 inside the crate and in slices that it hands out. Where a
+//! person names nodes by number (selections, messages) they count from 1, as in the literature.
+
+mod boundary;
+mod generate;
+mod select;
+
+use std::collections::BTreeMap;
+
+pub use boundary::Face;
+pub use generate::Cells;
+pub use select::Selection;
+
+use crate::error::{Error, finite};
+
+/// Shape of a cell, with the order of its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum CellKind {
+    /// Two nodes.
+    Segment,
+    /// Three nodes, counter-clockwise.
+    Triangle,
+}
+
+impl CellKind {
+    /// Nodes of one cell.
+    pub fn nodes(self) -> usize {
+        match self {
+            Self::Segment => 2,
+            Self::Triangle => 3,
+        }
+    }
+
+    /// Dimension of the cell itself: 1 for a segment, 2 for a triangle.
+    pub fn dimension(self) -> usize {
+        match self {
+            Self::Segment => 1,
+            Self::Triangle => 2,
+        }
+    }
+
+    /// The faces of the cell, as local node numbers, seen from outside in positive order.
+    pub(crate) fn faces(self) -> &'static [&'static [usize]] {
+        match self {
+            Self::Segment => &[&[0], &[1]],
+            Self::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
+        }
+    }
+}
+
+/// A finite element mesh in its natural shape.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    dimension: usize,
+    positions: Vec<f64>,
+    kind: CellKind,
+    connectivity: Vec<usize>,
+    sets: BTreeMap<String, Vec<usize>>,
+}
+
+impl Mesh {
+    /// A mesh from its parts: `positions` holds `dimension` coordinates (m) per node, one node
+    /// after the other; `connectivity` the nodes of one cell after the other, counted from 0.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, a dimension that does not fit the cells, a cell with a
+    /// node that does not exist. (Inverted and flat cells are found when a body is made of it.)
+    pub fn new(
+        dimension: usize,
+        positions: Vec<f64>,
+        kind: CellKind,
+        connectivity: Vec<usize>,
+    ) -> Result<Self, Error> {
+        if dimension != kind.dimension() {
+            return Err(Error::input(
+                "mesh.dimension",
+                dimension,
+                format!("{kind:?} cells need dimension {}", kind.dimension()),
+            ));
+        }
+        if positions.is_empty() || !positions.len().is_multiple_of(dimension) {
+            return Err(Error::input(
+                "number of mesh coordinates",
+                positions.len(),
+                format!("it must be {dimension} per node, for one node at least"),
+            ));
+        }
+        finite("mesh.positions", &positions)?;
+        if connectivity.is_empty() || !connectivity.len().is_multiple_of(kind.nodes()) {
+            return Err(Error::input(
+                "length of mesh.connectivity",
+                connectivity.len(),
+                format!("it must be {} nodes per cell, for one cell at least", kind.nodes()),
+            ));
+        }
+        let nodes = positions.len() / dimension;
+        if let Some(at) = connectivity.iter().position(|&node| node >= nodes) {
+            return Err(Error::input(
+                format!("node of cell {}", at / kind.nodes() + 1),
+                connectivity[at] + 1,
+                format!("the mesh has the nodes 1 to {nodes}"),
+            ));
+        }
+        let mut mesh = Self { dimension, positions, kind, connectivity, sets: BTreeMap::new() };
+        mesh.sets.insert("all".into(), (0..nodes).collect());
+        mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
+        Ok(mesh)
+    }
+
+    /// Gives a name to a set of nodes, to be used in selections. A set of that name is replaced.
+    ///
+    /// # Errors
+    /// A node that does not exist, an empty selection.
+    pub fn name_nodes(
+        mut self,
+        name: impl Into<String>,
+        nodes: impl Into<Selection>,
+    ) -> Result<Self, Error> {
+        let nodes = self.select(&nodes.into())?;
+        self.sets.insert(name.into(), nodes);
+        Ok(self)
+    }
+
+    /// The same mesh, moved by `offset` (m).
+    ///
+    /// # Errors
+    /// An offset of the wrong length, or not finite.
+    pub fn translated(mut self, offset: &[f64]) -> Result<Self, Error> {
+        if offset.len() != self.dimension {
+            return Err(Error::input(
+                "length of the offset",
+                offset.len(),
+                format!("the mesh has dimension {}", self.dimension),
+            ));
+        }
+        finite("offset", offset)?;
+        for position in self.positions.chunks_exact_mut(self.dimension) {
+            position.iter_mut().zip(offset).for_each(|(x, d)| *x += d);
+        }
+        Ok(self)
+    }
+
+    /// Dimension of space: coordinates per node.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.positions.len() / self.dimension
+    }
+
+    /// Natural coordinates (m), `dimension` per node.
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// Natural coordinates (m) of one node, counted from 0.
+    pub fn position(&self, node: usize) -> &[f64] {
+        &self.positions[node * self.dimension..][..self.dimension]
+    }
+
+    /// What the cells are.
+    pub fn kind(&self) -> CellKind {
+        self.kind
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.connectivity.len() / self.kind.nodes()
+    }
+
+    /// The cells: their nodes, counted from 0.
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
+        self.connectivity.chunks_exact(self.kind.nodes())
+    }
+
+    /// The named node sets (nodes counted from 0, ascending).
+    pub fn sets(&self) -> &BTreeMap<String, Vec<usize>> {
+        &self.sets
+    }
+
+    /// Nodes on the boundary, counted from 0, ascending.
+    pub fn boundary_nodes(&self) -> &[usize] {
+        &self.sets["boundary"]
+    }
+
+    /// Length of the diagonal of the box around the mesh (m).
+    pub fn size(&self) -> f64 {
+        let extent = |axis: usize| {
+            let along = self.positions.iter().skip(axis).step_by(self.dimension);
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+                (low.min(x), high.max(x))
+            });
+            high - low
+        };
+        (0..self.dimension).map(|axis| extent(axis).powi(2)).sum::<f64>().sqrt()
+    }
+}

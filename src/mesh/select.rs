@@ -1,0 +1,124 @@
+//! Selections: how nodes are named.
+
+use super::Mesh;
+use crate::error::Error;
+
+/// Nodes, by the name of a set, by number, or by a box around their natural positions.
+///
+/// Strings, arrays and vectors of numbers convert into it:
+/// `body.hold("bottom")`, `body.hold([14, 15])`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Selection {
+    /// A named set of the mesh (`bottom`, `top`, `left`, `right`, `boundary`, `all`, or one's own).
+    Set(String),
+    /// Node numbers, counted from 1 as in the literature.
+    Numbers(Vec<usize>),
+    /// All nodes in the closed box between `min` and `max` (m).
+    Box {
+        /// Lower corner.
+        min: Vec<f64>,
+        /// Upper corner.
+        max: Vec<f64>,
+    },
+}
+
+impl From<&str> for Selection {
+    fn from(name: &str) -> Self {
+        Self::Set(name.into())
+    }
+}
+
+impl From<Vec<usize>> for Selection {
+    fn from(numbers: Vec<usize>) -> Self {
+        Self::Numbers(numbers)
+    }
+}
+
+impl<const N: usize> From<[usize; N]> for Selection {
+    fn from(numbers: [usize; N]) -> Self {
+        Self::Numbers(numbers.into())
+    }
+}
+
+impl Mesh {
+    /// The nodes that `selection` names, counted from 0, in the order given (sets and boxes:
+    /// ascending).
+    ///
+    /// # Errors
+    /// An unknown set, a number out of range or given twice, an empty selection.
+    pub fn select(&self, selection: &Selection) -> Result<Vec<usize>, Error> {
+        let nodes = match selection {
+            Selection::Set(name) => self.sets.get(name).cloned().ok_or_else(|| {
+                let known: Vec<&str> = self.sets.keys().map(String::as_str).collect();
+                let mend = format!("the mesh has the node sets {}", known.join(", "));
+                Error::input("node set", format!("\"{name}\""), mend)
+            })?,
+            Selection::Numbers(numbers) => self.from_numbers(numbers)?,
+            Selection::Box { min, max } => self.in_box(min, max)?,
+        };
+        if nodes.is_empty() {
+            return Err(Error::input(
+                "node selection",
+                format!("{selection:?}"),
+                "it contains no node of the mesh; name at least one",
+            ));
+        }
+        Ok(nodes)
+    }
+
+    fn from_numbers(&self, numbers: &[usize]) -> Result<Vec<usize>, Error> {
+        let count = self.node_count();
+        let mut seen = vec![false; count];
+        for &number in numbers {
+            if !(1..=count).contains(&number) {
+                let mend = format!("the mesh has the nodes 1 to {count} (numbers count from 1)");
+                return Err(Error::input("node", number, mend));
+            }
+            if std::mem::replace(&mut seen[number - 1], true) {
+                return Err(Error::input("node", number, "it is named twice in one selection"));
+            }
+        }
+        Ok(numbers.iter().map(|number| number - 1).collect())
+    }
+
+    fn in_box(&self, min: &[f64], max: &[f64]) -> Result<Vec<usize>, Error> {
+        for (name, corner) in [("box min", min), ("box max", max)] {
+            if corner.len() != self.dimension || corner.iter().any(|x| x.is_nan()) {
+                let mend = format!("it needs {} numbers (m)", self.dimension);
+                return Err(Error::input(name, format!("{corner:?}"), mend));
+            }
+        }
+        let inside = |node: &usize| {
+            self.position(*node)
+                .iter()
+                .zip(min.iter().zip(max))
+                .all(|(x, (low, high))| low <= x && x <= high)
+        };
+        Ok((0..self.node_count()).filter(inside).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Cells;
+
+    #[test]
+    fn selections_by_set_number_and_box() {
+        let mesh = Mesh::rectangle([3.0, 3.0], [4, 4], Cells::Triangles).unwrap();
+        assert_eq!(mesh.select(&"bottom".into()).unwrap(), [0, 1, 2, 3]);
+        assert_eq!(mesh.select(&[14, 15].into()).unwrap(), [13, 14]);
+        let corner = Selection::Box { min: vec![1.5, 1.5], max: vec![9.0, 2.5] };
+        assert_eq!(mesh.select(&corner).unwrap(), [10, 11]);
+        for (bad, part) in [
+            (Selection::from("botom"), "node set = \"botom\""),
+            (Selection::from([17]), "node = 17 cannot be used: the mesh has the nodes 1 to 16"),
+            (Selection::from([0]), "node = 0 "),
+            (Selection::from([3, 3]), "named twice"),
+            (Selection::from(vec![]), "contains no node"),
+        ] {
+            let message = mesh.select(&bad).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
+        }
+    }
+}

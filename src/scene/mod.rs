@@ -1,0 +1,160 @@
+//! Scenes: a body, what surrounds it, and a timeline of phases.
+
+mod phase;
+
+use std::sync::Arc;
+
+pub use phase::Phase;
+
+use crate::body::Body;
+use crate::constraint::{Row, Start, rows};
+use crate::error::{Error, finite};
+use crate::force::{Contact, Force, Gravity, Load, Obstacle};
+use crate::system::System;
+
+/// A body, gravity, obstacles, and what happens when.
+///
+/// ```
+/// use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
+///
+/// let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+/// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+/// let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+///     .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0))
+///     .phase(
+///         Phase::until(0.5).hold("bottom").move_nodes([14, 15], [0.0, -0.16]).without_contact(),
+///     )
+///     .phase(Phase::until(1.0).named("free"));
+/// scene.validate()?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Scene {
+    body: Arc<Body>,
+    gravity: Option<Vec<f64>>,
+    obstacles: Vec<Obstacle>,
+    phases: Vec<Phase>,
+}
+
+impl Scene {
+    /// A scene with a body alone, at rest in its natural shape at t = 0.
+    pub fn new(body: Body) -> Self {
+        Self { body: Arc::new(body), gravity: None, obstacles: Vec::new(), phases: Vec::new() }
+    }
+
+    /// Acceleration of gravity (m/s^2), one component per dimension. Default: none.
+    pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
+        self.gravity = Some(acceleration.into());
+        self
+    }
+
+    /// Adds an obstacle, which acts in every phase that does not exclude it.
+    pub fn obstacle(mut self, obstacle: Obstacle) -> Self {
+        self.obstacles.push(obstacle);
+        self
+    }
+
+    /// Adds a phase, which begins where the one before it ends (the first one at t = 0).
+    pub fn phase(mut self, phase: Phase) -> Self {
+        let number = self.phases.len() + 1;
+        self.phases.push(phase.or_named(format!("phase {number}")));
+        self
+    }
+
+    /// The body.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    pub(crate) fn shared_body(&self) -> Arc<Body> {
+        self.body.clone()
+    }
+
+    /// The obstacles.
+    pub fn obstacles(&self) -> &[Obstacle] {
+        &self.obstacles
+    }
+
+    /// The phases, in order.
+    pub fn phases(&self) -> &[Phase] {
+        &self.phases
+    }
+
+    /// End of the last phase (s); 0 without phases.
+    pub fn end(&self) -> f64 {
+        self.phases.last().map_or(0.0, |phase| phase.until)
+    }
+
+    /// Checks everything that can be known before the scene is run.
+    ///
+    /// # Errors
+    /// The first input that cannot be used: no phases, phases out of order, unknown nodes or
+    /// obstacles, numbers out of range, constraints that contradict each other.
+    pub fn validate(&self) -> Result<(), Error> {
+        if self.phases.is_empty() {
+            return Err(Error::input("number of phases", 0, "a scene needs one phase at least"));
+        }
+        let mut start = 0.0;
+        for phase in &self.phases {
+            let input = format!("end of phase \"{}\"", phase.name);
+            if !phase.until.is_finite() {
+                return Err(Error::input(input, phase.until, "it must be a finite time (s)"));
+            }
+            if phase.until <= start {
+                let mend = format!("phases run one after the other: it must lie after {start} s");
+                return Err(Error::input(input, format!("{} s", phase.until), mend));
+            }
+            start = phase.until;
+        }
+        for (k, obstacle) in self.obstacles.iter().enumerate() {
+            obstacle.validated(self.body.dimension())?;
+            if self.obstacles[..k].iter().any(|other| other.name() == obstacle.name()) {
+                let value = format!("\"{}\"", obstacle.name());
+                return Err(Error::input("obstacle name", value, "it is taken: name it otherwise"));
+            }
+        }
+        let (mut time, mut before) = (0.0, Vec::new());
+        let natural = vec![0.0; self.body.dofs()];
+        for phase in &self.phases {
+            before = self.rows(phase, &Start { time, u: &natural, before: &before })?;
+            self.forces(phase)?;
+            time = phase.until;
+        }
+        Ok(())
+    }
+
+    /// The equations of one phase.
+    pub(crate) fn system(&self, phase: &Phase, start: &Start, alpha: f64) -> Result<System, Error> {
+        let rows = self.rows(phase, start)?;
+        System::new(self.body.clone(), self.forces(phase)?, rows, alpha, &phase.name)
+    }
+
+    fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
+        rows(&phase.constraints, self.body.mesh(), &phase.name, start)
+    }
+
+    fn forces(&self, phase: &Phase) -> Result<Vec<Arc<dyn Force>>, Error> {
+        let (mesh, dimension) = (self.body.mesh(), self.body.dimension());
+        let mut forces: Vec<Arc<dyn Force>> = Vec::new();
+        if let Some(gravity) = &self.gravity {
+            phase::check_vector("gravity", gravity, dimension, "m/s^2")?;
+            finite("gravity", gravity)?;
+            forces.push(Arc::new(Gravity::new(&self.body, gravity)));
+        }
+        let mut loads = Vec::new();
+        for (nodes, force) in &phase.loads {
+            phase::check_vector("load", force, dimension, "N")?;
+            finite("load", force)?;
+            for node in mesh.select(nodes)? {
+                loads.extend((0..dimension).map(|i| (node * dimension + i, force[i])));
+            }
+        }
+        if !loads.is_empty() {
+            forces.push(Arc::new(Load { forces: loads }));
+        }
+        for obstacle in phase.contacts(&self.obstacles)? {
+            forces.push(Arc::new(Contact::new(mesh, obstacle.validated(dimension)?)));
+        }
+        Ok(forces)
+    }
+}

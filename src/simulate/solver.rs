@@ -1,0 +1,161 @@
+//! How a scene is integrated: method, tolerances, limits.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::body::Body;
+use crate::error::{Error, positive};
+
+/// An integration method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Method {
+    /// CVODE, backward differentiation formulas of order 1 to 5: for stiff motion.
+    #[default]
+    CvodeBdf,
+    /// CVODE, Adams-Moulton formulas of order 1 to 12: for motion that is hardly damped.
+    CvodeAdams,
+    /// IDA on the index-1 form, with the structured Newton matrix.
+    Ida,
+    /// IDA on the index-1 form, with KLU on the sparse Jacobian of the whole system.
+    IdaKlu,
+    /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
+    /// and as a check of the others.
+    Rk,
+}
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; 5] =
+        [Self::CvodeBdf, Self::CvodeAdams, Self::Ida, Self::IdaKlu, Self::Rk];
+
+    /// Name of the method: `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`, `rk`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::CvodeBdf => "cvode-bdf",
+            Self::CvodeAdams => "cvode-adams",
+            Self::Ida => "ida",
+            Self::IdaKlu => "ida-klu",
+            Self::Rk => "rk",
+        }
+    }
+
+    fn highest_order(self) -> u32 {
+        match self {
+            Self::CvodeAdams => 12,
+            _ => 5,
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Method {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            Error::input("method", format!("\"{name}\""), format!("it is one of {known}"))
+        })
+    }
+}
+
+/// How a scene is integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solver {
+    /// Integration method. Default: [`Method::CvodeBdf`].
+    pub method: Method,
+    /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
+    /// `rtol |y| + atol` in the root mean square over displacements and velocities. Default: 1e-5.
+    pub rtol: f64,
+    /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the body's size,
+    /// so that smaller displacements count as that large.
+    pub atol_position: Option<f64>,
+    /// Absolute tolerance of velocities (m/s). Default: rtol times a hundredth of the speed of
+    /// waves in the body, its displacements' counterpart in a vibration.
+    pub atol_velocity: Option<f64>,
+    /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger
+    /// means less drift; it costs the implicit methods nothing, an explicit one a step of 3.3/alpha.
+    pub alpha: f64,
+    /// Highest order of a multistep method. Default: the method's own, 5 (Adams: 12).
+    pub max_order: Option<u32>,
+    /// Steps that one phase may take. Default: 10 million, a guard against waiting for ever.
+    pub max_steps: usize,
+}
+
+impl Default for Solver {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            rtol: 1e-5,
+            atol_position: None,
+            atol_velocity: None,
+            alpha: 1e3,
+            max_order: None,
+            max_steps: 10_000_000,
+        }
+    }
+}
+
+impl Solver {
+    pub(crate) fn validate(&self) -> Result<(), Error> {
+        if !(self.rtol > 0.0 && self.rtol < 1.0) {
+            let mend = "it must lie above 0 and below 1 (1e-3 is rough, 1e-8 fine)";
+            return Err(Error::input("rtol", self.rtol, mend));
+        }
+        positive("alpha", self.alpha, "1/s")?;
+        self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
+        self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
+        let highest = self.method.highest_order();
+        match self.max_order {
+            Some(_) if self.method == Method::Rk => {
+                let mend = "the Runge-Kutta method has one order only: leave it out";
+                Err(Error::input("max_order", format!("{:?}", self.max_order), mend))
+            }
+            Some(order) if !(1..=highest).contains(&order) => {
+                let mend = format!("{} has the orders 1 to {highest}", self.method);
+                Err(Error::input("max_order", order, mend))
+            }
+            _ if self.max_steps == 0 => {
+                Err(Error::input("max_steps", 0, "allow one step at least"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The absolute tolerances in force for `body`.
+    pub(crate) fn tolerances(&self, body: &Body) -> Tolerances {
+        const SMALL_STRAIN: f64 = 0.01;
+        let (size, young) = (body.mesh().size(), body.material().young);
+        let volume = body.mass() / body.material().density;
+        let position = self.rtol * SMALL_STRAIN * size;
+        let velocity = self.rtol * SMALL_STRAIN * body.material().wave_speed();
+        Tolerances {
+            position: self.atol_position.unwrap_or(position),
+            velocity: self.atol_velocity.unwrap_or(velocity),
+            energy: self.rtol * young * volume,
+            force: self.rtol * young * volume / size,
+        }
+    }
+}
+
+/// Absolute tolerances in force.
+///
+/// Those of the energies that ride along and of the multipliers are loose (as if strain were 1):
+/// enough that the Newton iteration looks after them, too little for them to rule the steps.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Tolerances {
+    /// Displacements (m).
+    pub(crate) position: f64,
+    /// Velocities (m/s).
+    pub(crate) velocity: f64,
+    /// Energies dissipated and supplied (J).
+    pub(crate) energy: f64,
+    /// Multipliers (N).
+    pub(crate) force: f64,
+}

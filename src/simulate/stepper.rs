@@ -1,0 +1,199 @@
+//! One face for all integrators: step, look back into the step, count.
+
+use crate::ode::Failure;
+use crate::rk::{self, DormandPrince};
+use crate::simulate::solver::Tolerances;
+use crate::simulate::{Counts, Method, Solver};
+use crate::sundials::{Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern};
+use crate::system::{ENERGIES, IndexOne, System};
+
+pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
+
+/// An integrator at work on the equations of one phase.
+pub(super) enum Stepper {
+    Cvode(Cvode<System>),
+    Ida(Box<Ida<IndexOne>>),
+    Rk(DormandPrince<System>),
+}
+
+impl Stepper {
+    /// Starts at `t` with `state` = (u, v, energies) and will stop at `end`.
+    pub(super) fn new(
+        system: System,
+        solver: &Solver,
+        atol: &Tolerances,
+        t: f64,
+        end: f64,
+        state: &[f64],
+    ) -> Result<Self, Failed> {
+        let n = system.dofs();
+        let mut tolerances = vec![atol.position; n];
+        tolerances.resize(2 * n, atol.velocity);
+        tolerances.resize(2 * n + ENERGIES, atol.energy);
+        match solver.method {
+            Method::CvodeBdf => cvode(system, solver, Multistep::Bdf, tolerances, t, end, state),
+            Method::CvodeAdams => {
+                cvode(system, solver, Multistep::Adams, tolerances, t, end, state)
+            }
+            Method::Ida | Method::IdaKlu => {
+                tolerances.resize(2 * n + ENERGIES + system.rows().len(), atol.force);
+                ida(system, solver, tolerances, t, end, state)
+            }
+            Method::Rk => {
+                let options = rk::Options::default().rtol(solver.rtol).atol(tolerances);
+                let options = options.stop_time(end);
+                Ok(Self::Rk(DormandPrince::new(system, t, state, &options)?))
+            }
+        }
+    }
+
+    /// Takes one step towards `end` and returns the time reached.
+    pub(super) fn step(&mut self, end: f64) -> Result<f64, Failed> {
+        match self {
+            Self::Cvode(cvode) => {
+                let _ = cvode.step(end)?;
+                Ok(cvode.t())
+            }
+            Self::Ida(ida) => {
+                let _ = ida.step(end)?;
+                Ok(ida.t())
+            }
+            Self::Rk(rk) => Ok(rk.step()?),
+        }
+    }
+
+    /// The state at a time within the last step.
+    pub(super) fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
+        match self {
+            Self::Cvode(cvode) => Ok(cvode.interpolate(t, 0, state)?),
+            Self::Ida(ida) => Ok(ida.interpolate(t, 0, state)?),
+            Self::Rk(rk) => Ok(rk.interpolate(t, state)?),
+        }
+    }
+
+    /// Number of unknowns, all together.
+    pub(super) fn size(&self) -> usize {
+        self.state().len()
+    }
+
+    /// The state at the end of the last step.
+    pub(super) fn state(&self) -> &[f64] {
+        match self {
+            Self::Cvode(cvode) => cvode.y(),
+            Self::Ida(ida) => ida.y(),
+            Self::Rk(rk) => rk.y(),
+        }
+    }
+
+    pub(super) fn system(&self) -> &System {
+        match self {
+            Self::Cvode(cvode) => cvode.system(),
+            Self::Ida(ida) => &ida.system().system,
+            Self::Rk(rk) => rk.system(),
+        }
+    }
+
+    pub(super) fn system_mut(&mut self) -> &mut System {
+        match self {
+            Self::Cvode(cvode) => cvode.system_mut(),
+            Self::Ida(ida) => &mut ida.system_mut().system,
+            Self::Rk(rk) => rk.system_mut(),
+        }
+    }
+
+    /// What the integration has cost so far, and what it has to say about itself.
+    pub(super) fn counts(&self) -> Counts {
+        let sundials = |s: crate::sundials::Statistics, factorizations: usize| Counts {
+            steps: s.steps as usize,
+            evaluations: s.evaluations as usize,
+            factorizations,
+            error_test_failures: s.error_test_failures as usize,
+            convergence_failures: s.nonlinear_failures as usize,
+            last_step: s.last_step,
+            last_order: s.last_order,
+            notice: None,
+        };
+        match self {
+            Self::Cvode(cvode) => sundials(cvode.statistics(), cvode.system().factorizations()),
+            Self::Ida(ida) => {
+                let statistics = ida.statistics();
+                let setups = statistics.linear_setups as usize;
+                sundials(statistics, setups)
+            }
+            Self::Rk(rk) => {
+                let s = rk.statistics();
+                Counts {
+                    steps: s.steps,
+                    evaluations: s.rhs_evaluations,
+                    factorizations: 0,
+                    error_test_failures: s.rejected_steps,
+                    convergence_failures: s.refused_steps,
+                    last_step: s.last_step,
+                    last_order: 5,
+                    notice: s.stability_limited.map(|limit| limit.to_string()),
+                }
+            }
+        }
+    }
+}
+
+fn cvode(
+    system: System,
+    solver: &Solver,
+    method: Multistep,
+    tolerances: Vec<f64>,
+    t: f64,
+    end: f64,
+    state: &[f64],
+) -> Result<Stepper, Failed> {
+    let mut options =
+        CvodeOptions::new(solver.rtol, tolerances).method(method).newton(LinearSolver::Custom);
+    if let Some(order) = solver.max_order {
+        options = options.max_order(order);
+    }
+    let mut cvode = Cvode::new(system, t, state, &options)?;
+    cvode.set_stop_time(Some(end))?;
+    Ok(Stepper::Cvode(cvode))
+}
+
+fn ida(
+    system: System,
+    solver: &Solver,
+    tolerances: Vec<f64>,
+    t: f64,
+    end: f64,
+    state: &[f64],
+) -> Result<Stepper, Failed> {
+    let motion = 2 * system.dofs();
+    let mut equations = IndexOne { system };
+    let (y, yp) = equations.consistent(t, state).map_err(|failure| match failure {
+        Failure::Recoverable(message) => message.into(),
+        Failure::Fatal(error) => error,
+    })?;
+    // What is not marked as differential stays out of the error test: energies and multipliers.
+    let differential: Vec<bool> = (0..y.len()).map(|i| i < motion).collect();
+    let linear_solver = match solver.method {
+        Method::IdaKlu => LinearSolver::Klu(jacobian_pattern(&equations)?),
+        _ => LinearSolver::Custom,
+    };
+    let mut options = IdaOptions::new(solver.rtol, tolerances)
+        .newton(linear_solver)
+        .differential(differential)
+        .suppress_algebraic(true);
+    if let Some(order) = solver.max_order {
+        options = options.max_order(order);
+    }
+    let mut ida = Ida::new(equations, t, &y, &yp, &options)?;
+    ida.set_stop_time(Some(end))?;
+    Ok(Stepper::Ida(Box::new(ida)))
+}
+
+fn jacobian_pattern(equations: &IndexOne) -> Result<Pattern, Failed> {
+    let size = equations.size();
+    let (mut offsets, mut row_indices) = (vec![0; size + 1], Vec::new());
+    equations.visit_jacobian(1.0, |row, column, _| {
+        row_indices.push(row);
+        offsets[column + 1] = row_indices.len();
+    });
+    Ok(Pattern::from_csc(&offsets, &row_indices)?)
+}

@@ -1,0 +1,230 @@
+//! Sparse matrices over the nodes of a mesh.
+//!
+//! All matrices of a body share one [`NodePattern`]: which nodes share a cell (or a spring). On it
+//! live [`NodeMatrix`], one number per pair of nodes (inertia, which acts alike on each axis), and
+//! [`BlockMatrix`], one small dense block per pair (stiffness, damping, tangents).
+
+use std::sync::Arc;
+
+use faer::Mat;
+
+/// Calls a function that is generic over the dimension of space with the dimension at hand.
+macro_rules! with_dimension {
+    ($dimension:expr, $function:ident ( $($argument:expr),* $(,)? )) => {
+        match $dimension {
+            1 => $function::<1>($($argument),*),
+            2 => $function::<2>($($argument),*),
+            _ => $function::<3>($($argument),*),
+        }
+    };
+}
+
+/// Which pairs of nodes are coupled: a symmetric pattern with all diagonal entries, row by row,
+/// columns ascending.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NodePattern {
+    offsets: Vec<usize>,
+    columns: Vec<usize>,
+}
+
+impl NodePattern {
+    /// The pattern of `nodes` nodes in which all nodes of one group are coupled to each other.
+    pub(crate) fn new<'a>(nodes: usize, groups: impl Iterator<Item = &'a [usize]>) -> Self {
+        let mut rows: Vec<Vec<usize>> = (0..nodes).map(|node| vec![node]).collect();
+        for group in groups {
+            for &node in group {
+                rows[node].extend_from_slice(group);
+            }
+        }
+        let mut offsets = vec![0];
+        let mut columns = Vec::new();
+        for row in &mut rows {
+            row.sort_unstable();
+            row.dedup();
+            columns.append(row);
+            offsets.push(columns.len());
+        }
+        Self { offsets, columns }
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// Number of coupled pairs, counting (a, b) and (b, a) and each (a, a).
+    pub fn entries(&self) -> usize {
+        self.columns.len()
+    }
+
+    /// Index of entry (`row`, `column`), if the two nodes are coupled.
+    pub fn find(&self, row: usize, column: usize) -> Option<usize> {
+        let start = self.offsets[row];
+        let columns = &self.columns[start..self.offsets[row + 1]];
+        columns.binary_search(&column).ok().map(|at| start + at)
+    }
+
+    /// The entries of one row, as (index, column).
+    pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
+        (self.offsets[row]..self.offsets[row + 1]).map(|entry| (entry, self.columns[entry]))
+    }
+}
+
+/// One number per coupled pair of nodes: the matrix m of M = m (x) I.
+#[derive(Debug, Clone)]
+pub struct NodeMatrix {
+    pattern: Arc<NodePattern>,
+    pub(crate) values: Vec<f64>,
+}
+
+impl NodeMatrix {
+    pub(crate) fn zeros(pattern: &Arc<NodePattern>) -> Self {
+        Self { pattern: pattern.clone(), values: vec![0.0; pattern.entries()] }
+    }
+
+    /// Entry for two nodes; 0 where they are not coupled.
+    pub fn get(&self, row: usize, column: usize) -> f64 {
+        self.pattern.find(row, column).map_or(0.0, |entry| self.values[entry])
+    }
+
+    /// The shared pattern.
+    pub fn pattern(&self) -> &Arc<NodePattern> {
+        &self.pattern
+    }
+
+    /// Adds to the entry of two coupled nodes.
+    pub(crate) fn add(&mut self, row: usize, column: usize, value: f64) {
+        if let Some(entry) = self.pattern.find(row, column) {
+            self.values[entry] += value;
+        }
+    }
+
+    /// y += factor (m (x) I) x for vectors with `dimension` components per node.
+    pub(crate) fn add_product(&self, dimension: usize, factor: f64, x: &[f64], y: &mut [f64]) {
+        with_dimension!(dimension, node_product(&self.pattern, &self.values, factor, x, y));
+    }
+
+    /// (m (x) I) x at one degree of freedom.
+    pub(crate) fn row_product(&self, dimension: usize, dof: usize, x: &[f64]) -> f64 {
+        let (node, axis) = (dof / dimension, dof % dimension);
+        let products =
+            self.pattern.row(node).map(|(e, b)| self.values[e] * x[b * dimension + axis]);
+        products.sum()
+    }
+
+    /// x . (m (x) I) x
+    pub(crate) fn quadratic_form(&self, dimension: usize, x: &[f64]) -> f64 {
+        (0..x.len()).map(|dof| x[dof] * self.row_product(dimension, dof, x)).sum()
+    }
+}
+
+/// One `dimension` x `dimension` block per coupled pair of nodes.
+#[derive(Debug, Clone)]
+pub struct BlockMatrix {
+    pattern: Arc<NodePattern>,
+    dimension: usize,
+    /// Blocks in the order of the pattern, each row by row.
+    pub(crate) values: Vec<f64>,
+}
+
+impl BlockMatrix {
+    pub(crate) fn zeros(pattern: &Arc<NodePattern>, dimension: usize) -> Self {
+        let values = vec![0.0; pattern.entries() * dimension * dimension];
+        Self { pattern: pattern.clone(), dimension, values }
+    }
+
+    /// Components per node.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// The shared pattern.
+    pub fn pattern(&self) -> &Arc<NodePattern> {
+        &self.pattern
+    }
+
+    /// Entry for two degrees of freedom; 0 where their nodes are not coupled.
+    pub fn get(&self, row: usize, column: usize) -> f64 {
+        let d = self.dimension;
+        let entry = self.pattern.find(row / d, column / d);
+        entry.map_or(0.0, |entry| self.values[(entry * d + row % d) * d + column % d])
+    }
+
+    /// The whole matrix as a dense one, for small bodies and tests.
+    pub fn to_dense(&self) -> Mat<f64> {
+        let n = self.pattern.nodes() * self.dimension;
+        Mat::from_fn(n, n, |row, column| self.get(row, column))
+    }
+
+    /// The block of two coupled nodes, row by row.
+    pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> Option<&mut [f64]> {
+        let size = self.dimension * self.dimension;
+        let entry = self.pattern.find(row, column)?;
+        Some(&mut self.values[entry * size..][..size])
+    }
+
+    /// A x at one degree of freedom.
+    pub(crate) fn row_product(&self, dof: usize, x: &[f64]) -> f64 {
+        let d = self.dimension;
+        let (node, axis) = (dof / d, dof % d);
+        let products = self.pattern.row(node).map(|(entry, column)| {
+            crate::force::dot(&self.values[(entry * d + axis) * d..][..d], &x[column * d..][..d])
+        });
+        products.sum()
+    }
+
+    /// y += factor A x
+    pub(crate) fn add_product(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        with_dimension!(self.dimension, block_product(&self.pattern, &self.values, factor, x, y));
+    }
+
+    /// x . A x
+    pub(crate) fn quadratic_form(&self, x: &[f64]) -> f64 {
+        (0..x.len()).map(|dof| x[dof] * self.row_product(dof, x)).sum()
+    }
+}
+
+fn node_product<const D: usize>(
+    pattern: &NodePattern,
+    values: &[f64],
+    factor: f64,
+    x: &[f64],
+    y: &mut [f64],
+) {
+    let (x, y) = (x.as_chunks::<D>().0, y.as_chunks_mut::<D>().0);
+    for (node, y) in y.iter_mut().enumerate() {
+        let mut sum = [0.0; D];
+        for (entry, column) in pattern.row(node) {
+            for axis in 0..D {
+                sum[axis] += values[entry] * x[column][axis];
+            }
+        }
+        for axis in 0..D {
+            y[axis] += factor * sum[axis];
+        }
+    }
+}
+
+fn block_product<const D: usize>(
+    pattern: &NodePattern,
+    values: &[f64],
+    factor: f64,
+    x: &[f64],
+    y: &mut [f64],
+) {
+    let (x, y) = (x.as_chunks::<D>().0, y.as_chunks_mut::<D>().0);
+    let rows = values.as_chunks::<D>().0;
+    for (node, y) in y.iter_mut().enumerate() {
+        let mut sum = [0.0; D];
+        for (entry, column) in pattern.row(node) {
+            for (sum, row) in sum.iter_mut().zip(&rows[entry * D..][..D]) {
+                for axis in 0..D {
+                    *sum += row[axis] * x[column][axis];
+                }
+            }
+        }
+        for axis in 0..D {
+            y[axis] += factor * sum[axis];
+        }
+    }
+}

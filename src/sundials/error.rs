@@ -1,0 +1,229 @@
+//! What can go wrong, told with time, step size, order, likely cause and what to try.
+
+use std::{error, fmt};
+
+use thiserror::Error;
+
+/// An error of the SUNDIALS layer.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A value that was handed in can not be used; nothing was computed.
+    #[error("{input} = {value} can not be used: {mend}")]
+    Input {
+        /// Name of the input.
+        input: &'static str,
+        /// The value that came.
+        value: String,
+        /// What is accepted instead.
+        mend: String,
+    },
+
+    /// The integration stopped. The solver keeps the last state it accepted.
+    #[error(transparent)]
+    Integration(Box<IntegrationError>),
+
+    /// A SUNDIALS function refused a call for a reason of its own.
+    #[error("{function} failed with code {code}{}{message}", if message.is_empty() { "" } else { ": " })]
+    Call {
+        /// The C function.
+        function: &'static str,
+        /// Its return code.
+        code: i32,
+        /// What SUNDIALS said, or empty.
+        message: String,
+    },
+}
+
+impl Error {
+    pub(super) fn input(
+        input: &'static str,
+        value: impl fmt::Display,
+        mend: impl Into<String>,
+    ) -> Self {
+        Self::Input { input, value: value.to_string(), mend: mend.into() }
+    }
+
+    pub(super) fn call(function: &'static str, code: i32) -> Self {
+        Self::Call { function, code, message: String::new() }
+    }
+
+    pub(super) fn out_of_memory(function: &'static str) -> Self {
+        Self::Call { function, code: 0, message: "no memory".into() }
+    }
+}
+
+/// The part of the user's system that was being called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Callback {
+    /// [`Ode::rhs`](crate::ode::Ode::rhs)
+    Rhs,
+    /// [`Dae::residual`](crate::ode::Dae::residual)
+    Residual,
+    /// `dense_jacobian`, `banded_jacobian` or `sparse_jacobian`
+    Jacobian,
+    /// `newton_setup`
+    NewtonSetup,
+    /// `newton_solve`
+    NewtonSolve,
+    /// `roots`
+    Roots,
+}
+
+impl fmt::Display for Callback {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Rhs => "the right-hand side",
+            Self::Residual => "the residual",
+            Self::Jacobian => "the Jacobian",
+            Self::NewtonSetup => "newton_setup",
+            Self::NewtonSolve => "newton_solve",
+            Self::Roots => "the root functions",
+        })
+    }
+}
+
+/// Why an integration stopped.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Cause {
+    /// The user's system asked to stop; its error is the source of this one.
+    Fatal(Callback),
+    /// The user's system kept rejecting the trial points, whatever the step size.
+    Rejected {
+        /// What rejected.
+        callback: Callback,
+        /// Time of the last rejected point.
+        t: f64,
+        /// The reason that was given.
+        message: String,
+    },
+    /// The user's system kept returning NaN or infinity, whatever the step size.
+    NotFinite {
+        /// What returned it.
+        callback: Callback,
+        /// Time of the call.
+        t: f64,
+        /// First component concerned (for a Jacobian: the position among its stored values).
+        component: usize,
+    },
+    /// The step limit was reached before the output time.
+    TooManySteps,
+    /// The tolerances ask for more digits than double precision has.
+    TooMuchAccuracy,
+    /// The local error stayed too large down to the smallest step.
+    ErrorTest,
+    /// The nonlinear iteration did not converge down to the smallest step.
+    Convergence,
+    /// The Newton matrix could not be factorized.
+    LinearSolver,
+    /// The initial values of a DAE do not satisfy its equations, or none could be found.
+    InconsistentStart,
+    /// Anything else; the message of SUNDIALS tells.
+    Other,
+}
+
+impl Cause {
+    fn describe(&self) -> String {
+        match self {
+            Self::Fatal(callback) => format!("{callback} failed"),
+            Self::Rejected { callback, t, message } => {
+                format!("{callback} kept rejecting the trial points, last at t = {t}: {message}")
+            }
+            Self::NotFinite { callback, t, component } => {
+                format!("{callback} returned NaN or infinity at t = {t} in component {component}")
+            }
+            Self::TooManySteps => "too many steps before the output time".into(),
+            Self::TooMuchAccuracy => "the tolerances ask for more than double precision".into(),
+            Self::ErrorTest => "the local error stays too large at the smallest step".into(),
+            Self::Convergence => {
+                "the nonlinear iteration does not converge at the smallest step".into()
+            }
+            Self::LinearSolver => "the Newton matrix can not be factorized".into(),
+            Self::InconsistentStart => "the initial values do not satisfy the equations".into(),
+            Self::Other => "SUNDIALS gave up".into(),
+        }
+    }
+
+    /// The likely reason and what to try.
+    #[must_use]
+    pub fn advice(&self) -> &'static str {
+        match self {
+            Self::Fatal(_) => "see the source of this error",
+            Self::Rejected { .. } => {
+                "the solution leaves the domain of the equations; check the model near this time"
+            }
+            Self::NotFinite { .. } => {
+                "look for a division by zero, a root or logarithm of a negative number, or an \
+                 overflow in this component"
+            }
+            Self::TooManySteps => {
+                "raise max_steps if the step size is reasonable; if it is tiny, look for a \
+                 discontinuity, a fast oscillation or a tolerance that is too tight"
+            }
+            Self::TooMuchAccuracy => "raise rtol or atol",
+            Self::ErrorTest => {
+                "look for a discontinuity or singularity near this time; stop and restart there \
+                 (stop time, root function), or raise atol of components near zero"
+            }
+            Self::Convergence => {
+                "check a supplied Jacobian against difference quotients; look for a discontinuity"
+            }
+            Self::LinearSolver => {
+                "look for a zero row or column of the Jacobian; a DAE has to be of index 1"
+            }
+            Self::InconsistentStart => {
+                "evaluate the residual at the start, or let consistent_start find the missing values"
+            }
+            Self::Other => "see the message of SUNDIALS",
+        }
+    }
+}
+
+/// An integration that stopped: where, why, and what to try.
+#[derive(Debug)]
+#[non_exhaustive]
+pub struct IntegrationError {
+    /// The integrator: "CVODE" or "IDA".
+    pub solver: &'static str,
+    /// Why it stopped.
+    pub cause: Cause,
+    /// Time that was reached.
+    pub t: f64,
+    /// Step size that was being tried.
+    pub step: f64,
+    /// Order that was being tried.
+    pub order: u32,
+    /// Return code of SUNDIALS.
+    pub code: i32,
+    /// What SUNDIALS said.
+    pub message: String,
+    /// The error that the user's system gave, for [`Cause::Fatal`].
+    pub source: Option<Box<dyn error::Error + Send + Sync>>,
+}
+
+impl fmt::Display for IntegrationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} stopped at t = {} (step size {:.3e}, order {}): {}; {}",
+            self.solver,
+            self.t,
+            self.step,
+            self.order,
+            self.cause.describe(),
+            self.cause.advice()
+        )?;
+        if !self.message.is_empty() {
+            write!(f, " [SUNDIALS, code {}: {}]", self.code, self.message)?;
+        }
+        Ok(())
+    }
+}
+
+impl error::Error for IntegrationError {
+    fn source(&self) -> Option<&(dyn error::Error + 'static)> {
+        self.source.as_ref().map(|source| source.as_ref() as _)
+    }
+}

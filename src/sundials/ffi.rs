@@ -1,0 +1,21 @@
+//! The C interface: what `sundials-sys` binds, and what `build.rs` adds (ARKODE, KLU).
+
+#![allow(
+    non_upper_case_globals,
+    non_camel_case_types,
+    non_snake_case,
+    unused_imports,
+    dead_code,
+    clippy::all
+)]
+
+pub use sundials_sys::*;
+
+include!(concat!(env!("OUT_DIR"), "/sundials_extra.rs"));
+
+// The layer hands `&[f64]` and `&[i64]` to C: both assumptions are checked here.
+const _: () = {
+    let _: fn(realtype) -> f64 = |x| x;
+    let _: fn(sunindextype) -> i64 = |i| i;
+    assert!(SUNDIALS_VERSION_MAJOR == 6, "pliant is written for SUNDIALS 6");
+};

@@ -1,0 +1,235 @@
+//! What every C callback gets as its user data: the user's system, and a place for its troubles.
+//!
+//! A callback must not unwind into C. [`Host::guard`] runs the user's code, keeps whatever went
+//! wrong, and tells SUNDIALS by the return value; the integrator picks the trouble up after C has
+//! returned.
+
+use std::{
+    any::Any,
+    error,
+    ffi::{CStr, c_char, c_void},
+    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
+    ptr::NonNull,
+};
+
+use super::{
+    error::{Callback, Cause, Error},
+    ffi,
+    linear::LinearSolver,
+};
+use crate::ode::Failure;
+
+/// Return value of a callback that asks for a smaller step.
+pub(super) const RETRY: i32 = 1;
+/// Return value of a callback that asks SUNDIALS to stop.
+pub(super) const STOP: i32 = -1;
+
+/// The return value of a linear solver for an outcome of [`Host::guard`]: SUNDIALS takes codes
+/// that it does not know from a linear solver for success.
+pub(super) fn linear_solver_code(outcome: i32) -> i32 {
+    match outcome {
+        RETRY => ffi::SUNLS_PACKAGE_FAIL_REC as i32,
+        STOP => ffi::SUNLS_PACKAGE_FAIL_UNREC,
+        _ => 0,
+    }
+}
+
+/// The user's system and what happened in its callbacks.
+pub(super) struct Host<S> {
+    pub(super) system: S,
+    /// Number of unknowns: the length of every vector.
+    pub(super) n: usize,
+    pub(super) root_count: usize,
+    /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
+    pub(super) linear_solver: Option<LinearSolver>,
+    /// Time of the last `newton_setup`.
+    pub(super) setup_time: f64,
+    pub(super) troubles: Troubles,
+}
+
+/// What callbacks and the SUNDIALS error handler reported since the last call of the integrator.
+#[derive(Default)]
+pub(super) struct Troubles {
+    panic: Option<Box<dyn Any + Send>>,
+    fatal: Option<(Callback, Box<dyn error::Error + Send + Sync>)>,
+    retry: Option<(f64, Cause)>,
+    message: String,
+}
+
+/// The error of the user's system, for the integrator's own error.
+pub(super) type Source = Option<Box<dyn error::Error + Send + Sync>>;
+
+impl Troubles {
+    /// Forgets everything, keeping allocations.
+    pub(super) fn clear(&mut self) {
+        self.panic = None;
+        self.fatal = None;
+        self.retry = None;
+        self.message.clear();
+    }
+
+    /// Lets a panic of a callback go on, now that no C function is on the stack.
+    pub(super) fn resume_panic(&mut self) {
+        if let Some(panic) = self.panic.take() {
+            resume_unwind(panic);
+        }
+    }
+
+    /// Why the integrator stopped at `t` with step `h`: the fatal error of the user's system;
+    /// else, if `blame_retries`, its last complaint about a point that was not passed since;
+    /// else `otherwise`.
+    pub(super) fn cause(
+        &mut self,
+        (t, h): (f64, f64),
+        blame_retries: bool,
+        otherwise: Cause,
+    ) -> (Cause, Source) {
+        if let Some((callback, source)) = self.fatal.take() {
+            return (Cause::Fatal(callback), Some(source));
+        }
+        match self.retry.take() {
+            Some((at, cause)) if blame_retries && (at - t) * h >= 0.0 => (cause, None),
+            _ => (otherwise, None),
+        }
+    }
+
+    pub(super) fn message(&self) -> &str {
+        &self.message
+    }
+}
+
+impl<S> Host<S> {
+    pub(super) fn new(
+        system: S,
+        n: usize,
+        root_count: usize,
+        linear_solver: Option<LinearSolver>,
+    ) -> Self {
+        let troubles = Troubles::default();
+        Self { system, n, root_count, linear_solver, setup_time: f64::NAN, troubles }
+    }
+
+    /// Runs user code of a callback and translates its outcome for SUNDIALS.
+    pub(super) fn guard(
+        &mut self,
+        callback: Callback,
+        t: f64,
+        call: impl FnOnce(&mut S) -> Result<(), Failure>,
+    ) -> i32 {
+        // The system is not used again after a panic unless its owner, who gets the panic, does.
+        match catch_unwind(AssertUnwindSafe(|| call(&mut self.system))) {
+            Ok(Ok(())) => 0,
+            Ok(Err(Failure::Recoverable(message))) => {
+                self.troubles.retry = Some((t, Cause::Rejected { callback, t, message }));
+                RETRY
+            }
+            Ok(Err(Failure::Fatal(error))) => {
+                self.troubles.fatal = Some((callback, error));
+                STOP
+            }
+            Err(panic) => {
+                self.troubles.panic = Some(panic);
+                STOP
+            }
+        }
+    }
+
+    /// As [`guard`](Self::guard), for user code that fills `output`: NaN and infinity count as
+    /// recoverable failures.
+    pub(super) fn guard_output(
+        &mut self,
+        callback: Callback,
+        t: f64,
+        output: &mut [f64],
+        call: impl FnOnce(&mut S, &mut [f64]) -> Result<(), Failure>,
+    ) -> i32 {
+        let outcome = self.guard(callback, t, |system| call(system, &mut *output));
+        if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
+    }
+
+    /// [`RETRY`] if `output` has a NaN or infinity, 0 otherwise.
+    pub(super) fn check_finite(&mut self, callback: Callback, t: f64, output: &[f64]) -> i32 {
+        // A fold without early exit, which the compiler turns into vector instructions.
+        if output.iter().fold(true, |finite, x| finite & x.is_finite()) {
+            return 0;
+        }
+        let component = output.iter().position(|x| !x.is_finite()).unwrap_or_default();
+        self.troubles.retry = Some((t, Cause::NotFinite { callback, t, component }));
+        RETRY
+    }
+}
+
+/// Owns a [`Host`] at a fixed address which C may keep.
+///
+/// It is a raw pointer and not a `Box`, since C's copy of the pointer would not survive the
+/// uniqueness that moving a `Box` asserts.
+pub(super) struct HostBox<S>(NonNull<Host<S>>);
+
+impl<S> HostBox<S> {
+    pub(super) fn new(host: Host<S>) -> Self {
+        Self(NonNull::from(Box::leak(Box::new(host))))
+    }
+
+    pub(super) fn as_ptr(&self) -> *mut c_void {
+        self.0.as_ptr().cast()
+    }
+
+    pub(super) fn get(&self) -> &Host<S> {
+        // SAFETY: the host lives as long as `self`; callbacks, which make a `&mut Host`, only run
+        // within calls that hold the integrator by `&mut`, when this reference is gone.
+        unsafe { self.0.as_ref() }
+    }
+
+    pub(super) fn get_mut(&mut self) -> &mut Host<S> {
+        // SAFETY: as in `get`, and `&mut self` makes the access unique.
+        unsafe { self.0.as_mut() }
+    }
+
+    /// Turns the return code of a C function that does not integrate into a result.
+    pub(super) fn accept(&mut self, function: &'static str, code: i32) -> Result<(), Error> {
+        if code >= 0 {
+            return Ok(());
+        }
+        let troubles = &mut self.get_mut().troubles;
+        let message = std::mem::take(&mut troubles.message);
+        Err(Error::Call { function, code, message })
+    }
+
+    /// Gives the user's system back. Whatever C object holds the pointer has to be gone.
+    pub(super) fn into_system(self) -> S {
+        let pointer = self.0;
+        std::mem::forget(self);
+        // SAFETY: leaked from a Box in `new`; `self` is forgotten, so it is freed only here.
+        unsafe { Box::from_raw(pointer.as_ptr()) }.system
+    }
+}
+
+impl<S> Drop for HostBox<S> {
+    fn drop(&mut self) {
+        // SAFETY: leaked from a Box in `new` and freed once; owners drop the C objects first.
+        drop(unsafe { Box::from_raw(self.0.as_ptr()) });
+    }
+}
+
+/// Error handler of SUNDIALS: keeps the last message instead of printing it.
+///
+/// # Safety
+/// `data` points to a live [`Host<S>`] that nobody else uses; `message` is null or a C string.
+pub(super) unsafe extern "C" fn keep_message<S>(
+    code: i32,
+    _module: *const c_char,
+    _function: *const c_char,
+    message: *mut c_char,
+    data: *mut c_void,
+) {
+    // Warnings have positive codes; they do not stop the integration.
+    if code >= 0 || message.is_null() {
+        return;
+    }
+    // SAFETY: SUNDIALS passes the data pointer that was registered with this handler, and a
+    // terminated message; the callbacks that also use the host have returned.
+    let (troubles, message) =
+        unsafe { (&mut (*data.cast::<Host<S>>()).troubles, CStr::from_ptr(message)) };
+    troubles.message.clear();
+    troubles.message.push_str(message.to_string_lossy().trim());
+}

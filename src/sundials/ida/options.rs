@@ -1,0 +1,69 @@
+//! How IDA is to integrate.
+
+use crate::sundials::{
+    error::Error,
+    linear::{Jacobian, LinearSolver},
+    options::{AbsoluteTolerance, StepOptions, Tolerances, check_length, shared_builder_methods},
+};
+
+/// Tolerances and limits of an [`Ida`](super::Ida).
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct IdaOptions {
+    pub(super) tolerances: Tolerances,
+    pub(super) steps: StepOptions,
+    pub(super) linear_solver: LinearSolver,
+    pub(super) differential: Option<Vec<bool>>,
+    pub(super) suppress_algebraic: bool,
+}
+
+impl IdaOptions {
+    /// A Newton iteration on a dense matrix of difference quotients, and these tolerances: local
+    /// errors are kept below `rtol |y_i| + atol_i`.
+    pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
+        Self {
+            tolerances: Tolerances { rtol, atol: atol.into() },
+            steps: StepOptions::default(),
+            linear_solver: LinearSolver::Dense(Jacobian::DifferenceQuotients),
+            differential: None,
+            suppress_algebraic: false,
+        }
+    }
+
+    /// Newton iteration with this linear solver (the default, dense with difference quotients).
+    pub fn newton(mut self, solver: LinearSolver) -> Self {
+        self.linear_solver = solver;
+        self
+    }
+
+    /// For each unknown, whether its derivative occurs in the equations (`true`) or it is
+    /// algebraic (`false`). Needed by [`InitialCondition::Algebraic`] and
+    /// [`suppress_algebraic`](Self::suppress_algebraic). (`IDASetId`)
+    ///
+    /// [`InitialCondition::Algebraic`]: super::InitialCondition::Algebraic
+    pub fn differential(mut self, differential: impl Into<Vec<bool>>) -> Self {
+        self.differential = Some(differential.into());
+        self
+    }
+
+    /// Whether algebraic unknowns are left out of the local error test (`IDASetSuppressAlg`);
+    /// advisable for equations of index 2. Default: no.
+    pub fn suppress_algebraic(mut self, on: bool) -> Self {
+        self.suppress_algebraic = on;
+        self
+    }
+
+    shared_builder_methods!();
+
+    pub(super) fn check(&self, y0: &[f64]) -> Result<(), Error> {
+        self.tolerances.check(y0)?;
+        self.steps.check(5)?;
+        if let Some(differential) = &self.differential {
+            check_length("length of differential", differential.len(), y0.len())?;
+        } else if self.suppress_algebraic {
+            let mend = "it needs `differential` to say which unknowns are algebraic";
+            return Err(Error::input("suppress_algebraic", true, mend));
+        }
+        self.linear_solver.check(y0.len())
+    }
+}

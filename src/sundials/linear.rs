@@ -1,0 +1,184 @@
+//! Linear solvers for the Newton iteration.
+
+use std::ffi::c_void;
+
+use super::{
+    context::Context, error::Error, ffi, matrix::Matrix, pattern::Pattern, vector::Vector,
+};
+
+/// Where the entries of a Jacobian come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Jacobian {
+    /// Difference quotients of the right-hand side or residual: n extra evaluations for a dense
+    /// matrix, `lower + upper + 1` for a band.
+    DifferenceQuotients,
+    /// The system's own `dense_jacobian` or `banded_jacobian`.
+    Supplied,
+}
+
+/// How the linear systems of the Newton iteration are solved.
+///
+/// User guide: chapter "Linear Algebraic Solvers", SUNLinearSolver.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum LinearSolver {
+    /// LU factorization of a dense matrix: n^2 numbers, n^3 work. For small systems.
+    Dense(Jacobian),
+    /// LU factorization of a band matrix; entry (i, j) may be nonzero where
+    /// `j - upper <= i <= j + lower`.
+    Band {
+        /// Diagonals below the main one.
+        lower: usize,
+        /// Diagonals above the main one.
+        upper: usize,
+        /// Where the entries come from.
+        jacobian: Jacobian,
+    },
+    /// Sparse LU factorization by KLU with the system's own `sparse_jacobian`.
+    Klu(Pattern),
+    /// The system's own `newton_setup` and `newton_solve`: the way to exploit structure that
+    /// a matrix of entries hides.
+    Custom,
+}
+
+impl LinearSolver {
+    /// Stops what C would crash on.
+    pub(super) fn check(&self, n: usize) -> Result<(), Error> {
+        match self {
+            Self::Band { lower, upper, .. } if *lower >= n || *upper >= n => Err(Error::input(
+                "bandwidths (lower, upper)",
+                format!("({lower}, {upper})"),
+                format!("both have to be smaller than the number of unknowns, {n}"),
+            )),
+            Self::Klu(pattern) if pattern.dimension() != n => Err(Error::input(
+                "dimension of the sparsity pattern",
+                pattern.dimension(),
+                format!("it has to be the number of unknowns, {n}"),
+            )),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the matrix is filled by a callback (and not by SUNDIALS' difference quotients).
+    pub(super) fn has_jacobian_callback(&self) -> bool {
+        match self {
+            Self::Dense(jacobian) | Self::Band { jacobian, .. } => *jacobian == Jacobian::Supplied,
+            Self::Klu(_) | Self::Custom => true,
+        }
+    }
+}
+
+/// The `solve` operation of a user-supplied solver: (solver, matrix, x, b, tolerance).
+pub(super) type Solve = unsafe extern "C" fn(
+    ffi::SUNLinearSolver,
+    ffi::SUNMatrix,
+    ffi::N_Vector,
+    ffi::N_Vector,
+    f64,
+) -> i32;
+
+/// Owns a `SUNLinearSolver` and the matrix it factorizes, freed in this order.
+pub(super) struct Linear {
+    solver: RawSolver,
+    matrix: Matrix,
+}
+
+struct RawSolver(ffi::SUNLinearSolver);
+
+impl Linear {
+    /// `solve` and its `data` are used by [`LinearSolver::Custom`] only.
+    ///
+    /// # Safety
+    /// `solve` may be called with `data` as the solver's content as long as the result lives.
+    pub(super) unsafe fn new(
+        kind: &LinearSolver,
+        template: &Vector,
+        context: &Context,
+        solve: Solve,
+        data: *mut c_void,
+    ) -> Result<Self, Error> {
+        let n = template.as_slice().len();
+        kind.check(n)?;
+        let matrix = Matrix::new(kind, n, context)?;
+        let (y, m, c) = (template.raw(), matrix.raw(), context.raw());
+        let (function, raw) = match kind {
+            // SAFETY: vector, matrix and context are alive and fit together.
+            LinearSolver::Dense(_) => ("SUNLinSol_Dense", unsafe { ffi::SUNLinSol_Dense(y, m, c) }),
+            // SAFETY: as above.
+            LinearSolver::Band { .. } => {
+                ("SUNLinSol_Band", unsafe { ffi::SUNLinSol_Band(y, m, c) })
+            }
+            // SAFETY: as above.
+            LinearSolver::Klu(_) => ("SUNLinSol_KLU", unsafe { ffi::SUNLinSol_KLU(y, m, c) }),
+            // SAFETY: the context is alive; the caller vouches for `solve` and `data`.
+            LinearSolver::Custom => ("SUNLinSolNewEmpty", unsafe { custom(c, solve, data) }),
+        };
+        if raw.is_null() {
+            return Err(Error::out_of_memory(function));
+        }
+        Ok(Self { solver: RawSolver(raw), matrix })
+    }
+
+    pub(super) fn solver(&self) -> ffi::SUNLinearSolver {
+        self.solver.0
+    }
+
+    pub(super) fn matrix(&self) -> ffi::SUNMatrix {
+        self.matrix.raw()
+    }
+}
+
+impl Drop for RawSolver {
+    fn drop(&mut self) {
+        // SAFETY: made by a SUNLinearSolver constructor and freed once.
+        unsafe { ffi::SUNLinSolFree(self.0) };
+    }
+}
+
+/// A linear solver whose factorization happens in the integrator's matrix callback and whose
+/// `solve` asks the user's system.
+///
+/// # Safety
+/// `context` is alive.
+unsafe fn custom(
+    context: ffi::SUNContext,
+    solve: Solve,
+    data: *mut c_void,
+) -> ffi::SUNLinearSolver {
+    extern "C" fn kind(_: ffi::SUNLinearSolver) -> ffi::SUNLinearSolver_Type {
+        ffi::SUNLinearSolver_Type_SUNLINEARSOLVER_DIRECT
+    }
+    extern "C" fn id(_: ffi::SUNLinearSolver) -> ffi::SUNLinearSolver_ID {
+        ffi::SUNLinearSolver_ID_SUNLINEARSOLVER_CUSTOM
+    }
+    extern "C" fn nothing(_: ffi::SUNLinearSolver) -> i32 {
+        0
+    }
+    extern "C" fn setup(_: ffi::SUNLinearSolver, _: ffi::SUNMatrix) -> i32 {
+        0
+    }
+    unsafe extern "C" fn free(solver: ffi::SUNLinearSolver) -> i32 {
+        // SAFETY: called once, by SUNLinSolFree; the content belongs to the integrator, so it
+        // is only forgotten here.
+        unsafe {
+            (*solver).content = std::ptr::null_mut();
+            ffi::SUNLinSolFreeEmpty(solver);
+        }
+        0
+    }
+    // SAFETY: the operations table of a new solver is writable.
+    unsafe {
+        let solver = ffi::SUNLinSolNewEmpty(context);
+        if !solver.is_null() {
+            let ops = &mut *(*solver).ops;
+            ops.gettype = Some(kind);
+            ops.getid = Some(id);
+            ops.initialize = Some(nothing);
+            ops.setup = Some(setup);
+            ops.solve = Some(solve);
+            ops.free = Some(free);
+            (*solver).content = data;
+        }
+        solver
+    }
+}

@@ -1,0 +1,138 @@
+//! The C functions through which CVODE (and ARKODE) calls an [`Ode`].
+//!
+//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
+//! that is what their SAFETY comments refer to.
+
+use std::ffi::c_void;
+
+use super::{
+    error::Callback,
+    ffi,
+    host::{Host, STOP, linear_solver_code},
+    matrix::{self, Entries},
+    vector::{slice, slice_mut},
+};
+use crate::ode::Ode;
+
+/// `CVRhsFn`
+pub(super) unsafe extern "C" fn rhs<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    ydot: ffi::N_Vector,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module; `y` and `ydot` are different vectors.
+    let (host, y, ydot) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let n = host.n;
+        (host, slice(y, n), slice_mut(ydot, n))
+    };
+    host.guard_output(Callback::Rhs, t, ydot, |system, ydot| system.rhs(t, y, ydot))
+}
+
+/// `CVRootFn`
+pub(super) unsafe extern "C" fn roots<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    g: *mut f64,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module; `g` has as many places as root functions were declared.
+    let (host, y, g) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let (n, count) = (host.n, host.root_count);
+        (host, slice(y, n), std::slice::from_raw_parts_mut(g, count))
+    };
+    host.guard_output(Callback::Roots, t, g, |system, g| system.roots(t, y, g))
+}
+
+/// `CVLsJacFn`
+#[allow(clippy::too_many_arguments)] // as C has it
+pub(super) unsafe extern "C" fn jacobian<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    ydot: ffi::N_Vector,
+    jacobian: ffi::SUNMatrix,
+    data: *mut c_void,
+    _: ffi::N_Vector,
+    _: ffi::N_Vector,
+    _: ffi::N_Vector,
+) -> i32 {
+    // SAFETY: see the module.
+    let (host, y, ydot) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let n = host.n;
+        (host, slice(y, n), slice(ydot, n))
+    };
+    let Some(solver) = &host.linear_solver else { return STOP };
+    // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
+    let entries = unsafe { matrix::entries(jacobian, solver, host.n) };
+    let outcome = host.guard(Callback::Jacobian, t, |system| match entries {
+        Entries::Dense(matrix) => system.dense_jacobian(t, y, ydot, matrix),
+        Entries::Band(matrix) => system.banded_jacobian(t, y, ydot, matrix),
+        Entries::Sparse(values) => system.sparse_jacobian(t, y, ydot, values),
+        Entries::Custom => unreachable!("a custom solver sets up its own matrix"),
+    });
+    if outcome != 0 {
+        return outcome;
+    }
+    let Some(solver) = &host.linear_solver else { return STOP };
+    // SAFETY: as above; the user's access has ended.
+    let values = unsafe { matrix::stored(jacobian, solver, host.n) };
+    host.check_finite(Callback::Jacobian, t, values)
+}
+
+/// `CVLsLinSysFn`: for a user-supplied solver, which keeps I - gamma J to itself.
+#[allow(clippy::too_many_arguments)] // as C has it
+pub(super) unsafe extern "C" fn newton_setup<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    ydot: ffi::N_Vector,
+    _: ffi::SUNMatrix,
+    reuse: i32,
+    current: *mut i32,
+    gamma: f64,
+    data: *mut c_void,
+    _: ffi::N_Vector,
+    _: ffi::N_Vector,
+    _: ffi::N_Vector,
+) -> i32 {
+    // SAFETY: see the module.
+    let (host, y, ydot) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let n = host.n;
+        (host, slice(y, n), slice(ydot, n))
+    };
+    host.setup_time = t;
+    let mut fresh = false;
+    let outcome = host.guard(Callback::NewtonSetup, t, |system| {
+        fresh = system.newton_setup(t, y, ydot, gamma, reuse != 0)?;
+        Ok(())
+    });
+    // SAFETY: `current` is a valid place for the result.
+    unsafe { *current = i32::from(fresh) };
+    outcome
+}
+
+/// The `solve` operation of a user-supplied linear solver, whose content is the [`Host`].
+pub(super) unsafe extern "C" fn newton_solve<S: Ode>(
+    solver: ffi::SUNLinearSolver,
+    _: ffi::SUNMatrix,
+    x: ffi::N_Vector,
+    b: ffi::N_Vector,
+    _: f64,
+) -> i32 {
+    // SAFETY: the content is the host of the integrator, which outlives the linear solver;
+    // SUNDIALS passes two different vectors of its length.
+    let (host, x) = unsafe {
+        let host = &mut *(*solver).content.cast::<Host<S>>();
+        let n = host.n;
+        let x = slice_mut(x, n);
+        x.copy_from_slice(slice(b, n));
+        (host, x)
+    };
+    let t = host.setup_time;
+    let outcome =
+        host.guard_output(Callback::NewtonSolve, t, x, |system, x| system.newton_solve(x));
+    linear_solver_code(outcome)
+}

@@ -1,0 +1,267 @@
+//! Tolerances and step options, shared by the integrators.
+
+use super::error::Error;
+
+/// Absolute tolerance: one number for all unknowns, or one for each.
+///
+/// Made from an `f64`, an array, a slice or a `Vec`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AbsoluteTolerance {
+    /// The same for all unknowns.
+    Scalar(f64),
+    /// One per unknown, each in the unknown's own unit.
+    Vector(Vec<f64>),
+}
+
+impl From<f64> for AbsoluteTolerance {
+    fn from(atol: f64) -> Self {
+        Self::Scalar(atol)
+    }
+}
+
+impl From<Vec<f64>> for AbsoluteTolerance {
+    fn from(atol: Vec<f64>) -> Self {
+        Self::Vector(atol)
+    }
+}
+
+impl From<&[f64]> for AbsoluteTolerance {
+    fn from(atol: &[f64]) -> Self {
+        Self::Vector(atol.to_vec())
+    }
+}
+
+impl<const N: usize> From<[f64; N]> for AbsoluteTolerance {
+    fn from(atol: [f64; N]) -> Self {
+        Self::Vector(atol.to_vec())
+    }
+}
+
+/// Local errors are kept below `rtol |y_i| + atol_i` in the root mean square over the unknowns.
+#[derive(Clone, Debug)]
+pub(super) struct Tolerances {
+    pub(super) rtol: f64,
+    pub(super) atol: AbsoluteTolerance,
+}
+
+impl Tolerances {
+    pub(super) fn check(&self, y0: &[f64]) -> Result<(), Error> {
+        if !(self.rtol > 0.0 && self.rtol < 1.0) {
+            return Err(Error::input("rtol", self.rtol, "it lies between 0 and 1, such as 1e-6"));
+        }
+        if let AbsoluteTolerance::Vector(atol) = &self.atol
+            && atol.len() != y0.len()
+        {
+            return Err(Error::input(
+                "length of atol",
+                atol.len(),
+                format!("give one number, or one for each of the {} unknowns", y0.len()),
+            ));
+        }
+        for (i, y) in y0.iter().enumerate() {
+            let atol = match &self.atol {
+                AbsoluteTolerance::Scalar(atol) => *atol,
+                AbsoluteTolerance::Vector(atol) => atol[i],
+            };
+            if !(atol >= 0.0 && atol.is_finite()) {
+                return Err(Error::input("atol", atol, "it is not negative, such as 1e-9"));
+            }
+            if atol == 0.0 && *y == 0.0 {
+                return Err(Error::input(
+                    "atol",
+                    atol,
+                    format!("unknown {i} starts at zero, so its atol has to be positive"),
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Options of the step size and order control.
+#[derive(Clone, Debug)]
+pub(super) struct StepOptions {
+    pub(super) initial_step: Option<f64>,
+    pub(super) min_step: Option<f64>,
+    pub(super) max_step: Option<f64>,
+    pub(super) max_order: Option<u32>,
+    pub(super) max_steps: u32,
+    pub(super) convergence_coefficient: Option<f64>,
+}
+
+impl Default for StepOptions {
+    fn default() -> Self {
+        Self {
+            initial_step: None,
+            min_step: None,
+            max_step: None,
+            max_order: None,
+            max_steps: 100_000,
+            convergence_coefficient: None,
+        }
+    }
+}
+
+impl StepOptions {
+    pub(super) fn check(&self, highest_order: u32) -> Result<(), Error> {
+        for (input, value) in [("min_step", self.min_step), ("max_step", self.max_step)] {
+            if let Some(h) = value
+                && !(h > 0.0 && h.is_finite())
+            {
+                return Err(Error::input(input, h, "it is positive and finite"));
+            }
+        }
+        if let Some(h) = self.initial_step
+            && !(h.is_finite() && h != 0.0)
+        {
+            return Err(Error::input(
+                "initial_step",
+                h,
+                "it is finite, and negative when integrating backwards",
+            ));
+        }
+        if let (Some(min), Some(max)) = (self.min_step, self.max_step)
+            && min > max
+        {
+            return Err(Error::input("min_step", min, format!("it is at most max_step, {max}")));
+        }
+        if let Some(order) = self.max_order
+            && !(1..=highest_order).contains(&order)
+        {
+            return Err(Error::input(
+                "max_order",
+                order,
+                format!("this method has orders 1 to {highest_order}"),
+            ));
+        }
+        if self.max_steps == 0 || self.max_steps > i32::MAX as u32 {
+            return Err(Error::input(
+                "max_steps",
+                self.max_steps,
+                "it lies between 1 and 2^31 - 1",
+            ));
+        }
+        if let Some(coefficient) = self.convergence_coefficient
+            && !(coefficient > 0.0 && coefficient.is_finite())
+        {
+            return Err(Error::input("convergence_coefficient", coefficient, "it is positive"));
+        }
+        Ok(())
+    }
+}
+
+/// The builder methods that all integrators share.
+macro_rules! shared_builder_methods {
+    () => {
+        /// Size of the first step; negative when integrating backwards. Default: estimated.
+        #[must_use]
+        pub fn initial_step(mut self, h: f64) -> Self {
+            self.steps.initial_step = Some(h);
+            self
+        }
+
+        /// Lower bound of |step size|. Default: none.
+        #[must_use]
+        pub fn min_step(mut self, h: f64) -> Self {
+            self.steps.min_step = Some(h);
+            self
+        }
+
+        /// Upper bound of |step size|. Default: none.
+        #[must_use]
+        pub fn max_step(mut self, h: f64) -> Self {
+            self.steps.max_step = Some(h);
+            self
+        }
+
+        /// Highest order that may be used. Default: 5 for BDF, 12 for Adams.
+        #[must_use]
+        pub fn max_order(mut self, order: u32) -> Self {
+            self.steps.max_order = Some(order);
+            self
+        }
+
+        /// Steps allowed in one call of `solve_to`. Default: 100,000.
+        #[must_use]
+        pub fn max_steps(mut self, steps: u32) -> Self {
+            self.steps.max_steps = steps;
+            self
+        }
+
+        /// How much smaller than the local error the error of the nonlinear iteration has to be.
+        /// Default: 0.1 in CVODE, 0.33 in IDA.
+        #[must_use]
+        pub fn convergence_coefficient(mut self, coefficient: f64) -> Self {
+            self.steps.convergence_coefficient = Some(coefficient);
+            self
+        }
+    };
+}
+pub(super) use shared_builder_methods;
+
+/// Where an integration call came to an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// At the requested time, or, for a single step, at the end of the step.
+    Time,
+    /// Where a root function changes sign; `roots_found` tells which.
+    Root,
+    /// At the stop time, which is then no longer set.
+    StopTime,
+}
+
+/// The stop time, and whether C has to be told.
+///
+/// SUNDIALS 6.4.1 can not forget a stop time; one at the end of all time does the same.
+#[derive(Debug, Default)]
+pub(super) struct StopTime {
+    time: Option<f64>,
+    stale: bool,
+}
+
+impl StopTime {
+    pub(super) fn set(&mut self, time: Option<f64>) {
+        self.stale |= time.is_some() || self.time.is_some();
+        self.time = time;
+    }
+
+    pub(super) fn time(&self) -> Option<f64> {
+        self.time
+    }
+
+    /// What to hand to C before it integrates from `t` towards `target`, if anything.
+    pub(super) fn news(&mut self, t: f64, target: f64) -> Option<f64> {
+        std::mem::take(&mut self.stale).then(|| self.time.unwrap_or(f64::MAX.copysign(target - t)))
+    }
+}
+
+/// Checks the start of an integration.
+pub(super) fn check_start(t0: f64, y0: &[f64]) -> Result<(), Error> {
+    if !t0.is_finite() {
+        return Err(Error::input("t0", t0, "the start time is finite"));
+    }
+    if y0.is_empty() {
+        return Err(Error::input("length of y0", 0, "there is at least one unknown"));
+    }
+    check_finite("y0", y0)
+}
+
+/// Checks that every number of an input is finite.
+pub(super) fn check_finite(input: &'static str, values: &[f64]) -> Result<(), Error> {
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(i) => Err(Error::input(
+            input,
+            format!("{} in component {i}", values[i]),
+            "all components are finite",
+        )),
+    }
+}
+
+/// Checks the length of an input.
+pub(super) fn check_length(input: &'static str, len: usize, n: usize) -> Result<(), Error> {
+    if len == n {
+        return Ok(());
+    }
+    Err(Error::input(input, len, format!("there are {n} unknowns")))
+}

@@ -1,0 +1,172 @@
+//! Where the nonzeros of a sparse Jacobian are.
+
+use super::error::Error;
+
+/// The sparsity pattern of a square matrix in compressed sparse columns (CSC).
+///
+/// Rows are sorted within each column, no entry occurs twice, and every diagonal entry is
+/// stored, zero or not: SUNDIALS adds the identity in place and writes out of bounds where
+/// the diagonal has no room (`SUNMatScaleAddI_Sparse`, SUNDIALS 6.4.1). A `Pattern` can not be
+/// made without these properties.
+///
+/// The values of a Jacobian come in the order of [`row_indices`](Self::row_indices);
+/// [`position`](Self::position) finds the place of one entry.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Pattern {
+    column_pointers: Vec<i64>,
+    row_indices: Vec<i64>,
+}
+
+impl Pattern {
+    /// The pattern of an `n` x `n` matrix with the given (row, column) entries, in any order and
+    /// with repetitions; missing diagonal entries are added.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `n` is 0 or an entry lies outside the matrix.
+    pub fn from_entries(
+        n: usize,
+        entries: impl IntoIterator<Item = (usize, usize)>,
+    ) -> Result<Self, Error> {
+        let mut columns: Vec<Vec<i64>> = (0..n).map(|j| vec![j as i64]).collect();
+        for (row, column) in entries {
+            if row >= n || column >= n {
+                return Err(Error::input(
+                    "pattern entry",
+                    format!("({row}, {column})"),
+                    format!("rows and columns of this matrix run from 0 to {}", n.wrapping_sub(1)),
+                ));
+            }
+            columns[column].push(row as i64);
+        }
+        let mut column_pointers = vec![0];
+        let mut row_indices = Vec::new();
+        for mut rows in columns {
+            rows.sort_unstable();
+            rows.dedup();
+            row_indices.append(&mut rows);
+            column_pointers.push(row_indices.len() as i64);
+        }
+        Self { column_pointers, row_indices }.checked()
+    }
+
+    /// The pattern of a matrix in CSC form: the rows of column j are
+    /// `row_indices[column_pointers[j]..column_pointers[j + 1]]`.
+    ///
+    /// Nothing is rearranged, so values that belong to these arrays keep their places.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if the arrays do not fit together, a row is out of range, the rows of a
+    /// column are not strictly increasing, or a diagonal entry is missing
+    /// ([`from_entries`](Self::from_entries) sorts and completes).
+    pub fn from_csc(column_pointers: &[usize], row_indices: &[usize]) -> Result<Self, Error> {
+        let signed = |indices: &[usize]| indices.iter().map(|&i| i as i64).collect();
+        Self { column_pointers: signed(column_pointers), row_indices: signed(row_indices) }
+            .checked()
+    }
+
+    fn checked(self) -> Result<Self, Error> {
+        let pointers = &self.column_pointers;
+        let total = self.row_indices.len() as i64;
+        if pointers.len() < 2
+            || pointers[0] != 0
+            || pointers.last() != Some(&total)
+            || pointers.windows(2).any(|pair| pair[1] < pair[0] || pair[1] > total)
+        {
+            return Err(Error::input(
+                "column_pointers",
+                format!("an array of {} with {total} rows", pointers.len()),
+                "it starts with 0, does not decrease, and ends with the number of entries; a \
+                 matrix has at least one column",
+            ));
+        }
+        let n = self.dimension();
+        for j in 0..n {
+            let rows = self.column(j);
+            if rows.iter().any(|&row| row >= n as i64)
+                || rows.windows(2).any(|pair| pair[0] >= pair[1])
+                || rows.binary_search(&(j as i64)).is_err()
+            {
+                return Err(Error::input(
+                    "row_indices",
+                    format!("{rows:?} in column {j}"),
+                    format!(
+                        "rows are smaller than {n}, strictly increasing, and contain the \
+                         diagonal; Pattern::from_entries sorts and completes"
+                    ),
+                ));
+            }
+        }
+        Ok(self)
+    }
+
+    /// Number of rows, which is the number of columns.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.column_pointers.len() - 1
+    }
+
+    /// Number of stored entries: the length of the `values` that a sparse Jacobian fills.
+    #[must_use]
+    pub fn entry_count(&self) -> usize {
+        self.row_indices.len()
+    }
+
+    /// Start of each column in [`row_indices`](Self::row_indices), and its length at the end.
+    #[must_use]
+    pub fn column_pointers(&self) -> &[i64] {
+        &self.column_pointers
+    }
+
+    /// Row of each entry, column after column.
+    #[must_use]
+    pub fn row_indices(&self) -> &[i64] {
+        &self.row_indices
+    }
+
+    /// Index of the entry (row, column) among the values, if it is stored.
+    #[must_use]
+    pub fn position(&self, row: usize, column: usize) -> Option<usize> {
+        if column >= self.dimension() {
+            return None;
+        }
+        let within = self.column(column).binary_search(&(row as i64)).ok()?;
+        Some(self.column_pointers[column] as usize + within)
+    }
+
+    fn column(&self, j: usize) -> &[i64] {
+        &self.row_indices[self.column_pointers[j] as usize..self.column_pointers[j + 1] as usize]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pattern;
+
+    #[test]
+    fn entries_are_sorted_and_completed_with_the_diagonal() {
+        let pattern = Pattern::from_entries(3, [(2, 0), (1, 0), (2, 0), (0, 2)]).unwrap();
+        assert_eq!(pattern.column_pointers(), [0, 3, 4, 6]);
+        assert_eq!(pattern.row_indices(), [0, 1, 2, 1, 0, 2]);
+        assert_eq!(pattern.position(0, 2), Some(4));
+        assert_eq!(pattern.position(0, 1), None);
+        assert_eq!(pattern.position(0, 3), None);
+    }
+
+    #[test]
+    fn unusable_patterns_are_refused() {
+        assert!(Pattern::from_entries(0, []).is_err());
+        assert!(Pattern::from_entries(2, [(2, 0)]).is_err());
+        assert!(Pattern::from_csc(&[0, 2, 3], &[0, 1, 1]).is_ok());
+        for (pointers, rows, why) in [
+            (&[0, 2, 3][..], &[1, 0, 1][..], "unsorted"),
+            (&[0, 1, 2], &[0, 0], "no diagonal in column 1"),
+            (&[0, 1, 2], &[0, 2], "row out of range"),
+            (&[0, 1, 3], &[0, 1], "pointers beyond the rows"),
+            (&[0], &[], "no columns"),
+            (&[0, 2, 1, 3], &[0, 1, 2], "decreasing pointers"),
+        ] {
+            let refused = Pattern::from_csc(pointers, rows);
+            assert!(refused.is_err(), "{why}: {refused:?}");
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What an integration cost.
+
+/// Counters and state of an integrator since it was made or re-initialised.
+///
+/// In a Newton iteration every iteration solves one linear system, so `nonlinear_iterations` is
+/// also the number of linear solves.
+///
+/// User guide: "Optional output functions" of CVODE and IDA.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub struct Statistics {
+    /// Steps taken.
+    pub steps: u64,
+    /// Evaluations of the right-hand side (ODE) or residual (DAE), without those of difference
+    /// quotients.
+    pub evaluations: u64,
+    /// Evaluations spent on difference quotients for the Jacobian.
+    pub difference_quotient_evaluations: u64,
+    /// Evaluations of the Jacobian.
+    pub jacobian_evaluations: u64,
+    /// Factorizations of the Newton matrix.
+    pub linear_setups: u64,
+    /// Iterations of the nonlinear solver.
+    pub nonlinear_iterations: u64,
+    /// Nonlinear iterations that did not converge. Most are repaired by a fresh Jacobian.
+    pub nonlinear_failures: u64,
+    /// Steps repeated with a smaller size because the nonlinear iteration failed.
+    pub step_failures: u64,
+    /// Steps repeated because the local error was too large.
+    pub error_test_failures: u64,
+    /// Evaluations of the root functions.
+    pub root_evaluations: u64,
+    /// Order reductions by stability-limit detection (CVODE).
+    pub stability_reductions: u64,
+    /// Order of the last step.
+    pub last_order: u32,
+    /// Order of the next step.
+    pub current_order: u32,
+    /// Size of the first step.
+    pub initial_step: f64,
+    /// Size of the last step.
+    pub last_step: f64,
+    /// Size of the next step.
+    pub current_step: f64,
+    /// Time that the steps have reached; `solve_to` may have returned an earlier one.
+    pub current_time: f64,
+    /// Factor by which the tolerances should be raised if they ask for too much accuracy; 1 if not.
+    pub tolerance_scale: f64,
+}

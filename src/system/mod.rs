@@ -1,0 +1,263 @@
+//! The equations of one phase of a scene.
+//!
+//! With displacements u, velocities v, forces f(t, u, v) and the rows A of the constraints
+//! (Hirai (4.3.4)):
+//!
+//! ```text
+//! u' = v
+//! [ M   -A ] [ v'     ]   [ f ]
+//! [ -A^T 0 ] [ lambda ] = [ C ],   C = -b'' + 2 alpha (A^T v - b') + alpha^2 (A^T u - b)
+//! ```
+//!
+//! [`System`] is the ODE form, in which v' and lambda are solved for; [`IndexOne`] the
+//! differential-algebraic form, in which lambda is an unknown. Both solve their Newton systems with
+//! the one symmetric matrix of [`newton`], half as large as the state.
+//!
+//! Two more unknowns ride along: the energy dissipated and the energy supplied since the phase
+//! began. They cost two dot products, nothing depends on them, and the error control leaves them
+//! out; they make the energy balance as accurate as the integration itself.
+
+mod cholesky;
+mod dae;
+mod newton;
+mod ode;
+mod reduced;
+
+use std::sync::Arc;
+
+pub(crate) use dae::IndexOne;
+use newton::Newton;
+pub(crate) use ode::ENERGIES;
+use reduced::{Coupling, Reduced};
+
+use crate::body::Body;
+use crate::constraint::{Prescribed, Row};
+use crate::error::Error;
+use crate::force::{Force, NodalForces, Reservoir, dot};
+use crate::ode::Failure;
+
+/// Equations of one phase, with everything that evaluating and solving them needs.
+pub(crate) struct System {
+    body: Arc<Body>,
+    forces: Vec<Arc<dyn Force>>,
+    rows: Vec<Row>,
+    /// Stabilization rate alpha (1/s).
+    alpha: f64,
+    inertia: Reduced,
+    newton: Newton,
+    at: Evaluation,
+}
+
+/// What the last evaluation of the equations found.
+struct Evaluation {
+    nodal: NodalForces,
+    /// f, the sum of all nodal forces.
+    total: Vec<f64>,
+    /// v'
+    acceleration: Vec<f64>,
+    /// lambda, one per row.
+    multipliers: Vec<f64>,
+    /// A^T v, one per row.
+    rates: Vec<f64>,
+    /// A^T v' as the stabilization wants it, one per row.
+    demands: Vec<f64>,
+}
+
+/// Energies of a state (J).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Energy {
+    /// (1/2) v.M v
+    pub kinetic: f64,
+    /// Strain energy.
+    pub strain: f64,
+    /// Potential of gravity, 0 at height 0.
+    pub gravity: f64,
+    /// Stored in the penalty springs of contacts.
+    pub contact: f64,
+    /// Turned into heat since t = 0 by viscosity, contact damping and friction.
+    pub dissipated: f64,
+    /// Supplied since t = 0 by loads and constraints.
+    pub supplied: f64,
+}
+
+impl Energy {
+    /// Kinetic + potential + dissipated - supplied: constant along an exact motion.
+    pub fn balance(&self) -> f64 {
+        self.kinetic + self.strain + self.gravity + self.contact + self.dissipated - self.supplied
+    }
+}
+
+impl System {
+    /// # Errors
+    /// General constraint rows that follow from others.
+    pub(crate) fn new(
+        body: Arc<Body>,
+        forces: Vec<Arc<dyn Force>>,
+        rows: Vec<Row>,
+        alpha: f64,
+        phase: &str,
+    ) -> Result<Self, Error> {
+        let (dimension, dofs) = (body.dimension(), body.dofs());
+        let pattern = body.inertia().pattern().clone();
+        let mut inertia = Reduced::new(&pattern, dimension, &rows, Coupling::SameAxis);
+        let values = &body.inertia().values;
+        if inertia.factorize(|source| values[source.entry]).is_err() {
+            return Err(match inertia.dependent_row() {
+                Some(row) => Error::Constraint {
+                    phase: phase.into(),
+                    nodes: rows[row].label(dimension),
+                    problem: "follow from the other constraints: leave this row out".into(),
+                },
+                None => {
+                    Error::input("mesh", "inertia matrix without inertia", "a node has no cell")
+                }
+            });
+        }
+        let nonlinear = forces.iter().any(|force| force.is_nonlinear());
+        let newton = Newton::new(&body, &rows, nonlinear);
+        let at = Evaluation {
+            nodal: NodalForces::zeros(dofs),
+            total: vec![0.0; dofs],
+            acceleration: vec![0.0; dofs],
+            multipliers: vec![0.0; rows.len()],
+            rates: vec![0.0; rows.len()],
+            demands: vec![0.0; rows.len()],
+        };
+        Ok(Self { body, forces, rows, alpha, inertia, newton, at })
+    }
+
+    /// Number of displacement components.
+    pub(crate) fn dofs(&self) -> usize {
+        self.body.dofs()
+    }
+
+    /// The constraints, row by row.
+    pub(crate) fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Number of factorizations of the Newton matrix so far.
+    pub(crate) fn factorizations(&self) -> usize {
+        self.newton.factorizations()
+    }
+
+    /// The constraint forces lambda (N) at (t, u, v), row by row.
+    pub(crate) fn multipliers(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<&[f64], Failure> {
+        self.evaluate(t, u, v)?;
+        Ok(&self.at.multipliers)
+    }
+
+    /// The velocities nearest to `v`, in the sense of kinetic energy, that the constraints allow
+    /// at time `t`.
+    pub(crate) fn project(&mut self, t: f64, v: &mut [f64]) {
+        self.at.total.fill(0.0);
+        let dimension = self.body.dimension();
+        self.body.inertia().add_product(dimension, 1.0, v, &mut self.at.total);
+        for (demand, row) in self.at.demands.iter_mut().zip(&self.rows) {
+            *demand = row.prescribed(t).velocity;
+        }
+        let Evaluation { total, demands, multipliers, .. } = &mut self.at;
+        self.inertia.solve(&self.rows, total, demands, v, multipliers);
+    }
+
+    /// Largest |A^T u - b| (m).
+    pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
+        let drift = |row: &Row| (row.apply(u) - row.prescribed(t).displacement).abs();
+        self.rows.iter().map(drift).fold(0.0, f64::max)
+    }
+
+    /// Kinetic and potential energies of a state; dissipated and supplied are left at 0.
+    pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64]) -> Energy {
+        let mut energy = Energy {
+            kinetic: 0.5 * self.body.inertia().quadratic_form(self.body.dimension(), v),
+            strain: 0.5 * self.body.stiffness().quadratic_form(u),
+            ..Energy::default()
+        };
+        for force in &self.forces {
+            let potential = force.potential(t, u);
+            match force.reservoir() {
+                Reservoir::Gravity => energy.gravity += potential,
+                Reservoir::Contact => energy.contact += potential,
+                Reservoir::None => {}
+            }
+        }
+        energy
+    }
+
+    /// Evaluates forces, accelerations and multipliers.
+    fn evaluate(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+        self.evaluate_forces(t, u, v);
+        self.evaluate_rows(t, u, v)?;
+        let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
+        self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
+        let (inertia, dimension) = (self.body.inertia(), self.body.dimension());
+        nodal_multipliers(&self.rows, multipliers, |dof| {
+            inertia.row_product(dimension, dof, acceleration) - total[dof]
+        });
+        Ok(())
+    }
+
+    fn evaluate_forces(&mut self, t: f64, u: &[f64], v: &[f64]) {
+        let Evaluation { nodal, total, .. } = &mut self.at;
+        nodal.clear();
+        self.body.stiffness().add_product(-1.0, u, &mut nodal.conservative);
+        self.body.damping().add_product(-1.0, v, &mut nodal.dissipative);
+        for force in &self.forces {
+            force.add_forces(t, u, v, nodal);
+        }
+        nodal.add_up(total);
+    }
+
+    fn evaluate_rows(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+        let alpha = self.alpha;
+        for (k, row) in self.rows.iter().enumerate() {
+            let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
+            let (position, rate) = (row.apply(u), row.apply(v));
+            if !(displacement + velocity + acceleration).is_finite() {
+                return Err(self.not_finite(row, t));
+            }
+            self.at.rates[k] = rate;
+            self.at.demands[k] = acceleration
+                - 2.0 * alpha * (rate - velocity)
+                - alpha * alpha * (position - displacement);
+        }
+        Ok(())
+    }
+
+    /// Power dissipated and power supplied (W) at the last evaluation.
+    fn powers(&self, v: &[f64], multipliers: &[f64]) -> (f64, f64) {
+        let (dissipated, applied) = self.at.nodal.powers(v);
+        (dissipated, applied + dot(multipliers, &self.at.rates))
+    }
+
+    fn not_finite(&self, row: &Row, t: f64) -> Failure {
+        let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
+        let label = row.label(self.body.dimension());
+        Failure::Fatal(
+            format!(
+                "the path of {label} gives b = {displacement}, b' = {velocity}, \
+                 b'' = {acceleration} at t = {t} s: it must give finite numbers"
+            )
+            .into(),
+        )
+    }
+}
+
+/// Completes the multipliers by those of nodal rows: `residual` is X x - f at a fixed component,
+/// where X x - f = A mu.
+fn nodal_multipliers(rows: &[Row], multipliers: &mut [f64], residual: impl Fn(usize) -> f64) {
+    for (row, multiplier) in rows.iter().zip(&mut *multipliers) {
+        if let Some((dof, coefficient)) = row.nodal() {
+            *multiplier = residual(dof) / coefficient;
+        }
+    }
+    for general in (0..rows.len()).filter(|&k| rows[k].nodal().is_none()) {
+        for &(dof, c) in &rows[general].terms {
+            let fixed = |row: &Row| row.nodal().filter(|term| term.0 == dof);
+            let found = rows.iter().enumerate().find_map(|(k, row)| Some((k, fixed(row)?.1)));
+            if let Some((k, coefficient)) = found {
+                multipliers[k] -= c * multipliers[general] / coefficient;
+            }
+        }
+    }
+}

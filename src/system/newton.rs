@@ -1,0 +1,179 @@
+//! The structured Newton matrix.
+//!
+//! An implicit method of step parameter gamma needs x with (I - gamma J) x = r, J the Jacobian of
+//! the ODE form. J holds M^-1 and is dense; it is never formed. With Kt = -df/du, D = -df/dv and
+//! x = (xu, xv), r = (ru, rv), the same x follows from
+//!
+//! ```text
+//! (M + gamma D + gamma^2 Kt) xv - A mu = M rv - gamma Kt ru
+//! A^T xv = (A^T rv - gamma alpha^2 A^T ru) / (1 + alpha gamma)^2
+//! xu = ru + gamma xv
+//! ```
+//!
+//! One sparse symmetric matrix N of half the size; alpha costs nothing, however large.
+
+use super::reduced::{Coupling, Reduced};
+use super::{System, nodal_multipliers};
+use crate::body::Body;
+use crate::constraint::Row;
+use crate::ode::Failure;
+use crate::sparse::BlockMatrix;
+
+pub(super) struct Newton {
+    solver: Reduced,
+    /// Kt and D where they change; a linear phase uses K and B of the body throughout.
+    tangents: Option<Tangents>,
+    gamma: f64,
+    factorizations: usize,
+    /// f of the linear system, and its solution xv.
+    right: Vec<f64>,
+    pub(super) xv: Vec<f64>,
+    /// d of the linear system, and its multipliers mu.
+    demands: Vec<f64>,
+    pub(super) mu: Vec<f64>,
+}
+
+struct Tangents {
+    stiffness: BlockMatrix,
+    damping: BlockMatrix,
+    are_set: bool,
+}
+
+impl Newton {
+    pub(super) fn new(body: &Body, rows: &[Row], nonlinear: bool) -> Self {
+        let pattern = body.stiffness().pattern();
+        let dofs = body.dofs();
+        Self {
+            solver: Reduced::new(pattern, body.dimension(), rows, Coupling::AllAxes),
+            tangents: nonlinear.then(|| Tangents {
+                stiffness: body.stiffness().clone(),
+                damping: body.damping().clone(),
+                are_set: false,
+            }),
+            gamma: f64::NAN,
+            factorizations: 0,
+            right: vec![0.0; dofs],
+            xv: vec![0.0; dofs],
+            demands: vec![0.0; rows.len()],
+            mu: vec![0.0; rows.len()],
+        }
+    }
+
+    pub(super) fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+}
+
+fn in_force<'a>(
+    tangents: &'a Option<Tangents>,
+    body: &'a Body,
+) -> (&'a BlockMatrix, &'a BlockMatrix) {
+    match tangents {
+        Some(tangents) => (&tangents.stiffness, &tangents.damping),
+        None => (body.stiffness(), body.damping()),
+    }
+}
+
+impl System {
+    /// Step parameter of the last factorization.
+    pub(super) fn gamma(&self) -> f64 {
+        self.newton.gamma
+    }
+
+    /// Kt and D in force.
+    pub(super) fn tangents(&self) -> (&BlockMatrix, &BlockMatrix) {
+        in_force(&self.newton.tangents, &self.body)
+    }
+
+    /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
+    /// current.
+    pub(super) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
+        let Some(tangents) = &mut self.newton.tangents else { return true };
+        if reuse && tangents.are_set {
+            return false;
+        }
+        tangents.stiffness.values.copy_from_slice(&self.body.stiffness().values);
+        tangents.damping.values.copy_from_slice(&self.body.damping().values);
+        for force in &self.forces {
+            force.add_tangents(t, u, v, &mut tangents.stiffness, &mut tangents.damping);
+        }
+        tangents.are_set = true;
+        true
+    }
+
+    /// Factorizes N = M + gamma D + gamma^2 Kt.
+    pub(super) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
+        self.newton.gamma = gamma;
+        self.newton.factorizations += 1;
+        let Newton { solver, tangents, .. } = &mut self.newton;
+        let (stiffness, damping) = in_force(tangents, &self.body);
+        let (inertia, d) = (self.body.inertia(), self.body.dimension());
+        let factorized = solver.factorize(|source| {
+            let [row, column] = source.axes;
+            let at = (source.entry * d + row) * d + column;
+            let mass = if row == column { inertia.values[source.entry] } else { 0.0 };
+            mass + gamma * (damping.values[at] + gamma * stiffness.values[at])
+        });
+        factorized.map_err(|_| {
+            Failure::Recoverable(
+                "the Newton matrix is not positive definite (a body under strong compression)"
+                    .into(),
+            )
+        })
+    }
+
+    /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds M rv and
+    /// `self.newton.demands` holds A^T rv. Leaves xv and, complete with those of nodal rows, mu
+    /// (which is gamma times the change of lambda).
+    fn solve_newton(&mut self, ru: &mut [f64]) {
+        let (gamma, alpha) = (self.newton.gamma, self.alpha);
+        let decay = 1.0 + alpha * gamma;
+        let Newton { solver, tangents, right, xv, demands, mu, .. } = &mut self.newton;
+        let (stiffness, damping) = in_force(tangents, &self.body);
+        stiffness.add_product(-gamma, ru, right);
+        for (demand, row) in demands.iter_mut().zip(&self.rows) {
+            *demand = (*demand - gamma * alpha * alpha * row.apply(ru)) / (decay * decay);
+        }
+        solver.solve(&self.rows, right, demands, xv, mu);
+        let (inertia, dimension) = (self.body.inertia(), self.body.dimension());
+        nodal_multipliers(&self.rows, mu, |dof| {
+            let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
+            inertia.row_product(dimension, dof, xv) + gamma * damped - right[dof]
+        });
+        ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
+    }
+
+    /// The Newton system of the ODE form: `ru`, `rv` become xu, xv.
+    pub(super) fn solve_newton_ode(&mut self, ru: &mut [f64], rv: &mut [f64]) {
+        let Newton { right, demands, .. } = &mut self.newton;
+        right.fill(0.0);
+        self.body.inertia().add_product(self.body.dimension(), 1.0, rv, right);
+        demands.iter_mut().zip(&self.rows).for_each(|(demand, row)| *demand = row.apply(rv));
+        self.solve_newton(ru);
+        rv.copy_from_slice(&self.newton.xv);
+    }
+
+    /// The Newton system of the index-1 form, cj dF/dy' + dF/dy with cj = 1/gamma: the residuals
+    /// `r1`, `r2`, `r3` become xu, xv and the change of lambda.
+    pub(super) fn solve_newton_dae(&mut self, r1: &mut [f64], r2: &mut [f64], r3: &mut [f64]) {
+        let gamma = self.newton.gamma;
+        r1.iter_mut().for_each(|r| *r *= gamma);
+        self.newton.right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
+        self.newton.demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
+        self.solve_newton(r1);
+        r2.copy_from_slice(&self.newton.xv);
+        r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
+    }
+
+    /// How the powers dissipated and supplied change along the last solution of the Newton
+    /// system, the forces themselves taken as they are.
+    pub(super) fn power_changes(&self, multipliers: &[f64]) -> (f64, f64) {
+        let Newton { xv, mu, gamma, .. } = &self.newton;
+        let (dissipated, mut supplied) = self.at.nodal.powers(xv);
+        for (k, row) in self.rows.iter().enumerate() {
+            supplied += multipliers[k] * row.apply(xv) + mu[k] / gamma * self.at.rates[k];
+        }
+        // damping forces are proportional to velocity, so their power is quadratic in it
+        (2.0 * dissipated, supplied)
+    }
+}

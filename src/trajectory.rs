@@ -1,0 +1,175 @@
+//! What a run leaves behind: sampled states, and how they were obtained.
+
+use std::sync::Arc;
+
+use crate::body::Body;
+use crate::scene::Scene;
+use crate::simulate::{Counts, Method};
+use crate::system::Energy;
+
+/// The state of a scene at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// Time (s).
+    pub time: f64,
+    /// Number of the phase, counted from 0. The end of a phase belongs to that phase.
+    pub phase: usize,
+    /// Displacements (m), dimension components per node.
+    pub u: Vec<f64>,
+    /// Velocities (m/s), likewise.
+    pub v: Vec<f64>,
+    /// Constraint forces lambda (N) on the body, one per row of the phase's constraints: in the
+    /// order in which the phase names them, node by node, axis by axis.
+    pub multipliers: Vec<f64>,
+    /// Energies (J).
+    pub energy: Energy,
+}
+
+/// A sampled motion and the report of its computation.
+#[derive(Debug, Clone)]
+pub struct Trajectory {
+    body: Arc<Body>,
+    samples: Vec<Sample>,
+    pub(crate) report: Report,
+}
+
+/// How a trajectory was computed.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// Integration method.
+    pub method: Method,
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Rate of the constraint stabilization (1/s).
+    pub alpha: f64,
+    /// Unknowns of the integrator, in the last phase.
+    pub states: usize,
+    /// Largest |A^T u - b| at the end of a step (m).
+    pub constraint_drift: f64,
+    /// Largest change of the energy balance (J): kinetic + potential + dissipated - supplied.
+    pub energy_error: f64,
+    /// Largest sum of the energies (J), as the scale of `energy_error`.
+    pub energy_scale: f64,
+    /// Phase by phase.
+    pub phases: Vec<PhaseReport>,
+}
+
+/// How one phase was computed.
+#[derive(Debug, Clone)]
+pub struct PhaseReport {
+    /// Name of the phase.
+    pub name: String,
+    /// Time reached (s).
+    pub end: f64,
+    /// Wall-clock time (s).
+    pub wall_seconds: f64,
+    /// Steps, evaluations, factorizations.
+    pub counts: Counts,
+}
+
+impl Report {
+    /// Steps of all phases.
+    pub fn steps(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.steps).sum()
+    }
+
+    /// Evaluations of the right-hand side or residual in all phases.
+    pub fn evaluations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.evaluations).sum()
+    }
+
+    /// Factorizations of the Newton matrix in all phases.
+    pub fn factorizations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.factorizations).sum()
+    }
+
+    /// Wall-clock time of all phases (s).
+    pub fn wall_seconds(&self) -> f64 {
+        self.phases.iter().map(|phase| phase.wall_seconds).sum()
+    }
+}
+
+impl Trajectory {
+    pub(crate) fn new(scene: &Scene, report: Report) -> Self {
+        Self { body: scene.shared_body(), samples: Vec::new(), report }
+    }
+
+    pub(crate) fn push(&mut self, sample: Sample) {
+        let start = self.samples.first().map_or(sample.energy.balance(), |s| s.energy.balance());
+        let Energy { kinetic, strain, contact, dissipated, supplied, .. } = sample.energy;
+        let report = &mut self.report;
+        report.energy_error = report.energy_error.max((sample.energy.balance() - start).abs());
+        let sum = kinetic + strain + contact + dissipated.abs() + supplied.abs();
+        report.energy_scale = report.energy_scale.max(sum);
+        self.samples.push(sample);
+    }
+
+    /// The body that moved.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// The samples, in order of time.
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// The last sample.
+    ///
+    /// # Panics
+    /// Never for a trajectory that [`Scene::simulate`] returned: it begins with a sample.
+    pub fn last(&self) -> &Sample {
+        self.samples.last().expect("a trajectory begins with a sample at t = 0")
+    }
+
+    /// How it was computed.
+    pub fn report(&self) -> &Report {
+        &self.report
+    }
+
+    /// Centre of mass (m).
+    pub fn centre_of_mass(&self, sample: &Sample) -> Vec<f64> {
+        let positions = self.body.mesh().positions();
+        let x: Vec<f64> = positions.iter().zip(&sample.u).map(|(x, u)| x + u).collect();
+        self.mass_average(&x)
+    }
+
+    /// Velocity of the centre of mass (m/s).
+    pub fn mean_velocity(&self, sample: &Sample) -> Vec<f64> {
+        self.mass_average(&sample.v)
+    }
+
+    /// Momentum (kg m/s).
+    pub fn momentum(&self, sample: &Sample) -> Vec<f64> {
+        let mass = self.body.mass();
+        self.mean_velocity(sample).iter().map(|v| mass * v).collect()
+    }
+
+    /// Angle (rad, counter-clockwise) by which a two-dimensional body has turned as a whole: that
+    /// of the rotation which, in the mean over its mass, brings the natural shape nearest to the
+    /// present one. `None` in other dimensions.
+    pub fn rotation(&self, sample: &Sample) -> Option<f64> {
+        if self.body.dimension() != 2 {
+            return None;
+        }
+        let positions = self.body.mesh().positions();
+        let (centre, natural) = (self.centre_of_mass(sample), self.mass_average(positions));
+        let (mut along, mut across) = (0.0, 0.0);
+        for (node, mass) in self.body.nodal_masses().iter().enumerate() {
+            let arm = |i: usize| positions[2 * node + i] - natural[i];
+            let now = |i: usize| positions[2 * node + i] + sample.u[2 * node + i] - centre[i];
+            along += mass * (arm(0) * now(0) + arm(1) * now(1));
+            across += mass * (arm(0) * now(1) - arm(1) * now(0));
+        }
+        Some(across.atan2(along))
+    }
+
+    fn mass_average(&self, x: &[f64]) -> Vec<f64> {
+        let (dimension, mass) = (self.body.dimension(), self.body.mass());
+        let mut average = vec![0.0; dimension];
+        for (nodal_mass, x) in self.body.nodal_masses().iter().zip(x.chunks_exact(dimension)) {
+            average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
+        }
+        average
+    }
+}
