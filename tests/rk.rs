@@ -276,20 +276,22 @@ fn no_stability_notice_where_accuracy_limits_the_step() {
 
 #[test]
 fn the_stop_time_is_hit_exactly_and_never_passed() {
-    let stop = 1.0 / 3.0;
-    let forcing = |t: f64, _y: &[f64], ydot: &mut [f64]| {
-        assert!(t <= stop, "evaluated at {t}");
-        ydot[0] = t.exp();
-        Ok(())
-    };
-    let options = Options::default().stop_time(stop);
-    let mut solver = DormandPrince::new(forcing, 0.0, &[1.0], &options).unwrap();
-    let y = solver.solve_to(stop).unwrap()[0];
-    assert_eq!(solver.t(), stop);
-    assert!((y - stop.exp()).abs() < 1e-6);
-    for result in [solver.step().map(drop), solver.solve_to(0.5).map(drop)] {
-        let message = result.unwrap_err().to_string();
-        assert!(message.contains("stop") && message.contains("later"), "{message}");
+    // The second is shorter than the step that the start would suggest.
+    for stop in [1.0 / 3.0, 1e-9] {
+        let forcing = |t: f64, _y: &[f64], ydot: &mut [f64]| {
+            assert!(t <= stop, "evaluated at {t}");
+            ydot[0] = t.exp();
+            Ok(())
+        };
+        let options = Options::default().stop_time(stop);
+        let mut solver = DormandPrince::new(forcing, 0.0, &[1.0], &options).unwrap();
+        let y = solver.solve_to(stop).unwrap()[0];
+        assert_eq!(solver.t(), stop);
+        assert!((y - stop.exp()).abs() < 1e-6);
+        for result in [solver.step().map(drop), solver.solve_to(0.5).map(drop)] {
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains("stop") && message.contains("later"), "{message}");
+        }
     }
 }
 
