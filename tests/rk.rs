@@ -152,6 +152,26 @@ fn the_error_shrinks_with_the_tolerance() {
 }
 
 #[test]
+fn the_relative_tolerance_follows_the_solution() {
+    let decay = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+        ydot[0] = -y[0];
+        Ok(())
+    };
+    let options = Options::default().rtol(1e-6).atol(1e-30);
+    let mut solver = DormandPrince::new(decay, 0.0, &[1.0], &options).unwrap();
+    for t in [1.0, 10.0, 30.0] {
+        let relative = solver.solve_to(t).unwrap()[0] / (-t).exp() - 1.0;
+        // Every step adds at most rtol, and there are four of them in a unit of time.
+        assert!(relative.abs() < 4.0 * t * 1e-6, "{relative} at t = {t}");
+    }
+    // The start is where it was, and so are the steps that lead from it.
+    let steps = solver.statistics().steps;
+    solver.reinit(0.0, &[1.0]).unwrap();
+    solver.solve_to(30.0).unwrap();
+    assert_eq!(solver.statistics().steps, steps);
+}
+
+#[test]
 fn each_component_has_its_absolute_tolerance() {
     // Copies of one equation in units 1 and 1e6: with atol in the same units the error norm (a mean,
     // not a sum), and so every step, is the same as for one copy.
@@ -256,20 +276,22 @@ fn no_stability_notice_where_accuracy_limits_the_step() {
 
 #[test]
 fn the_stop_time_is_hit_exactly_and_never_passed() {
-    let stop = 1.0 / 3.0;
-    let forcing = |t: f64, _y: &[f64], ydot: &mut [f64]| {
-        assert!(t <= stop, "evaluated at {t}");
-        ydot[0] = t.exp();
-        Ok(())
-    };
-    let options = Options::default().stop_time(stop);
-    let mut solver = DormandPrince::new(forcing, 0.0, &[1.0], &options).unwrap();
-    let y = solver.solve_to(stop).unwrap()[0];
-    assert_eq!(solver.t(), stop);
-    assert!((y - stop.exp()).abs() < 1e-6);
-    for result in [solver.step().map(drop), solver.solve_to(0.5).map(drop)] {
-        let message = result.unwrap_err().to_string();
-        assert!(message.contains("stop") && message.contains("later"), "{message}");
+    // The second is shorter than the step that the start would suggest.
+    for stop in [1.0 / 3.0, 1e-9] {
+        let forcing = |t: f64, _y: &[f64], ydot: &mut [f64]| {
+            assert!(t <= stop, "evaluated at {t}");
+            ydot[0] = t.exp();
+            Ok(())
+        };
+        let options = Options::default().stop_time(stop);
+        let mut solver = DormandPrince::new(forcing, 0.0, &[1.0], &options).unwrap();
+        let y = solver.solve_to(stop).unwrap()[0];
+        assert_eq!(solver.t(), stop);
+        assert!((y - stop.exp()).abs() < 1e-6);
+        for result in [solver.step().map(drop), solver.solve_to(0.5).map(drop)] {
+            let message = result.unwrap_err().to_string();
+            assert!(message.contains("stop") && message.contains("later"), "{message}");
+        }
     }
 }
 

@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use super::tableau::Measure;
-
 /// Factor kept in hand below the step that would just pass the error test.
 const SAFETY: f64 = 0.9;
 /// Weight of the previous error: the integral part of the controller.
@@ -56,6 +54,10 @@ impl Controller {
 /// An explicit method has to keep h |lambda| within its stability region for every eigenvalue
 /// lambda of df/dy, even for motions that have long died away. For the Dormand-Prince pair the
 /// region reaches to 3.3 along the negative real axis.
+///
+/// The notice is about damped motions, the stabilization of constraints among them. Oscillations
+/// without damping are held at h |lambda| of about 1 to 2, which is also where they can just be
+/// followed, so those steps are not counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityLimit {
     /// Time at which the limit was established.
@@ -95,14 +97,13 @@ pub(super) struct StabilityMonitor {
 }
 
 impl StabilityMonitor {
-    pub fn accepted(&mut self, t: f64, h: f64, measure: Measure) {
-        if h * measure.rate > LIMITED {
+    pub fn accepted(&mut self, t: f64, h: f64, rate: f64) {
+        if h * rate > LIMITED {
             self.limited_steps += 1;
             self.free = 0;
             self.run += 1;
             if self.run == ESTABLISH_AFTER && self.limit.is_none() {
-                self.limit =
-                    Some(StabilityLimit { time: t, step: h, rate: measure.rate, steps: 0 });
+                self.limit = Some(StabilityLimit { time: t, step: h, rate, steps: 0 });
             }
         } else {
             self.free += 1;

@@ -61,7 +61,7 @@ impl Options {
         self
     }
 
-    /// Largest step allowed; default: none. Useful when the right-hand side has short pulses
+    /// Largest step allowed (by up to 1 % longer to hit the stop time); default: none. Useful when the right-hand side has short pulses
     /// that a long step would not see.
     pub fn max_step(mut self, step: f64) -> Self {
         self.max_step = step;

@@ -16,6 +16,8 @@ pub struct DormandPrince<S: Ode> {
     pub(super) system: S,
     pub(super) options: Options,
     pub(super) atol: Vec<f64>,
+    /// Weights of the error norm.
+    pub(super) weight: Vec<f64>,
     pub(super) stop_time: Option<f64>,
     /// End of the last accepted step and the solution there.
     pub(super) t: f64,
@@ -57,6 +59,7 @@ impl<S: Ode> DormandPrince<S> {
             system,
             options: options.clone(),
             atol,
+            weight: vec![0.0; n],
             stop_time: None,
             t,
             y: y.to_vec(),
@@ -71,6 +74,7 @@ impl<S: Ode> DormandPrince<S> {
             monitor: StabilityMonitor::default(),
             statistics: Statistics::default(),
         };
+        solver.update_weight();
         solver.set_stop_time(options.stop_time)?;
         Ok(solver)
     }
@@ -86,6 +90,7 @@ impl<S: Ode> DormandPrince<S> {
         check_state(t, y)?;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);
+        self.update_weight();
         self.stop_time = None;
         self.slope_known = false;
         self.next_step = self.options.initial_step;
@@ -143,8 +148,8 @@ impl<S: Ode> DormandPrince<S> {
             }
             let t_new = stop.unwrap_or(self.t + h);
             let step = t_new - self.t;
-            let measure = match self.try_step(t_new, step)? {
-                Ok(measure) => measure,
+            let error = match self.try_step(t_new, step)? {
+                Ok(error) => error,
                 Err(reason) => {
                     self.statistics.refused_steps += 1;
                     setback = Some(reason);
@@ -152,16 +157,16 @@ impl<S: Ode> DormandPrince<S> {
                     continue;
                 }
             };
-            if measure.error > 1.0 {
+            if error > 1.0 {
                 self.statistics.rejected_steps += 1;
                 setback = None;
-                h = self.controller.reject(step, measure.error);
+                h = self.controller.reject(step, error);
                 continue;
             }
-            let proposed = self.controller.accept(step, measure.error);
+            let proposed = self.controller.accept(step, error);
             // A step cut short by the stop time says nothing against the one that was planned.
             self.next_step = Some(if stop.is_some() { proposed.max(h) } else { proposed });
-            self.accept(t_new, step, measure);
+            self.accept(t_new, step);
             return Ok(t_new);
         }
     }

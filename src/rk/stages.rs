@@ -2,7 +2,7 @@
 
 use std::mem::swap;
 
-use super::tableau::{self, A2, A3, A4, A5, A6, B, C, Measure, Trial, advance};
+use super::tableau::{A2, A3, A4, A5, A6, B, C, E, advance, norm};
 use super::{DormandPrince, Error};
 use crate::ode::{Failure, Ode};
 
@@ -41,26 +41,26 @@ impl<S: Ode> DormandPrince<S> {
 
     /// Initial step size after HNW I, section II.4, "Starting step size".
     pub(super) fn estimate_initial_step(&mut self) -> Result<f64, Error> {
-        let (rtol, atol) = (self.options.rtol, &self.atol);
         let [slope, trial_slope, ..] = &mut self.k;
-        let state_size = tableau::norm([1.0], [&self.y], &self.y, rtol, atol);
-        let slope_size = tableau::norm([1.0], [slope], &self.y, rtol, atol);
+        let state_size = norm([1.0], [&self.y], &self.weight);
+        let slope_size = norm([1.0], [slope], &self.weight);
         let mut h = if state_size < 1e-5 || slope_size < 1e-5 {
             1e-6
         } else {
             0.01 * state_size / slope_size
         };
         h = h.min(self.options.max_step);
-        if let Some(stop) = self.stop_time {
-            h = h.min(stop - self.t);
+        let mut t_trial = self.t + h;
+        if let Some(stop) = self.stop_time.filter(|stop| t_trial > *stop) {
+            (t_trial, h) = (stop, stop - self.t);
         }
         advance(&mut self.argument, &self.y, h, [1.0], [slope]);
         self.statistics.rhs_evaluations += 1;
-        let outcome = self.system.rhs(self.t + h, &self.argument, trial_slope);
-        if classify(outcome, self.t + h, h)?.is_some() {
+        let outcome = self.system.rhs(t_trial, &self.argument, trial_slope);
+        if classify(outcome, t_trial, h)?.is_some() {
             return Ok(h);
         }
-        let curvature = tableau::norm([1.0, -1.0], [trial_slope, slope], &self.y, rtol, atol) / h;
+        let curvature = norm([1.0, -1.0], [trial_slope, slope], &self.weight) / h;
         // y' changes on the time scale T = |y'| / |y''|, so that the error of a step of order 5 is
         // about (h/T)^5 |y'| T; the book has T = 1, which is only right for some unit of time.
         let time_scale = slope_size / curvature;
@@ -71,12 +71,9 @@ impl<S: Ode> DormandPrince<S> {
 
     /// Evaluates stages 2 to 7 of a step to `t_new`; `y_old` then holds the new solution.
     ///
-    /// The inner result is the error estimate, or why there is none.
-    pub(super) fn try_step(
-        &mut self,
-        t_new: f64,
-        h: f64,
-    ) -> Result<Result<Measure, Setback>, Error> {
+    /// The inner result is the norm of the error estimate, at most 1 when the step will do, or why
+    /// there is none.
+    pub(super) fn try_step(&mut self, t_new: f64, h: f64) -> Result<Result<f64, Setback>, Error> {
         let (y, g, y_new) = (&self.y, &mut self.argument, &mut self.y_old);
         let [k1, k2, k3, k4, k5, k6, k7] = &mut self.k;
         let (t, statistics, system) = (self.t, &mut self.statistics, &mut self.system);
@@ -98,24 +95,41 @@ impl<S: Ode> DormandPrince<S> {
         stage!(k5 at t + C[4] * h, g from A5 of k1, k2, k3, k4);
         stage!(k6 at t_new, g from A6 of k1, k2, k3, k4, k5);
         stage!(k7 at t_new, y_new from B of k1, k3, k4, k5, k6);
-        let (rtol, atol) = (self.options.rtol, self.atol.as_slice());
-        let stages = [&**k1, k3, k4, k5, k6, k7];
-        let measure = Trial { h, y, y_new, g6: g, k: stages, rtol, atol }.measure();
-        if measure.error.is_finite() {
-            return Ok(Ok(measure));
+        let error = norm(E.map(|e| h * e), [k1, k3, k4, k5, k6, k7], &self.weight);
+        if error.is_finite() {
+            return Ok(Ok(error));
         }
         // Look for the first culprit only now that there is one.
         let found = self.k.iter().zip(C).find_map(|(k, c)| non_finite(t + c * h, k));
         // Finite stages whose combination overflows: the step is far too long.
-        Ok(found.map_or(Ok(Measure { error: f64::MAX, rate: 0.0 }), Err))
+        Ok(found.map_or(Ok(f64::MAX), Err))
     }
 
-    pub(super) fn accept(&mut self, t_new: f64, h: f64, measure: Measure) {
-        self.monitor.accepted(t_new, h, measure);
+    /// Estimate of the largest |lambda| of df/dy from the two stages at the end of the trial step:
+    /// |k7 - k6| / |g7 - g6| (HNW II, section IV.2, "Automatic stiffness detection"), in the
+    /// weighted norm and so independent of the units of the components.
+    fn rate(&self) -> f64 {
+        let [.., k6, k7] = &self.k;
+        let distance = norm([1.0, -1.0], [&self.y_old, &self.argument], &self.weight);
+        if distance > 0.0 { norm([1.0, -1.0], [k7, k6], &self.weight) / distance } else { 0.0 }
+    }
+
+    /// Error weights 1/(rtol |y_i| + atol_i) at the start of the next step.
+    pub(super) fn update_weight(&mut self) {
+        let rtol = self.options.rtol;
+        for ((weight, y), atol) in self.weight.iter_mut().zip(&self.y).zip(&self.atol) {
+            *weight = 1.0 / (rtol * y.abs() + atol);
+        }
+    }
+
+    pub(super) fn accept(&mut self, t_new: f64, h: f64) {
+        let rate = self.rate();
+        self.monitor.accepted(t_new, h, rate);
         self.statistics.steps += 1;
         self.statistics.last_step = h;
         (self.t_old, self.t) = (self.t, t_new);
         swap(&mut self.y, &mut self.y_old);
+        self.update_weight();
         let [first, .., last] = &mut self.k;
         swap(first, last);
     }

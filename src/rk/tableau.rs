@@ -99,93 +99,36 @@ pub(super) fn advance<const M: usize>(
     }
 }
 
-/// What a trial step says about itself.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Measure {
-    /// Weighted root mean square of the local error; at most 1 is good enough.
-    pub error: f64,
-    /// Estimate of the largest |lambda| of the Jacobian df/dy.
-    pub rate: f64,
-}
-
-/// Both ends of a trial step with what is needed to judge it.
-pub(super) struct Trial<'a> {
-    pub h: f64,
-    pub y: &'a [f64],
-    pub y_new: &'a [f64],
-    /// Argument of stage 6, the other stage at the end of the step.
-    pub g6: &'a [f64],
-    /// Stages 1, 3, 4, 5, 6, 7.
-    pub k: [&'a [f64]; 6],
-    pub rtol: f64,
-    pub atol: &'a [f64],
-}
-
 /// Independent partial sums, so that the compiler may keep them in vector registers.
 const LANES: usize = 4;
 
-impl Trial<'_> {
-    /// Error norm and spectral radius in one pass.
-    ///
-    /// Norm: sqrt(mean((x_i / (rtol |y_i| + atol_i))^2)) with y at the start of the step, as in
-    /// CVODE (user guide, "Mathematical considerations"). Rate: |k7 - k6| / |g7 - g6| (HNW II,
-    /// section IV.2, "Automatic stiffness detection"), in the same norm and so independent of
-    /// the units of the components.
-    #[inline(never)]
-    pub fn measure(&self) -> Measure {
-        let n = self.y.len();
-        let (y, y_new, g6, atol) = (self.y, &self.y_new[..n], &self.g6[..n], &self.atol[..n]);
-        let k = self.k.map(|k| &k[..n]);
-        let weights = E.map(|e| self.h * e);
-        let squares = |i: usize| {
-            let scale = 1.0 / (self.rtol * y[i].abs() + atol[i]);
-            let mut error = 0.0;
-            for j in 0..6 {
-                error += weights[j] * k[j][i];
-            }
-            let (error, dk, dg) =
-                (scale * error, scale * (k[5][i] - k[4][i]), scale * (y_new[i] - g6[i]));
-            [error * error, dk * dk, dg * dg]
-        };
-        let mut lanes = [[0.0; 3]; LANES];
-        let whole = n - n % LANES;
-        for block in (0..whole).step_by(LANES) {
-            for (lane, sums) in lanes.iter_mut().enumerate() {
-                add(sums, squares(block + lane));
+/// Weighted root mean square of x = sum_j c_j x_j in one pass: sqrt(mean((weight_i x_i)^2)), with
+/// the weights 1/(rtol |y_i| + atol_i) the norm of CVODE (user guide, "Mathematical
+/// considerations").
+#[inline(never)]
+pub(super) fn norm<const M: usize>(c: [f64; M], x: [&[f64]; M], weight: &[f64]) -> f64 {
+    let n = weight.len();
+    let (blocks, rest) = weight.as_chunks::<LANES>();
+    let x = x.map(|x| x[..n].as_chunks::<LANES>());
+    let x_blocks = x.map(|(x, _)| &x[..blocks.len()]);
+    let mut lanes = [0.0; LANES];
+    for (i, weight) in blocks.iter().enumerate() {
+        let mut sum = [0.0; LANES];
+        for j in 0..M {
+            for lane in 0..LANES {
+                sum[lane] += c[j] * x_blocks[j][i][lane];
             }
         }
-        let mut sums = [0.0; 3];
-        (whole..n).for_each(|i| add(&mut sums, squares(i)));
-        lanes.into_iter().for_each(|lane| add(&mut sums, lane));
-        let [error, dk, dg] = sums;
-        Measure {
-            error: (error / n as f64).sqrt(),
-            rate: if dg > 0.0 { (dk / dg).sqrt() } else { 0.0 },
+        for lane in 0..LANES {
+            lanes[lane] += (weight[lane] * sum[lane]).powi(2);
         }
     }
-}
-
-fn add(sums: &mut [f64; 3], terms: [f64; 3]) {
-    for (sum, term) in sums.iter_mut().zip(terms) {
-        *sum += term;
+    let mut total: f64 = lanes.iter().sum();
+    for (i, weight) in rest.iter().enumerate() {
+        let sum: f64 = c.iter().zip(&x).map(|(c, (_, x))| c * x[i]).sum();
+        total += (weight * sum).powi(2);
     }
-}
-
-/// Weighted root mean square of sum_j weights_j x_j, as in [`Trial::measure`].
-pub(super) fn norm<const M: usize>(
-    weights: [f64; M],
-    x: [&[f64]; M],
-    y: &[f64],
-    rtol: f64,
-    atol: &[f64],
-) -> f64 {
-    let sum: f64 = (0..y.len())
-        .map(|i| {
-            let value: f64 = (0..M).map(|j| weights[j] * x[j][i]).sum();
-            (value / (rtol * y[i].abs() + atol[i])).powi(2)
-        })
-        .sum();
-    (sum / y.len() as f64).sqrt()
+    (total / n as f64).sqrt()
 }
 
 #[cfg(test)]
