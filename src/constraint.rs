@@ -138,23 +138,21 @@ impl Row {
     }
 }
 
-/// Where the rows of a phase start from: its time and displacements, and the rows of the phase
-/// before it, whose prescribed positions are continued (so that an error of the stabilization is
-/// not carried along).
+/// Where the rows of a phase start from.
 pub(crate) struct Start<'a> {
+    /// Time (s).
     pub(crate) time: f64,
+    /// Displacements (m), those that the phase before prescribed as it [told](tell) them to be.
     pub(crate) u: &'a [f64],
-    pub(crate) before: &'a [Row],
 }
 
-impl Start<'_> {
-    /// Displacement A^T u at which a row that stays or moves on begins.
-    fn value(&self, terms: &[(usize, f64)]) -> f64 {
-        let position = |dof: usize| {
-            let told = self.before.iter().find(|row| row.nodal() == Some((dof, 1.0)));
-            told.map_or(self.u[dof], |row| row.prescribed(self.time).displacement)
-        };
-        terms.iter().map(|&(dof, coefficient)| coefficient * position(dof)).sum()
+/// Puts the nodes that `rows` prescribe where they should be at time `t`: a constraint that is
+/// continued does not take over the error of the stabilization.
+pub(crate) fn tell(rows: &[Row], t: f64, u: &mut [f64]) {
+    for row in rows {
+        if let Some((dof, coefficient)) = row.nodal() {
+            u[dof] = row.prescribed(t).displacement / coefficient;
+        }
     }
 }
 
@@ -203,7 +201,7 @@ pub(crate) fn rows(
 
 fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &Start) -> Row {
     let linear = |velocity: f64| RowMotion::Linear {
-        start: start.value(&terms),
+        start: terms.iter().map(|&(dof, coefficient)| coefficient * start.u[dof]).sum(),
         since: start.time,
         velocity,
     };

@@ -1,5 +1,6 @@
 //! What a run leaves behind: sampled states, and how they were obtained.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::body::Body;
@@ -86,6 +87,49 @@ impl Report {
     /// Wall-clock time of all phases (s).
     pub fn wall_seconds(&self) -> f64 {
         self.phases.iter().map(|phase| phase.wall_seconds).sum()
+    }
+}
+
+impl fmt::Display for Report {
+    /// A table of the phases and the sums over them, then what is conserved and what is not.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { method, rtol, alpha, states, .. } = self;
+        writeln!(f, "{method}, rtol {rtol:.0e}, alpha {alpha:.0e} 1/s, {states} unknowns")?;
+        writeln!(
+            f,
+            "{:12} {:>8} {:>8} {:>12} {:>15} {:>9} {:>9}",
+            "phase", "end (s)", "steps", "evaluations", "factorizations", "rejected", "time (s)"
+        )?;
+        let rejected = |c: &Counts| c.error_test_failures + c.convergence_failures;
+        for PhaseReport { name, end, wall_seconds, counts } in &self.phases {
+            let Counts { steps, evaluations, factorizations, .. } = counts;
+            let rejected = rejected(counts);
+            writeln!(
+                f,
+                "{name:12} {end:8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} \
+                 {wall_seconds:9.4}"
+            )?;
+        }
+        let rejected: usize = self.phases.iter().map(|phase| rejected(&phase.counts)).sum();
+        let (steps, seconds) = (self.steps(), self.wall_seconds());
+        let (evaluations, factorizations) = (self.evaluations(), self.factorizations());
+        writeln!(
+            f,
+            "{:12} {:8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} {seconds:9.4}",
+            "all", ""
+        )?;
+        let Self { constraint_drift, energy_error, energy_scale, .. } = self;
+        write!(
+            f,
+            "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
+             {energy_error:.1e} of {energy_scale:.1e} J"
+        )?;
+        for PhaseReport { name, counts, .. } in &self.phases {
+            if let Some(notice) = &counts.notice {
+                write!(f, "\nphase \"{name}\": {notice}")?;
+            }
+        }
+        Ok(())
     }
 }
 

@@ -26,15 +26,49 @@ pub fn square_press(nodes: usize) -> Result<Scene, Error> {
     Ok(press(scene, nodes).phase(Phase::until(2.0).named("released").hold("bottom")))
 }
 
-/// Figs 4.5 and 4.6: the same square, but at 1 s everything is released over a floor of
-/// 100 N/m per node on 4 nodes, as stiff altogether on more, and the square jumps until 1.5 s.
+/// Figs 4.5 and 4.6: the same square, but at 1 s everything is released over a floor, and the
+/// square jumps until 1.5 s. [`SquareJump`] has variants.
 ///
 /// # Errors
 /// As [`square_press`].
 pub fn square_jump(nodes: usize) -> Result<Scene, Error> {
-    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(400.0 / nodes as f64);
-    let scene = Scene::new(square(nodes)?.build()?).obstacle(floor);
-    Ok(press(scene, nodes).phase(Phase::until(1.5).named("free")))
+    SquareJump { nodes, ..SquareJump::default() }.scene()
+}
+
+/// The jumping square with other numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SquareJump {
+    /// Nodes along a side, 4 at least. Default: 4 (Fig. 4.5); Fig. 4.6 has 10.
+    pub nodes: usize,
+    /// Stiffness of the floor under all nodes of the bottom together (N/m). Default: 400, the
+    /// 100 N/m per node of the documents on 4 nodes and 40 on 10.
+    pub floor: f64,
+    /// Acceleration of gravity downward (m/s^2). Default: 0, as in the documents.
+    pub gravity: f64,
+    /// End of the jump (s), after 1. Default: 1.5.
+    pub until: f64,
+}
+
+impl Default for SquareJump {
+    fn default() -> Self {
+        Self { nodes: 4, floor: 400.0, gravity: 0.0, until: 1.5 }
+    }
+}
+
+impl SquareJump {
+    /// The scene.
+    ///
+    /// # Errors
+    /// Fewer than 4 nodes.
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
+        let mut scene = Scene::new(square(self.nodes)?.build()?)
+            .obstacle(floor.stiffness(self.floor / self.nodes as f64));
+        if self.gravity != 0.0 {
+            scene = scene.gravity([0.0, -self.gravity]);
+        }
+        Ok(press(scene, self.nodes).phase(Phase::until(self.until).named("free")))
+    }
 }
 
 /// Fig. 4.1: an elastic bar of 10 cm and 2 cm^2, 6 nodes, standing on the floor. Its top is

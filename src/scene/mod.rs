@@ -7,7 +7,7 @@ use std::sync::Arc;
 pub use phase::Phase;
 
 use crate::body::Body;
-use crate::constraint::{Row, Start, rows};
+use crate::constraint::{Row, Start, rows, tell};
 use crate::error::{Error, finite};
 use crate::force::{Contact, Force, Gravity, Load, Obstacle};
 use crate::system::System;
@@ -113,12 +113,12 @@ impl Scene {
                 return Err(Error::input("obstacle name", value, "it is taken: name it otherwise"));
             }
         }
-        let (mut time, mut before) = (0.0, Vec::new());
-        let natural = vec![0.0; self.body.dofs()];
+        let (mut time, mut u) = (0.0, vec![0.0; self.body.dofs()]);
         for phase in &self.phases {
-            before = self.rows(phase, &Start { time, u: &natural, before: &before })?;
+            let rows = self.rows(phase, &Start { time, u: &u })?;
             self.forces(phase)?;
             time = phase.until;
+            tell(&rows, time, &mut u);
         }
         Ok(())
     }

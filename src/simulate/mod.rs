@@ -10,7 +10,7 @@ use solver::Tolerances;
 pub use solver::{Method, Solver};
 use stepper::{Failed, Stepper};
 
-use crate::constraint::Start;
+use crate::constraint::{Start, tell};
 use crate::error::{Error, positive};
 use crate::ode::Failure;
 use crate::scene::{Phase, Scene};
@@ -195,11 +195,13 @@ impl<'a> Run<'a> {
 
     fn all(mut self, sampling: &Sampling) -> Result<Trajectory, Error> {
         let n = self.scene.body().dofs();
-        let mut before = Vec::new();
+        let mut rows = Vec::new();
         for (number, phase) in self.scene.phases().iter().enumerate() {
-            let start = Start { time: self.time, u: &self.state[..n], before: &before };
+            let mut u = self.state[..n].to_vec();
+            tell(&rows, self.time, &mut u);
+            let start = Start { time: self.time, u: &u };
             let mut system = self.scene.system(phase, &start, self.solver.alpha)?;
-            before = system.rows().to_vec();
+            rows = system.rows().to_vec();
             if phase.projects_velocity {
                 system.project(self.time, &mut self.state[n..2 * n]);
             }
@@ -230,8 +232,13 @@ impl<'a> Run<'a> {
                 .map_err(|source| (source, 0.0))?;
         let mut sample = vec![0.0; stepper.size()];
         let mut result = Ok(());
+        let mut steps = 0;
         while result.is_ok() && self.time < end {
-            result = self.step(number, end, &mut stepper, &mut times, &mut sample);
+            result = match steps == self.solver.max_steps {
+                false => self.step(number, end, &mut stepper, &mut times, &mut sample),
+                true => Err(too_many_steps(steps, &stepper.counts())),
+            };
+            steps += 1;
         }
         let counts = stepper.counts();
         let step = counts.last_step;
@@ -254,11 +261,6 @@ impl<'a> Run<'a> {
         times: &mut std::iter::Peekable<impl Iterator<Item = f64>>,
         sample: &mut [f64],
     ) -> Result<(), Failed> {
-        if stepper.counts().steps >= self.solver.max_steps {
-            let advice = "raise max_steps, loosen rtol or choose a method for stiff motion";
-            let notice = stepper.counts().notice.unwrap_or_default();
-            return Err(format!("{} steps taken: {advice}. {notice}", self.solver.max_steps).into());
-        }
         let time = stepper.step(end)?;
         while let Some(t) = times.next_if(|&t| t <= time) {
             stepper.interpolate(t, sample)?;
@@ -304,6 +306,11 @@ impl<'a> Run<'a> {
         })
         .into()
     }
+}
+
+fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
+    let reason = counts.notice.as_deref().unwrap_or("loosen rtol, or choose another method");
+    format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
 }
 
 fn into_error(failure: Failure) -> Failed {

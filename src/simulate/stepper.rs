@@ -165,7 +165,7 @@ fn ida(
     state: &[f64],
 ) -> Result<Stepper, Failed> {
     let motion = 2 * system.dofs();
-    let mut equations = IndexOne { system };
+    let mut equations = IndexOne::new(system);
     let (y, yp) = equations.consistent(t, state).map_err(|failure| match failure {
         Failure::Recoverable(message) => message.into(),
         Failure::Fatal(error) => error,

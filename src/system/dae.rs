@@ -14,9 +14,21 @@ use crate::ode::{Dae, Failure};
 /// The equations of a phase with the multipliers as unknowns.
 pub(crate) struct IndexOne {
     pub(crate) system: System,
+    /// For each degree of freedom, the constraint rows it is in and its coefficients there.
+    constraints_of: Vec<Vec<(usize, f64)>>,
 }
 
 impl IndexOne {
+    pub(crate) fn new(system: System) -> Self {
+        let mut constraints_of = vec![Vec::new(); system.dofs()];
+        for (k, row) in system.rows.iter().enumerate() {
+            row.terms
+                .iter()
+                .for_each(|&(dof, coefficient)| constraints_of[dof].push((k, coefficient)));
+        }
+        Self { system, constraints_of }
+    }
+
     /// Number of unknowns.
     pub(crate) fn size(&self) -> usize {
         2 * self.system.dofs() + ENERGIES + self.system.rows.len()
@@ -47,12 +59,6 @@ impl IndexOne {
         let (stiffness, damping) = self.system.tangents();
         let (inertia, pattern) = (body.inertia(), body.inertia().pattern());
         let lambda = 2 * n + ENERGIES;
-        let of_dof = |dof: usize| {
-            rows.iter().enumerate().filter_map(move |(k, row)| {
-                let term = row.terms.iter().find(|term| term.0 == dof);
-                term.map(|&(_, coefficient)| (lambda + k, coefficient))
-            })
-        };
         // Kt and D are symmetric: block (column, row) stands for (row, column)
         let block = |matrix: &[f64], entry: usize, row_axis: usize, column_axis: usize| {
             matrix[(entry * d + column_axis) * d + row_axis]
@@ -65,7 +71,8 @@ impl IndexOne {
                     visit(n + node * d + axis, dof, kt);
                 }
             }
-            of_dof(dof).for_each(|(row, c)| visit(row, dof, alpha * alpha * c));
+            let constraints = self.constraints_of[dof].iter();
+            constraints.for_each(|(k, c)| visit(lambda + k, dof, alpha * alpha * c));
         }
         for dof in 0..n {
             visit(dof, n + dof, -1.0);
@@ -76,7 +83,8 @@ impl IndexOne {
                     visit(n + node * d + axis, n + dof, mass + damped);
                 }
             }
-            of_dof(dof).for_each(|(row, c)| visit(row, n + dof, (cj + 2.0 * alpha) * c));
+            let constraints = self.constraints_of[dof].iter();
+            constraints.for_each(|(k, c)| visit(lambda + k, n + dof, (cj + 2.0 * alpha) * c));
         }
         (2 * n..lambda).for_each(|energy| visit(energy, energy, cj));
         for (k, row) in rows.iter().enumerate() {

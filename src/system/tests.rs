@@ -28,7 +28,7 @@ fn system() -> System {
         .obstacle(floor.stiffness(5e3).damping(20.0).friction(30.0))
         .phase(phase);
     let natural = vec![0.0; scene.body().dofs()];
-    let start = Start { time: 0.0, u: &natural, before: &[] };
+    let start = Start { time: 0.0, u: &natural };
     scene.system(&scene.phases()[0], &start, ALPHA).unwrap()
 }
 
@@ -109,7 +109,7 @@ fn structured_solve_is_that_of_the_ode_jacobian() {
 
 #[test]
 fn structured_solve_is_that_of_the_index_one_jacobian() {
-    let mut equations = IndexOne { system: system() };
+    let mut equations = IndexOne::new(system());
     let n = equations.system.dofs();
     let state = state(&equations.system);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
@@ -129,7 +129,7 @@ fn structured_solve_is_that_of_the_index_one_jacobian() {
 
 #[test]
 fn index_one_jacobian_is_the_derivative_of_the_residual() {
-    let mut equations = IndexOne { system: system() };
+    let mut equations = IndexOne::new(system());
     let n = equations.system.dofs();
     let state = state(&equations.system);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
@@ -155,7 +155,7 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
 
 #[test]
 fn consistent_start_satisfies_the_residual() {
-    let mut equations = IndexOne { system: system() };
+    let mut equations = IndexOne::new(system());
     let state = state(&equations.system);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
     let mut residual = vec![0.0; y.len()];
@@ -204,7 +204,7 @@ fn a_row_that_follows_from_others_is_named() {
         .hold([1]);
     let scene = Scene::new(body).phase(phase);
     let natural = vec![0.0; 32];
-    let start = Start { time: 0.0, u: &natural, before: &[] };
+    let start = Start { time: 0.0, u: &natural };
     let Err(error) = scene.system(&scene.phases()[0], &start, ALPHA) else { panic!("accepted") };
     let message = error.to_string();
     assert!(message.contains("pull") && message.contains("node 6 x + node 7 x"), "{message}");
