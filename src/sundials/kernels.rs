@@ -19,6 +19,11 @@ pub(super) unsafe fn install(vector: ffi::N_Vector) {
         let ops = &mut *(*vector).ops;
         ops.nvwrmsnorm = Some(weighted_norm);
         ops.nvlinearsum = Some(linear_sum);
+        ops.nvconst = Some(constant);
+        ops.nvscale = Some(scale);
+        ops.nvabs = Some(abs);
+        ops.nvinv = Some(inv);
+        ops.nvaddconst = Some(add_const);
     }
 }
 
@@ -89,6 +94,58 @@ unsafe extern "C" fn linear_sum(
     }
 }
 
+/// z = f(x), where z may be x.
+///
+/// # Safety
+/// The vectors are live serial vectors of equal length.
+#[inline(always)]
+unsafe fn map(x: ffi::N_Vector, z: ffi::N_Vector, f: impl Fn(f64) -> f64) {
+    // SAFETY: the caller vouches for the vectors; they are either the same or do not overlap.
+    unsafe {
+        let ((x, n), (z, _)) = (parts(x), parts(z));
+        if z == x {
+            for z in slice::from_raw_parts_mut(z, n) {
+                *z = f(*z);
+            }
+        } else {
+            let x = slice::from_raw_parts(x, n);
+            for (z, x) in slice::from_raw_parts_mut(z, n).iter_mut().zip(x) {
+                *z = f(*x);
+            }
+        }
+    }
+}
+
+/// z = c
+unsafe extern "C" fn constant(c: f64, z: ffi::N_Vector) {
+    // SAFETY: SUNDIALS passes live vectors.
+    unsafe { map(z, z, |_| c) }
+}
+
+/// z = c x
+unsafe extern "C" fn scale(c: f64, x: ffi::N_Vector, z: ffi::N_Vector) {
+    // SAFETY: SUNDIALS passes live vectors of equal length.
+    unsafe { map(x, z, |x| c * x) }
+}
+
+/// z = |x|
+unsafe extern "C" fn abs(x: ffi::N_Vector, z: ffi::N_Vector) {
+    // SAFETY: as in `scale`.
+    unsafe { map(x, z, f64::abs) }
+}
+
+/// z = 1 / x
+unsafe extern "C" fn inv(x: ffi::N_Vector, z: ffi::N_Vector) {
+    // SAFETY: as in `scale`.
+    unsafe { map(x, z, |x| 1.0 / x) }
+}
+
+/// z = x + b
+unsafe extern "C" fn add_const(x: ffi::N_Vector, b: f64, z: ffi::N_Vector) {
+    // SAFETY: as in `scale`.
+    unsafe { map(x, z, |x| x + b) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{
@@ -125,12 +182,41 @@ mod tests {
                         let v = &theirs;
                         ffi::N_VLinearSum_Serial(a, v[x].raw(), b, v[y].raw(), v[z].raw());
                     }
-                    for (ours, theirs) in ours.iter().zip(&theirs) {
-                        for (ours, theirs) in ours.as_slice().iter().zip(theirs.as_slice()) {
-                            assert!((ours - theirs).abs() < 1e-15, "{n} {x}{y}{z} {a} {b}");
-                        }
-                    }
+                    check(&ours, &theirs, 1e-15);
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn operations_on_one_vector_do_what_sundials_does() {
+        let context = Context::new().unwrap();
+        for n in [1, 7, 100] {
+            for z in [0, 2] {
+                let (ours, theirs) = (vectors(n, &context), vectors(n, &context));
+                let (v, w) = (&ours, &theirs);
+                // SAFETY: the vectors are alive and of equal length.
+                unsafe {
+                    ffi::N_VAbs(v[0].raw(), v[z].raw());
+                    ffi::N_VAbs_Serial(w[0].raw(), w[z].raw());
+                    ffi::N_VScale(3.0, v[z].raw(), v[0].raw());
+                    ffi::N_VScale_Serial(3.0, w[z].raw(), w[0].raw());
+                    ffi::N_VAddConst(v[0].raw(), 2.0, v[z].raw());
+                    ffi::N_VAddConst_Serial(w[0].raw(), 2.0, w[z].raw());
+                    ffi::N_VInv(v[z].raw(), v[0].raw());
+                    ffi::N_VInv_Serial(w[z].raw(), w[0].raw());
+                    ffi::N_VConst(0.1, v[1].raw());
+                    ffi::N_VConst_Serial(0.1, w[1].raw());
+                }
+                check(&ours, &theirs, 0.0);
+            }
+        }
+    }
+
+    fn check(ours: &[Vector], theirs: &[Vector], tolerance: f64) {
+        for (ours, theirs) in ours.iter().zip(theirs) {
+            for (ours, theirs) in ours.as_slice().iter().zip(theirs.as_slice()) {
+                assert!((ours - theirs).abs() <= tolerance, "{ours} {theirs}");
             }
         }
     }

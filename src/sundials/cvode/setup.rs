@@ -65,9 +65,8 @@ pub(super) fn new<S: Ode>(
         return Err(Error::out_of_memory("CVodeCreate"));
     }
     let cv = memory.0;
-    // In each block: the memory is alive, vectors have the right length, and the callbacks fit
-    // the host that is registered as their data.
-    // SAFETY: see above.
+    // SAFETY: the memory is alive, vectors have the right length, and the callbacks fit the host
+    // that is registered as their data.
     unsafe {
         let code = ffi::CVodeSetErrHandlerFn(cv, Some(keep_message::<S>), data);
         host.accept("CVodeSetErrHandlerFn", code)?;

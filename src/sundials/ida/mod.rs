@@ -160,7 +160,8 @@ impl<S: Dae> Ida<S> {
     ///
     /// The steps are as long as the tolerances allow and usually pass `t`; the state at `t` is
     /// interpolated, so output times do not change the solution. Only the estimate of the first
-    /// step depends on the first `t`; the option `initial_step` removes that too. (`IDASolve` with `IDA_NORMAL`)
+    /// step depends on the first `t`; the option `initial_step` removes that too.
+    /// (`IDASolve` with `IDA_NORMAL`)
     ///
     /// # Errors
     /// [`Error::Integration`] if the integration stopped, with the reason; [`Error::Input`] if

@@ -50,9 +50,8 @@ pub(super) fn new<S: Dae>(
         return Err(Error::out_of_memory("IDACreate"));
     }
     let ida = memory.0;
-    // In each block: the memory is alive, vectors have the right length, and the callbacks fit
-    // the host that is registered as their data.
-    // SAFETY: see above.
+    // SAFETY: the memory is alive, vectors have the right length, and the callbacks fit the host
+    // that is registered as their data.
     unsafe {
         let code = ffi::IDASetErrHandlerFn(ida, Some(keep_message::<S>), data);
         host.accept("IDASetErrHandlerFn", code)?;
