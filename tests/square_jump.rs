@@ -15,11 +15,12 @@ fn jump(scene: &Scene, method: Method, rtol: f64, alpha: f64) -> Trajectory {
     run(scene, &Solver { method, rtol, alpha, ..Solver::default() }, &times())
 }
 
-/// All methods come to the same jump, the nearer the tighter the tolerance (see `square_press.rs`
-/// for what is asked, and why). Tolerances are tight enough that accuracy and not stability bounds
-/// the explicit steps: at rtol 1e-5 their error is far below what was asked for. The truth is the
-/// explicit method at rtol 1e-11 up to alpha = 1e4 (it would need 300,000 steps a second at 1e6),
-/// beyond that IDA.
+/// All methods come to the same jump, to a few hundred times rtol. Single runs scatter, as it is a
+/// matter of luck how a step meets the kink of the penalty force; the worst of all methods falls with
+/// rtol as it does without contact (`square_press.rs`). Tolerances are tight enough that accuracy and
+/// not stability bounds the explicit steps: at rtol 1e-5 their error is far below what was asked for.
+/// The truth is the explicit method at rtol 1e-11 up to alpha = 1e4 (it would need 300,000 steps a
+/// second at 1e6), beyond that IDA.
 #[test]
 fn methods_agree() {
     let scene = square_jump(4).unwrap();
@@ -27,13 +28,17 @@ fn methods_agree() {
         let too_stiff_for = |method| alpha > 1e5 && method == Method::Rk;
         let judge = if too_stiff_for(Method::Rk) { Method::Ida } else { Method::Rk };
         let truth = jump(&scene, judge, 1e-11, alpha);
-        for method in Method::ALL.into_iter().filter(|&method| !too_stiff_for(method)) {
-            let [coarse, fine] =
-                [1e-7, 1e-9].map(|rtol| difference(&jump(&scene, method, rtol, alpha), &truth));
-            println!("{method} alpha {alpha:e}: {coarse:.1e} at rtol 1e-7, {fine:.1e} at 1e-9");
-            assert!(fine < 500.0 * 1e-9, "{method}, alpha {alpha}: {fine:e}");
-            assert!(fine < coarse / 7.0, "{method}, alpha {alpha}: {coarse:e} to {fine:e}");
-        }
+        let [coarse, fine] = [1e-7, 1e-9].map(|rtol| {
+            let methods = Method::ALL.into_iter().filter(|&method| !too_stiff_for(method));
+            let errors = methods.map(|method| {
+                let error = difference(&jump(&scene, method, rtol, alpha), &truth);
+                println!("{method} alpha {alpha:e}: {error:.1e} at rtol {rtol:e}");
+                assert!(error < 500.0 * rtol, "{method}, alpha {alpha}, rtol {rtol:e}: {error:e}");
+                error
+            });
+            errors.fold(0.0, f64::max)
+        });
+        assert!(fine < coarse / 7.0, "alpha {alpha}: {coarse:e} fell to {fine:e} only");
     }
 }
 
