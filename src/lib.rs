@@ -8,6 +8,7 @@ pub mod force;
 pub mod material;
 pub mod mesh;
 pub mod ode;
+pub mod output;
 pub mod rk;
 pub mod samples;
 pub mod scene;

@@ -1,7 +1,6 @@
 //! What a run leaves behind: sampled states, and how they were obtained.
 
 use std::fmt;
-use std::sync::Arc;
 
 use crate::body::Body;
 use crate::scene::Scene;
@@ -24,12 +23,14 @@ pub struct Sample {
     pub multipliers: Vec<f64>,
     /// Energies (J).
     pub energy: Energy,
+    /// Largest |A^T u - b| among the constraints of the phase (m).
+    pub constraint_drift: f64,
 }
 
 /// A sampled motion and the report of its computation.
 #[derive(Debug, Clone)]
 pub struct Trajectory {
-    body: Arc<Body>,
+    scene: Scene,
     samples: Vec<Sample>,
     pub(crate) report: Report,
 }
@@ -135,7 +136,7 @@ impl fmt::Display for Report {
 
 impl Trajectory {
     pub(crate) fn new(scene: &Scene, report: Report) -> Self {
-        Self { body: scene.shared_body(), samples: Vec::new(), report }
+        Self { scene: scene.clone(), samples: Vec::new(), report }
     }
 
     pub(crate) fn push(&mut self, sample: Sample) {
@@ -148,9 +149,14 @@ impl Trajectory {
         self.samples.push(sample);
     }
 
+    /// The scene that was run.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
     /// The body that moved.
     pub fn body(&self) -> &Body {
-        &self.body
+        self.scene.body()
     }
 
     /// The samples, in order of time.
@@ -173,7 +179,7 @@ impl Trajectory {
 
     /// Centre of mass (m).
     pub fn centre_of_mass(&self, sample: &Sample) -> Vec<f64> {
-        let positions = self.body.mesh().positions();
+        let positions = self.body().mesh().positions();
         let x: Vec<f64> = positions.iter().zip(&sample.u).map(|(x, u)| x + u).collect();
         self.mass_average(&x)
     }
@@ -185,21 +191,41 @@ impl Trajectory {
 
     /// Momentum (kg m/s).
     pub fn momentum(&self, sample: &Sample) -> Vec<f64> {
-        let mass = self.body.mass();
+        let mass = self.body().mass();
         self.mean_velocity(sample).iter().map(|v| mass * v).collect()
+    }
+
+    /// Angular momentum (kg m^2/s, counter-clockwise) of a two-dimensional body about its centre of
+    /// mass: the sum of (x - c) x (M v) over the nodes, M the consistent inertia matrix. `None` in
+    /// other dimensions.
+    pub fn angular_momentum(&self, sample: &Sample) -> Option<f64> {
+        let body = self.body();
+        if body.dimension() != 2 {
+            return None;
+        }
+        let centre = self.centre_of_mass(sample);
+        let mut momenta = vec![0.0; body.dofs()];
+        body.inertia().add_product(2, 1.0, &sample.v, &mut momenta);
+        let positions = body.mesh().positions().chunks_exact(2);
+        let nodes = positions.zip(sample.u.chunks_exact(2)).zip(momenta.chunks_exact(2));
+        let moments = nodes.map(|((x, u), p)| {
+            let arm = [x[0] + u[0] - centre[0], x[1] + u[1] - centre[1]];
+            arm[0] * p[1] - arm[1] * p[0]
+        });
+        Some(moments.sum())
     }
 
     /// Angle (rad, counter-clockwise) by which a two-dimensional body has turned as a whole: that
     /// of the rotation which, in the mean over its mass, brings the natural shape nearest to the
     /// present one. `None` in other dimensions.
     pub fn rotation(&self, sample: &Sample) -> Option<f64> {
-        if self.body.dimension() != 2 {
+        if self.body().dimension() != 2 {
             return None;
         }
-        let positions = self.body.mesh().positions();
+        let positions = self.body().mesh().positions();
         let (centre, natural) = (self.centre_of_mass(sample), self.mass_average(positions));
         let (mut along, mut across) = (0.0, 0.0);
-        for (node, mass) in self.body.nodal_masses().iter().enumerate() {
+        for (node, mass) in self.body().nodal_masses().iter().enumerate() {
             let arm = |i: usize| positions[2 * node + i] - natural[i];
             let now = |i: usize| positions[2 * node + i] + sample.u[2 * node + i] - centre[i];
             along += mass * (arm(0) * now(0) + arm(1) * now(1));
@@ -209,9 +235,9 @@ impl Trajectory {
     }
 
     fn mass_average(&self, x: &[f64]) -> Vec<f64> {
-        let (dimension, mass) = (self.body.dimension(), self.body.mass());
+        let (dimension, mass) = (self.body().dimension(), self.body().mass());
         let mut average = vec![0.0; dimension];
-        for (nodal_mass, x) in self.body.nodal_masses().iter().zip(x.chunks_exact(dimension)) {
+        for (nodal_mass, x) in self.body().nodal_masses().iter().zip(x.chunks_exact(dimension)) {
             average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
         }
         average

@@ -7,7 +7,7 @@ use std::sync::Arc;
 pub use phase::Phase;
 
 use crate::body::Body;
-use crate::constraint::{Row, Start, rows, tell};
+use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
 use crate::error::{Error, finite};
 use crate::force::{Contact, Force, Gravity, Load, Obstacle};
 use crate::system::System;
@@ -34,6 +34,13 @@ pub struct Scene {
     gravity: Option<Vec<f64>>,
     obstacles: Vec<Obstacle>,
     phases: Vec<Phase>,
+}
+
+/// What a constraint makes a node do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Role {
+    Held,
+    Moved,
 }
 
 impl Scene {
@@ -66,8 +73,21 @@ impl Scene {
         &self.body
     }
 
-    pub(crate) fn shared_body(&self) -> Arc<Body> {
-        self.body.clone()
+    /// The nodes that a phase constrains, with what it makes them do.
+    pub(crate) fn constrained_nodes(&self, phase: &Phase) -> Result<Vec<(usize, Role)>, Error> {
+        let mut nodes = Vec::new();
+        for Constraint { what, how } in &phase.constraints {
+            let role = match how {
+                Motion::Hold => Role::Held,
+                Motion::Velocity(_) | Motion::Path(_) => Role::Moved,
+            };
+            let selected = match what {
+                Constrained::Nodes(selection, _) => self.body.mesh().select(selection)?,
+                Constrained::Row(terms) => terms.iter().map(|(number, ..)| number - 1).collect(),
+            };
+            nodes.extend(selected.into_iter().map(|node| (node, role)));
+        }
+        Ok(nodes)
     }
 
     /// The obstacles.

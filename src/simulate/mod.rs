@@ -291,6 +291,7 @@ impl<'a> Run<'a> {
             v: v.to_vec(),
             multipliers,
             energy,
+            constraint_drift: system.drift(self.time, u),
         });
         Ok(())
     }

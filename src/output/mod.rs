@@ -1,0 +1,57 @@
+//! What is left of a run on disk: tables, pictures and charts, and files for ParaView.
+//!
+//! | file | for | written by |
+//! | --- | --- | --- |
+//! | CSV | tables of centre of mass, momentum, energies, tracked nodes | [`write_csv`] |
+//! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
+//! | SVG | quantities over time | [`Chart`] |
+//! | VTK | ParaView and other viewers of meshes | [`write_vtk`] |
+//!
+//! Directories are created as needed. A file is written under another name first and renamed when
+//! it is complete: what stands under its own name is never half a file.
+
+mod csv;
+mod svg;
+
+use std::fs::{self, Permissions};
+use std::io::{self, BufWriter, Write};
+use std::os::unix::fs::PermissionsExt;
+use std::path::Path;
+
+pub use self::csv::write_csv;
+pub use self::svg::Snapshots;
+
+use crate::error::Error;
+
+/// Font of all pictures: what a reader's machine has of these, in this order.
+const FONT: &str = "Source Sans 3, Helvetica Neue, Helvetica, Arial, sans-serif";
+/// Colour of titles and labels.
+const INK: &str = "#222222";
+
+/// Has `content` written to a file beside `path`, which takes its place when it is complete.
+///
+/// # Errors
+/// [`Error::Output`] with `path`.
+fn write_file(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Error> {
+    replace(path, content).map_err(|source| Error::Output { path: path.into(), source })
+}
+
+fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let directory = match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    fs::create_dir_all(directory)?;
+    // readable for all, as the user's mask allows: temporary files are private otherwise
+    let mut builder = tempfile::Builder::new();
+    let mut file = builder.permissions(Permissions::from_mode(0o666)).tempfile_in(directory)?;
+    let mut buffer = BufWriter::new(file.as_file_mut());
+    content(&mut buffer)?;
+    buffer.flush()?;
+    drop(buffer);
+    file.persist(path)?;
+    Ok(())
+}

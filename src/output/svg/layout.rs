@@ -1,0 +1,223 @@
+//! Where panels stand on the page, and which part of space they show.
+
+use crate::trajectory::{Sample, Trajectory};
+
+/// Width that a page aims at, and its limits of a panel (px).
+const PAGE_WIDTH: f64 = 900.0;
+const PANEL_WIDTH: [f64; 2] = [120.0, 400.0];
+const MARGIN: f64 = 20.0;
+const GAP: f64 = 16.0;
+const CAPTION: f64 = 28.0;
+const TITLE: f64 = 34.0;
+const KEY: f64 = 34.0;
+/// Width of a one-dimensional body as drawn, as a fraction of its length.
+pub(super) const BAR_WIDTH: f64 = 0.12;
+
+/// A point in the plane of the drawing: (m) or (px).
+pub(super) type Point = [f64; 2];
+
+/// The part of space that each panel shows (m), its second axis upward.
+pub(super) struct View {
+    low: Point,
+    high: Point,
+    /// Surface and outward normal of each obstacle.
+    pub(super) planes: Vec<[Point; 2]>,
+}
+
+impl View {
+    /// All that `samples` show of the body, and the obstacles that are near.
+    pub(super) fn of(trajectory: &Trajectory, samples: &[&Sample]) -> Self {
+        let mut view = Self {
+            low: [f64::INFINITY; 2],
+            high: [f64::NEG_INFINITY; 2],
+            planes: planes(trajectory),
+        };
+        for sample in samples {
+            positions(trajectory, sample).into_iter().for_each(|point| view.include(point));
+        }
+        if trajectory.body().dimension() == 1 {
+            let half = 2.0 * BAR_WIDTH * trajectory.body().mesh().size();
+            view.include([-half, view.low[1]]);
+            view.include([half, view.low[1]]);
+        }
+        let size = view.width().hypot(view.height());
+        let centre = [0, 1].map(|i| (view.low[i] + view.high[i]) / 2.0);
+        for [point, normal] in view.planes.clone() {
+            let distance: f64 = (0..2).map(|i| (centre[i] - point[i]) * normal[i]).sum();
+            if distance.abs() < size {
+                view.include([0, 1].map(|i| centre[i] - distance * normal[i]));
+            }
+        }
+        let pad = 0.06 * view.width().max(view.height());
+        view.low.iter_mut().for_each(|x| *x -= pad);
+        view.high.iter_mut().for_each(|x| *x += pad);
+        view
+    }
+
+    fn include(&mut self, point: Point) {
+        for (i, x) in point.into_iter().enumerate() {
+            self.low[i] = self.low[i].min(x);
+            self.high[i] = self.high[i].max(x);
+        }
+    }
+
+    pub(super) fn width(&self) -> f64 {
+        self.high[0] - self.low[0]
+    }
+
+    fn height(&self) -> f64 {
+        self.high[1] - self.low[1]
+    }
+
+    /// The part of the view inside an obstacle and less than `depth` from its surface.
+    pub(super) fn band(&self, [point, normal]: [Point; 2], depth: f64) -> Vec<Point> {
+        let distance = |x: &Point| (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum::<f64>();
+        let ([left, bottom], [right, top]) = (self.low, self.high);
+        let corners = vec![[left, bottom], [right, bottom], [right, top], [left, top]];
+        let inside = clip(&corners, |x| -distance(x));
+        clip(&inside, |x| distance(x) + depth)
+    }
+}
+
+/// The part of a convex polygon where `level`, a linear function, is not negative.
+fn clip(polygon: &[Point], level: impl Fn(&Point) -> f64) -> Vec<Point> {
+    let mut clipped = Vec::new();
+    for (k, p) in polygon.iter().enumerate() {
+        let q = &polygon[(k + 1) % polygon.len()];
+        let (at_p, at_q) = (level(p), level(q));
+        if at_p >= 0.0 {
+            clipped.push(*p);
+        }
+        if (at_p < 0.0) != (at_q < 0.0) {
+            let along = at_p / (at_p - at_q);
+            clipped.push([0, 1].map(|i| p[i] + along * (q[i] - p[i])));
+        }
+    }
+    clipped
+}
+
+/// Positions of all nodes as drawn: a one-dimensional body stands upright.
+pub(super) fn positions(trajectory: &Trajectory, sample: &Sample) -> Vec<Point> {
+    let mesh = trajectory.body().mesh();
+    let displaced: Vec<f64> = mesh.positions().iter().zip(&sample.u).map(|(x, u)| x + u).collect();
+    displaced.chunks_exact(mesh.dimension()).map(upright).collect()
+}
+
+fn planes(trajectory: &Trajectory) -> Vec<[Point; 2]> {
+    let obstacles = trajectory.scene().obstacles().iter();
+    let plane = obstacles.map(|obstacle| {
+        let (point, normal) = obstacle.plane();
+        let (point, normal) = (upright(point), upright(normal));
+        let length = normal[0].hypot(normal[1]);
+        [point, normal.map(|x| x / length)]
+    });
+    plane.collect()
+}
+
+fn upright(x: &[f64]) -> Point {
+    match *x {
+        [x] => [0.0, x],
+        [x, y, ..] => [x, y],
+        [] => [0.0, 0.0],
+    }
+}
+
+/// Where everything stands on the page (px).
+pub(super) struct Layout {
+    columns: usize,
+    rows: usize,
+    /// Width and height of a panel, without its caption.
+    panel: Point,
+    /// Pixels per metre.
+    scale: f64,
+    top: f64,
+    corner: Point,
+}
+
+impl Layout {
+    pub(super) fn new(view: &View, panels: usize, columns: Option<usize>, titled: bool) -> Self {
+        let aspect = view.height() / view.width();
+        let width = |columns: usize| {
+            let fitting = (PAGE_WIDTH - 2.0 * MARGIN + GAP) / columns as f64 - GAP;
+            fitting.clamp(PANEL_WIDTH[0], PANEL_WIDTH[1])
+        };
+        let height = |columns: usize| {
+            panels.div_ceil(columns) as f64 * (width(columns) * aspect + CAPTION + GAP)
+        };
+        // a page about as wide as it is high, rather wider; rows as full as can be
+        let penalty = |columns: usize| {
+            let empty = columns * panels.div_ceil(columns) - panels;
+            let page = columns as f64 * (width(columns) + GAP);
+            (height(columns) / page / 0.7).ln().abs() + 0.5 * empty as f64 / columns as f64
+        };
+        let best = (1..=panels.min(8)).min_by(|&a, &b| penalty(a).total_cmp(&penalty(b)));
+        let columns = columns.or(best).unwrap_or(1).clamp(1, panels);
+        let panel = [width(columns), width(columns) * aspect];
+        Self {
+            columns,
+            rows: panels.div_ceil(columns),
+            panel,
+            scale: panel[0] / view.width(),
+            top: if titled { MARGIN + TITLE } else { MARGIN },
+            corner: [view.low[0], view.high[1]],
+        }
+    }
+
+    pub(super) fn margin(&self) -> f64 {
+        MARGIN
+    }
+
+    /// Width and height of the page, whole pixels.
+    pub(super) fn size(&self) -> [u32; 2] {
+        let width = 2.0 * MARGIN + self.columns as f64 * (self.panel[0] + GAP) - GAP;
+        [width.ceil().max(420.0) as u32, (self.key_line() + MARGIN).ceil() as u32]
+    }
+
+    /// Baseline of the key below the panels.
+    pub(super) fn key_line(&self) -> f64 {
+        self.top + self.rows as f64 * (self.panel[1] + CAPTION + GAP) - GAP + KEY
+    }
+
+    /// Upper left corner of a panel.
+    pub(super) fn origin(&self, number: usize) -> Point {
+        let (row, column) = (number / self.columns, number % self.columns);
+        let x = MARGIN + column as f64 * (self.panel[0] + GAP);
+        [x, self.top + row as f64 * (self.panel[1] + CAPTION + GAP)]
+    }
+
+    /// Middle and baseline of the caption, from the corner of the panel.
+    pub(super) fn caption(&self) -> Point {
+        [self.panel[0] / 2.0, self.panel[1] + 19.0]
+    }
+
+    /// A point of space, from the corner of the panel.
+    pub(super) fn place(&self, point: Point) -> Point {
+        [(point[0] - self.corner[0]) * self.scale, (self.corner[1] - point[1]) * self.scale]
+    }
+
+    /// A length (m) on the page.
+    pub(super) fn pixels(&self, length: f64) -> f64 {
+        length * self.scale
+    }
+
+    /// A length on the page (px) in space.
+    pub(super) fn metres(&self, pixels: f64) -> f64 {
+        pixels / self.scale
+    }
+}
+
+/// A round length (m) of a fifth to a half of `width`, and its label.
+pub(super) fn scale_bar(width: f64) -> (f64, String) {
+    let power = (width / 2.0).log10().floor() as i32;
+    let unit = 10f64.powi(power);
+    let factor = [5.0, 2.0, 1.0].into_iter().find(|factor| factor * unit <= width / 2.0);
+    let length = factor.unwrap_or(1.0) * unit;
+    let (scale, name) = match power {
+        ..=-5 => (1e6, "µm"),
+        -4..=-3 => (1e3, "mm"),
+        -2..=-1 => (1e2, "cm"),
+        0..=2 => (1.0, "m"),
+        3.. => (1e-3, "km"),
+    };
+    (length, format!("{} {name}", (length * scale).round()))
+}

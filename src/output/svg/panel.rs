@@ -1,0 +1,173 @@
+//! One panel: the body at one time.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use svg::node::element::{Group, Path};
+
+use super::layout::{BAR_WIDTH, Layout, Point, View, positions};
+use super::{INK, text};
+use crate::mesh::{CellKind, Mesh};
+use crate::trajectory::{Sample, Trajectory};
+
+const EDGE: &str = "#35618f";
+const FILL: &str = "#a9cbe8";
+/// Thickness of the hatched band along the surface of an obstacle (px).
+const BAND: f64 = 14.0;
+
+/// How a node is marked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Mark {
+    /// By the user.
+    Ring,
+    /// Because the phase holds it.
+    Held,
+    /// Because the phase moves it.
+    Moved,
+}
+
+pub(super) struct Panel<'a> {
+    pub(super) trajectory: &'a Trajectory,
+    pub(super) sample: &'a Sample,
+    pub(super) view: &'a View,
+    pub(super) layout: &'a Layout,
+    pub(super) marks: &'a BTreeMap<usize, Mark>,
+}
+
+impl Panel<'_> {
+    pub(super) fn draw(&self, number: usize, decimals: usize) -> Group {
+        let [x, y] = self.layout.origin(number);
+        let mut panel = Group::new()
+            .set("class", "panel")
+            .set("transform", format!("translate({x:.2} {y:.2})"));
+        for &plane in &self.view.planes {
+            panel = panel.add(self.obstacle(plane));
+        }
+        let points = positions(self.trajectory, self.sample);
+        let points: Vec<Point> = points.iter().map(|&x| self.layout.place(x)).collect();
+        let mesh = self.trajectory.body().mesh();
+        panel = match mesh.kind() {
+            CellKind::Segment => panel.add(self.bar(mesh, &points)),
+            CellKind::Triangle => panel.add(cells(mesh, &points)),
+        };
+        for (&node, mark) in self.marks {
+            panel = panel.add(mark.draw(points[node][0], points[node][1]));
+        }
+        panel.add(self.caption(decimals))
+    }
+
+    fn caption(&self, decimals: usize) -> Group {
+        let [x, y] = self.layout.caption();
+        let phase = self.trajectory.scene().phases()[self.sample.phase].name();
+        let label = format!("t = {:.decimals$} s, {phase}", self.sample.time);
+        let caption = text(&label, x, y).set("text-anchor", "middle").set("fill", INK);
+        Group::new().add(caption)
+    }
+
+    fn obstacle(&self, plane: [Point; 2]) -> Group {
+        let band = self.view.band(plane, self.layout.metres(BAND));
+        let on_surface = |x: &&Point| {
+            let [point, normal] = plane;
+            let distance: f64 = (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum();
+            distance.abs() < 1e-9 * self.view.width()
+        };
+        let surface: Vec<Point> = band.iter().filter(on_surface).copied().collect();
+        let mut group = Group::new().set("class", "obstacle");
+        for (points, close, fill, stroke) in
+            [(&band, true, "url(#hatch)", "none"), (&surface, false, "none", "#555555")]
+        {
+            if points.len() > 1 {
+                let points: Vec<Point> = points.iter().map(|&x| self.layout.place(x)).collect();
+                let mut data = Data::default();
+                data.polyline(&points, close);
+                let path = Path::new().set("d", data.0).set("fill", fill);
+                group = group.add(path.set("stroke", stroke).set("stroke-width", 1.5));
+            }
+        }
+        group
+    }
+
+    /// A one-dimensional body, with a width for the eye, its nodes as lines across.
+    fn bar(&self, mesh: &Mesh, points: &[Point]) -> Group {
+        let half = self.layout.pixels(BAR_WIDTH * mesh.size()) / 2.0;
+        let mut data = Data::default();
+        for cell in mesh.cells() {
+            let [[x, p], [_, q]] = [points[cell[0]], points[cell[1]]];
+            data.polyline(&[[x - half, p], [x + half, p], [x + half, q], [x - half, q]], true);
+        }
+        Group::new().add(body("cells", data, 1.2).set("fill", FILL))
+    }
+}
+
+/// A two-dimensional body: its cells, and its outline stronger.
+fn cells(mesh: &Mesh, points: &[Point]) -> Group {
+    let mut data = Data::default();
+    for cell in mesh.cells() {
+        let corners: Vec<Point> = cell.iter().map(|&node| points[node]).collect();
+        data.polyline(&corners, true);
+    }
+    let mut outline = Data::default();
+    for face in mesh.boundary_faces() {
+        let ends: Vec<Point> = face.iter().map(|&node| points[node]).collect();
+        outline.polyline(&ends, false);
+    }
+    let fine = line_width(mesh, points);
+    Group::new()
+        .add(body("cells", data, fine).set("fill", FILL).set("fill-opacity", 0.75))
+        .add(body("outline", outline, 1.5).set("fill", "none").set("stroke-linecap", "round"))
+}
+
+/// Finer lines for finer meshes.
+fn line_width(mesh: &Mesh, points: &[Point]) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for point in points {
+        low = [low[0].min(point[0]), low[1].min(point[1])];
+        high = [high[0].max(point[0]), high[1].max(point[1])];
+    }
+    let area = (high[0] - low[0]) * (high[1] - low[1]);
+    (0.05 * (area / mesh.cell_count() as f64).sqrt()).clamp(0.15, 0.8)
+}
+
+fn body(class: &str, data: Data, stroke_width: f64) -> Path {
+    Path::new()
+        .set("class", class)
+        .set("d", data.0)
+        .set("stroke", EDGE)
+        .set("stroke-width", format!("{stroke_width:.2}"))
+        .set("stroke-linejoin", "round")
+}
+
+/// The data of a path, in hundredths of a pixel and relative steps, for short files.
+#[derive(Default)]
+struct Data(String);
+
+impl Data {
+    fn polyline(&mut self, points: &[Point], close: bool) {
+        let mut pen: Option<[i64; 2]> = None;
+        for point in points {
+            let at = point.map(|x| (100.0 * x).round() as i64);
+            match pen {
+                None => self.step('M', at),
+                Some([x, y]) => self.step('l', [at[0] - x, at[1] - y]),
+            }
+            pen = Some(at);
+        }
+        if close {
+            self.0.push('z');
+        }
+    }
+
+    fn step(&mut self, command: char, [x, y]: [i64; 2]) {
+        self.0.push(command);
+        self.hundredths(x);
+        if y >= 0 {
+            self.0.push(' ');
+        }
+        self.hundredths(y);
+    }
+
+    fn hundredths(&mut self, x: i64) {
+        // writing to a string cannot fail
+        let _ = write!(self.0, "{}", x as f64 / 100.0);
+    }
+}
