@@ -104,6 +104,7 @@ fn generate_bindings(include_directories: &[&Path]) {
         .clang_args(include_directories.iter().map(|path| format!("-I{}", path.display())))
         .rust_target(bindgen::RustTarget::stable(88, 0).unwrap_or_default())
         .rust_edition(bindgen::RustEdition::Edition2024)
+        .ctypes_prefix("libc")
         .parse_callbacks(Box::new(SignedConstants))
         // Whatever these declarations refer to is defined by `sundials-sys`.
         .allowlist_recursively(false)

@@ -65,12 +65,16 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         let natural = trajectory.body().mesh().position(number - 1)[0];
         early().map(move |s| (s.time, natural + s.u[number - 1])).collect::<Vec<_>>()
     };
-    Chart::new("Jumping beam", "time (s)", "height (m)")
+    Chart::new("Jumping beam")
+        .axes("time (s)", "height (m)")
         .series("tip", node(6))
-        .series("centre of mass", early().map(|s| (s.time, height(&trajectory, s))).collect::<Vec<_>>())
+        .series(
+            "centre of mass",
+            early().map(|s| (s.time, height(&trajectory, s))).collect::<Vec<_>>(),
+        )
         .series("foot", node(1))
         .write(directory.join("heights.svg"))?;
-    write_csv(&trajectory, directory.join("trajectory.csv"), "all")?;
+    write_csv(&trajectory, directory.join("trajectory.csv"), Some(&"all".into()))?;
     println!("written to {}: snapshots.svg, heights.svg, trajectory.csv", directory.display());
     Ok(())
 }

@@ -67,13 +67,15 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let series = |value: &dyn Fn(&Sample) -> f64| -> Vec<(f64, f64)> {
         trajectory.samples().iter().map(|sample| (sample.time, value(sample))).collect()
     };
-    Chart::new("Height of the centre of mass", "time (s)", "height (m)")
+    Chart::new("Height of the centre of mass")
+        .axes("time (s)", "height (m)")
         .series("centre of mass", series(&|sample| trajectory.centre_of_mass(sample)[1]))
         .write(directory.join("height.svg"))?;
-    Chart::new("Rotation of the square", "time (s)", "angle (degrees)")
+    Chart::new("Rotation of the square")
+        .axes("time (s)", "angle (degrees)")
         .series("mean over the mass", series(&|sample| degrees(&trajectory, sample)))
         .write(directory.join("rotation.svg"))?;
-    write_csv(&trajectory, directory.join("trajectory.csv"), pushed_nodes(nodes))?;
+    write_csv(&trajectory, directory.join("trajectory.csv"), Some(&pushed_nodes(nodes).into()))?;
     write_vtk(&trajectory, directory.join("vtk"), "square")?;
     println!(
         "written to {}: snapshots.svg, height.svg, rotation.svg, trajectory.csv, vtk/",

@@ -61,14 +61,12 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let times = [0.0, 0.25, 0.5, 1.0, 1.05, 1.1, 1.2, 1.4, 1.7, 2.0];
     Snapshots::at(times).title(&title).write(&trajectory, directory.join("snapshots.svg"))?;
     let forces = pressed.iter().map(|sample| (sample.time, -probe(sample))).collect::<Vec<_>>();
-    Chart::new("Force of the probe", "time (s)", "force (N)")
+    Chart::new("Force of the probe")
+        .axes("time (s)", "force (N)")
         .series("all pushed nodes", forces)
         .write(directory.join("forces.svg"))?;
-    write_csv(&trajectory, directory.join("trajectory.csv"), pushed_nodes(nodes))?;
+    write_csv(&trajectory, directory.join("trajectory.csv"), Some(&pushed_nodes(nodes).into()))?;
     write_vtk(&trajectory, directory.join("vtk"), "square")?;
-    println!(
-        "written to {}: snapshots.svg, forces.svg, trajectory.csv, vtk/",
-        directory.display()
-    );
+    println!("written to {}: snapshots.svg, forces.svg, trajectory.csv, vtk/", directory.display());
     Ok(())
 }

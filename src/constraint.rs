@@ -91,7 +91,7 @@ impl fmt::Debug for Motion {
 /// One row of A^T with its b(t), resolved for one phase.
 #[derive(Clone)]
 pub(crate) struct Row {
-    /// Degrees of freedom and coefficients; a single one makes a nodal row.
+    /// Degrees of freedom, ascending, and coefficients; a single one makes a nodal row.
     pub(crate) terms: Vec<(usize, f64)>,
     motion: RowMotion,
 }
@@ -255,6 +255,7 @@ fn general_terms(terms: &[(usize, Axis, f64)], mesh: &Mesh) -> Result<Vec<(usize
     if resolved.is_empty() {
         return Err(Error::input("constraint row", "[]", "it needs one term at least"));
     }
+    resolved.sort_unstable_by_key(|&(dof, _)| dof);
     Ok(resolved)
 }
 

@@ -88,9 +88,7 @@ impl IndexOne {
         }
         (2 * n..lambda).for_each(|energy| visit(energy, energy, cj));
         for (k, row) in rows.iter().enumerate() {
-            let mut terms = row.terms.clone();
-            terms.sort_unstable_by_key(|term| term.0);
-            terms.iter().for_each(|&(dof, c)| visit(n + dof, lambda + k, -c));
+            row.terms.iter().for_each(|&(dof, c)| visit(n + dof, lambda + k, -c));
             visit(lambda + k, lambda + k, 0.0);
         }
     }
