@@ -10,16 +10,20 @@
 //! Directories are created as needed. A file is written under another name first and renamed when
 //! it is complete: what stands under its own name is never half a file.
 
+mod chart;
 mod csv;
 mod svg;
+mod vtk;
 
 use std::fs::{self, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
+pub use self::chart::Chart;
 pub use self::csv::write_csv;
 pub use self::svg::Snapshots;
+pub use self::vtk::write_vtk;
 
 use crate::error::Error;
 

@@ -4,7 +4,7 @@ use crate::trajectory::{Sample, Trajectory};
 
 /// Width that a page aims at, and its limits of a panel (px).
 const PAGE_WIDTH: f64 = 900.0;
-const PANEL_WIDTH: [f64; 2] = [120.0, 400.0];
+const PANEL_WIDTH: [f64; 2] = [110.0, 400.0];
 const MARGIN: f64 = 20.0;
 const GAP: f64 = 16.0;
 const CAPTION: f64 = 28.0;
@@ -148,7 +148,7 @@ impl Layout {
         let penalty = |columns: usize| {
             let empty = columns * panels.div_ceil(columns) - panels;
             let page = columns as f64 * (width(columns) + GAP);
-            (height(columns) / page / 0.7).ln().abs() + 0.5 * empty as f64 / columns as f64
+            (height(columns) / page / 0.7).ln().abs() + 1.5 * empty as f64 / columns as f64
         };
         let best = (1..=panels.min(8)).min_by(|&a, &b| penalty(a).total_cmp(&penalty(b)));
         let columns = columns.or(best).unwrap_or(1).clamp(1, panels);

@@ -1,0 +1,101 @@
+//! Files for ParaView.
+
+use std::io;
+use std::path::Path;
+
+use vtkio::model::{
+    Attribute, Attributes, ByteOrder, CellType, Cells, DataArray, DataSet, UnstructuredGridPiece,
+    Version, VertexNumbers, Vtk,
+};
+
+use super::write_file;
+use crate::error::Error;
+use crate::mesh::{CellKind, Mesh};
+use crate::trajectory::{Sample, Trajectory};
+
+/// Writes one VTK XML file per sample, `<name>_0000.vtu`, ..., and `<name>.pvd`, the collection
+/// that tells their times and is what one opens.
+///
+/// The points are the natural positions (m); `displacement` (m) and `velocity` (m/s) are vectors
+/// at the points, with three components whatever the dimension. To see the body as it is, apply
+/// the filter "Warp By Vector" to `displacement`, which is the active vector field.
+///
+/// # Errors
+/// [`Error::Input`] for a `name` with other characters than letters, digits, `.`, `-` and `_`;
+/// [`Error::Output`] if a file cannot be written.
+///
+/// ```
+/// use pliant::output::write_vtk;
+/// # use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Solver};
+/// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+/// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+/// # let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+/// #     .phase(Phase::until(0.01).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
+/// # let directory = tempfile::tempdir().unwrap();
+/// let trajectory = scene.simulate(&Solver::default(), &Sampling::every(0.01))?;
+/// write_vtk(&trajectory, directory.path(), "body")?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+pub fn write_vtk(
+    trajectory: &Trajectory,
+    directory: impl AsRef<Path>,
+    name: &str,
+) -> Result<(), Error> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || ".-_".contains(c);
+    if name.is_empty() || !name.chars().all(plain) {
+        let mend = "file names are made of letters, digits, '.', '-' and '_'";
+        return Err(Error::input("name of the VTK files", format!("\"{name}\""), mend));
+    }
+    let directory = directory.as_ref();
+    let file_name = |number: usize| format!("{name}_{number:04}.vtu");
+    for (number, sample) in trajectory.samples().iter().enumerate() {
+        write_file(&directory.join(file_name(number)), |file| {
+            grid(trajectory.body().mesh(), sample).write_xml(file).map_err(io::Error::other)
+        })?;
+    }
+    write_file(&directory.join(format!("{name}.pvd")), |file| {
+        writeln!(file, r#"<?xml version="1.0"?>"#)?;
+        writeln!(file, r#"<VTKFile type="Collection" version="1.0">"#)?;
+        writeln!(file, "  <Collection>")?;
+        for (number, sample) in trajectory.samples().iter().enumerate() {
+            let (time, vtu) = (sample.time, file_name(number));
+            writeln!(file, r#"    <DataSet timestep="{time}" part="0" file="{vtu}"/>"#)?;
+        }
+        writeln!(file, "  </Collection>\n</VTKFile>")
+    })
+}
+
+fn grid(mesh: &Mesh, sample: &Sample) -> Vtk {
+    let spatial = |components: &[f64]| -> Vec<f64> {
+        let nodes = components.chunks_exact(mesh.dimension());
+        nodes.flat_map(|x| (0..3).map(|i| x.get(i).copied().unwrap_or(0.0))).collect()
+    };
+    let vectors = |name: &str, components: &[f64]| {
+        Attribute::DataArray(DataArray::vectors(name).with_vec(spatial(components)))
+    };
+    let kind = match mesh.kind() {
+        CellKind::Segment => CellType::Line,
+        CellKind::Triangle => CellType::Triangle,
+    };
+    let corners = mesh.kind().nodes() as u64;
+    Vtk {
+        version: Version::new_xml(1, 0),
+        title: String::new(),
+        byte_order: ByteOrder::LittleEndian,
+        data: DataSet::inline(UnstructuredGridPiece {
+            points: spatial(mesh.positions()).into(),
+            cells: Cells {
+                cell_verts: VertexNumbers::XML {
+                    connectivity: mesh.cells().flatten().map(|&node| node as u64).collect(),
+                    offsets: (1..=mesh.cell_count() as u64).map(|k| k * corners).collect(),
+                },
+                types: vec![kind; mesh.cell_count()],
+            },
+            data: Attributes {
+                point: vec![vectors("displacement", &sample.u), vectors("velocity", &sample.v)],
+                cell: Vec::new(),
+            },
+        }),
+        file_path: None,
+    }
+}

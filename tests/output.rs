@@ -1,0 +1,255 @@
+//! Files written by a run, read back by readers that are not ours.
+
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+
+use pliant::output::{Chart, Snapshots, write_csv, write_vtk};
+use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Solver, Trajectory};
+use vtkio::model::{
+    Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
+};
+
+type Outcome = Result<(), Box<dyn Error>>;
+
+/// A square that is pressed and then let go over a floor.
+fn square() -> Result<Trajectory, pliant::Error> {
+    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    let press = Phase::until(0.02).named("press <down>");
+    Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+        .gravity([0.0, -9.8])
+        .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 2.0]).stiffness(100.0))
+        .phase(press.hold("bottom").move_nodes([14, 15], [0.0, -0.16]))
+        .phase(Phase::until(0.03).named("free"))
+        .simulate(&Solver::default(), &Sampling::every(0.01))
+}
+
+fn bar() -> Result<Trajectory, pliant::Error> {
+    let soft = Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 200.0 };
+    Scene::new(Body::new(Mesh::bar(0.1, 6)?, soft).area(2e-4).build()?)
+        .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
+        .phase(Phase::until(0.01).hold("left").load("right", [-2.0]).without_contact())
+        .simulate(&Solver::default(), &Sampling::every(0.005))
+}
+
+fn table(path: &Path) -> Result<(Vec<String>, Vec<Vec<f64>>), Box<dyn Error>> {
+    let mut reader = csv::Reader::from_path(path)?;
+    let names = reader.headers()?.iter().map(str::to_owned).collect();
+    let rows = reader.deserialize().collect::<Result<_, _>>()?;
+    Ok((names, rows))
+}
+
+#[test]
+fn a_table_holds_the_samples_to_the_last_bit() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("new/trajectory.csv");
+    let square = square()?;
+    write_csv(&square, &path, Some(&[14, 2].into()))?;
+    let (names, rows) = table(&path)?;
+    let expected = "t com_x com_y momentum_x momentum_y angular_momentum kinetic strain gravity \
+                    contact springs dissipated supplied energy_balance constraint_drift \
+                    u14_x u14_y u2_x u2_y";
+    assert_eq!(names.join(" "), expected);
+    assert_eq!(rows.len(), 4);
+    for (row, sample) in rows.iter().zip(square.samples()) {
+        let energy = &sample.energy;
+        let mut values = vec![sample.time];
+        values.extend(square.centre_of_mass(sample));
+        values.extend(square.momentum(sample));
+        values.extend(square.angular_momentum(sample));
+        values.extend([energy.kinetic, energy.strain, energy.gravity, energy.contact, 0.0]);
+        values.extend([energy.dissipated, energy.supplied, energy.balance()]);
+        values.push(sample.constraint_drift);
+        values.extend([sample.u[26], sample.u[27], sample.u[2], sample.u[3]]);
+        assert_eq!(*row, values);
+    }
+    assert!(rows[2][11] > 0.0 && rows[2][16] < -0.003, "the square was pressed: {:?}", rows[2]);
+    // while it is pressed, and while it is free
+    let drift: Vec<f64> = square.samples().iter().map(|sample| sample.constraint_drift).collect();
+    assert!(drift[1] > 0.0 && drift[1] <= square.report().constraint_drift && drift[3] == 0.0);
+    Ok(())
+}
+
+#[test]
+fn a_table_in_one_dimension_has_no_angular_momentum() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("bar.csv");
+    write_csv(&bar()?, &path, None)?;
+    let (names, rows) = table(&path)?;
+    assert_eq!(names[..4].join(" "), "t com_x momentum_x kinetic");
+    assert_eq!((names.len(), rows.len()), (12, 3));
+    Ok(())
+}
+
+#[test]
+fn angular_momentum_of_a_turning_square() -> Outcome {
+    // turned about a corner by its constraints: J omega about the centre, J = m w^2 / 6
+    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    let stone = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
+    let omega = 1e-3;
+    let mut phase = Phase::until(1e-4).project_velocity();
+    for node in 0..mesh.node_count() {
+        let [x, y] = [mesh.position(node)[0], mesh.position(node)[1]];
+        phase = phase.move_nodes([node + 1], [-omega * y, omega * x]);
+    }
+    let scene = Scene::new(Body::new(mesh, stone).thickness(0.01).build()?).phase(phase);
+    let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    let found = trajectory.angular_momentum(trajectory.last()).ok_or("two dimensions")?;
+    let expected = 0.9 * 0.09 / 6.0 * omega;
+    assert!((found / expected - 1.0).abs() < 1e-6, "{found} is not {expected}");
+    Ok(())
+}
+
+/// The text of an SVG file, checked to be well-formed, and a count of its elements of a class.
+fn picture(path: &Path, class: &str) -> Result<(String, usize), Box<dyn Error>> {
+    let text = fs::read_to_string(path)?;
+    let document = roxmltree::Document::parse(&text)?;
+    let of_class = |node: &roxmltree::Node| node.attribute("class") == Some(class);
+    let count = document.descendants().filter(of_class).count();
+    Ok((text, count))
+}
+
+#[test]
+fn snapshots_have_a_panel_per_time_and_all_cells() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("snapshots.svg");
+    let times = [0.0, 0.0101, 0.02, 0.03, 0.03];
+    Snapshots::at(times).title("A & B").mark([16]).write(&square()?, &path)?;
+    let (text, panels) = picture(&path, "panel")?;
+    assert_eq!(panels, 5);
+    let document = roxmltree::Document::parse(&text)?;
+    let cells = document.descendants().filter(|node| node.attribute("class") == Some("cells"));
+    for path in cells {
+        let data = path.attribute("d").ok_or("a path has data")?;
+        assert_eq!(data.matches('z').count(), 18, "one closed line per cell: {data}");
+    }
+    let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
+    for label in ["A & B", "t = 0.01 s, press <down>", "t = 0.03 s, free", "held", "moved"] {
+        assert!(texts.iter().any(|text| text.trim() == label), "{label} in {texts:?}");
+    }
+    assert_eq!(picture(&path, "obstacle")?.1, 5);
+    Ok(())
+}
+
+#[test]
+fn snapshots_of_a_bar() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("bar.svg");
+    Snapshots::at([0.0, 0.01]).columns(1).write(&bar()?, &path)?;
+    assert_eq!(picture(&path, "panel")?.1, 2);
+    assert_eq!(picture(&path, "cells")?.1, 2);
+    Ok(())
+}
+
+#[test]
+fn a_chart_names_its_series() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("chart.svg");
+    let line = |slope: f64| (0..50).map(move |k| (0.1 * k as f64, slope * k as f64));
+    let chart = Chart::new("Rise < 1").axes("time (s)", "height (m)");
+    chart.clone().series("slow", line(1e-3)).series("fast", line(2e-3)).write(&path)?;
+    let text = fs::read_to_string(&path)?;
+    let document = roxmltree::Document::parse(&text)?;
+    let texts: Vec<&str> = document.descendants().filter_map(|n| n.text()).map(str::trim).collect();
+    for label in ["Rise < 1", "time (s)", "height (m)", "slow", "fast"] {
+        assert!(texts.contains(&label), "{label} in {texts:?}");
+    }
+    let points = |n: roxmltree::Node| n.attribute("points").map(|p| p.split_whitespace().count());
+    assert_eq!(document.descendants().filter_map(points).filter(|&count| count == 50).count(), 2);
+    let flat = chart.clone().series("flat", [(0.0, 0.0), (1.0, 0.0)]);
+    flat.write(directory.path().join("flat.svg"))?;
+    for bad in [chart.clone(), chart.series("bad", [(0.0, f64::NAN)])] {
+        let refused = bad.write(&path).unwrap_err();
+        assert!(matches!(refused, pliant::Error::Input { .. }), "{refused}");
+    }
+    Ok(())
+}
+
+fn read_grid(path: &Path) -> Result<UnstructuredGridPiece, Box<dyn Error>> {
+    let DataSet::UnstructuredGrid { pieces, .. } = Vtk::import(path)?.data else {
+        return Err("not an unstructured grid".into());
+    };
+    match pieces.into_iter().next() {
+        Some(Piece::Inline(piece)) => Ok(*piece),
+        other => Err(format!("no inline piece but {other:?}").into()),
+    }
+}
+
+#[test]
+fn vtk_files_hold_mesh_and_motion() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    for (name, trajectory, kind) in
+        [("square", square()?, CellType::Triangle), ("bar", bar()?, CellType::Line)]
+    {
+        write_vtk(&trajectory, directory.path(), name)?;
+        let mesh = trajectory.body().mesh();
+        let spatial = |x: &[f64]| -> Vec<f64> {
+            let nodes = x.chunks(mesh.dimension()).map(|x| [x, &[0.0; 2]].concat());
+            nodes.flat_map(|x| x[..3].to_vec()).collect()
+        };
+        let spatial = |x: &[f64]| match mesh.dimension() {
+            2 => x.chunks(2).flat_map(|x| [x[0], x[1], 0.0]).collect(),
+            _ => spatial(x),
+        };
+        for (number, sample) in trajectory.samples().iter().enumerate() {
+            let piece = read_grid(&directory.path().join(format!("{name}_{number:04}.vtu")))?;
+            assert_eq!(piece.points.into_vec::<f64>(), Some(spatial(mesh.positions())));
+            assert_eq!(piece.cells.types, vec![kind; mesh.cell_count()]);
+            let nodes = mesh.cells().flatten().map(|&node| node as u64).collect();
+            let corners = mesh.kind().nodes() as u64;
+            let offsets = (1..=mesh.cell_count() as u64).map(|k| k * corners).collect();
+            let expected = VertexNumbers::XML { connectivity: nodes, offsets };
+            assert_eq!(piece.cells.cell_verts, expected);
+            let fields = [("displacement", &sample.u), ("velocity", &sample.v)];
+            for (attribute, (field, values)) in piece.data.point.into_iter().zip(fields) {
+                let Attribute::DataArray(array) = attribute else { return Err("no array".into()) };
+                assert_eq!(array.name, field);
+                assert_eq!(array.data.into_vec::<f64>(), Some(spatial(values)));
+            }
+        }
+        let text = fs::read_to_string(directory.path().join(format!("{name}.pvd")))?;
+        let collection = roxmltree::Document::parse(&text)?;
+        let entries = collection.descendants().filter(|node| node.has_tag_name("DataSet"));
+        let mut times = Vec::new();
+        for entry in entries {
+            times.push(entry.attribute("timestep").ok_or("no time")?.parse::<f64>()?);
+            let file = entry.attribute("file").ok_or("no file")?;
+            assert!(directory.path().join(file).is_file(), "{file}");
+        }
+        let samples = trajectory.samples().iter().map(|sample| sample.time);
+        assert_eq!(times, samples.collect::<Vec<_>>());
+    }
+    Ok(())
+}
+
+#[test]
+fn what_cannot_be_written_is_named_and_leaves_nothing() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let occupied = directory.path().join("occupied");
+    fs::write(&occupied, "a file where a directory should be")?;
+    let trajectory = bar()?;
+    let path = occupied.join("trajectory.csv");
+    let refused = write_csv(&trajectory, &path, None).unwrap_err();
+    assert!(matches!(&refused, pliant::Error::Output { path: named, .. } if *named == path));
+    assert!(refused.to_string().contains("occupied/trajectory.csv"), "{refused}");
+    // a directory in the place of the file: the content is complete but cannot take its place
+    let taken = directory.path().join("taken.csv");
+    fs::create_dir(&taken)?;
+    assert!(write_csv(&trajectory, &taken, None).is_err());
+    assert_eq!(fs::read_dir(directory.path())?.count(), 2, "no file is left behind");
+
+    let refusals = [
+        write_csv(&trajectory, directory.path().join("a.csv"), Some(&[7].into())),
+        Snapshots::at([]).write(&trajectory, directory.path().join("b.svg")),
+        Snapshots::at([f64::NAN]).write(&trajectory, directory.path().join("c.svg")),
+        Snapshots::at([0.0]).columns(0).write(&trajectory, directory.path().join("d.svg")),
+        Snapshots::at([0.0]).mark("top").write(&trajectory, directory.path().join("e.svg")),
+        write_vtk(&trajectory, directory.path(), "../f"),
+    ];
+    for refused in refusals {
+        assert!(matches!(refused, Err(pliant::Error::Input { .. })), "{refused:?}");
+    }
+    assert_eq!(fs::read_dir(directory.path())?.count(), 2, "nothing was written");
+    Ok(())
+}
