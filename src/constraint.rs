@@ -2,7 +2,7 @@
 //!
 //! A constraint on one displacement component of one node (a *nodal* row) is the common case; a
 //! general linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0
-//! (Hirai (4.1.3)); see [`crate::system`].
+//! (Hirai (4.1.3)); the equations are those of `system`.
 
 use std::fmt;
 use std::sync::Arc;

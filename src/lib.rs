@@ -1,4 +1,29 @@
-//! Dynamics of soft elastic bodies.
+//! Dynamics of soft elastic bodies: finite elements in Rust, stiff integration by SUNDIALS.
+//!
+//! A [`Scene`] is a [`Body`] (a [`Mesh`] made of a [`Material`]), what surrounds it, and a timeline
+//! of [`Phase`]s. [`Scene::simulate`] integrates the equations of motion and returns a
+//! [`Trajectory`], which [`output`] writes to tables, pictures and files for ParaView.
+//!
+//! ```
+//! use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Solver};
+//!
+//! let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+//! let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+//! let press = Phase::until(0.5).hold("bottom").move_nodes([14, 15], [0.0, -0.16]);
+//! let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+//!     .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0))
+//!     .phase(press.without_contact())
+//!     .phase(Phase::until(0.7).named("free"));
+//! let trajectory = scene.simulate(&Solver::default(), &Sampling::every(0.01))?;
+//! assert!(trajectory.mean_velocity(trajectory.last())[1] > 0.5); // it jumps
+//! # Ok::<(), pliant::Error>(())
+//! ```
+//!
+//! The integrators stand on their own: [`sundials`] is a safe layer over CVODE and IDA for any ODE
+//! or DAE, [`rk`] an explicit Runge-Kutta method; both take the systems of [`ode`].
+//!
+//! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
+//! brackets are its equations.
 
 pub mod body;
 pub mod constraint;

@@ -53,7 +53,7 @@ impl Mesh {
                 let mend = format!("the mesh has the node sets {}", known.join(", "));
                 Error::input("node set", format!("\"{name}\""), mend)
             })?,
-            Selection::Numbers(numbers) => self.from_numbers(numbers)?,
+            Selection::Numbers(numbers) => self.by_number(numbers)?,
             Selection::Box { min, max } => self.in_box(min, max)?,
         };
         if nodes.is_empty() {
@@ -66,7 +66,7 @@ impl Mesh {
         Ok(nodes)
     }
 
-    fn from_numbers(&self, numbers: &[usize]) -> Result<Vec<usize>, Error> {
+    fn by_number(&self, numbers: &[usize]) -> Result<Vec<usize>, Error> {
         let count = self.node_count();
         let mut seen = vec![false; count];
         for &number in numbers {

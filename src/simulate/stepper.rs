@@ -12,8 +12,8 @@ pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 /// An integrator at work on the equations of one phase.
 pub(super) enum Stepper {
     Cvode(Cvode<System>),
-    Ida(Box<Ida<IndexOne>>),
-    Rk(DormandPrince<System>),
+    Ida(Ida<IndexOne>),
+    Rk(Box<DormandPrince<System>>),
 }
 
 impl Stepper {
@@ -42,7 +42,7 @@ impl Stepper {
             Method::Rk => {
                 let options = rk::Options::default().rtol(solver.rtol).atol(tolerances);
                 let options = options.stop_time(end);
-                Ok(Self::Rk(DormandPrince::new(system, t, state, &options)?))
+                Ok(Self::Rk(Box::new(DormandPrince::new(system, t, state, &options)?)))
             }
         }
     }
@@ -185,7 +185,7 @@ fn ida(
     }
     let mut ida = Ida::new(equations, t, &y, &yp, &options)?;
     ida.set_stop_time(Some(end))?;
-    Ok(Stepper::Ida(Box::new(ida)))
+    Ok(Stepper::Ida(ida))
 }
 
 fn jacobian_pattern(equations: &IndexOne) -> Result<Pattern, Failed> {
