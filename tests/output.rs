@@ -33,7 +33,9 @@ fn bar() -> Result<Trajectory, pliant::Error> {
         .simulate(&Solver::default(), &Sampling::every(0.005))
 }
 
-fn table(path: &Path) -> Result<(Vec<String>, Vec<Vec<f64>>), Box<dyn Error>> {
+type Table = (Vec<String>, Vec<Vec<f64>>);
+
+fn table(path: &Path) -> Result<Table, Box<dyn Error>> {
     let mut reader = csv::Reader::from_path(path)?;
     let names = reader.headers()?.iter().map(str::to_owned).collect();
     let rows = reader.deserialize().collect::<Result<_, _>>()?;
@@ -159,6 +161,13 @@ fn a_chart_names_its_series() -> Outcome {
     assert_eq!(document.descendants().filter_map(points).filter(|&count| count == 50).count(), 2);
     let flat = chart.clone().series("flat", [(0.0, 0.0), (1.0, 0.0)]);
     flat.write(directory.path().join("flat.svg"))?;
+    let text = fs::read_to_string(directory.path().join("flat.svg"))?;
+    let document = roxmltree::Document::parse(&text)?;
+    // x1,y1 x2,y2 of the last line drawn: halfway between the top (68 of 440) and the bottom (388)
+    let line = document.descendants().filter_map(|n| n.attribute("points")).next_back();
+    let line = line.ok_or("a flat line is drawn too")?.replace(',', " ");
+    let numbers: Vec<f64> = line.split_whitespace().map(str::parse).collect::<Result<_, _>>()?;
+    assert!((numbers[1] / 8.0 - 228.0).abs() < 1.0 && numbers[3] == numbers[1], "{line}");
     for bad in [chart.clone(), chart.series("bad", [(0.0, f64::NAN)])] {
         let refused = bad.write(&path).unwrap_err();
         assert!(matches!(refused, pliant::Error::Input { .. }), "{refused}");
@@ -185,12 +194,10 @@ fn vtk_files_hold_mesh_and_motion() -> Outcome {
         write_vtk(&trajectory, directory.path(), name)?;
         let mesh = trajectory.body().mesh();
         let spatial = |x: &[f64]| -> Vec<f64> {
-            let nodes = x.chunks(mesh.dimension()).map(|x| [x, &[0.0; 2]].concat());
-            nodes.flat_map(|x| x[..3].to_vec()).collect()
-        };
-        let spatial = |x: &[f64]| match mesh.dimension() {
-            2 => x.chunks(2).flat_map(|x| [x[0], x[1], 0.0]).collect(),
-            _ => spatial(x),
+            match mesh.dimension() {
+                1 => x.iter().flat_map(|&x| [x, 0.0, 0.0]).collect(),
+                _ => x.chunks(2).flat_map(|x| [x[0], x[1], 0.0]).collect(),
+            }
         };
         for (number, sample) in trajectory.samples().iter().enumerate() {
             let piece = read_grid(&directory.path().join(format!("{name}_{number:04}.vtu")))?;

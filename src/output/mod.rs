@@ -28,7 +28,7 @@ pub use self::vtk::write_vtk;
 use crate::error::Error;
 
 /// Font of all pictures: what a reader's machine has of these, in this order.
-const FONT: &str = "Source Sans 3, Helvetica Neue, Helvetica, Arial, sans-serif";
+const FONT: &str = "Helvetica Neue, Helvetica, Arial, sans-serif";
 /// Colour of titles and labels.
 const INK: &str = "#222222";
 

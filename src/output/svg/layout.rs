@@ -2,14 +2,17 @@
 
 use crate::trajectory::{Sample, Trajectory};
 
-/// Width that a page aims at, and its limits of a panel (px).
+/// Width that a page aims at, its least width, and the limits of a panel (px).
 const PAGE_WIDTH: f64 = 900.0;
+const PAGE_LEAST: f64 = 420.0;
 const PANEL_WIDTH: [f64; 2] = [110.0, 400.0];
 const MARGIN: f64 = 20.0;
 const GAP: f64 = 16.0;
 const CAPTION: f64 = 28.0;
 const TITLE: f64 = 34.0;
 const KEY: f64 = 34.0;
+/// Mean width of a character of the captions (px).
+const CHARACTER: f64 = 6.8;
 /// Width of a one-dimensional body as drawn, as a fraction of its length.
 pub(super) const BAR_WIDTH: f64 = 0.12;
 
@@ -20,6 +23,8 @@ pub(super) type Point = [f64; 2];
 pub(super) struct View {
     low: Point,
     high: Point,
+    /// Upper edge of each panel by itself, which a row of panels that stays low ends at.
+    tops: Vec<f64>,
     /// Surface and outward normal of each obstacle.
     pub(super) planes: Vec<[Point; 2]>,
 }
@@ -30,10 +35,13 @@ impl View {
         let mut view = Self {
             low: [f64::INFINITY; 2],
             high: [f64::NEG_INFINITY; 2],
+            tops: Vec::new(),
             planes: planes(trajectory),
         };
         for sample in samples {
-            positions(trajectory, sample).into_iter().for_each(|point| view.include(point));
+            let points = positions(trajectory, sample);
+            view.tops.push(points.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max));
+            points.into_iter().for_each(|point| view.include(point));
         }
         if trajectory.body().dimension() == 1 {
             let half = 2.0 * BAR_WIDTH * trajectory.body().mesh().size();
@@ -50,7 +58,7 @@ impl View {
         }
         let pad = 0.06 * view.width().max(view.height());
         view.low.iter_mut().for_each(|x| *x -= pad);
-        view.high.iter_mut().for_each(|x| *x += pad);
+        view.high.iter_mut().chain(&mut view.tops).for_each(|x| *x += pad);
         view
     }
 
@@ -69,10 +77,11 @@ impl View {
         self.high[1] - self.low[1]
     }
 
-    /// The part of the view inside an obstacle and less than `depth` from its surface.
-    pub(super) fn band(&self, [point, normal]: [Point; 2], depth: f64) -> Vec<Point> {
+    /// The part of the view below `top` that is inside an obstacle, less than `depth` from its
+    /// surface.
+    pub(super) fn band(&self, top: f64, [point, normal]: [Point; 2], depth: f64) -> Vec<Point> {
         let distance = |x: &Point| (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum::<f64>();
-        let ([left, bottom], [right, top]) = (self.low, self.high);
+        let ([left, bottom], right) = (self.low, self.high[0]);
         let corners = vec![[left, bottom], [right, bottom], [right, top], [left, top]];
         let inside = clip(&corners, |x| -distance(x));
         clip(&inside, |x| distance(x) + depth)
@@ -122,45 +131,62 @@ fn upright(x: &[f64]) -> Point {
     }
 }
 
-/// Where everything stands on the page (px).
+/// Where everything stands on the page.
 pub(super) struct Layout {
     columns: usize,
-    rows: usize,
-    /// Width and height of a panel, without its caption.
-    panel: Point,
+    /// Width of a panel (px).
+    width: f64,
+    rows: Vec<Row>,
     /// Pixels per metre.
     scale: f64,
+    /// Left edge of what the panels show (m).
+    left: f64,
+}
+
+/// A row of panels, as high as what it shows.
+struct Row {
+    /// Upper and lower edge on the page (px), without the captions.
+    edges: [f64; 2],
+    /// Upper edge of what its panels show (m).
     top: f64,
-    corner: Point,
 }
 
 impl Layout {
-    pub(super) fn new(view: &View, panels: usize, columns: Option<usize>, titled: bool) -> Self {
-        let aspect = view.height() / view.width();
-        let width = |columns: usize| {
+    /// Panels that each have room for a caption of `caption` characters.
+    pub(super) fn new(view: &View, columns: Option<usize>, titled: bool, caption: usize) -> Self {
+        let panels = view.tops.len();
+        let narrowest = PANEL_WIDTH[0].max(CHARACTER * caption as f64).min(PANEL_WIDTH[1]);
+        let with_columns = |columns: usize| {
             let fitting = (PAGE_WIDTH - 2.0 * MARGIN + GAP) / columns as f64 - GAP;
-            fitting.clamp(PANEL_WIDTH[0], PANEL_WIDTH[1])
+            let width = fitting.clamp(narrowest, PANEL_WIDTH[1]);
+            let scale = width / view.width();
+            let mut y = if titled { MARGIN + TITLE } else { MARGIN };
+            let rows = view.tops.chunks(columns).map(|tops| {
+                let top = tops.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
+                let edges = [y, y + (top - view.low[1]) * scale];
+                y = edges[1] + CAPTION + GAP;
+                Row { edges, top }
+            });
+            Self { columns, width, rows: rows.collect(), scale, left: view.low[0] }
         };
-        let height = |columns: usize| {
-            panels.div_ceil(columns) as f64 * (width(columns) * aspect + CAPTION + GAP)
+        // a page rather wider than high; rows as full as can be
+        let penalty = |layout: &Self| {
+            let [width, height] = layout.size().map(f64::from);
+            let places = layout.columns * layout.rows.len();
+            let empty = (places - panels) as f64 / layout.columns as f64;
+            (height / width / 0.7).ln().abs() + 1.5 * empty
         };
-        // a page about as wide as it is high, rather wider; rows as full as can be
-        let penalty = |columns: usize| {
-            let empty = columns * panels.div_ceil(columns) - panels;
-            let page = columns as f64 * (width(columns) + GAP);
-            (height(columns) / page / 0.7).ln().abs() + 1.5 * empty as f64 / columns as f64
-        };
-        let best = (1..=panels.min(8)).min_by(|&a, &b| penalty(a).total_cmp(&penalty(b)));
-        let columns = columns.or(best).unwrap_or(1).clamp(1, panels);
-        let panel = [width(columns), width(columns) * aspect];
-        Self {
-            columns,
-            rows: panels.div_ceil(columns),
-            panel,
-            scale: panel[0] / view.width(),
-            top: if titled { MARGIN + TITLE } else { MARGIN },
-            corner: [view.low[0], view.high[1]],
+        if let Some(columns) = columns {
+            return with_columns(columns.min(panels));
         }
+        let mut best = with_columns(1);
+        for columns in 2..=panels.min(8) {
+            let other = with_columns(columns);
+            if penalty(&other) < penalty(&best) {
+                best = other;
+            }
+        }
+        best
     }
 
     pub(super) fn margin(&self) -> f64 {
@@ -169,30 +195,39 @@ impl Layout {
 
     /// Width and height of the page, whole pixels.
     pub(super) fn size(&self) -> [u32; 2] {
-        let width = 2.0 * MARGIN + self.columns as f64 * (self.panel[0] + GAP) - GAP;
-        [width.ceil().max(420.0) as u32, (self.key_line() + MARGIN).ceil() as u32]
+        let width = 2.0 * MARGIN + self.columns as f64 * (self.width + GAP) - GAP;
+        [width.ceil().max(PAGE_LEAST) as u32, (self.key_line() + MARGIN).ceil() as u32]
     }
 
     /// Baseline of the key below the panels.
     pub(super) fn key_line(&self) -> f64 {
-        self.top + self.rows as f64 * (self.panel[1] + CAPTION + GAP) - GAP + KEY
+        self.rows.last().map_or(MARGIN, |row| row.edges[1]) + CAPTION + KEY
+    }
+
+    fn row(&self, panel: usize) -> &Row {
+        &self.rows[panel / self.columns]
     }
 
     /// Upper left corner of a panel.
-    pub(super) fn origin(&self, number: usize) -> Point {
-        let (row, column) = (number / self.columns, number % self.columns);
-        let x = MARGIN + column as f64 * (self.panel[0] + GAP);
-        [x, self.top + row as f64 * (self.panel[1] + CAPTION + GAP)]
+    pub(super) fn origin(&self, panel: usize) -> Point {
+        let x = MARGIN + (panel % self.columns) as f64 * (self.width + GAP);
+        [x, self.row(panel).edges[0]]
     }
 
     /// Middle and baseline of the caption, from the corner of the panel.
-    pub(super) fn caption(&self) -> Point {
-        [self.panel[0] / 2.0, self.panel[1] + 19.0]
+    pub(super) fn caption(&self, panel: usize) -> Point {
+        let [top, bottom] = self.row(panel).edges;
+        [self.width / 2.0, bottom - top + 19.0]
+    }
+
+    /// Upper edge of what a panel shows (m).
+    pub(super) fn top(&self, panel: usize) -> f64 {
+        self.row(panel).top
     }
 
     /// A point of space, from the corner of the panel.
-    pub(super) fn place(&self, point: Point) -> Point {
-        [(point[0] - self.corner[0]) * self.scale, (self.corner[1] - point[1]) * self.scale]
+    pub(super) fn place(&self, panel: usize, point: Point) -> Point {
+        [(point[0] - self.left) * self.scale, (self.row(panel).top - point[1]) * self.scale]
     }
 
     /// A length (m) on the page.

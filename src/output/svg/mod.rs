@@ -3,7 +3,7 @@
 mod layout;
 mod panel;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use layout::{Layout, View, scale_bar};
@@ -82,22 +82,24 @@ impl Snapshots {
         let samples = self.times.iter().map(|&time| nearest(trajectory, time));
         let samples: Vec<&Sample> = samples.collect();
         let view = View::of(trajectory, &samples);
-        let layout = Layout::new(&view, samples.len(), self.columns, !self.title.is_empty());
-        let decimals = decimals(&samples);
+        let captions = captions(trajectory, &samples);
+        let longest = captions.iter().map(|caption| caption.chars().count()).max().unwrap_or(0);
+        let layout = Layout::new(&view, self.columns, !self.title.is_empty(), longest);
 
-        let mut roles = BTreeMap::new();
+        let mut kinds = BTreeSet::new();
         let mut page = page(&layout);
         if !self.title.is_empty() {
             let title = text(&self.title, layout.margin(), 26.0).set("font-size", 17);
             page = page.add(title.set("font-weight", 600).set("fill", INK));
         }
-        for (number, sample) in samples.into_iter().enumerate() {
+        for (number, (sample, caption)) in samples.into_iter().zip(&captions).enumerate() {
             let marks = self.marks(trajectory, sample)?;
-            roles.extend(marks.values().map(|mark| (*mark, ())));
-            let panel = Panel { trajectory, sample, view: &view, layout: &layout, marks: &marks };
-            page = page.add(panel.draw(number, decimals));
+            kinds.extend(marks.values().copied());
+            let (view, layout, marks) = (&view, &layout, &marks);
+            let panel = Panel { number, caption, trajectory, sample, view, layout, marks };
+            page = page.add(panel.draw());
         }
-        Ok(page.add(key(&view, &layout, roles.into_keys())))
+        Ok(page.add(key(&view, &layout, kinds)))
     }
 
     fn validate(&self) -> Result<(), Error> {
@@ -140,6 +142,14 @@ fn nearest(trajectory: &Trajectory, time: f64) -> &Sample {
     trajectory.samples().iter().min_by(nearest).unwrap_or_else(|| trajectory.last())
 }
 
+/// Time and phase of each sample.
+fn captions(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<String> {
+    let decimals = decimals(samples);
+    let phases = trajectory.scene().phases();
+    let caption = |s: &&Sample| format!("t = {:.decimals$} s, {}", s.time, phases[s.phase].name());
+    samples.iter().map(caption).collect()
+}
+
 /// Decimals that tell the times of all samples: 2, or more where they need it.
 fn decimals(samples: &[&Sample]) -> usize {
     let end = samples.iter().map(|sample| sample.time).fold(0.0, f64::max);
@@ -170,7 +180,7 @@ fn page(layout: &Layout) -> Document {
 }
 
 /// Scale bar and what the marks mean, below the panels.
-fn key(view: &View, layout: &Layout, marks: impl Iterator<Item = Mark>) -> Group {
+fn key(view: &View, layout: &Layout, marks: BTreeSet<Mark>) -> Group {
     let (length, label) = scale_bar(view.width());
     let (x, y, width) = (layout.margin(), layout.key_line(), layout.pixels(length));
     let bar = format!("M{x:.2} {:.2}v6m0 -3h{width:.2}m0 -3v6", y - 8.0);
@@ -178,8 +188,8 @@ fn key(view: &View, layout: &Layout, marks: impl Iterator<Item = Mark>) -> Group
     let mut key = Group::new().set("fill", INK).set("class", "key").add(bar);
     key = key.add(text(&label, x + width + 8.0, y));
     let mut right = layout.size()[0] as f64 - layout.margin();
-    for mark in marks.collect::<Vec<_>>().into_iter().rev() {
-        right -= 7.2 * mark.name().len() as f64;
+    for mark in marks.into_iter().rev() {
+        right -= 7.8 * mark.name().len() as f64;
         key = key.add(text(mark.name(), right, y));
         right -= 10.0;
         key = key.add(mark.draw(right, y - 4.5));

@@ -27,6 +27,8 @@ pub(super) enum Mark {
 }
 
 pub(super) struct Panel<'a> {
+    pub(super) number: usize,
+    pub(super) caption: &'a str,
     pub(super) trajectory: &'a Trajectory,
     pub(super) sample: &'a Sample,
     pub(super) view: &'a View,
@@ -35,8 +37,8 @@ pub(super) struct Panel<'a> {
 }
 
 impl Panel<'_> {
-    pub(super) fn draw(&self, number: usize, decimals: usize) -> Group {
-        let [x, y] = self.layout.origin(number);
+    pub(super) fn draw(&self) -> Group {
+        let [x, y] = self.layout.origin(self.number);
         let mut panel = Group::new()
             .set("class", "panel")
             .set("transform", format!("translate({x:.2} {y:.2})"));
@@ -44,7 +46,8 @@ impl Panel<'_> {
             panel = panel.add(self.obstacle(plane));
         }
         let points = positions(self.trajectory, self.sample);
-        let points: Vec<Point> = points.iter().map(|&x| self.layout.place(x)).collect();
+        let points: Vec<Point> =
+            points.iter().map(|&x| self.layout.place(self.number, x)).collect();
         let mesh = self.trajectory.body().mesh();
         panel = match mesh.kind() {
             CellKind::Segment => panel.add(self.bar(mesh, &points)),
@@ -53,19 +56,12 @@ impl Panel<'_> {
         for (&node, mark) in self.marks {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
         }
-        panel.add(self.caption(decimals))
-    }
-
-    fn caption(&self, decimals: usize) -> Group {
-        let [x, y] = self.layout.caption();
-        let phase = self.trajectory.scene().phases()[self.sample.phase].name();
-        let label = format!("t = {:.decimals$} s, {phase}", self.sample.time);
-        let caption = text(&label, x, y).set("text-anchor", "middle").set("fill", INK);
-        Group::new().add(caption)
+        let [x, y] = self.layout.caption(self.number);
+        panel.add(text(self.caption, x, y).set("text-anchor", "middle").set("fill", INK))
     }
 
     fn obstacle(&self, plane: [Point; 2]) -> Group {
-        let band = self.view.band(plane, self.layout.metres(BAND));
+        let band = self.view.band(self.layout.top(self.number), plane, self.layout.metres(BAND));
         let on_surface = |x: &&Point| {
             let [point, normal] = plane;
             let distance: f64 = (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum();
@@ -77,7 +73,8 @@ impl Panel<'_> {
             [(&band, true, "url(#hatch)", "none"), (&surface, false, "none", "#555555")]
         {
             if points.len() > 1 {
-                let points: Vec<Point> = points.iter().map(|&x| self.layout.place(x)).collect();
+                let points: Vec<Point> =
+                    points.iter().map(|&x| self.layout.place(self.number, x)).collect();
                 let mut data = Data::default();
                 data.polyline(&points, close);
                 let path = Path::new().set("d", data.0).set("fill", fill);
