@@ -3,6 +3,7 @@
 use super::{Force, NodalForces, Reservoir};
 use crate::error::{Error, finite, not_negative, positive};
 use crate::mesh::Mesh;
+use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
 /// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force on each
@@ -156,7 +157,13 @@ impl Contact {
 }
 
 impl Force for Contact {
-    fn add_forces(&self, _t: f64, u: &[f64], v: &[f64], forces: &mut NodalForces) {
+    fn add_forces(
+        &self,
+        _t: f64,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
         let normal = &self.obstacle.shape.normal;
         for touch in self.touches(u, v) {
             let spring = -self.obstacle.stiffness * touch.distance;
@@ -169,6 +176,7 @@ impl Force for Contact {
                 forces.dissipative[dof] += damper * n - self.obstacle.friction * sliding;
             }
         }
+        Ok(())
     }
 
     fn add_tangents(
@@ -240,7 +248,7 @@ mod tests {
 
     fn forces(contact: &Contact, u: &[f64], v: &[f64]) -> NodalForces {
         let mut forces = NodalForces::zeros(8);
-        contact.add_forces(0.0, u, v, &mut forces);
+        contact.add_forces(0.0, u, v, &mut forces).unwrap();
         forces
     }
 

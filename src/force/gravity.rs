@@ -2,6 +2,7 @@
 
 use super::{Force, NodalForces, Reservoir, dot};
 use crate::body::Body;
+use crate::ode::Failure;
 
 /// Weight of a body.
 pub(crate) struct Gravity {
@@ -21,8 +22,15 @@ impl Gravity {
 }
 
 impl Force for Gravity {
-    fn add_forces(&self, _t: f64, _u: &[f64], _v: &[f64], forces: &mut NodalForces) {
+    fn add_forces(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
         forces.conservative.iter_mut().zip(&self.weight).for_each(|(f, w)| *f += w);
+        Ok(())
     }
 
     fn is_nonlinear(&self) -> bool {

@@ -1,6 +1,7 @@
 //! Loads: given forces on nodes.
 
 use super::{Force, NodalForces, Reservoir};
+use crate::ode::Failure;
 
 /// Constant forces on some degrees of freedom.
 pub(crate) struct Load {
@@ -9,10 +10,17 @@ pub(crate) struct Load {
 }
 
 impl Force for Load {
-    fn add_forces(&self, _t: f64, _u: &[f64], _v: &[f64], forces: &mut NodalForces) {
+    fn add_forces(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
         for &(dof, force) in &self.forces {
             forces.applied[dof] += force;
         }
+        Ok(())
     }
 
     fn is_nonlinear(&self) -> bool {

@@ -9,6 +9,7 @@ pub use contact::Obstacle;
 pub(crate) use gravity::Gravity;
 pub(crate) use load::Load;
 
+use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
 /// Nodal forces (N), kept apart by what they do to the energy of the system.
@@ -64,10 +65,22 @@ pub enum Reservoir {
 /// A force that depends on time t (s), displacements u (m) and velocities v (m/s) of the nodes.
 pub trait Force: Send + Sync {
     /// Adds the force at (t, u, v).
-    fn add_forces(&self, t: f64, u: &[f64], v: &[f64], forces: &mut NodalForces);
+    ///
+    /// # Errors
+    /// [`Failure::Recoverable`] where the force has no meaning (an inverted cell, a spring without
+    /// length): the integrator retries with a smaller step, and reports the message if that does
+    /// not help.
+    fn add_forces(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
 
-    /// Adds -df/du to `stiffness` and -df/dv to `damping`, symmetric. A force whose
-    /// [`is_nonlinear`](Self::is_nonlinear) is false has none.
+    /// Adds -df/du to `stiffness` and -df/dv to `damping`. They need not be symmetric: the Newton
+    /// matrix takes their symmetric part. A force whose [`is_nonlinear`](Self::is_nonlinear) is
+    /// false has none.
     fn add_tangents(
         &self,
         _t: f64,
@@ -86,4 +99,9 @@ pub trait Force: Send + Sync {
 
     /// Where that energy belongs.
     fn reservoir(&self) -> Reservoir;
+
+    /// Pairs of nodes (counted from 0) that the tangents couple though they may share no cell.
+    fn couplings(&self) -> Vec<[usize; 2]> {
+        Vec::new()
+    }
 }

@@ -105,7 +105,7 @@ impl Dae for IndexOne {
         let n = self.system.dofs();
         let (u, v, multipliers) = (&y[..n], &y[n..2 * n], &y[2 * n + ENERGIES..]);
         let (up, vp) = (&yp[..n], &yp[n..2 * n]);
-        self.system.evaluate_forces(t, u, v);
+        self.system.evaluate_forces(t, u, v)?;
         self.system.evaluate_rows(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, multipliers);
         let System { body, rows, at, .. } = &mut self.system;

@@ -190,7 +190,7 @@ impl System {
 
     /// Evaluates forces, accelerations and multipliers.
     fn evaluate(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
-        self.evaluate_forces(t, u, v);
+        self.evaluate_forces(t, u, v)?;
         self.evaluate_rows(t, u, v)?;
         let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
         self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
@@ -201,15 +201,16 @@ impl System {
         Ok(())
     }
 
-    fn evaluate_forces(&mut self, t: f64, u: &[f64], v: &[f64]) {
+    fn evaluate_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
         let Evaluation { nodal, total, .. } = &mut self.at;
         nodal.clear();
         self.body.stiffness().add_product(-1.0, u, &mut nodal.conservative);
         self.body.damping().add_product(-1.0, v, &mut nodal.dissipative);
         for force in &self.forces {
-            force.add_forces(t, u, v, nodal);
+            force.add_forces(t, u, v, nodal)?;
         }
         nodal.add_up(total);
+        Ok(())
     }
 
     fn evaluate_rows(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
