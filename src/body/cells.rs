@@ -61,6 +61,9 @@ pub(crate) trait Cells: Send + Sync {
     /// Energy of Green strain (J).
     fn green_energy(&self, regions: &Regions, u: &[f64]) -> f64;
 
+    /// Present over natural volume of each cell.
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
+
     /// Volume of all cells (m^3).
     fn volume(&self) -> f64;
 }
@@ -273,6 +276,19 @@ impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> 
         self.iter().map(of_cell).sum()
     }
 
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        let u = u.as_chunks::<D>().0;
+        let of_cell = |(_, nodes, points): (usize, &[usize; N], &[StrainPoint<N, M, D>])| {
+            let natural: f64 = points.iter().map(|point| point.volume).sum();
+            let present = points.iter().map(|point| {
+                let f = point.frame + gradient(point, nodes, u);
+                point.volume * stretch_of(&f)
+            });
+            present.sum::<f64>() / natural
+        };
+        self.iter().map(of_cell).collect()
+    }
+
     fn volume(&self) -> f64 {
         self.points.iter().map(|point| point.volume).sum()
     }
@@ -339,16 +355,21 @@ fn material_block<const D: usize>(
     fa * fb.transpose() * lame.lambda + (f_square * stretch + fb * fa.transpose()) * lame.mu
 }
 
+/// Factor by which F stretches a volume: det F, or its size where the cell does not fill space.
+fn stretch_of<const M: usize, const D: usize>(f: &SMatrix<f64, D, M>) -> f64 {
+    match M == D {
+        true => determinant(&SMatrix::<f64, M, M>::from_fn(|i, j| f[(i, j)])),
+        false => determinant(&f.tr_mul(f)).sqrt(),
+    }
+}
+
 /// A cell that is turned inside out has no meaning.
 fn check_orientation<const N: usize, const M: usize, const D: usize>(
     cell: usize,
     nodes: &[usize; N],
     f: &SMatrix<f64, D, M>,
 ) -> Result<(), Failure> {
-    if M < D {
-        return Ok(());
-    }
-    let stretch = determinant(&SMatrix::<f64, M, M>::from_fn(|i, j| f[(i, j)]));
+    let stretch = stretch_of(f);
     if stretch > 0.0 {
         return Ok(());
     }

@@ -283,6 +283,11 @@ impl Body {
         })
     }
 
+    /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
+    pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        self.cells.volume_ratios(u)
+    }
+
     /// Volume of the cells (m^3).
     pub fn volume(&self) -> f64 {
         self.cells.volume()
