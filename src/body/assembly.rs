@@ -2,7 +2,10 @@
 
 use std::sync::Arc;
 
-use crate::element::{ReferenceCell, Segment, Triangle, mass_points, stiffness_points};
+use crate::element::{
+    Hexahedron, Quadrilateral, ReferenceCell, Segment, Tetrahedron, Tetrahedron10, Triangle,
+    Triangle6, mass_points, stiffness_points,
+};
 use crate::error::Error;
 use crate::material::Lame;
 use crate::mesh::{CellKind, Mesh};
@@ -23,9 +26,24 @@ pub(super) fn assemble(
     moduli: Moduli,
     pattern: &Arc<NodePattern>,
 ) -> Result<(NodeMatrix, [BlockMatrix; 2]), Error> {
+    if mesh.dimension() != mesh.kind().dimension() {
+        let mend = "bodies of lower dimension than space cannot be assembled yet";
+        return Err(Error::input("mesh.dimension", mesh.dimension(), mend));
+    }
     match mesh.kind() {
         CellKind::Segment => assemble_cells::<Segment, 2, 1>(mesh, section, moduli, pattern),
         CellKind::Triangle => assemble_cells::<Triangle, 3, 2>(mesh, section, moduli, pattern),
+        CellKind::Triangle6 => assemble_cells::<Triangle6, 6, 2>(mesh, section, moduli, pattern),
+        CellKind::Quadrilateral => {
+            assemble_cells::<Quadrilateral, 4, 2>(mesh, section, moduli, pattern)
+        }
+        CellKind::Tetrahedron => {
+            assemble_cells::<Tetrahedron, 4, 3>(mesh, section, moduli, pattern)
+        }
+        CellKind::Tetrahedron10 => {
+            assemble_cells::<Tetrahedron10, 10, 3>(mesh, section, moduli, pattern)
+        }
+        CellKind::Hexahedron => assemble_cells::<Hexahedron, 8, 3>(mesh, section, moduli, pattern),
     }
 }
 

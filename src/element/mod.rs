@@ -4,13 +4,25 @@
 //! its shape functions and a weight each. The map from the reference cell to the natural shape is
 //! isoparametric for all cells.
 
+mod hexahedron;
+mod quadrilateral;
 mod segment;
+#[cfg(test)]
+mod tests;
+mod tetrahedron;
+mod tetrahedron10;
 mod triangle;
+mod triangle6;
 
 use nalgebra::{SMatrix, SVector};
 
+pub(crate) use hexahedron::Hexahedron;
+pub(crate) use quadrilateral::Quadrilateral;
 pub(crate) use segment::Segment;
+pub(crate) use tetrahedron::Tetrahedron;
+pub(crate) use tetrahedron10::Tetrahedron10;
 pub(crate) use triangle::Triangle;
+pub(crate) use triangle6::Triangle6;
 
 /// A reference cell of `N` nodes in dimension `D`.
 pub(crate) trait ReferenceCell<const N: usize, const D: usize> {
