@@ -49,7 +49,7 @@ pub use constraint::{Axis, Prescribed};
 pub use error::Error;
 pub use force::Obstacle;
 pub use material::{Lame, Material, Plane};
-pub use mesh::{Cells, Mesh, Selection};
+pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use scene::{Phase, Scene};
 pub use simulate::{Method, Sampling, Solver};
 pub use system::Energy;

@@ -14,8 +14,8 @@ use nalgebra::{SMatrix, SVector};
 
 use super::regions::{Moduli, Regions};
 use crate::element::{
-    MassPoint, ReferenceCell, Segment, StrainPoint, Triangle, determinant, mass_points,
-    strain_points,
+    Hexahedron, MassPoint, Quadrilateral, ReferenceCell, Segment, StrainPoint, Tetrahedron,
+    Tetrahedron10, Triangle, Triangle6, determinant, mass_points, strain_points,
 };
 use crate::error::Error;
 use crate::force::NodalForces;
@@ -77,13 +77,21 @@ pub(crate) struct Law {
 
 /// The cells of `mesh`; `section` is the area or thickness of the body.
 pub(super) fn cells(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
-    match (mesh.kind(), mesh.dimension()) {
-        (CellKind::Segment, 1) => CellsOf::<2, 1, 1>::boxed::<Segment>(mesh, section),
-        (CellKind::Segment, 2) => CellsOf::<2, 1, 2>::boxed::<Segment>(mesh, section),
-        (CellKind::Segment, _) => CellsOf::<2, 1, 3>::boxed::<Segment>(mesh, section),
-        (CellKind::Triangle, 2) => CellsOf::<3, 2, 2>::boxed::<Triangle>(mesh, section),
-        (CellKind::Triangle, _) => CellsOf::<3, 2, 3>::boxed::<Triangle>(mesh, section),
-    }
+    let of = match (mesh.kind(), mesh.dimension()) {
+        (CellKind::Segment, 1) => CellsOf::<2, 1, 1>::boxed::<Segment>,
+        (CellKind::Segment, 2) => CellsOf::<2, 1, 2>::boxed::<Segment>,
+        (CellKind::Segment, _) => CellsOf::<2, 1, 3>::boxed::<Segment>,
+        (CellKind::Triangle, 2) => CellsOf::<3, 2, 2>::boxed::<Triangle>,
+        (CellKind::Triangle, _) => CellsOf::<3, 2, 3>::boxed::<Triangle>,
+        (CellKind::Triangle6, 2) => CellsOf::<6, 2, 2>::boxed::<Triangle6>,
+        (CellKind::Triangle6, _) => CellsOf::<6, 2, 3>::boxed::<Triangle6>,
+        (CellKind::Quadrilateral, 2) => CellsOf::<4, 2, 2>::boxed::<Quadrilateral>,
+        (CellKind::Quadrilateral, _) => CellsOf::<4, 2, 3>::boxed::<Quadrilateral>,
+        (CellKind::Tetrahedron, _) => CellsOf::<4, 3, 3>::boxed::<Tetrahedron>,
+        (CellKind::Tetrahedron10, _) => CellsOf::<10, 3, 3>::boxed::<Tetrahedron10>,
+        (CellKind::Hexahedron, _) => CellsOf::<8, 3, 3>::boxed::<Hexahedron>,
+    };
+    of(mesh, section)
 }
 
 /// Cells of `N` nodes and dimension `M` in a space of dimension `D`.

@@ -200,8 +200,9 @@ impl BodyBuilder {
         match (kind.dimension(), self.area, self.thickness) {
             (1, Some(area), None) => positive("area", area, "m^2"),
             (2, None, Some(thickness)) => positive("thickness", thickness, "m"),
-            (1, _, Some(thickness)) => misplaced("thickness", thickness),
-            (2, Some(area), _) => misplaced("area", area),
+            (3, None, None) => Ok(1.0),
+            (1 | 3, _, Some(thickness)) => misplaced("thickness", thickness),
+            (2 | 3, Some(area), _) => misplaced("area", area),
             (1, None, None) => Err(missing("area", "a one-dimensional body needs its area in m^2")),
             _ => Err(missing("thickness", "a two-dimensional body needs its thickness in m")),
         }

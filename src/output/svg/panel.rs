@@ -49,9 +49,10 @@ impl Panel<'_> {
         let points: Vec<Point> =
             points.iter().map(|&x| self.layout.place(self.number, x)).collect();
         let mesh = self.trajectory.body().mesh();
-        panel = match mesh.kind() {
-            CellKind::Segment => panel.add(self.bar(mesh, &points)),
-            CellKind::Triangle => panel.add(cells(mesh, &points)),
+        panel = match (mesh.kind(), mesh.dimension()) {
+            (CellKind::Segment, 1) => panel.add(self.bar(mesh, &points)),
+            (CellKind::Segment, _) => panel.add(string(mesh, &points)),
+            _ => panel.add(cells(mesh, &points)),
         };
         for (&node, mark) in self.marks {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
@@ -96,22 +97,38 @@ impl Panel<'_> {
     }
 }
 
-/// A two-dimensional body: its cells, and its outline stronger.
+/// A one-dimensional body in a plane or in space.
+fn string(mesh: &Mesh, points: &[Point]) -> Group {
+    let mut data = Data::default();
+    for cell in mesh.cells() {
+        data.polyline(&[points[cell[0]], points[cell[1]]], false);
+    }
+    Group::new().add(body("cells", data, 1.8).set("fill", "none").set("stroke-linecap", "round"))
+}
+
+/// A body with an area: its cells, and its outline stronger.
 fn cells(mesh: &Mesh, points: &[Point]) -> Group {
     let mut data = Data::default();
     for cell in mesh.cells() {
-        let corners: Vec<Point> = cell.iter().map(|&node| points[node]).collect();
-        data.polyline(&corners, true);
+        let edges = mesh.kind().edges().iter();
+        let around = edges.flat_map(|edge| through_middle(edge).take(edge.len() - 1));
+        let around: Vec<Point> = around.map(|local| points[cell[local]]).collect();
+        data.polyline(&around, true);
     }
     let mut outline = Data::default();
     for face in mesh.boundary_faces() {
-        let ends: Vec<Point> = face.iter().map(|&node| points[node]).collect();
-        outline.polyline(&ends, false);
+        let along: Vec<Point> = through_middle(&face).map(|node| points[node]).collect();
+        outline.polyline(&along, false);
     }
     let fine = line_width(mesh, points);
     Group::new()
         .add(body("cells", data, fine).set("fill", FILL).set("fill-opacity", 0.75))
         .add(body("outline", outline, 1.5).set("fill", "none").set("stroke-linecap", "round"))
+}
+
+/// The nodes of an edge from end to end: through the mid node, where there is one.
+fn through_middle(edge: &[usize]) -> impl Iterator<Item = usize> {
+    edge.first().into_iter().chain(edge.get(2)).chain(edge.get(1)).copied()
 }
 
 /// Finer lines for finer meshes.
