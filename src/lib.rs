@@ -32,6 +32,7 @@ pub mod error;
 pub mod force;
 pub mod material;
 pub mod mesh;
+mod model;
 pub mod ode;
 pub mod output;
 pub mod rk;
@@ -43,7 +44,7 @@ pub mod sundials;
 mod system;
 pub mod trajectory;
 
-pub use body::{Body, Strain};
+pub use body::{Body, CellSelection, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use error::Error;
 pub use force::Obstacle;

@@ -25,6 +25,8 @@ macro_rules! with_dimension {
 pub struct NodePattern {
     offsets: Vec<usize>,
     columns: Vec<usize>,
+    /// For entry (a, b) the index of (b, a).
+    transposed: Vec<usize>,
 }
 
 impl NodePattern {
@@ -44,7 +46,25 @@ impl NodePattern {
             columns.append(row);
             offsets.push(columns.len());
         }
-        Self { offsets, columns }
+        // Going through the rows in order meets the entries (b, a) of each row b in the order of a.
+        let mut next = offsets.clone();
+        let mut transposed = vec![0; columns.len()];
+        for entry in 0..columns.len() {
+            let slot = &mut next[columns[entry]];
+            transposed[entry] = *slot;
+            *slot += 1;
+        }
+        Self { offsets, columns, transposed }
+    }
+
+    /// This pattern with some more coupled pairs.
+    pub(crate) fn with_pairs(&self, pairs: &[[usize; 2]]) -> Self {
+        let rows =
+            (0..self.nodes()).map(|row| &self.columns[self.offsets[row]..self.offsets[row + 1]]);
+        let own =
+            rows.enumerate().flat_map(|(row, columns)| columns.iter().map(move |&c| [row, c]));
+        let all: Vec<[usize; 2]> = own.chain(pairs.iter().copied()).collect();
+        Self::new(self.nodes(), all.iter().map(|pair| pair.as_slice()))
     }
 
     /// Number of nodes.
@@ -62,6 +82,11 @@ impl NodePattern {
         let start = self.offsets[row];
         let columns = &self.columns[start..self.offsets[row + 1]];
         columns.binary_search(&column).ok().map(|at| start + at)
+    }
+
+    /// Index of entry (b, a) for the index of entry (a, b).
+    pub(crate) fn transposed(&self, entry: usize) -> usize {
+        self.transposed[entry]
     }
 
     /// The entries of one row, as (index, column).
@@ -90,6 +115,17 @@ impl NodeMatrix {
     /// The shared pattern.
     pub fn pattern(&self) -> &Arc<NodePattern> {
         &self.pattern
+    }
+
+    /// The same matrix on a pattern with more entries.
+    pub(crate) fn moved_to(&self, pattern: &Arc<NodePattern>) -> Self {
+        let mut moved = Self::zeros(pattern);
+        for row in 0..self.pattern.nodes() {
+            for (entry, column) in self.pattern.row(row) {
+                moved.add(row, column, self.values[entry]);
+            }
+        }
+        moved
     }
 
     /// Adds to the entry of two coupled nodes.
@@ -154,6 +190,20 @@ impl BlockMatrix {
     pub fn to_dense(&self) -> Mat<f64> {
         let n = self.pattern.nodes() * self.dimension;
         Mat::from_fn(n, n, |row, column| self.get(row, column))
+    }
+
+    /// The same matrix on a pattern with more entries.
+    pub(crate) fn moved_to(&self, pattern: &Arc<NodePattern>) -> Self {
+        let mut moved = Self::zeros(pattern, self.dimension);
+        let size = self.dimension * self.dimension;
+        for row in 0..self.pattern.nodes() {
+            for (entry, column) in self.pattern.row(row) {
+                if let Some(block) = moved.block_mut(row, column) {
+                    block.copy_from_slice(&self.values[entry * size..][..size]);
+                }
+            }
+        }
+        moved
     }
 
     /// The block of two coupled nodes, row by row.

@@ -141,10 +141,10 @@ impl Trajectory {
 
     pub(crate) fn push(&mut self, sample: Sample) {
         let start = self.samples.first().map_or(sample.energy.balance(), |s| s.energy.balance());
-        let Energy { kinetic, strain, contact, dissipated, supplied, .. } = sample.energy;
+        let Energy { kinetic, strain, contact, springs, dissipated, supplied, .. } = sample.energy;
         let report = &mut self.report;
         report.energy_error = report.energy_error.max((sample.energy.balance() - start).abs());
-        let sum = kinetic + strain + contact + dissipated.abs() + supplied.abs();
+        let sum = kinetic + strain + contact + springs + dissipated.abs() + supplied.abs();
         report.energy_scale = report.energy_scale.max(sum);
         self.samples.push(sample);
     }

@@ -43,7 +43,7 @@ fn meshes() {
     };
     let corners = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
     assert!(triangle(corners, [0, 1, 2]).is_ok());
-    says(triangle(corners, [0, 2, 1]), &["cell 1", "[1, 3, 2]", "clockwise", "other way round"]);
+    says(triangle(corners, [0, 2, 1]), &["cell 1", "[1, 3, 2]", "clockwise", "reverse"]);
     says(triangle([0.0, 0.0, 1.0, 0.0, 2.0, 0.0], [0, 1, 2]), &["cell 1", "flat"]);
     says(triangle(corners, [0, 1, 3]), &["node of cell 1 = 4", "1 to 3"]);
     says(triangle(corners, [0, 1, 1]), &["cell 1", "flat"]);
@@ -179,6 +179,7 @@ fn solvers_and_samplings() {
     says(with(Solver { alpha: 0.0, ..good() }), &["alpha = 0", "1/s"]);
     says(with(Solver { atol_position: Some(-1e-9), ..good() }), &["atol_position = -0.000000001"]);
     says(with(Solver { max_order: Some(6), ..good() }), &["max_order = 6", "1 to 5"]);
+    assert!(with(Solver { max_order: Some(12), method: Method::CvodeAdams, ..good() }).is_ok());
     says(
         with(Solver { max_order: Some(2), method: Method::Rk, ..good() }),
         &["max_order", "leave it out"],

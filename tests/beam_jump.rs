@@ -83,6 +83,9 @@ fn jump_under_gravity() {
         let start = trajectory.centre_of_mass(leaving)[0];
         let ballistic = start + velocity * seconds - 4.9 * seconds * seconds;
         assert!((height - ballistic).abs() < 1e-9, "{method}: {height} {ballistic}");
+        let weight_lifted = 0.02 * 9.8 * (height - 0.05);
+        assert!((apex.energy.gravity - 0.02 * 9.8 * 0.05 - weight_lifted).abs() < 1e-12);
+        assert!(trajectory.report().energy_error < 1e-6 * trajectory.report().energy_scale);
     }
 }
 

@@ -114,3 +114,16 @@ fn methods_agree_at_a_small_alpha() {
         assert!(fine < coarse / 7.0, "{method}: {coarse:e} fell to {fine:e} only");
     }
 }
+
+/// What is held stays where the push should have brought it, 8 cm down: the error that the
+/// stabilization still has at the end of the push (v t exp(-alpha t) = 0.5 mm) is not handed on.
+#[test]
+fn held_nodes_forget_the_drift_of_the_push() {
+    let solver = Solver { alpha: 10.0, rtol: 1e-8, ..Solver::default() };
+    let trajectory = run(&square_press(4).unwrap(), &solver, &[0.6]);
+    let [_, pushed, held, ..] = trajectory.samples() else { panic!("five samples") };
+    let depth = |sample: &pliant::Sample| sample.u[2 * 13 + 1];
+    assert!((depth(pushed) + 0.08).abs() > 4e-4, "after the push: {}", depth(pushed));
+    let error = (depth(held) + 0.08).abs();
+    assert!((held.constraint_drift - error).abs() < 1e-12, "{} {error}", held.constraint_drift);
+}

@@ -1,10 +1,19 @@
 //! A body: a mesh made of a material, and the constant matrices that follow from both.
 
-mod assembly;
+mod cells;
+mod elastic;
+mod regions;
+#[cfg(test)]
+mod tests;
 
+use std::fmt;
 use std::sync::Arc;
 
-use assembly::{Moduli, assemble};
+pub(crate) use cells::Cells;
+use cells::{Law, cells};
+pub(crate) use elastic::Elastic;
+pub use regions::CellSelection;
+use regions::Regions;
 
 use crate::error::{Error, positive};
 use crate::material::{Lame, Material, Plane};
@@ -13,12 +22,23 @@ use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 
 /// How the strain of a body follows from its displacements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
 pub enum Strain {
     /// Cauchy's small strain: force -K u, linear. Not invariant to rotation: a body that turns by
     /// theta swells as if strained by cos(theta) - 1.
     #[default]
     Cauchy,
+    /// Green's strain E = (F^T F - I)/2, invariant to rotation: St. Venant-Kirchhoff material.
+    Green,
+}
+
+/// How the viscous force of a body follows from its velocities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Viscosity {
+    /// Force -B v with the constant B of the natural shape, as in the documents. Not invariant to
+    /// rotation: a body that spins as a whole is braked.
+    Natural,
+    /// Stress from the rate of Green's strain: a body that spins as a whole is not braked.
+    Objective,
 }
 
 /// An elastic body: mesh, material, and the matrices M, K and B.
@@ -32,15 +52,30 @@ pub enum Strain {
 /// assert!((body.mass() - 0.9).abs() < 1e-12); // kg
 /// # Ok::<(), pliant::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Body {
     mesh: Mesh,
     material: Material,
     strain: Strain,
-    section: f64,
-    inertia: NodeMatrix,
-    stiffness: BlockMatrix,
-    damping: BlockMatrix,
+    viscosity: Viscosity,
+    cells: Arc<dyn Cells>,
+    regions: Arc<Regions>,
+    inertia: Arc<NodeMatrix>,
+    stiffness: Arc<BlockMatrix>,
+    damping: Arc<BlockMatrix>,
+}
+
+impl fmt::Debug for Body {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Body")
+            .field("nodes", &self.mesh.node_count())
+            .field("cells", &self.mesh.cell_count())
+            .field("kind", &self.mesh.kind())
+            .field("material", &self.material)
+            .field("strain", &self.strain)
+            .field("viscosity", &self.viscosity)
+            .finish_non_exhaustive()
+    }
 }
 
 /// A body in the making: see [`Body::new`].
@@ -48,10 +83,13 @@ pub struct Body {
 pub struct BodyBuilder {
     mesh: Mesh,
     material: Material,
+    regions: Vec<(CellSelection, Material)>,
     strain: Strain,
+    viscosity: Option<Viscosity>,
     plane: Plane,
     thickness: Option<f64>,
     area: Option<f64>,
+    points: Vec<(String, Vec<f64>, f64)>,
 }
 
 impl BodyBuilder {
@@ -73,6 +111,30 @@ impl BodyBuilder {
         self
     }
 
+    /// How viscosity acts. Default: natural with Cauchy strain, objective with Green strain.
+    pub fn viscosity(mut self, viscosity: Viscosity) -> Self {
+        self.viscosity = Some(viscosity);
+        self
+    }
+
+    /// A region with a material of its own. Where regions overlap, the last one counts.
+    pub fn region(mut self, cells: CellSelection, material: Material) -> Self {
+        self.regions.push((cells, material));
+        self
+    }
+
+    /// A point mass (kg) at `position` (m): a node that belongs to no cell. It comes after the nodes
+    /// of the mesh, and `name` is a node set with it alone.
+    pub fn point_mass(
+        mut self,
+        name: impl Into<String>,
+        position: impl Into<Vec<f64>>,
+        mass: f64,
+    ) -> Self {
+        self.points.push((name.into(), position.into(), mass));
+        self
+    }
+
     /// Plane strain (default) or plane stress, for two-dimensional bodies.
     pub fn plane(mut self, plane: Plane) -> Self {
         self.plane = plane;
@@ -85,18 +147,41 @@ impl BodyBuilder {
     /// A material out of range, a missing or misplaced thickness or area, an inverted or flat cell,
     /// a node without a cell.
     pub fn build(self) -> Result<Body, Error> {
-        self.material.validate()?;
         let section = self.section()?;
-        let Self { mesh, material, strain, plane, .. } = self;
+        let Self { mut mesh, material, strain, plane, .. } = self;
+        let viscosity = self.viscosity.unwrap_or(match strain {
+            Strain::Cauchy => Viscosity::Natural,
+            Strain::Green => Viscosity::Objective,
+        });
+        let regions = Regions::new(&mesh, plane, &material, &self.regions)?;
+        let cells: Arc<dyn Cells> = cells(&mesh, section)?.into();
+        for (name, position, mass) in &self.points {
+            positive(&format!("mass of point \"{name}\""), *mass, "kg")?;
+            mesh.push_node(name, position)?;
+        }
+
         let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
-        let reduced = |lame: Lame| lame.reduced(mesh.kind().dimension(), plane);
-        let moduli = Moduli {
-            density: material.density,
-            elastic: reduced(material.elastic()),
-            viscous: reduced(material.viscous()),
+        let mut inertia = NodeMatrix::zeros(&pattern);
+        let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
+        let mut damping = stiffness.clone();
+        cells.add_inertia(&regions, &mut inertia);
+        cells.add_stiffness(&regions, &|moduli| moduli.elastic, &mut stiffness);
+        cells.add_stiffness(&regions, &|moduli| moduli.viscous, &mut damping);
+        let first_point = mesh.node_count() - self.points.len();
+        for (node, (_, _, mass)) in (first_point..).zip(&self.points) {
+            inertia.add(node, node, *mass);
+        }
+        let body = Body {
+            mesh,
+            material,
+            strain,
+            viscosity,
+            cells,
+            regions: Arc::new(regions),
+            inertia: Arc::new(inertia),
+            stiffness: Arc::new(stiffness),
+            damping: Arc::new(damping),
         };
-        let (inertia, [stiffness, damping]) = assemble(&mesh, section, moduli, &pattern)?;
-        let body = Body { mesh, material, strain, section, inertia, stiffness, damping };
         match body.nodal_masses().iter().position(|&mass| mass == 0.0) {
             Some(node) => Err(Error::input(
                 "node",
@@ -135,10 +220,13 @@ impl Body {
         BodyBuilder {
             mesh,
             material,
+            regions: Vec::new(),
             strain: Strain::default(),
+            viscosity: None,
             plane: Plane::default(),
             thickness: None,
             area: None,
+            points: Vec::new(),
         }
     }
 
@@ -155,6 +243,11 @@ impl Body {
     /// How strain is measured.
     pub fn strain(&self) -> Strain {
         self.strain
+    }
+
+    /// How viscosity acts.
+    pub fn viscosity(&self) -> Viscosity {
+        self.viscosity
     }
 
     /// Dimension of space.
@@ -183,15 +276,44 @@ impl Body {
     }
 
     /// The connection matrices J_lambda and J_mu: geometry only (slides, "stiffness matrix").
-    ///
-    /// # Panics
-    /// Never: the cells were checked when the body was built.
     pub fn connection_matrices(&self) -> [BlockMatrix; 2] {
-        let unit = |lambda: f64, mu: f64| Lame { lambda, mu };
-        let moduli = Moduli { density: 0.0, elastic: unit(1.0, 0.0), viscous: unit(0.0, 1.0) };
-        let (_, matrices) = assemble(&self.mesh, self.section, moduli, self.inertia.pattern())
-            .expect("the cells were checked when the body was built");
-        matrices
+        [Lame { lambda: 1.0, mu: 0.0 }, Lame { lambda: 0.0, mu: 1.0 }].map(|unit| {
+            let mut matrix = BlockMatrix::zeros(self.stiffness.pattern(), self.dimension());
+            self.cells.add_stiffness(&self.regions, &|_| unit, &mut matrix);
+            matrix
+        })
+    }
+
+    /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
+    pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        self.cells.volume_ratios(u)
+    }
+
+    /// Volume of the cells (m^3).
+    pub fn volume(&self) -> f64 {
+        self.cells.volume()
+    }
+
+    pub(crate) fn shared_inertia(&self) -> Arc<NodeMatrix> {
+        self.inertia.clone()
+    }
+
+    /// K, if the elastic force is -K u.
+    pub(crate) fn constant_stiffness(&self) -> Option<Arc<BlockMatrix>> {
+        (self.strain == Strain::Cauchy).then(|| self.stiffness.clone())
+    }
+
+    /// B, if the viscous force is -B v.
+    pub(crate) fn constant_damping(&self) -> Option<Arc<BlockMatrix>> {
+        (self.viscosity == Viscosity::Natural).then(|| self.damping.clone())
+    }
+
+    /// The elastic and viscous forces that have no constant matrix.
+    pub(crate) fn elastic(&self) -> Option<Elastic> {
+        let green = self.strain == Strain::Green;
+        let objective = self.viscosity == Viscosity::Objective;
+        let (cells, regions) = (self.cells.clone(), self.regions.clone());
+        (green || objective).then(|| Elastic::new(cells, regions, Law { green, objective }))
     }
 
     /// Total mass (kg).

@@ -3,6 +3,9 @@
 //! A cell is known to the rest of the crate by its quadrature points only: the gradients g_a of
 //! its shape functions and a weight each. The map from the reference cell to the natural shape is
 //! isoparametric for all cells.
+//!
+//! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
+//! then described in coordinates of its own, along an orthonormal frame in its tangent space.
 
 mod hexahedron;
 mod quadrilateral;
@@ -24,47 +27,57 @@ pub(crate) use tetrahedron10::Tetrahedron10;
 pub(crate) use triangle::Triangle;
 pub(crate) use triangle6::Triangle6;
 
-/// A reference cell of `N` nodes in dimension `D`.
-pub(crate) trait ReferenceCell<const N: usize, const D: usize> {
+/// A reference cell of `N` nodes in dimension `M`.
+pub(crate) trait ReferenceCell<const N: usize, const M: usize> {
     /// Points and weights that integrate the stiffness.
-    const STIFFNESS_RULE: &'static [([f64; D], f64)];
+    const STIFFNESS_RULE: &'static [([f64; M], f64)];
     /// Points and weights that integrate products of two shape functions.
-    const MASS_RULE: &'static [([f64; D], f64)];
+    const MASS_RULE: &'static [([f64; M], f64)];
 
     /// The shape functions N_a.
-    fn values(xi: [f64; D]) -> [f64; N];
+    fn values(xi: [f64; M]) -> [f64; N];
 
     /// Their derivatives by the reference coordinates.
-    fn derivatives(xi: [f64; D]) -> [[f64; D]; N];
+    fn derivatives(xi: [f64; M]) -> [[f64; M]; N];
 }
 
-/// A quadrature point for the stiffness: gradients of the shape functions (1/m) and volume.
-pub(crate) struct StiffnessPoint<const N: usize, const D: usize> {
-    pub gradients: [SVector<f64, D>; N],
+/// A quadrature point for strain.
+#[derive(Debug, Clone)]
+pub(crate) struct StrainPoint<const N: usize, const M: usize, const D: usize> {
+    /// Gradients g_a of the shape functions (1/m), in the coordinates of the cell.
+    pub gradients: [SVector<f64, M>; N],
+    /// Derivative of the natural position by the coordinates of the cell: the identity where the
+    /// cell fills space, else its tangent frame.
+    pub frame: SMatrix<f64, D, M>,
     /// Length, area or volume that the point stands for (m, m^2, m^3).
     pub volume: f64,
 }
 
-/// A quadrature point for the inertia: values of the shape functions and volume.
+/// A quadrature point for inertia: values of the shape functions and volume.
 pub(crate) struct MassPoint<const N: usize> {
     pub values: [f64; N],
     pub volume: f64,
 }
 
-/// The stiffness points of the cell with the natural nodal positions `nodes`; fails with the
-/// volume of the worst point where the map is not invertible with positive volume.
-pub(crate) fn stiffness_points<C: ReferenceCell<N, D>, const N: usize, const D: usize>(
+/// The strain points of the cell with the natural nodal positions `nodes`; fails with the volume
+/// of a point where the map is not invertible with positive volume.
+pub(crate) fn strain_points<
+    C: ReferenceCell<N, M>,
+    const N: usize,
+    const M: usize,
+    const D: usize,
+>(
     nodes: &[[f64; D]; N],
-) -> Result<Vec<StiffnessPoint<N, D>>, f64> {
-    let volume_scale = size(nodes).powi(D as i32);
-    let point = |&(xi, weight): &([f64; D], f64)| {
+) -> Result<Vec<StrainPoint<N, M, D>>, f64> {
+    let smallest = 1e-12 * size(nodes).powi(M as i32);
+    let point = |&(xi, weight): &([f64; M], f64)| {
         let derivatives = C::derivatives(xi).map(SVector::from);
-        let jacobian = map_jacobian(nodes, &derivatives);
-        let inverse = jacobian.try_inverse();
-        let volume = weight * determinant(&jacobian);
-        match inverse {
-            Some(inverse) if volume > 1e-12 * volume_scale => Ok(StiffnessPoint {
+        let (frame, map) = split(&jacobian(nodes, &derivatives));
+        let volume = weight * determinant(&map);
+        match map.try_inverse() {
+            Some(inverse) if volume > smallest => Ok(StrainPoint {
                 gradients: derivatives.map(|derivative| inverse.tr_mul(&derivative)),
+                frame,
                 volume,
             }),
             _ => Err(volume),
@@ -74,27 +87,58 @@ pub(crate) fn stiffness_points<C: ReferenceCell<N, D>, const N: usize, const D: 
 }
 
 /// The mass points of the cell with the natural nodal positions `nodes`.
-pub(crate) fn mass_points<C: ReferenceCell<N, D>, const N: usize, const D: usize>(
+pub(crate) fn mass_points<
+    C: ReferenceCell<N, M>,
+    const N: usize,
+    const M: usize,
+    const D: usize,
+>(
     nodes: &[[f64; D]; N],
 ) -> impl Iterator<Item = MassPoint<N>> {
     C::MASS_RULE.iter().map(move |&(xi, weight)| {
-        let jacobian = map_jacobian(nodes, &C::derivatives(xi).map(SVector::from));
-        MassPoint { values: C::values(xi), volume: weight * determinant(&jacobian) }
+        let (_, map) = split(&jacobian(nodes, &C::derivatives(xi).map(SVector::from)));
+        MassPoint { values: C::values(xi), volume: weight * determinant(&map) }
     })
 }
 
 /// Derivative of the position by the reference coordinates: sum_a X_a (dN_a/dxi)^T.
-fn map_jacobian<const N: usize, const D: usize>(
+fn jacobian<const N: usize, const M: usize, const D: usize>(
     nodes: &[[f64; D]; N],
-    derivatives: &[SVector<f64, D>; N],
-) -> SMatrix<f64, D, D> {
+    derivatives: &[SVector<f64, M>; N],
+) -> SMatrix<f64, D, M> {
     let products = nodes.iter().zip(derivatives).map(|(x, d)| SVector::from(*x) * d.transpose());
     products.fold(SMatrix::zeros(), |sum, product| sum + product)
 }
 
-fn determinant<const D: usize>(matrix: &SMatrix<f64, D, D>) -> f64 {
+/// Splits a Jacobian into an orthonormal frame and the map from reference coordinates to those
+/// along the frame. Where the cell fills space the frame is the identity.
+fn split<const M: usize, const D: usize>(
+    jacobian: &SMatrix<f64, D, M>,
+) -> (SMatrix<f64, D, M>, SMatrix<f64, M, M>) {
+    if M == D {
+        return (SMatrix::identity(), SMatrix::from_fn(|i, j| jacobian[(i, j)]));
+    }
+    let (mut frame, mut map) = (*jacobian, SMatrix::zeros());
+    for k in 0..M {
+        for j in 0..k {
+            let along = frame.column(j).dot(&frame.column(k));
+            map[(j, k)] = along;
+            let projection = frame.column(j) * along;
+            frame.column_mut(k).zip_apply(&projection, |x, p| *x -= p);
+        }
+        let length = frame.column(k).norm();
+        map[(k, k)] = length;
+        if length > 0.0 {
+            frame.column_mut(k).unscale_mut(length);
+        }
+    }
+    (frame, map)
+}
+
+/// Determinant of a matrix of at most 3 rows.
+pub(crate) fn determinant<const M: usize>(matrix: &SMatrix<f64, M, M>) -> f64 {
     let m = |i: usize, j: usize| matrix[(i, j)];
-    match D {
+    match M {
         1 => m(0, 0),
         2 => m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0),
         _ => {

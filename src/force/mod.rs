@@ -54,10 +54,14 @@ pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
 /// Where the potential energy of a force is accounted for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reservoir {
+    /// Strain energy.
+    Strain,
     /// Gravitational energy.
     Gravity,
     /// Energy stored in penalty springs at obstacles.
     Contact,
+    /// Energy of springs.
+    Springs,
     /// None: the force has no potential.
     None,
 }

@@ -89,6 +89,24 @@ impl Mesh {
         Ok(self)
     }
 
+    /// Adds a node that belongs to no cell, alone in the node set `name`.
+    pub(crate) fn push_node(&mut self, name: &str, position: &[f64]) -> Result<(), Error> {
+        if position.len() != self.dimension {
+            let mend = format!("it needs {} coordinates (m)", self.dimension);
+            let input = format!("position of point \"{name}\"");
+            return Err(Error::input(input, format!("{position:?}"), mend));
+        }
+        finite(&format!("the position of point \"{name}\""), position)?;
+        if self.sets.contains_key(name) {
+            let mend = "a node set has that name already: choose another one";
+            return Err(Error::input("name of a point", format!("\"{name}\""), mend));
+        }
+        let node = self.node_count();
+        self.positions.extend_from_slice(position);
+        self.sets.insert(name.into(), vec![node]);
+        Ok(())
+    }
+
     /// The same mesh, moved by `offset` (m).
     ///
     /// # Errors

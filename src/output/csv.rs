@@ -86,8 +86,7 @@ fn row<'a>(
     sample: &'a Sample,
 ) -> impl Iterator<Item = f64> + 'a {
     let (dimension, energy) = (trajectory.body().dimension(), &sample.energy);
-    let springs = 0.0; // a scene has no springs yet
-    let energies = [energy.kinetic, energy.strain, energy.gravity, energy.contact, springs];
+    let energies = [energy.kinetic, energy.strain, energy.gravity, energy.contact, energy.springs];
     let balance = [energy.dissipated, energy.supplied, energy.balance(), sample.constraint_drift];
     [sample.time]
         .into_iter()

@@ -1,6 +1,7 @@
 //! Scenes of Hirai, *Computing Dynamic Deformation*.
 
-use crate::body::{Body, BodyBuilder};
+use crate::body::{Body, BodyBuilder, Strain, Viscosity};
+use crate::constraint::Axis;
 use crate::error::Error;
 use crate::force::Obstacle;
 use crate::material::Material;
@@ -14,6 +15,10 @@ pub const SQUARE_MATERIAL: Material =
 /// Material of the beam: E = 50 kPa, c = 0.2 kPa s, rho = 1 g/cm^3.
 pub const BEAM_MATERIAL: Material =
     Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 200.0 };
+
+/// Material of the bent beam: E = 0.1 MPa, c = 4 Pa s, nu = 0.48, rho = 1 g/cm^3.
+pub const BENT_BEAM_MATERIAL: Material =
+    Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 4.0 };
 
 /// Figs 4.3 and 4.4: an elastic square of 30 cm, `nodes` x `nodes`, 1 cm thick. Its bottom is
 /// fixed and the middle third of its top pressed down at 16 cm/s until 0.5 s, held until 1 s,
@@ -83,6 +88,27 @@ pub fn beam_jump() -> Result<Scene, Error> {
         .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
         .phase(push.without_contact())
         .phase(Phase::until(0.6).named("free")))
+}
+
+/// Figs 4.9 and 4.10: an elastic beam of 10 x 2 cm (11 x 3 nodes), 1 cm thick, its left end fixed.
+/// The middle of its right end, node 22, is pushed down by 5 cm within 5 s, its horizontal component
+/// held too if `holds_tip`; then it is released until 6 s. Viscosity is natural, as in the documents.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn beam_bend(strain: Strain, holds_tip: bool) -> Result<Scene, Error> {
+    let mesh = Mesh::rectangle([0.10, 0.02], [11, 3], Cells::Triangles)?;
+    let body = Body::new(mesh, BENT_BEAM_MATERIAL)
+        .thickness(0.01)
+        .strain(strain)
+        .viscosity(Viscosity::Natural)
+        .build()?;
+    let push = Phase::until(5.0).named("push").hold("left");
+    let push = match holds_tip {
+        true => push.move_nodes([22], [0.0, -0.01]),
+        false => push.move_axis([22], Axis::Y, -0.01),
+    };
+    Ok(Scene::new(body).phase(push).phase(Phase::until(6.0).named("released").hold("left")))
 }
 
 /// Numbers (from 1) of the nodes in the middle third of the top edge of the square.

@@ -10,6 +10,7 @@ use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
 use crate::error::{Error, finite};
 use crate::force::{Contact, Force, Gravity, Load, Obstacle};
+use crate::model::Model;
 use crate::system::System;
 
 /// A body, gravity, obstacles, and what happens when.
@@ -143,10 +144,24 @@ impl Scene {
         Ok(())
     }
 
+    /// The constant numbers of the scene.
+    pub(crate) fn model(&self) -> Result<Arc<Model>, Error> {
+        let forces: Vec<_> =
+            self.phases.iter().map(|phase| self.forces(phase)).collect::<Result<_, Error>>()?;
+        let all = forces.iter().flatten().map(|force| &**force);
+        Ok(Arc::new(Model::new(&self.body, all)))
+    }
+
     /// The equations of one phase.
-    pub(crate) fn system(&self, phase: &Phase, start: &Start, alpha: f64) -> Result<System, Error> {
-        let rows = self.rows(phase, start)?;
-        System::new(self.body.clone(), self.forces(phase)?, rows, alpha, &phase.name)
+    pub(crate) fn system(
+        &self,
+        model: &Arc<Model>,
+        phase: &Phase,
+        start: &Start,
+        alpha: f64,
+    ) -> Result<System, Error> {
+        let (rows, forces) = (self.rows(phase, start)?, self.forces(phase)?);
+        System::new(model.clone(), forces, rows, alpha, &phase.name)
     }
 
     fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
@@ -156,6 +171,9 @@ impl Scene {
     fn forces(&self, phase: &Phase) -> Result<Vec<Arc<dyn Force>>, Error> {
         let (mesh, dimension) = (self.body.mesh(), self.body.dimension());
         let mut forces: Vec<Arc<dyn Force>> = Vec::new();
+        if let Some(elastic) = self.body.elastic() {
+            forces.push(Arc::new(elastic));
+        }
         if let Some(gravity) = &self.gravity {
             phase::check_vector("gravity", gravity, dimension, "m/s^2")?;
             finite("gravity", gravity)?;

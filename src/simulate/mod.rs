@@ -195,12 +195,13 @@ impl<'a> Run<'a> {
 
     fn all(mut self, sampling: &Sampling) -> Result<Trajectory, Error> {
         let n = self.scene.body().dofs();
+        let model = self.scene.model()?;
         let mut rows = Vec::new();
         for (number, phase) in self.scene.phases().iter().enumerate() {
             let mut u = self.state[..n].to_vec();
             tell(&rows, self.time, &mut u);
             let start = Start { time: self.time, u: &u };
-            let mut system = self.scene.system(phase, &start, self.solver.alpha)?;
+            let mut system = self.scene.system(&model, phase, &start, self.solver.alpha)?;
             rows = system.rows().to_vec();
             if phase.projects_velocity {
                 system.project(self.time, &mut self.state[n..2 * n]);
@@ -318,5 +319,19 @@ fn into_error(failure: Failure) -> Failed {
     match failure {
         Failure::Recoverable(message) => message.into(),
         Failure::Fatal(error) => error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sampling;
+
+    #[test]
+    fn samples_lie_within_the_phase_and_end_with_it() {
+        // 3 x 0.1 is a little more than 0.3
+        assert_eq!(Sampling::every(0.1).within(0.0, 0.3), [0.1, 0.2, 0.3]);
+        assert_eq!(Sampling::every(0.1).within(0.3, 0.45), [0.4, 0.45]);
+        assert_eq!(Sampling::at([0.4, 0.1, 0.3, 0.1]).within(0.0, 0.35), [0.1, 0.3, 0.35]);
+        assert_eq!(Sampling::phase_ends().within(0.3, 0.45), [0.45]);
     }
 }

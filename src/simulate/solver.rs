@@ -132,7 +132,7 @@ impl Solver {
     pub(crate) fn tolerances(&self, body: &Body) -> Tolerances {
         const SMALL_STRAIN: f64 = 0.01;
         let (size, young) = (body.mesh().size(), body.material().young);
-        let volume = body.mass() / body.material().density;
+        let volume = body.volume();
         let position = self.rtol * SMALL_STRAIN * size;
         let velocity = self.rtol * SMALL_STRAIN * body.material().wave_speed();
         Tolerances {

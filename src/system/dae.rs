@@ -54,14 +54,14 @@ impl IndexOne {
     /// Visits all entries of dF/dy + cj dF/dy' as (row, column, value), column by column, rows
     /// ascending; the same entries at every call.
     pub(crate) fn visit_jacobian(&self, cj: f64, mut visit: impl FnMut(usize, usize, f64)) {
-        let System { body, rows, alpha, .. } = &self.system;
-        let (n, d) = (self.system.dofs(), body.dimension());
+        let System { model, rows, alpha, .. } = &self.system;
+        let (n, d) = (self.system.dofs(), model.dimension);
         let (stiffness, damping) = self.system.tangents();
-        let (inertia, pattern) = (body.inertia(), body.inertia().pattern());
+        let (inertia, pattern) = (&model.inertia, model.pattern());
         let lambda = 2 * n + ENERGIES;
-        // Kt and D are symmetric: block (column, row) stands for (row, column)
+        // entry (column, row) of the pattern; the one that is wanted is (row, column)
         let block = |matrix: &[f64], entry: usize, row_axis: usize, column_axis: usize| {
-            matrix[(entry * d + column_axis) * d + row_axis]
+            matrix[(pattern.transposed(entry) * d + row_axis) * d + column_axis]
         };
         for dof in 0..n {
             visit(dof, dof, cj);
@@ -108,7 +108,7 @@ impl Dae for IndexOne {
         self.system.evaluate_forces(t, u, v)?;
         self.system.evaluate_rows(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, multipliers);
-        let System { body, rows, at, .. } = &mut self.system;
+        let System { model, rows, at, .. } = &mut self.system;
         at.multipliers.copy_from_slice(multipliers);
 
         for i in 0..n {
@@ -116,7 +116,7 @@ impl Dae for IndexOne {
             residual[n + i] = -at.total[i];
         }
         let momentum = &mut residual[n..2 * n];
-        body.inertia().add_product(body.dimension(), 1.0, vp, momentum);
+        model.inertia.add_product(model.dimension, 1.0, vp, momentum);
         for (row, multiplier) in rows.iter().zip(multipliers) {
             row.terms.iter().for_each(|&(dof, c)| momentum[dof] -= c * multiplier);
         }

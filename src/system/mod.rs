@@ -32,15 +32,15 @@ use newton::Newton;
 pub(crate) use ode::ENERGIES;
 use reduced::{Coupling, Reduced};
 
-use crate::body::Body;
 use crate::constraint::{Prescribed, Row};
 use crate::error::Error;
 use crate::force::{Force, NodalForces, Reservoir, dot};
+use crate::model::Model;
 use crate::ode::Failure;
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
-    body: Arc<Body>,
+    model: Arc<Model>,
     forces: Vec<Arc<dyn Force>>,
     rows: Vec<Row>,
     /// Stabilization rate alpha (1/s).
@@ -76,6 +76,8 @@ pub struct Energy {
     pub gravity: f64,
     /// Stored in the penalty springs of contacts.
     pub contact: f64,
+    /// Stored in springs between nodes.
+    pub springs: f64,
     /// Turned into heat since t = 0 by viscosity, contact damping and friction.
     pub dissipated: f64,
     /// Supplied since t = 0 by loads and constraints.
@@ -85,7 +87,8 @@ pub struct Energy {
 impl Energy {
     /// Kinetic + potential + dissipated - supplied: constant along an exact motion.
     pub fn balance(&self) -> f64 {
-        self.kinetic + self.strain + self.gravity + self.contact + self.dissipated - self.supplied
+        let stored = self.strain + self.gravity + self.contact + self.springs;
+        self.kinetic + stored + self.dissipated - self.supplied
     }
 }
 
@@ -93,16 +96,15 @@ impl System {
     /// # Errors
     /// General constraint rows that follow from others.
     pub(crate) fn new(
-        body: Arc<Body>,
+        model: Arc<Model>,
         forces: Vec<Arc<dyn Force>>,
         rows: Vec<Row>,
         alpha: f64,
         phase: &str,
     ) -> Result<Self, Error> {
-        let (dimension, dofs) = (body.dimension(), body.dofs());
-        let pattern = body.inertia().pattern().clone();
-        let mut inertia = Reduced::new(&pattern, dimension, &rows, Coupling::SameAxis);
-        let values = &body.inertia().values;
+        let (dimension, dofs) = (model.dimension, model.dofs());
+        let mut inertia = Reduced::new(model.pattern(), dimension, &rows, Coupling::SameAxis);
+        let values = &model.inertia.values;
         if inertia.factorize(|source| values[source.entry]).is_err() {
             return Err(match inertia.dependent_row() {
                 Some(row) => Error::Constraint {
@@ -112,13 +114,13 @@ impl System {
                 },
                 None => Error::input(
                     "material.density",
-                    body.material().density,
-                    "with this mesh it gives masses beyond the range of double precision",
+                    format!("giving {:e} kg on node 1", model.inertia.get(0, 0)),
+                    "with this mesh the masses are beyond the range of double precision",
                 ),
             });
         }
         let nonlinear = forces.iter().any(|force| force.is_nonlinear());
-        let newton = Newton::new(&body, &rows, nonlinear);
+        let newton = Newton::new(&model, &rows, nonlinear);
         let at = Evaluation {
             nodal: NodalForces::zeros(dofs),
             total: vec![0.0; dofs],
@@ -127,12 +129,12 @@ impl System {
             rates: vec![0.0; rows.len()],
             demands: vec![0.0; rows.len()],
         };
-        Ok(Self { body, forces, rows, alpha, inertia, newton, at })
+        Ok(Self { model, forces, rows, alpha, inertia, newton, at })
     }
 
     /// Number of displacement components.
     pub(crate) fn dofs(&self) -> usize {
-        self.body.dofs()
+        self.model.dofs()
     }
 
     /// The constraints, row by row.
@@ -155,8 +157,8 @@ impl System {
     /// at time `t`.
     pub(crate) fn project(&mut self, t: f64, v: &mut [f64]) {
         self.at.total.fill(0.0);
-        let dimension = self.body.dimension();
-        self.body.inertia().add_product(dimension, 1.0, v, &mut self.at.total);
+        let Model { inertia, dimension, .. } = &*self.model;
+        inertia.add_product(*dimension, 1.0, v, &mut self.at.total);
         for (demand, row) in self.at.demands.iter_mut().zip(&self.rows) {
             *demand = row.prescribed(t).velocity;
         }
@@ -172,16 +174,19 @@ impl System {
 
     /// Kinetic and potential energies of a state; dissipated and supplied are left at 0.
     pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64]) -> Energy {
+        let Model { inertia, stiffness, dimension, .. } = &*self.model;
         let mut energy = Energy {
-            kinetic: 0.5 * self.body.inertia().quadratic_form(self.body.dimension(), v),
-            strain: 0.5 * self.body.stiffness().quadratic_form(u),
+            kinetic: 0.5 * inertia.quadratic_form(*dimension, v),
+            strain: stiffness.as_ref().map_or(0.0, |k| 0.5 * k.quadratic_form(u)),
             ..Energy::default()
         };
         for force in &self.forces {
             let potential = force.potential(t, u);
             match force.reservoir() {
+                Reservoir::Strain => energy.strain += potential,
                 Reservoir::Gravity => energy.gravity += potential,
                 Reservoir::Contact => energy.contact += potential,
+                Reservoir::Springs => energy.springs += potential,
                 Reservoir::None => {}
             }
         }
@@ -194,9 +199,9 @@ impl System {
         self.evaluate_rows(t, u, v)?;
         let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
         self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
-        let (inertia, dimension) = (self.body.inertia(), self.body.dimension());
+        let Model { inertia, dimension, .. } = &*self.model;
         nodal_multipliers(&self.rows, multipliers, |dof| {
-            inertia.row_product(dimension, dof, acceleration) - total[dof]
+            inertia.row_product(*dimension, dof, acceleration) - total[dof]
         });
         Ok(())
     }
@@ -204,8 +209,12 @@ impl System {
     fn evaluate_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
         let Evaluation { nodal, total, .. } = &mut self.at;
         nodal.clear();
-        self.body.stiffness().add_product(-1.0, u, &mut nodal.conservative);
-        self.body.damping().add_product(-1.0, v, &mut nodal.dissipative);
+        if let Some(stiffness) = &self.model.stiffness {
+            stiffness.add_product(-1.0, u, &mut nodal.conservative);
+        }
+        if let Some(damping) = &self.model.damping {
+            damping.add_product(-1.0, v, &mut nodal.dissipative);
+        }
         for force in &self.forces {
             force.add_forces(t, u, v, nodal)?;
         }
@@ -237,7 +246,7 @@ impl System {
 
     fn not_finite(&self, row: &Row, t: f64) -> Failure {
         let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
-        let label = row.label(self.body.dimension());
+        let label = row.label(self.model.dimension);
         Failure::Fatal(
             format!(
                 "the path of {label} gives b = {displacement}, b' = {velocity}, \

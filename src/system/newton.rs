@@ -12,17 +12,22 @@
 //!
 //! One sparse symmetric matrix N of half the size; alpha costs nothing, however large.
 
+use std::sync::Arc;
+
 use super::reduced::{Coupling, Reduced};
 use super::{System, nodal_multipliers};
-use crate::body::Body;
 use crate::constraint::Row;
+use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
 pub(super) struct Newton {
     solver: Reduced,
-    /// Kt and D where they change; a linear phase uses K and B of the body throughout.
-    tangents: Option<Tangents>,
+    stiffness: Tangent,
+    damping: Tangent,
+    /// Whether the tangents follow the state, and have been evaluated.
+    follows: bool,
+    is_set: bool,
     gamma: f64,
     factorizations: usize,
     /// f of the linear system, and its solution xv.
@@ -33,23 +38,49 @@ pub(super) struct Newton {
     pub(super) mu: Vec<f64>,
 }
 
-struct Tangents {
-    stiffness: BlockMatrix,
-    damping: BlockMatrix,
-    are_set: bool,
+/// Kt or D.
+enum Tangent {
+    /// The constant matrix of the model, in a phase without forces that change it.
+    Constant(Arc<BlockMatrix>),
+    /// A matrix of its own.
+    Own(BlockMatrix),
+}
+
+impl Tangent {
+    fn new(model: &Model, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
+        match constant {
+            Some(constant) if !follows => Self::Constant(constant.clone()),
+            _ => Self::Own(BlockMatrix::zeros(model.pattern(), model.dimension)),
+        }
+    }
+
+    fn get(&self) -> &BlockMatrix {
+        match self {
+            Self::Constant(matrix) => matrix,
+            Self::Own(matrix) => matrix,
+        }
+    }
+
+    /// Its own matrix, set back to the constant part.
+    fn begin(&mut self, constant: &Option<Arc<BlockMatrix>>) -> Option<&mut BlockMatrix> {
+        let Self::Own(matrix) = self else { return None };
+        match constant {
+            Some(constant) => matrix.values.copy_from_slice(&constant.values),
+            None => matrix.values.fill(0.0),
+        }
+        Some(matrix)
+    }
 }
 
 impl Newton {
-    pub(super) fn new(body: &Body, rows: &[Row], nonlinear: bool) -> Self {
-        let pattern = body.stiffness().pattern();
-        let dofs = body.dofs();
+    pub(super) fn new(model: &Model, rows: &[Row], follows: bool) -> Self {
+        let dofs = model.dofs();
         Self {
-            solver: Reduced::new(pattern, body.dimension(), rows, Coupling::AllAxes),
-            tangents: nonlinear.then(|| Tangents {
-                stiffness: body.stiffness().clone(),
-                damping: body.damping().clone(),
-                are_set: false,
-            }),
+            solver: Reduced::new(model.pattern(), model.dimension, rows, Coupling::AllAxes),
+            stiffness: Tangent::new(model, &model.stiffness, follows),
+            damping: Tangent::new(model, &model.damping, follows),
+            follows,
+            is_set: false,
             gamma: f64::NAN,
             factorizations: 0,
             right: vec![0.0; dofs],
@@ -64,16 +95,6 @@ impl Newton {
     }
 }
 
-fn in_force<'a>(
-    tangents: &'a Option<Tangents>,
-    body: &'a Body,
-) -> (&'a BlockMatrix, &'a BlockMatrix) {
-    match tangents {
-        Some(tangents) => (&tangents.stiffness, &tangents.damping),
-        None => (body.stiffness(), body.damping()),
-    }
-}
-
 impl System {
     /// Step parameter of the last factorization.
     pub(super) fn gamma(&self) -> f64 {
@@ -82,22 +103,26 @@ impl System {
 
     /// Kt and D in force.
     pub(super) fn tangents(&self) -> (&BlockMatrix, &BlockMatrix) {
-        in_force(&self.newton.tangents, &self.body)
+        (self.newton.stiffness.get(), self.newton.damping.get())
     }
 
     /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
     /// current.
     pub(super) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
-        let Some(tangents) = &mut self.newton.tangents else { return true };
-        if reuse && tangents.are_set {
+        let Newton { stiffness, damping, follows, is_set, .. } = &mut self.newton;
+        if !*follows {
+            return true;
+        }
+        if reuse && *is_set {
             return false;
         }
-        tangents.stiffness.values.copy_from_slice(&self.body.stiffness().values);
-        tangents.damping.values.copy_from_slice(&self.body.damping().values);
-        for force in &self.forces {
-            force.add_tangents(t, u, v, &mut tangents.stiffness, &mut tangents.damping);
+        let Model { stiffness: k, damping: b, .. } = &*self.model;
+        if let (Some(stiffness), Some(damping)) = (stiffness.begin(k), damping.begin(b)) {
+            for force in &self.forces {
+                force.add_tangents(t, u, v, stiffness, damping);
+            }
         }
-        tangents.are_set = true;
+        *is_set = true;
         true
     }
 
@@ -105,14 +130,17 @@ impl System {
     pub(super) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
         self.newton.factorizations += 1;
-        let Newton { solver, tangents, .. } = &mut self.newton;
-        let (stiffness, damping) = in_force(tangents, &self.body);
-        let (inertia, d) = (self.body.inertia(), self.body.dimension());
+        let Newton { solver, stiffness, damping, .. } = &mut self.newton;
+        let (stiffness, damping) = (stiffness.get(), damping.get());
+        let (inertia, d) = (&self.model.inertia, self.model.dimension);
         let factorized = solver.factorize(|source| {
             let [row, column] = source.axes;
-            let at = (source.entry * d + row) * d + column;
             let mass = if row == column { inertia.values[source.entry] } else { 0.0 };
-            mass + gamma * (damping.values[at] + gamma * stiffness.values[at])
+            // the symmetric part: tangents of viscosity and contact need not be symmetric
+            let at = (source.entry * d + row) * d + column;
+            let transposed = (source.transposed * d + column) * d + row;
+            let part = |matrix: &BlockMatrix| 0.5 * (matrix.values[at] + matrix.values[transposed]);
+            mass + gamma * (part(damping) + gamma * part(stiffness))
         });
         factorized.map_err(|_| {
             Failure::Recoverable(
@@ -128,14 +156,14 @@ impl System {
     fn solve_newton(&mut self, ru: &mut [f64]) {
         let (gamma, alpha) = (self.newton.gamma, self.alpha);
         let decay = 1.0 + alpha * gamma;
-        let Newton { solver, tangents, right, xv, demands, mu, .. } = &mut self.newton;
-        let (stiffness, damping) = in_force(tangents, &self.body);
+        let Newton { solver, stiffness, damping, right, xv, demands, mu, .. } = &mut self.newton;
+        let (stiffness, damping) = (stiffness.get(), damping.get());
         stiffness.add_product(-gamma, ru, right);
         for (demand, row) in demands.iter_mut().zip(&self.rows) {
             *demand = (*demand - gamma * alpha * alpha * row.apply(ru)) / (decay * decay);
         }
         solver.solve(&self.rows, right, demands, xv, mu);
-        let (inertia, dimension) = (self.body.inertia(), self.body.dimension());
+        let (inertia, dimension) = (&self.model.inertia, self.model.dimension);
         nodal_multipliers(&self.rows, mu, |dof| {
             let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
             inertia.row_product(dimension, dof, xv) + gamma * damped - right[dof]
@@ -147,7 +175,7 @@ impl System {
     pub(super) fn solve_newton_ode(&mut self, ru: &mut [f64], rv: &mut [f64]) {
         let Newton { right, demands, .. } = &mut self.newton;
         right.fill(0.0);
-        self.body.inertia().add_product(self.body.dimension(), 1.0, rv, right);
+        self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
         demands.iter_mut().zip(&self.rows).for_each(|(demand, row)| *demand = row.apply(rv));
         self.solve_newton(ru);
         rv.copy_from_slice(&self.newton.xv);

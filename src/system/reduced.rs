@@ -22,7 +22,9 @@ use crate::sparse::NodePattern;
 pub(super) struct Source {
     /// Index of the pair of nodes in the [`NodePattern`].
     pub(super) entry: usize,
-    /// Axis of the row and of the column.
+    /// Index of the same pair the other way round.
+    pub(super) transposed: usize,
+    /// Axis of the row and of the column, in the block of `entry`.
     pub(super) axes: [usize; 2],
 }
 
@@ -74,7 +76,7 @@ impl Reduced {
                         continue;
                     }
                     // X is symmetric: entry (column, row) stands for (row, column).
-                    let source = Source { entry, axes };
+                    let source = Source { entry, transposed: pattern.transposed(entry), axes };
                     match (position[node * dimension + axis], position[column]) {
                         (Some(row), Some(column)) if row >= column => {
                             row_indices.push(row);

@@ -1,0 +1,407 @@
+//! The cells of a body: one loop over quadrature points for every elastic and viscous force.
+//!
+//! With natural-shape gradients g_a, weights w and H = sum u_a g_a^T, F = F_0 + H (F_0 the frame of
+//! the cell, the identity where it fills space):
+//!
+//! | | strain | nodal force |
+//! | --- | --- | --- |
+//! | Green | E = sym(F_0^T H) + H^T H / 2 | -sum w F S g_a, S = lambda tr(E) I + 2 mu E |
+//! | objective viscosity | E' = sym(F^T H') | -sum w F S_vis g_a |
+//!
+//! Cauchy strain and natural viscosity are their linear parts, with constant matrices.
+
+use nalgebra::{SMatrix, SVector};
+
+use super::regions::{Moduli, Regions};
+use crate::element::{
+    Hexahedron, MassPoint, Quadrilateral, ReferenceCell, Segment, StrainPoint, Tetrahedron,
+    Tetrahedron10, Triangle, Triangle6, determinant, mass_points, strain_points,
+};
+use crate::error::Error;
+use crate::force::NodalForces;
+use crate::material::Lame;
+use crate::mesh::{CellKind, Mesh};
+use crate::ode::Failure;
+use crate::sparse::{BlockMatrix, NodeMatrix};
+
+/// Cells of one kind, behind a face that knows neither kind nor dimension.
+pub(crate) trait Cells: Send + Sync {
+    /// Adds the inertia of all cells.
+    fn add_inertia(&self, regions: &Regions, inertia: &mut NodeMatrix);
+
+    /// Adds sum w (lambda g_a g_b^T + mu ((g_a . g_b) I + g_b g_a^T)), `lame` telling the constants.
+    fn add_stiffness(
+        &self,
+        regions: &Regions,
+        lame: &dyn Fn(&Moduli) -> Lame,
+        stiffness: &mut BlockMatrix,
+    );
+
+    /// Adds the forces of Green strain, if `law` has them, and of objective viscosity.
+    fn add_forces(
+        &self,
+        regions: &Regions,
+        law: Law,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
+
+    /// Adds -df/du and -df/dv of the same forces.
+    fn add_tangents(
+        &self,
+        regions: &Regions,
+        law: Law,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    );
+
+    /// Energy of Green strain (J).
+    fn green_energy(&self, regions: &Regions, u: &[f64]) -> f64;
+
+    /// Present over natural volume of each cell.
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
+
+    /// Volume of all cells (m^3).
+    fn volume(&self) -> f64;
+}
+
+/// Which forces are evaluated cell by cell; the others have constant matrices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Law {
+    pub(crate) green: bool,
+    pub(crate) objective: bool,
+}
+
+/// The cells of `mesh`; `section` is the area or thickness of the body.
+pub(super) fn cells(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
+    let of = match (mesh.kind(), mesh.dimension()) {
+        (CellKind::Segment, 1) => CellsOf::<2, 1, 1>::boxed::<Segment>,
+        (CellKind::Segment, 2) => CellsOf::<2, 1, 2>::boxed::<Segment>,
+        (CellKind::Segment, _) => CellsOf::<2, 1, 3>::boxed::<Segment>,
+        (CellKind::Triangle, 2) => CellsOf::<3, 2, 2>::boxed::<Triangle>,
+        (CellKind::Triangle, _) => CellsOf::<3, 2, 3>::boxed::<Triangle>,
+        (CellKind::Triangle6, 2) => CellsOf::<6, 2, 2>::boxed::<Triangle6>,
+        (CellKind::Triangle6, _) => CellsOf::<6, 2, 3>::boxed::<Triangle6>,
+        (CellKind::Quadrilateral, 2) => CellsOf::<4, 2, 2>::boxed::<Quadrilateral>,
+        (CellKind::Quadrilateral, _) => CellsOf::<4, 2, 3>::boxed::<Quadrilateral>,
+        (CellKind::Tetrahedron, _) => CellsOf::<4, 3, 3>::boxed::<Tetrahedron>,
+        (CellKind::Tetrahedron10, _) => CellsOf::<10, 3, 3>::boxed::<Tetrahedron10>,
+        (CellKind::Hexahedron, _) => CellsOf::<8, 3, 3>::boxed::<Hexahedron>,
+    };
+    of(mesh, section)
+}
+
+/// Cells of `N` nodes and dimension `M` in a space of dimension `D`.
+struct CellsOf<const N: usize, const M: usize, const D: usize> {
+    nodes: Vec<[usize; N]>,
+    /// Strain points, those of one cell after those of the other; volumes times section.
+    points: Vec<StrainPoint<N, M, D>>,
+    points_per_cell: usize,
+    /// For each cell, sum w N_a N_b (m^3).
+    products: Vec<[[f64; N]; N]>,
+}
+
+impl<const N: usize, const M: usize, const D: usize> CellsOf<N, M, D> {
+    fn boxed<C: ReferenceCell<N, M>>(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
+        let positions = mesh.positions().as_chunks::<D>().0;
+        let (mut nodes, mut points, mut products) = (Vec::new(), Vec::new(), Vec::new());
+        for (number, cell) in mesh.cells().enumerate() {
+            let natural: [[f64; D]; N] = std::array::from_fn(|a| positions[cell[a]]);
+            let of_cell = strain_points::<C, N, M, D>(&natural)
+                .map_err(|volume| bad_cell(number, cell, volume))?;
+            points.extend(
+                of_cell
+                    .into_iter()
+                    .map(|point| StrainPoint { volume: section * point.volume, ..point }),
+            );
+            let mut product = [[0.0; N]; N];
+            for MassPoint { values, volume } in mass_points::<C, N, M, D>(&natural) {
+                for (a, b) in pairs::<N>() {
+                    product[a][b] += section * volume * values[a] * values[b];
+                }
+            }
+            products.push(product);
+            nodes.push(std::array::from_fn(|a| cell[a]));
+        }
+        Ok(Box::new(Self { nodes, points, points_per_cell: C::STIFFNESS_RULE.len(), products }))
+    }
+
+    /// Number, nodes and strain points of each cell.
+    fn iter(&self) -> impl Iterator<Item = (usize, &[usize; N], &[StrainPoint<N, M, D>])> {
+        let points = self.points.chunks_exact(self.points_per_cell);
+        self.nodes.iter().zip(points).enumerate().map(|(k, (nodes, points))| (k, nodes, points))
+    }
+
+    /// Calls `put` with the nodes and the block of each pair of nodes of a cell.
+    fn scatter(
+        nodes: &[usize; N],
+        matrix: &mut BlockMatrix,
+        block: impl Fn(usize, usize) -> SMatrix<f64, D, D>,
+    ) {
+        for (a, b) in pairs::<N>() {
+            let Some(entries) = matrix.block_mut(nodes[a], nodes[b]) else { continue };
+            let block = block(a, b);
+            for i in 0..D {
+                for j in 0..D {
+                    entries[i * D + j] += block[(i, j)];
+                }
+            }
+        }
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> {
+    fn add_inertia(&self, regions: &Regions, inertia: &mut NodeMatrix) {
+        for (cell, (nodes, products)) in self.nodes.iter().zip(&self.products).enumerate() {
+            let density = regions.of(cell).density;
+            for (a, b) in pairs::<N>() {
+                inertia.add(nodes[a], nodes[b], density * products[a][b]);
+            }
+        }
+    }
+
+    fn add_stiffness(
+        &self,
+        regions: &Regions,
+        lame: &dyn Fn(&Moduli) -> Lame,
+        stiffness: &mut BlockMatrix,
+    ) {
+        for (cell, nodes, points) in self.iter() {
+            let lame = lame(regions.of(cell));
+            for point in points {
+                let spread = point.gradients.map(|g| point.frame * g);
+                let frame_square = point.frame * point.frame.transpose();
+                Self::scatter(nodes, stiffness, |a, b| {
+                    let stretch = point.gradients[a].dot(&point.gradients[b]);
+                    material_block(lame, &spread[a], &spread[b], stretch, &frame_square)
+                        * point.volume
+                });
+            }
+        }
+    }
+
+    fn add_forces(
+        &self,
+        regions: &Regions,
+        law: Law,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
+        let conservative = forces.conservative.as_chunks_mut::<D>().0;
+        let dissipative = forces.dissipative.as_chunks_mut::<D>().0;
+        for (cell, nodes, points) in self.iter() {
+            let moduli = regions.of(cell);
+            for point in points {
+                let h = gradient(point, nodes, u);
+                let f = point.frame + h;
+                if law.green {
+                    check_orientation(cell, nodes, &f)?;
+                    let stress =
+                        f * stress(moduli.elastic, &green_strain(point, &h)) * point.volume;
+                    spread_force(point, nodes, &stress, conservative);
+                }
+                if law.objective {
+                    let rate = symmetric_part(&f.tr_mul(&gradient(point, nodes, v)));
+                    let stress = f * stress(moduli.viscous, &rate) * point.volume;
+                    spread_force(point, nodes, &stress, dissipative);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add_tangents(
+        &self,
+        regions: &Regions,
+        law: Law,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
+        for (cell, nodes, points) in self.iter() {
+            let moduli = regions.of(cell);
+            for point in points {
+                let h = gradient(point, nodes, u);
+                let f = point.frame + h;
+                let spread = point.gradients.map(|g| f * g);
+                let f_square = f * f.transpose();
+                let stretch = |a: usize, b: usize| point.gradients[a].dot(&point.gradients[b]);
+                if law.green {
+                    let stress = stress(moduli.elastic, &green_strain(point, &h));
+                    Self::scatter(nodes, stiffness, |a, b| {
+                        let (ga, gb) = (&point.gradients[a], &point.gradients[b]);
+                        let geometric = SMatrix::identity() * ga.dot(&(stress * gb));
+                        let (fa, fb) = (&spread[a], &spread[b]);
+                        (material_block(moduli.elastic, fa, fb, stretch(a, b), &f_square)
+                            + geometric)
+                            * point.volume
+                    });
+                }
+                if law.objective {
+                    let rate_gradient = gradient(point, nodes, v);
+                    let rate = symmetric_part(&f.tr_mul(&rate_gradient));
+                    let stress = stress(moduli.viscous, &rate);
+                    let moving = point.gradients.map(|g| rate_gradient * g);
+                    let mixed_square = f * rate_gradient.transpose();
+                    let Lame { lambda, mu } = moduli.viscous;
+                    Self::scatter(nodes, damping, |a, b| {
+                        let (fa, fb) = (&spread[a], &spread[b]);
+                        material_block(moduli.viscous, fa, fb, stretch(a, b), &f_square)
+                            * point.volume
+                    });
+                    // the rate changes with F, too: not symmetric
+                    Self::scatter(nodes, stiffness, |a, b| {
+                        let (ga, gb) = (&point.gradients[a], &point.gradients[b]);
+                        let geometric = SMatrix::identity() * ga.dot(&(stress * gb));
+                        let shear =
+                            mixed_square * stretch(a, b) + spread[b] * moving[a].transpose();
+                        let volumetric = spread[a] * moving[b].transpose();
+                        (geometric + volumetric * lambda + shear * mu) * point.volume
+                    });
+                }
+            }
+        }
+    }
+
+    fn green_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
+        let u = u.as_chunks::<D>().0;
+        let of_cell = |(cell, nodes, points): (usize, &[usize; N], &[StrainPoint<N, M, D>])| {
+            let Lame { lambda, mu } = regions.of(cell).elastic;
+            let density = |point: &StrainPoint<N, M, D>| {
+                let strain = green_strain(point, &gradient(point, nodes, u));
+                let trace = strain.trace();
+                point.volume * (0.5 * lambda * trace * trace + mu * strain.norm_squared())
+            };
+            points.iter().map(density).sum::<f64>()
+        };
+        self.iter().map(of_cell).sum()
+    }
+
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        let u = u.as_chunks::<D>().0;
+        let of_cell = |(_, nodes, points): (usize, &[usize; N], &[StrainPoint<N, M, D>])| {
+            let natural: f64 = points.iter().map(|point| point.volume).sum();
+            let present = points.iter().map(|point| {
+                let f = point.frame + gradient(point, nodes, u);
+                point.volume * stretch_of(&f)
+            });
+            present.sum::<f64>() / natural
+        };
+        self.iter().map(of_cell).collect()
+    }
+
+    fn volume(&self) -> f64 {
+        self.points.iter().map(|point| point.volume).sum()
+    }
+}
+
+/// H = sum x_a g_a^T, with x the displacements or velocities of all nodes.
+fn gradient<const N: usize, const M: usize, const D: usize>(
+    point: &StrainPoint<N, M, D>,
+    nodes: &[usize; N],
+    x: &[[f64; D]],
+) -> SMatrix<f64, D, M> {
+    let mut h = SMatrix::zeros();
+    for (node, g) in nodes.iter().zip(&point.gradients) {
+        for i in 0..D {
+            for j in 0..M {
+                h[(i, j)] += x[*node][i] * g[j];
+            }
+        }
+    }
+    h
+}
+
+/// E = sym(F_0^T H) + H^T H / 2: as precise for small strains as for large ones.
+fn green_strain<const N: usize, const M: usize, const D: usize>(
+    point: &StrainPoint<N, M, D>,
+    h: &SMatrix<f64, D, M>,
+) -> SMatrix<f64, M, M> {
+    symmetric_part(&point.frame.tr_mul(h)) + h.tr_mul(h) * 0.5
+}
+
+fn symmetric_part<const M: usize>(matrix: &SMatrix<f64, M, M>) -> SMatrix<f64, M, M> {
+    (matrix + matrix.transpose()) * 0.5
+}
+
+/// lambda tr(E) I + 2 mu E
+fn stress<const M: usize>(lame: Lame, strain: &SMatrix<f64, M, M>) -> SMatrix<f64, M, M> {
+    SMatrix::identity() * (lame.lambda * strain.trace()) + strain * (2.0 * lame.mu)
+}
+
+/// Subtracts P g_a from the force on each node, P the stress F S times the volume.
+fn spread_force<const N: usize, const M: usize, const D: usize>(
+    point: &StrainPoint<N, M, D>,
+    nodes: &[usize; N],
+    stress: &SMatrix<f64, D, M>,
+    forces: &mut [[f64; D]],
+) {
+    for (node, g) in nodes.iter().zip(&point.gradients) {
+        let force = stress * g;
+        for i in 0..D {
+            forces[*node][i] -= force[i];
+        }
+    }
+}
+
+/// The part of a tangent that the change of strain makes, per volume: with f_a = F g_a,
+/// lambda f_a f_b^T + mu ((g_a . g_b) F F^T + f_b f_a^T).
+fn material_block<const D: usize>(
+    lame: Lame,
+    fa: &SVector<f64, D>,
+    fb: &SVector<f64, D>,
+    stretch: f64,
+    f_square: &SMatrix<f64, D, D>,
+) -> SMatrix<f64, D, D> {
+    fa * fb.transpose() * lame.lambda + (f_square * stretch + fb * fa.transpose()) * lame.mu
+}
+
+/// Factor by which F stretches a volume: det F, or its size where the cell does not fill space.
+fn stretch_of<const M: usize, const D: usize>(f: &SMatrix<f64, D, M>) -> f64 {
+    match M == D {
+        true => determinant(&SMatrix::<f64, M, M>::from_fn(|i, j| f[(i, j)])),
+        false => determinant(&f.tr_mul(f)).sqrt(),
+    }
+}
+
+/// A cell that is turned inside out has no meaning.
+fn check_orientation<const N: usize, const M: usize, const D: usize>(
+    cell: usize,
+    nodes: &[usize; N],
+    f: &SMatrix<f64, D, M>,
+) -> Result<(), Failure> {
+    let stretch = stretch_of(f);
+    if stretch > 0.0 {
+        return Ok(());
+    }
+    let nodes = nodes.map(|node| node + 1);
+    Err(Failure::Recoverable(format!(
+        "cell {} (nodes {nodes:?}) is inverted, det F = {stretch:.3}: St. Venant-Kirchhoff material \
+         collapses under strong compression; load it less or refine the mesh there",
+        cell + 1
+    )))
+}
+
+fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
+    (0..N).flat_map(|a| (0..N).map(move |b| (a, b)))
+}
+
+fn bad_cell(number: usize, cell: &[usize], volume: f64) -> Error {
+    Error::Cell {
+        cell: number + 1,
+        nodes: cell.iter().map(|node| node + 1).collect(),
+        volume,
+        mend: if volume < 0.0 {
+            "its nodes run the wrong way round (clockwise, in two dimensions): reverse them".into()
+        } else {
+            "it is flat: move its nodes apart or leave the cell out".into()
+        },
+    }
+}

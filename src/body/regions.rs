@@ -1,0 +1,113 @@
+//! Regions: parts of a body with a material of their own.
+
+use crate::error::Error;
+use crate::material::{Lame, Material, Plane};
+use crate::mesh::Mesh;
+
+/// Cells, by number or by a box around their centroids.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CellSelection {
+    /// Cell numbers, counted from 1 in the order of the mesh.
+    Numbers(Vec<usize>),
+    /// All cells whose centroid lies in the closed box between `min` and `max` (m).
+    Box {
+        /// Lower corner.
+        min: Vec<f64>,
+        /// Upper corner.
+        max: Vec<f64>,
+    },
+}
+
+impl CellSelection {
+    /// All cells whose centroid lies in the closed box between `min` and `max` (m).
+    pub fn inside(min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
+        Self::Box { min: min.into(), max: max.into() }
+    }
+
+    /// The cells, counted from 0.
+    fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, Error> {
+        let cells = match self {
+            Self::Numbers(numbers) => {
+                let count = mesh.cell_count();
+                if let Some(number) = numbers.iter().find(|n| !(1..=count).contains(*n)) {
+                    let mend = format!("the mesh has the cells 1 to {count}");
+                    return Err(Error::input("cell of a region", number, mend));
+                }
+                numbers.iter().map(|number| number - 1).collect()
+            }
+            Self::Box { min, max } => {
+                let d = mesh.dimension();
+                for (name, corner) in [("region box min", min), ("region box max", max)] {
+                    if corner.len() != d || corner.iter().any(|x| x.is_nan()) {
+                        let mend = format!("it needs {d} numbers (m)");
+                        return Err(Error::input(name, format!("{corner:?}"), mend));
+                    }
+                }
+                let inside = |cell: &[usize]| {
+                    (0..d).all(|i| {
+                        let sum: f64 = cell.iter().map(|&node| mesh.position(node)[i]).sum();
+                        (min[i]..=max[i]).contains(&(sum / cell.len() as f64))
+                    })
+                };
+                let cells = mesh.cells().enumerate().filter(|(_, cell)| inside(cell));
+                cells.map(|(number, _)| number).collect::<Vec<usize>>()
+            }
+        };
+        if cells.is_empty() {
+            let mend = "it contains no cell of the mesh";
+            return Err(Error::input("region", format!("{self:?}"), mend));
+        }
+        Ok(cells)
+    }
+}
+
+/// The numbers that a material contributes, for the cells at hand.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moduli {
+    pub(crate) density: f64,
+    pub(crate) elastic: Lame,
+    pub(crate) viscous: Lame,
+}
+
+/// Which moduli each cell has.
+#[derive(Debug, Clone)]
+pub(crate) struct Regions {
+    moduli: Vec<Moduli>,
+    /// Index of each cell's moduli; empty if all cells have the first.
+    of_cell: Vec<u16>,
+}
+
+impl Regions {
+    /// `base` everywhere but in `regions`, of which the last one that holds a cell counts.
+    pub(super) fn new(
+        mesh: &Mesh,
+        plane: Plane,
+        base: &Material,
+        regions: &[(CellSelection, Material)],
+    ) -> Result<Self, Error> {
+        let moduli = |material: &Material| -> Result<Moduli, Error> {
+            material.validate()?;
+            let reduced = |lame: Lame| lame.reduced(mesh.kind().dimension(), plane);
+            Ok(Moduli {
+                density: material.density,
+                elastic: reduced(material.elastic()),
+                viscous: reduced(material.viscous()),
+            })
+        };
+        let mut all = Self { moduli: vec![moduli(base)?], of_cell: Vec::new() };
+        if regions.len() >= usize::from(u16::MAX) {
+            return Err(Error::input("number of regions", regions.len(), "65,534 are the most"));
+        }
+        for (number, (cells, material)) in (1_u16..).zip(regions) {
+            all.moduli.push(moduli(material)?);
+            all.of_cell.resize(mesh.cell_count(), 0);
+            cells.cells(mesh)?.into_iter().for_each(|cell| all.of_cell[cell] = number);
+        }
+        Ok(all)
+    }
+
+    /// The moduli of a cell.
+    pub(super) fn of(&self, cell: usize) -> &Moduli {
+        &self.moduli[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
+    }
+}

@@ -1,0 +1,51 @@
+//! The constant numbers of a scene: its matrices on one pattern that fits all forces.
+
+use std::sync::Arc;
+
+use crate::body::Body;
+use crate::force::Force;
+use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
+
+/// Inertia and the constant parts of the tangents. What is `None` is nowhere needed.
+pub(crate) struct Model {
+    pub(crate) dimension: usize,
+    /// M = m (x) I.
+    pub(crate) inertia: Arc<NodeMatrix>,
+    /// Constant part of -df/du: K, for Cauchy strain.
+    pub(crate) stiffness: Option<Arc<BlockMatrix>>,
+    /// Constant part of -df/dv: B, for natural viscosity.
+    pub(crate) damping: Option<Arc<BlockMatrix>>,
+}
+
+impl Model {
+    /// The model of `body` under `forces`.
+    pub(crate) fn new<'a>(body: &Body, forces: impl Iterator<Item = &'a dyn Force>) -> Self {
+        let pattern = body.inertia().pattern();
+        let strangers: Vec<[usize; 2]> = forces
+            .flat_map(Force::couplings)
+            .filter(|&[a, b]| pattern.find(a, b).is_none())
+            .collect();
+        let (inertia, stiffness, damping) =
+            (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
+        if strangers.is_empty() {
+            return Self { dimension: body.dimension(), inertia, stiffness, damping };
+        }
+        let pattern = Arc::new(pattern.with_pairs(&strangers));
+        let moved = |matrix: Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
+        Self {
+            dimension: body.dimension(),
+            inertia: Arc::new(inertia.moved_to(&pattern)),
+            stiffness: stiffness.map(moved),
+            damping: damping.map(moved),
+        }
+    }
+
+    /// Number of displacement components.
+    pub(crate) fn dofs(&self) -> usize {
+        self.pattern().nodes() * self.dimension
+    }
+
+    pub(crate) fn pattern(&self) -> &Arc<NodePattern> {
+        self.inertia.pattern()
+    }
+}
