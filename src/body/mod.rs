@@ -182,7 +182,9 @@ impl BodyBuilder {
             stiffness: Arc::new(stiffness),
             damping: Arc::new(damping),
         };
-        match body.nodal_masses().iter().position(|&mass| mass == 0.0) {
+        // not the nodal masses: those of quadratic cells are 0 and below at corners
+        let mut nodes = 0..body.mesh.node_count();
+        match nodes.find(|&node| body.inertia.get(node, node) == 0.0) {
             Some(node) => Err(Error::input(
                 "node",
                 node + 1,
@@ -321,7 +323,8 @@ impl Body {
         self.inertia.values.iter().sum()
     }
 
-    /// Mass that moves with each node (kg): the row sums of m.
+    /// Mass that moves with each node (kg): the row sums of m. Corners of quadratic cells may have
+    /// none, or less than none.
     pub fn nodal_masses(&self) -> Vec<f64> {
         let pattern = self.inertia.pattern();
         let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();

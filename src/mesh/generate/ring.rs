@@ -1,5 +1,7 @@
 //! Rings and half-rings.
 
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+
 use super::check_nodes;
 use super::grid::{Cells, Diagonal, Grid};
 use crate::error::{Error, positive};
@@ -31,9 +33,8 @@ impl Mesh {
             return Err(Error::input("ring.nodes[0]", around, mend));
         }
         let grid = Grid::new([radial - 1, around], true, cells == Cells::Triangles6);
-        let direction =
-            |step: usize, steps: usize| quarter_turns(4.0 * step as f64 / steps as f64 - 1.0);
-        annulus(&grid, [inner, outer], [radial - 1, around], cells, direction)
+        let from_below = |step: usize, steps: usize| direction(4 * step + 3 * steps, steps);
+        annulus(&grid, [inner, outer], [radial - 1, around], cells, from_below)
     }
 
     /// The upper half of a ring around the origin, an arch, with the radii `inner` and `outer` (m)
@@ -54,8 +55,8 @@ impl Mesh {
         check_radii("half_ring", inner, outer)?;
         check_nodes("half_ring", nodes)?;
         let grid = Grid::new([radial - 1, around - 1], false, cells == Cells::Triangles6);
-        let direction = |step: usize, steps: usize| quarter_turns(2.0 * step as f64 / steps as f64);
-        let mesh = annulus(&grid, [inner, outer], [radial - 1, around - 1], cells, direction)?;
+        let from_the_right = |step: usize, steps: usize| direction(2 * step, steps);
+        let mesh = annulus(&grid, [inner, outer], [radial - 1, around - 1], cells, from_the_right)?;
         let mesh = grid.name_side(mesh, "right", 1, false)?;
         grid.name_side(mesh, "left", 1, true)
     }
@@ -80,12 +81,16 @@ fn annulus(
     grid.name_side(mesh, "outer", 0, true)
 }
 
-/// Direction at an angle of `turns` quarter turns from x. Whole quarter turns are exact, and
-/// directions that mirror each other differ in signs and order of their components only.
-fn quarter_turns(turns: f64) -> [f64; 2] {
-    let whole = turns.round();
-    let (sin, cos) = ((turns - whole) * std::f64::consts::FRAC_PI_2).sin_cos();
-    match (whole as i64).rem_euclid(4) {
+/// Direction at an angle of `count`/`of` quarter turns from x. Whole and half quarter turns are
+/// exact, and directions that mirror each other differ in signs and order of their components only.
+fn direction(count: usize, of: usize) -> [f64; 2] {
+    let nearest = (2 * count + of) / (2 * of);
+    let rest = (count as f64 - (nearest * of) as f64) / of as f64;
+    let (sin, cos) = match rest.abs() {
+        0.5 => (FRAC_1_SQRT_2.copysign(rest), FRAC_1_SQRT_2),
+        _ => (rest * FRAC_PI_2).sin_cos(),
+    };
+    match nearest % 4 {
         0 => [cos, sin],
         1 => [-sin, cos],
         2 => [-cos, -sin],
