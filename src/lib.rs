@@ -40,6 +40,7 @@ pub mod samples;
 pub mod scene;
 pub mod simulate;
 pub mod sparse;
+pub mod statics;
 pub mod sundials;
 mod system;
 pub mod trajectory;
@@ -52,6 +53,7 @@ pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use scene::{Phase, Scene};
 pub use simulate::{Method, Sampling, Solver};
+pub use statics::{Equilibrium, Stability, Statics};
 pub use system::Energy;
 pub use trajectory::{Sample, Trajectory};
 
