@@ -6,46 +6,36 @@
 //! compression; under Green strain it bends as rubber does. Released, the Green beam swings
 //! faster: the swollen one is softer.
 
-use std::path::PathBuf;
+mod common;
 
 use clap::Parser;
+use common::{Common, finish};
 use pliant::output::{Chart, Snapshots};
 use pliant::samples::beam_bend;
-use pliant::{Error, Method, Sampling, Solver, Strain};
+use pliant::{Error, Sampling, Strain};
 
 /// The bent beam under Cauchy and Green strain: tables, swelling of the tip, pictures.
 #[derive(Parser)]
 struct Arguments {
-    /// Integration method: cvode-bdf, cvode-adams, ida, ida-klu or rk
-    #[arg(long, default_value_t = Method::CvodeBdf)]
-    method: Method,
-    /// Relative tolerance
-    #[arg(long, default_value_t = 1e-6)]
-    rtol: f64,
     /// Hold the horizontal component of the pushed node, too
     #[arg(long)]
     holds_tip: bool,
-    /// Directory for the pictures
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
+    #[command(flatten)]
+    common: Common,
 }
 
 fn main() {
-    if let Err(error) = run(&Arguments::parse()) {
-        eprintln!("beam_bend: {error}");
-        std::process::exit(1);
-    }
+    finish(run(&Arguments::parse()));
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
-    let &Arguments { method, rtol, holds_tip, .. } = arguments;
-    let solver = Solver { method, rtol, ..Solver::default() };
-    let directory = arguments.out.join("beam_bend");
+    let &Arguments { holds_tip, ref common } = arguments;
+    let directory = common.out.join("beam_bend");
     let mut chart = Chart::new("Tip of the beam after its release")
         .axes("time (s)", "vertical displacement (m)");
     for strain in [Strain::Cauchy, Strain::Green] {
         let scene = beam_bend(strain, holds_tip)?;
-        let trajectory = scene.simulate(&solver, &Sampling::every(0.005))?;
+        let trajectory = scene.simulate(&common.solver(), &Sampling::every(0.005))?;
         println!("Bent beam, {strain:?} strain\n{}", trajectory.report());
         if let Some(bent) = trajectory.samples().iter().find(|sample| sample.time == 5.0) {
             let ratios = trajectory.body().volume_ratios(&bent.u);

@@ -5,7 +5,7 @@
 mod scenes;
 
 pub use scenes::{
-    BEAM_MATERIAL, BENT_BEAM_MATERIAL, SQUARE_MATERIAL, SquareJump, beam_bend, beam_jump,
+    BEAM_MATERIAL, BENT_BEAM_MATERIAL, RingRoll, SQUARE_MATERIAL, SquareJump, beam_bend, beam_jump,
     pushed_nodes, square_jump, square_press,
 };
 

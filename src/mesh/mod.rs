@@ -211,6 +211,11 @@ impl Mesh {
         &self.sets["boundary"]
     }
 
+    /// The values of a vector field at all nodes, one node after the other.
+    pub(crate) fn field(&self, field: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+        self.positions.chunks_exact(self.dimension).flat_map(field).collect()
+    }
+
     /// Length of the diagonal of the box around the mesh (m).
     pub fn size(&self) -> f64 {
         let extent = |axis: usize| {

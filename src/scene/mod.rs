@@ -35,6 +35,8 @@ pub struct Scene {
     gravity: Option<Vec<f64>>,
     obstacles: Vec<Obstacle>,
     phases: Vec<Phase>,
+    /// Displacements and velocities at t = 0.
+    start: [Vec<f64>; 2],
 }
 
 /// What a constraint makes a node do.
@@ -47,7 +49,26 @@ pub(crate) enum Role {
 impl Scene {
     /// A scene with a body alone, at rest in its natural shape at t = 0.
     pub fn new(body: Body) -> Self {
-        Self { body: Arc::new(body), gravity: None, obstacles: Vec::new(), phases: Vec::new() }
+        let rest = vec![0.0; body.dofs()];
+        Self {
+            body: Arc::new(body),
+            gravity: None,
+            obstacles: Vec::new(),
+            phases: Vec::new(),
+            start: [rest.clone(), rest],
+        }
+    }
+
+    /// Displacements at t = 0 (m): `field` gives one for each natural position. Default: none.
+    pub fn initial_displacement(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        self.start[0] = self.body.mesh().field(field);
+        self
+    }
+
+    /// Velocities at t = 0 (m/s): `field` gives one for each natural position. Default: rest.
+    pub fn initial_velocity(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        self.start[1] = self.body.mesh().field(field);
+        self
     }
 
     /// Acceleration of gravity (m/s^2), one component per dimension. Default: none.
@@ -115,6 +136,16 @@ impl Scene {
         if self.phases.is_empty() {
             return Err(Error::input("number of phases", 0, "a scene needs one phase at least"));
         }
+        for (name, vector) in
+            ["initial displacement", "initial velocity"].into_iter().zip(&self.start)
+        {
+            if vector.len() != self.body.dofs() {
+                let mend = format!("it needs {} components at each node", self.body.dimension());
+                let value = format!("{} numbers in all", vector.len());
+                return Err(Error::input(name, value, mend));
+            }
+            finite(name, vector)?;
+        }
         let mut start = 0.0;
         for phase in &self.phases {
             let input = format!("end of phase \"{}\"", phase.name);
@@ -134,7 +165,7 @@ impl Scene {
                 return Err(Error::input("obstacle name", value, "it is taken: name it otherwise"));
             }
         }
-        let (mut time, mut u) = (0.0, vec![0.0; self.body.dofs()]);
+        let (mut time, mut u) = (0.0, self.start[0].clone());
         for phase in &self.phases {
             let rows = self.rows(phase, &Start { time, u: &u })?;
             self.forces(phase)?;
@@ -142,6 +173,11 @@ impl Scene {
             tell(&rows, time, &mut u);
         }
         Ok(())
+    }
+
+    /// Displacements and velocities at t = 0.
+    pub(crate) fn start(&self) -> [&[f64]; 2] {
+        [&self.start[0], &self.start[1]]
     }
 
     /// The constant numbers of the scene.

@@ -1,5 +1,8 @@
 //! Structured grids, the frame of all generators in two and three dimensions.
 
+use std::fmt;
+use std::str::FromStr;
+
 use crate::error::Error;
 use crate::mesh::{CellKind, Mesh};
 
@@ -27,6 +30,38 @@ pub enum Cells {
     /// there; the nodes in the middle of edges come after all of them, row by row of the grid with
     /// half the spacing.
     Triangles6,
+}
+
+impl Cells {
+    /// All ways to divide a grid.
+    pub const ALL: [Self; 4] = [Self::Triangles, Self::Crossed, Self::Rectangles, Self::Triangles6];
+
+    /// Name: `triangles`, `crossed`, `rectangles`, `triangles6`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Triangles => "triangles",
+            Self::Crossed => "crossed",
+            Self::Rectangles => "rectangles",
+            Self::Triangles6 => "triangles6",
+        }
+    }
+}
+
+impl fmt::Display for Cells {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Cells {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|cells| cells.name() == name).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            Error::input("cells", format!("\"{name}\""), format!("they are one of {known}"))
+        })
+    }
 }
 
 /// Corners of a grid cell, as steps along the two axes.
