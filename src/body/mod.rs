@@ -58,6 +58,7 @@ pub struct Body {
     material: Material,
     strain: Strain,
     viscosity: Viscosity,
+    section: f64,
     cells: Arc<dyn Cells>,
     regions: Arc<Regions>,
     inertia: Arc<NodeMatrix>,
@@ -176,6 +177,7 @@ impl BodyBuilder {
             material,
             strain,
             viscosity,
+            section,
             cells,
             regions: Arc::new(regions),
             inertia: Arc::new(inertia),
@@ -250,6 +252,12 @@ impl Body {
     /// How viscosity acts.
     pub fn viscosity(&self) -> Viscosity {
         self.viscosity
+    }
+
+    /// Thickness (m) of a body of two-dimensional cells, cross-sectional area (m^2) of one of
+    /// segments, 1 otherwise.
+    pub(crate) fn section(&self) -> f64 {
+        self.section
     }
 
     /// Dimension of space.

@@ -1,5 +1,6 @@
 //! Loads: given forces on nodes.
 
+use super::signal::{VectorFunction, finite_at};
 use super::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
 
@@ -19,6 +20,49 @@ impl Force for Load {
     ) -> Result<(), Failure> {
         for &(dof, force) in &self.forces {
             forces.applied[dof] += force;
+        }
+        Ok(())
+    }
+
+    fn is_nonlinear(&self) -> bool {
+        false
+    }
+
+    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::None
+    }
+}
+
+/// The same force, a function of time, on each of some nodes.
+pub(crate) struct VaryingLoad {
+    /// Nodes, counted from 0.
+    pub(crate) nodes: Vec<usize>,
+    /// Force (N) on each of them.
+    pub(crate) force: VectorFunction,
+}
+
+impl Force for VaryingLoad {
+    fn add_forces(
+        &self,
+        t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let dimension = self.force.dimension;
+        let mut buffer = [0.0; 3];
+        let force = &mut buffer[..dimension];
+        self.force.at(t, force);
+        for (i, &component) in force.iter().enumerate() {
+            let what = format_args!("component {} of a load", i + 1);
+            finite_at(t, what, component)?;
+            for node in &self.nodes {
+                forces.applied[node * dimension + i] += component;
+            }
         }
         Ok(())
     }

@@ -1,13 +1,21 @@
 //! Forces beside elasticity and viscosity: one small trait, one file per kind of force.
 
+mod chamber;
 mod contact;
 mod gravity;
 mod load;
+mod signal;
+mod spring;
+#[cfg(test)]
+mod tests;
 
+pub use chamber::Chamber;
 pub(crate) use contact::Contact;
 pub use contact::Obstacle;
 pub(crate) use gravity::Gravity;
-pub(crate) use load::Load;
+pub(crate) use load::{Load, VaryingLoad};
+pub(crate) use signal::{Signal, VectorFunction};
+pub use spring::Spring;
 
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -81,6 +89,14 @@ pub trait Force: Send + Sync {
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure>;
+
+    /// Looks back on a step that was taken, to time `t`, from displacements `before` to `after`.
+    ///
+    /// # Errors
+    /// A step that leapt over states in which the force has no meaning.
+    fn check_step(&self, _t: f64, _before: &[f64], _after: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
 
     /// Adds -df/du to `stiffness` and -df/dv to `damping`. They need not be symmetric: the Newton
     /// matrix takes their symmetric part. A force whose [`is_nonlinear`](Self::is_nonlinear) is

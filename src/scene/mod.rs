@@ -1,7 +1,9 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
+mod forces;
 mod phase;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub use phase::Phase;
@@ -9,11 +11,11 @@ pub use phase::Phase;
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
 use crate::error::{Error, finite};
-use crate::force::{Contact, Force, Gravity, Load, Obstacle};
+use crate::force::{Chamber, Obstacle, Spring};
 use crate::model::Model;
 use crate::system::System;
 
-/// A body, gravity, obstacles, and what happens when.
+/// A body, gravity, springs, chambers, obstacles, and what happens when.
 ///
 /// ```
 /// use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
@@ -33,6 +35,8 @@ use crate::system::System;
 pub struct Scene {
     body: Arc<Body>,
     gravity: Option<Vec<f64>>,
+    springs: Vec<Spring>,
+    chambers: Vec<Chamber>,
     obstacles: Vec<Obstacle>,
     phases: Vec<Phase>,
     /// Displacements and velocities at t = 0.
@@ -53,6 +57,8 @@ impl Scene {
         Self {
             body: Arc::new(body),
             gravity: None,
+            springs: Vec::new(),
+            chambers: Vec::new(),
             obstacles: Vec::new(),
             phases: Vec::new(),
             start: [rest.clone(), rest],
@@ -74,6 +80,19 @@ impl Scene {
     /// Acceleration of gravity (m/s^2), one component per dimension. Default: none.
     pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
         self.gravity = Some(acceleration.into());
+        self
+    }
+
+    /// Adds a spring between two nodes, which acts in every phase.
+    pub fn spring(mut self, spring: Spring) -> Self {
+        let number = self.springs.len() + 1;
+        self.springs.push(spring.or_named(format!("spring {number}")));
+        self
+    }
+
+    /// Adds a chamber, to be filled by the pressure that phases give it.
+    pub fn chamber(mut self, chamber: Chamber) -> Self {
+        self.chambers.push(chamber);
         self
     }
 
@@ -112,6 +131,16 @@ impl Scene {
         Ok(nodes)
     }
 
+    /// The springs.
+    pub fn springs(&self) -> &[Spring] {
+        &self.springs
+    }
+
+    /// The chambers.
+    pub fn chambers(&self) -> &[Chamber] {
+        &self.chambers
+    }
+
     /// The obstacles.
     pub fn obstacles(&self) -> &[Obstacle] {
         &self.obstacles
@@ -130,8 +159,8 @@ impl Scene {
     /// Checks everything that can be known before the scene is run.
     ///
     /// # Errors
-    /// The first input that cannot be used: no phases, phases out of order, unknown nodes or
-    /// obstacles, numbers out of range, constraints that contradict each other.
+    /// The first input that cannot be used: no phases, phases out of order, unknown nodes, springs,
+    /// chambers or obstacles, numbers out of range, constraints that contradict each other.
     pub fn validate(&self) -> Result<(), Error> {
         if self.phases.is_empty() {
             return Err(Error::input("number of phases", 0, "a scene needs one phase at least"));
@@ -158,12 +187,14 @@ impl Scene {
             }
             start = phase.until;
         }
-        for (k, obstacle) in self.obstacles.iter().enumerate() {
+        unique("spring", self.springs.iter().map(Spring::name))?;
+        unique("chamber", self.chambers.iter().map(Chamber::name))?;
+        unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
+        for chamber in &self.chambers {
+            chamber.force(&self.body, Vec::new())?;
+        }
+        for obstacle in &self.obstacles {
             obstacle.validated(self.body.dimension())?;
-            if self.obstacles[..k].iter().any(|other| other.name() == obstacle.name()) {
-                let value = format!("\"{}\"", obstacle.name());
-                return Err(Error::input("obstacle name", value, "it is taken: name it otherwise"));
-            }
         }
         let (mut time, mut u) = (0.0, self.start[0].clone());
         for phase in &self.phases {
@@ -203,32 +234,19 @@ impl Scene {
     fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
         rows(&phase.constraints, self.body.mesh(), &phase.name, start)
     }
+}
 
-    fn forces(&self, phase: &Phase) -> Result<Vec<Arc<dyn Force>>, Error> {
-        let (mesh, dimension) = (self.body.mesh(), self.body.dimension());
-        let mut forces: Vec<Arc<dyn Force>> = Vec::new();
-        if let Some(elastic) = self.body.elastic() {
-            forces.push(Arc::new(elastic));
+fn unique<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), Error> {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if !seen.insert(name) {
+            let value = format!("\"{name}\"");
+            return Err(Error::input(
+                format!("{what} name"),
+                value,
+                "it is taken: name it otherwise",
+            ));
         }
-        if let Some(gravity) = &self.gravity {
-            phase::check_vector("gravity", gravity, dimension, "m/s^2")?;
-            finite("gravity", gravity)?;
-            forces.push(Arc::new(Gravity::new(&self.body, gravity)));
-        }
-        let mut loads = Vec::new();
-        for (nodes, force) in &phase.loads {
-            phase::check_vector("load", force, dimension, "N")?;
-            finite("load", force)?;
-            for node in mesh.select(nodes)? {
-                loads.extend((0..dimension).map(|i| (node * dimension + i, force[i])));
-            }
-        }
-        if !loads.is_empty() {
-            forces.push(Arc::new(Load { forces: loads }));
-        }
-        for obstacle in phase.contacts(&self.obstacles)? {
-            forces.push(Arc::new(Contact::new(mesh, obstacle.validated(dimension)?)));
-        }
-        Ok(forces)
     }
+    Ok(())
 }

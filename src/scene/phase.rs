@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed};
 use crate::error::Error;
-use crate::force::Obstacle;
+use crate::force::{Obstacle, Signal, VectorFunction};
 use crate::mesh::Selection;
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
@@ -14,9 +14,24 @@ pub struct Phase {
     pub(crate) name: String,
     pub(crate) until: f64,
     pub(crate) constraints: Vec<Constraint>,
-    pub(crate) loads: Vec<(Selection, Vec<f64>)>,
+    pub(super) loads: Vec<(Selection, Load)>,
+    /// Names of springs, force (N).
+    pub(super) actuations: Vec<(Vec<String>, Signal)>,
+    /// Name of a chamber, pressure (Pa).
+    pub(super) pressures: Vec<(String, Signal)>,
     pub(crate) projects_velocity: bool,
     contact: ContactWith,
+}
+
+/// A load on some nodes (N).
+#[derive(Debug, Clone)]
+pub(super) enum Load {
+    /// On each of them.
+    Each(Vec<f64>),
+    /// On all of them together.
+    Total(Vec<f64>),
+    /// On each of them, changing with time.
+    Function(VectorFunction),
 }
 
 #[derive(Debug, Clone)]
@@ -34,6 +49,8 @@ impl Phase {
             until,
             constraints: Vec::new(),
             loads: Vec::new(),
+            actuations: Vec::new(),
+            pressures: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
         }
@@ -90,8 +107,59 @@ impl Phase {
 
     /// A constant force (N) on each of the nodes.
     pub fn load(mut self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
-        self.loads.push((nodes.into(), force.into()));
+        self.loads.push((nodes.into(), Load::Each(force.into())));
         self
+    }
+
+    /// A constant force (N) on the nodes together, shared equally.
+    pub fn load_total(mut self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
+        self.loads.push((nodes.into(), Load::Total(force.into())));
+        self
+    }
+
+    /// A force (N) on each of the nodes that changes with time (s): `force` gives one component
+    /// per dimension.
+    pub fn load_with<const D: usize>(
+        mut self,
+        nodes: impl Into<Selection>,
+        force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
+    ) -> Self {
+        self.loads.push((nodes.into(), Load::Function(VectorFunction::new(force))));
+        self
+    }
+
+    /// A constant actuation force (N) in each of the named springs; a positive one extends it.
+    /// Forces on the same spring add up.
+    pub fn actuate<N: Into<String>>(
+        self,
+        springs: impl IntoIterator<Item = N>,
+        force: f64,
+    ) -> Self {
+        self.actuated(springs, Signal::Constant(force))
+    }
+
+    /// As [`actuate`](Self::actuate), with a force (N) that changes with time (s).
+    pub fn actuate_with<N: Into<String>>(
+        self,
+        springs: impl IntoIterator<Item = N>,
+        force: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.actuated(springs, Signal::function(force))
+    }
+
+    /// A constant pressure (Pa) in a chamber; a positive one enlarges it. Pressures in the same
+    /// chamber add up.
+    pub fn pressure(self, chamber: impl Into<String>, pressure: f64) -> Self {
+        self.pressurized(chamber, Signal::Constant(pressure))
+    }
+
+    /// As [`pressure`](Self::pressure), with a pressure (Pa) that changes with time (s).
+    pub fn pressure_with(
+        self,
+        chamber: impl Into<String>,
+        pressure: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.pressurized(chamber, Signal::function(pressure))
     }
 
     /// No obstacle acts in this phase.
@@ -135,14 +203,24 @@ impl Phase {
         let ContactWith::These(names) = &self.contact else {
             return Ok(obstacles.iter().collect());
         };
-        let find = |name: &String| {
-            obstacles.iter().find(|obstacle| obstacle.name() == name).ok_or_else(|| {
-                let known: Vec<&str> = obstacles.iter().map(Obstacle::name).collect();
-                let mend = format!("the scene has the obstacles {known:?}");
-                Error::input(format!("contact of phase \"{}\"", self.name), name, mend)
-            })
-        };
+        let known: Vec<&str> = obstacles.iter().map(Obstacle::name).collect();
+        let input = format!("contact of phase \"{}\"", self.name);
+        let find = |name: &String| Ok(&obstacles[find(name, &known, &input, "obstacles")?]);
         names.iter().map(find).collect()
+    }
+
+    fn actuated<N: Into<String>>(
+        mut self,
+        springs: impl IntoIterator<Item = N>,
+        force: Signal,
+    ) -> Self {
+        self.actuations.push((springs.into_iter().map(Into::into).collect(), force));
+        self
+    }
+
+    fn pressurized(mut self, chamber: impl Into<String>, pressure: Signal) -> Self {
+        self.pressures.push((chamber.into(), pressure));
+        self
     }
 
     fn constrain(mut self, nodes: impl Into<Selection>, axes: Axes, how: Motion) -> Self {
@@ -162,4 +240,11 @@ pub(super) fn check_vector(
     }
     let mend = format!("it needs {dimension} component(s) ({unit})");
     Err(Error::input(input, format!("{vector:?}"), mend))
+}
+
+/// Position of `name` among the names that are `known`.
+pub(super) fn find(name: &str, known: &[&str], input: &str, what: &str) -> Result<usize, Error> {
+    known.iter().position(|other| *other == name).ok_or_else(|| {
+        Error::input(input, format!("\"{name}\""), format!("the scene has the {what} {known:?}"))
+    })
 }

@@ -263,6 +263,9 @@ impl<'a> Run<'a> {
         sample: &mut [f64],
     ) -> Result<(), Failed> {
         let time = stepper.step(end)?;
+        let n = self.scene.body().dofs();
+        let (before, after) = (&self.state[..n], &stepper.state()[..n]);
+        stepper.system().check_step(time, before, after).map_err(into_error)?;
         while let Some(t) = times.next_if(|&t| t <= time) {
             stepper.interpolate(t, sample)?;
             self.time = t;
@@ -271,7 +274,7 @@ impl<'a> Run<'a> {
         self.time = time;
         let length = self.state.len();
         self.state.copy_from_slice(&stepper.state()[..length]);
-        let drift = stepper.system().drift(time, &self.state[..self.scene.body().dofs()]);
+        let drift = stepper.system().drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
         Ok(())

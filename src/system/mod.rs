@@ -168,6 +168,11 @@ impl System {
         self.inertia.solve(&self.rows, total, demands, v, multipliers);
     }
 
+    /// Asks the forces whether the step from displacements `before` to `after` makes sense.
+    pub(crate) fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        self.forces.iter().try_for_each(|force| force.check_step(t, before, after))
+    }
+
     /// Largest |A^T u - b| (m).
     pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
         let drift = |row: &Row| (row.apply(u) - row.prescribed(t).displacement).abs();

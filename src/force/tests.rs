@@ -1,0 +1,234 @@
+//! One check for all forces: force = -dU/du, tangents = -df/du and -df/dv by central differences.
+
+use std::sync::Arc;
+
+use super::*;
+use crate::body::Body;
+use crate::mesh::{CellKind, Cells, Mesh};
+use crate::samples::SQUARE_MATERIAL;
+use crate::sparse::NodePattern;
+
+/// Numbers between -`size` and `size` without a pattern.
+fn noise(length: usize, size: f64, seed: f64) -> Vec<f64> {
+    (0..length)
+        .map(|i| size * (12.9898 * (i as f64 + seed)).sin().mul_add(43.758, 0.3).sin())
+        .collect()
+}
+
+fn moved(x: &[f64], j: usize, by: f64) -> Vec<f64> {
+    let mut x = x.to_vec();
+    x[j] += by;
+    x
+}
+
+fn nodal_forces(force: &dyn Force, t: f64, u: &[f64], v: &[f64]) -> NodalForces {
+    let mut forces = NodalForces::zeros(u.len());
+    force.add_forces(t, u, v, &mut forces).unwrap();
+    forces
+}
+
+/// Checks `force` on nodes with `dimension` components each at (t, u, v), to `tolerance` relative
+/// to its largest tangent: central differences with h = 1e-5 are off by about (h/l)^2 where the
+/// force changes over a length l, and by round-off, 1e-16 f/h.
+#[track_caller]
+fn check(force: &dyn Force, dimension: usize, t: f64, u: &[f64], v: &[f64], tolerance: f64) {
+    let (n, h) = (u.len(), 1e-5);
+    let nodes: Vec<[usize; 1]> = (0..n / dimension).map(|node| [node]).collect();
+    let pattern = NodePattern::new(nodes.len(), nodes.iter().map(|node| node.as_slice()));
+    let pattern = Arc::new(pattern.with_pairs(&force.couplings()));
+    let mut stiffness = BlockMatrix::zeros(&pattern, dimension);
+    let mut damping = stiffness.clone();
+    force.add_tangents(t, u, v, &mut stiffness, &mut damping);
+    let largest = |x: &[f64]| x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let scales = [largest(&stiffness.values), largest(&damping.values)];
+    assert!(scales[0] > 0.0);
+    let at = nodal_forces(force, t, u, v);
+    for j in 0..n {
+        let slope = force.potential(t, &moved(u, j, h)) - force.potential(t, &moved(u, j, -h));
+        let apart = (at.conservative[j] + slope / (2.0 * h)).abs();
+        assert!(apart <= tolerance * scales[0], "dU/du {j}: off by {apart}");
+        let [ahead, behind] = [h, -h].map(|by| nodal_forces(force, t, &moved(u, j, by), v));
+        let [faster, slower] = [h, -h].map(|by| nodal_forces(force, t, u, &moved(v, j, by)));
+        for i in 0..n {
+            let total = |f: &NodalForces| f.conservative[i] + f.dissipative[i] + f.applied[i];
+            let by_u = (total(&behind) - total(&ahead)) / (2.0 * h);
+            let by_v = (total(&slower) - total(&faster)) / (2.0 * h);
+            let found = stiffness.get(i, j);
+            assert!((found - by_u).abs() <= tolerance * scales[0], "({i}, {j}) {found} {by_u}");
+            let found = damping.get(i, j);
+            assert!((found - by_v).abs() <= tolerance * scales[1], "({i}, {j}) {found} {by_v}");
+        }
+    }
+}
+
+/// Two cells along a skew line; in any space.
+fn bar(dimension: usize) -> Mesh {
+    let direction = [0.8, 0.3, -0.5];
+    let positions = (0..3).flat_map(|k| (0..dimension).map(move |i| f64::from(k) * direction[i]));
+    Mesh::new(dimension, positions.collect(), CellKind::Segment, vec![0, 1, 1, 2]).unwrap()
+}
+
+#[test]
+fn springs() {
+    for dimension in 1..=3 {
+        let mesh = bar(dimension);
+        let spring = Spring::between([3], [1]).named("s").stiffness(20.0).length(1.2).damping(3.0);
+        let actuation = vec![Signal::Constant(-2.0), Signal::function(|t| 5.0 * t)];
+        let force = spring.force(&mesh, actuation).unwrap();
+        for seed in [1.0, 2.0, 3.0] {
+            let n = 3 * dimension;
+            let (u, v) = (noise(n, 0.3, seed), noise(n, 2.0, 10.0 * seed));
+            check(&force, dimension, 0.7, &u, &v, 1e-8);
+            // what the spring does not touch feels nothing, and action is reaction
+            let forces = nodal_forces(&force, 0.7, &u, &v);
+            for part in [&forces.conservative, &forces.dissipative, &forces.applied] {
+                for i in 0..dimension {
+                    assert_eq!(part[dimension + i], 0.0);
+                    assert_eq!(part[i], -part[2 * dimension + i]);
+                }
+            }
+            assert!(forces.powers(&v).0 > 0.0);
+        }
+    }
+}
+
+/// The law, written out: the second end feels (f - k (l - L) - c l') e.
+#[test]
+fn a_spring_pulls_its_second_end_back() {
+    let spring = Spring::between([1], [3]).stiffness(20.0).length(1.5).damping(3.0);
+    let force = spring.force(&bar(1), vec![Signal::Constant(0.25)]).unwrap();
+    // from 1.6 m to 1.7 m, at 2 m/s
+    let forces = nodal_forces(&force, 0.0, &[0.1, 0.0, 0.2], &[1.0, 0.0, 3.0]);
+    for (part, expected) in
+        [(forces.conservative, -4.0), (forces.dissipative, -6.0), (forces.applied, 0.25)]
+    {
+        assert!((part[2] - expected).abs() < 1e-12, "{} {expected}", part[2]);
+    }
+    assert!((force.potential(0.0, &[0.1, 0.0, 0.2]) - 0.5 * 20.0 * 0.04).abs() < 1e-12);
+}
+
+fn plate(dimension: usize) -> Body {
+    let flat = [0.0, 0.0, 1.0, 0.2, 1.3, 1.1, -0.1, 0.9];
+    let space = |x: &[f64]| {
+        let lifted = [x[0], x[1], 0.2 * x[0] - 0.4 * x[0] * x[1]];
+        lifted.into_iter().take(dimension)
+    };
+    let positions = flat.chunks(2).flat_map(space).collect();
+    let mesh = Mesh::new(dimension, positions, CellKind::Triangle, vec![0, 1, 2, 0, 2, 3]);
+    Body::new(mesh.unwrap(), SQUARE_MATERIAL).thickness(0.01).build().unwrap()
+}
+
+#[test]
+fn chambers() {
+    let polygon = Chamber::polygon("cell", [4, 3, 2, 1]);
+    let surface = Chamber::surface("bag", [[1, 2, 3], [1, 3, 4], [2, 1, 4], [2, 4, 3]]);
+    for (chamber, dimension) in [(polygon, 2), (surface, 3)] {
+        let pressure = vec![Signal::Constant(2e3), Signal::function(|t| 1e3 * t)];
+        let force = chamber.force(&plate(dimension), pressure).unwrap();
+        for seed in [1.0, 2.0] {
+            let n = 4 * dimension;
+            let (u, v) = (noise(n, 0.3, seed), noise(n, 2.0, 10.0 * seed));
+            check(&force, dimension, 0.7, &u, &v, 1e-9);
+            let forces = nodal_forces(&force, 0.7, &u, &v);
+            // a closed chamber pushes itself neither away nor around
+            for i in 0..dimension {
+                let sum: f64 = forces.applied.iter().skip(i).step_by(dimension).sum();
+                assert!(sum.abs() < 1e-12 * 2.7e3, "{sum}");
+            }
+        }
+    }
+}
+
+/// A regular polygon of n nodes on a circle of radius r: S = (n/2) r^2 sin(2 pi/n), and the force on
+/// each node points outward, p h r sin(2 pi/n).
+#[test]
+fn pressure_in_a_regular_polygon() {
+    let (n, r, p, h) = (7, 0.3, 2e3, 0.01);
+    let angle = |k: usize| std::f64::consts::TAU * k as f64 / n as f64;
+    // a wheel: the hub is the last node
+    let rim = (0..n).flat_map(|k| [r * angle(k).cos(), r * angle(k).sin()]);
+    let positions = rim.chain([0.0, 0.0]).collect();
+    let spokes = (0..n).flat_map(|k| [k, (k + 1) % n, n]).collect();
+    let mesh = Mesh::new(2, positions, CellKind::Triangle, spokes).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(h).build().unwrap();
+    let around: Vec<usize> = (1..=n).collect();
+    let backwards: Vec<usize> = around.iter().rev().copied().collect();
+    let expected = p * h * r * angle(1).sin();
+    for nodes in [around.into(), backwards.into(), crate::Selection::from("boundary")] {
+        let chamber = Chamber::polygon("wheel", nodes);
+        let force = chamber.force(&body, vec![Signal::Constant(p)]).unwrap();
+        let rest = vec![0.0; body.dofs()];
+        let forces = nodal_forces(&force, 0.0, &rest, &rest).applied;
+        for k in 0..n {
+            let outward = forces[2 * k] * angle(k).cos() + forces[2 * k + 1] * angle(k).sin();
+            let across = forces[2 * k + 1] * angle(k).cos() - forces[2 * k] * angle(k).sin();
+            assert!((outward / expected - 1.0).abs() < 1e-13, "{outward} {expected}");
+            assert!(across.abs() < 1e-13 * expected, "{across}");
+        }
+        assert_eq!(forces[2 * n..], [0.0; 2]);
+        // blown up by a tenth: the work is p h times the change of area (1.1^2 - 1) S
+        let positions = body.mesh().positions();
+        let grown: Vec<f64> = positions.iter().map(|x| 0.1 * x).collect();
+        let middle: Vec<f64> = positions.iter().map(|x| 0.05 * x).collect();
+        // forces are linear in u: the middle gives the mean
+        let work = dot(&nodal_forces(&force, 0.0, &middle, &rest).applied, &grown);
+        let area = 0.5 * n as f64 * r * r * angle(1).sin();
+        assert!((work / (p * h * 0.21 * area) - 1.0).abs() < 1e-12, "{work}");
+    }
+}
+
+/// An octahedron with corners at distance r: V = (4/3) r^3, and the force on each corner points
+/// outward, p dV/dr / 6 = (2/3) p r^2.
+#[test]
+fn pressure_in_an_octahedron() {
+    let (r, p) = (0.3, 2e3);
+    let mut positions = Vec::new();
+    for axis in 0..3 {
+        for sign in [1.0, -1.0] {
+            positions.extend((0..3).map(|i| if i == axis { sign * r } else { 0.0 }));
+        }
+    }
+    // +x -x +y -y +z -z: each octant a triangle, outward
+    let mut triangles = Vec::new();
+    for octant in 0..8 {
+        let [x, y, z] = [octant & 1, octant >> 1 & 1, octant >> 2 & 1];
+        let corners = [1 + x, 3 + y, 5 + z];
+        let outward = (x + y + z) % 2 == 0;
+        triangles.push(if outward { corners } else { [corners[1], corners[0], corners[2]] });
+    }
+    let connectivity = triangles.iter().flatten().map(|number| number - 1).collect();
+    let mesh = Mesh::new(3, positions, CellKind::Triangle, connectivity).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.001).build().unwrap();
+    let inward: Vec<_> = triangles.iter().map(|&[a, b, c]| [b, a, c]).collect();
+    for walls in [triangles, inward] {
+        let force = Chamber::surface("bag", walls).force(&body, vec![Signal::Constant(p)]);
+        let rest = vec![0.0; body.dofs()];
+        let forces = nodal_forces(&force.unwrap(), 0.0, &rest, &rest).applied;
+        for (force, x) in forces.iter().zip(body.mesh().positions()) {
+            let expected = 2.0 / 3.0 * p * r * x;
+            assert!((force - expected).abs() < 1e-12 * p * r * r, "{force} {expected}");
+        }
+    }
+}
+
+/// A square hole in a square plate: its walls are pushed outward, that is, into the body.
+#[test]
+fn pressure_in_a_hole_enlarges_it() {
+    let grid = Mesh::rectangle([3.0, 3.0], [4, 4], Cells::Triangles).unwrap();
+    let corners = [5, 6, 9, 10];
+    let outside = grid.cells().filter(|cell| !cell.iter().all(|node| corners.contains(node)));
+    let connectivity = outside.flatten().copied().collect();
+    let mesh = Mesh::new(2, grid.positions().to_vec(), CellKind::Triangle, connectivity).unwrap();
+    let mesh = mesh.name_nodes("hole", [6, 7, 10, 11]).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    assert_eq!(body.mesh().cell_count(), 16);
+    let force = Chamber::polygon("hole", "hole").force(&body, vec![Signal::Constant(1e3)]);
+    let rest = vec![0.0; body.dofs()];
+    let forces = nodal_forces(&force.unwrap(), 0.0, &rest, &rest).applied;
+    for (node, [x, y]) in [(5, [-1.0, -1.0]), (6, [1.0, -1.0]), (9, [-1.0, 1.0]), (10, [1.0, 1.0])]
+    {
+        // half of each of two walls of 1 m and 1 cm
+        assert!((forces[2 * node] - 5.0 * x).abs() < 1e-12, "{forces:?}");
+        assert!((forces[2 * node + 1] - 5.0 * y).abs() < 1e-12, "{forces:?}");
+    }
+}
