@@ -5,9 +5,7 @@
 mod actuated;
 mod scenes;
 
-pub use actuated::{
-    MEMBRANE_MATERIAL, membrane, membrane_arch, report_8, ring_jump, ring_springs,
-};
+pub use actuated::{MEMBRANE_MATERIAL, membrane, membrane_arch, report_8, ring_jump, ring_springs};
 pub use scenes::{
     BEAM_MATERIAL, BENT_BEAM_MATERIAL, RingRoll, SQUARE_MATERIAL, SquareJump, beam_bend, beam_jump,
     pushed_nodes, square_jump, square_press,
