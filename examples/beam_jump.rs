@@ -6,38 +6,28 @@
 //! floor after 13 ms with 0.870 m/s. These numbers are known from the matrix exponential; the
 //! table shows how near the integration comes to them.
 
-use std::path::PathBuf;
+mod common;
 
 use clap::Parser;
+use common::{Common, finish};
 use pliant::output::{Chart, Snapshots, write_csv};
 use pliant::samples::beam_jump;
-use pliant::{Error, Method, Sample, Sampling, Solver, Trajectory};
+use pliant::{Error, Sample, Sampling, Trajectory};
 
 /// The jumping beam: a table of its phases, its key figures beside exact ones, and pictures.
 #[derive(Parser)]
 struct Arguments {
-    /// Integration method: cvode-bdf, cvode-adams, ida, ida-klu or rk
-    #[arg(long, default_value_t = Method::CvodeBdf)]
-    method: Method,
-    /// Relative tolerance
-    #[arg(long, default_value_t = 1e-8)]
-    rtol: f64,
-    /// Directory for the pictures
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
+    #[command(flatten)]
+    common: Common,
 }
 
 fn main() {
-    if let Err(error) = run(&Arguments::parse()) {
-        eprintln!("beam_jump: {error}");
-        std::process::exit(1);
-    }
+    finish(run(&Arguments::parse()));
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
-    let &Arguments { method, rtol, .. } = arguments;
-    let solver = Solver { method, rtol, ..Solver::default() };
-    let trajectory = beam_jump()?.simulate(&solver, &Sampling::every(0.0005))?;
+    let Arguments { common } = arguments;
+    let trajectory = beam_jump()?.simulate(&common.solver(), &Sampling::every(0.0005))?;
     println!("Jumping beam\n{}", trajectory.report());
 
     let last = trajectory.last();
@@ -55,7 +45,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         println!("{what:36} {found:12.7} {exact:12.7}");
     }
 
-    let directory = arguments.out.join("beam_jump");
+    let directory = common.out.join("beam_jump");
     let times = [0.0, 0.05, 0.1, 0.2, 0.205, 0.21, 0.22, 0.23, 0.24, 0.25];
     Snapshots::at(times)
         .title("One-dimensional elastic beam jumping")

@@ -7,12 +7,13 @@
 //! The constraint forces (`forces.svg`) are what a probe that presses it would read. They begin
 //! and end with a jump: the square is told to move at once.
 
-use std::path::PathBuf;
+mod common;
 
 use clap::Parser;
+use common::{Common, finish};
 use pliant::output::{Chart, Snapshots, write_csv, write_vtk};
 use pliant::samples::{pushed_nodes, square_press};
-use pliant::{Error, Method, Sample, Sampling, Solver};
+use pliant::{Error, Sample, Sampling};
 
 /// The pressed square: a table of its phases, the force of the probe, and pictures.
 #[derive(Parser)]
@@ -20,28 +21,17 @@ struct Arguments {
     /// Nodes along a side of the square
     #[arg(long, default_value_t = 4)]
     nodes: usize,
-    /// Integration method: cvode-bdf, cvode-adams, ida, ida-klu or rk
-    #[arg(long, default_value_t = Method::CvodeBdf)]
-    method: Method,
-    /// Relative tolerance
-    #[arg(long, default_value_t = 1e-6)]
-    rtol: f64,
-    /// Directory for the pictures
-    #[arg(long, default_value = "out")]
-    out: PathBuf,
+    #[command(flatten)]
+    common: Common,
 }
 
 fn main() {
-    if let Err(error) = run(&Arguments::parse()) {
-        eprintln!("square_press: {error}");
-        std::process::exit(1);
-    }
+    finish(run(&Arguments::parse()));
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
-    let &Arguments { nodes, method, rtol, .. } = arguments;
-    let solver = Solver { method, rtol, ..Solver::default() };
-    let trajectory = square_press(nodes)?.simulate(&solver, &Sampling::every(0.005))?;
+    let &Arguments { nodes, ref common } = arguments;
+    let trajectory = square_press(nodes)?.simulate(&common.solver(), &Sampling::every(0.005))?;
     println!("Pressed square, {nodes} x {nodes} nodes\n{}", trajectory.report());
 
     // The rows of the bottom come first, two per node; then those of the pushed nodes.
@@ -56,7 +46,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         }
     }
 
-    let directory = arguments.out.join(format!("square_press_{nodes}x{nodes}"));
+    let directory = common.out.join(format!("square_press_{nodes}x{nodes}"));
     let title = format!("Dynamic deformation of an elastic square body, {nodes} x {nodes} nodes");
     let times = [0.0, 0.25, 0.5, 1.0, 1.05, 1.1, 1.2, 1.4, 1.7, 2.0];
     Snapshots::at(times).title(&title).write(&trajectory, directory.join("snapshots.svg"))?;

@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 use crate::simulate::IntegrationFailure;
+use crate::statics::NoEquilibrium;
 
 /// What went wrong, with which input, and how to mend it.
 #[derive(Debug, thiserror::Error)]
@@ -49,6 +50,10 @@ pub enum Error {
     /// The integrator gave up; what was computed until then is kept inside.
     #[error(transparent)]
     Integration(#[from] Box<IntegrationFailure>),
+
+    /// No equilibrium was found; the last one on the way to it is kept inside.
+    #[error(transparent)]
+    Statics(#[from] Box<NoEquilibrium>),
 
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]

@@ -5,7 +5,8 @@
 mod scenes;
 
 pub use scenes::{
-    BEAM_MATERIAL, SQUARE_MATERIAL, SquareJump, beam_jump, pushed_nodes, square_jump, square_press,
+    BEAM_MATERIAL, BENT_BEAM_MATERIAL, RingRoll, SQUARE_MATERIAL, SquareJump, beam_bend, beam_jump,
+    pushed_nodes, square_jump, square_press,
 };
 
 use faer::MatMut;

@@ -14,8 +14,8 @@ use nalgebra::{SMatrix, SVector};
 
 use super::regions::{Moduli, Regions};
 use crate::element::{
-    MassPoint, ReferenceCell, Segment, StrainPoint, Triangle, determinant, mass_points,
-    strain_points,
+    Hexahedron, MassPoint, Quadrilateral, ReferenceCell, Segment, StrainPoint, Tetrahedron,
+    Tetrahedron10, Triangle, Triangle6, determinant, mass_points, strain_points,
 };
 use crate::error::Error;
 use crate::force::NodalForces;
@@ -61,6 +61,9 @@ pub(crate) trait Cells: Send + Sync {
     /// Energy of Green strain (J).
     fn green_energy(&self, regions: &Regions, u: &[f64]) -> f64;
 
+    /// Present over natural volume of each cell.
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
+
     /// Volume of all cells (m^3).
     fn volume(&self) -> f64;
 }
@@ -74,13 +77,21 @@ pub(crate) struct Law {
 
 /// The cells of `mesh`; `section` is the area or thickness of the body.
 pub(super) fn cells(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
-    match (mesh.kind(), mesh.dimension()) {
-        (CellKind::Segment, 1) => CellsOf::<2, 1, 1>::boxed::<Segment>(mesh, section),
-        (CellKind::Segment, 2) => CellsOf::<2, 1, 2>::boxed::<Segment>(mesh, section),
-        (CellKind::Segment, _) => CellsOf::<2, 1, 3>::boxed::<Segment>(mesh, section),
-        (CellKind::Triangle, 2) => CellsOf::<3, 2, 2>::boxed::<Triangle>(mesh, section),
-        (CellKind::Triangle, _) => CellsOf::<3, 2, 3>::boxed::<Triangle>(mesh, section),
-    }
+    let of = match (mesh.kind(), mesh.dimension()) {
+        (CellKind::Segment, 1) => CellsOf::<2, 1, 1>::boxed::<Segment>,
+        (CellKind::Segment, 2) => CellsOf::<2, 1, 2>::boxed::<Segment>,
+        (CellKind::Segment, _) => CellsOf::<2, 1, 3>::boxed::<Segment>,
+        (CellKind::Triangle, 2) => CellsOf::<3, 2, 2>::boxed::<Triangle>,
+        (CellKind::Triangle, _) => CellsOf::<3, 2, 3>::boxed::<Triangle>,
+        (CellKind::Triangle6, 2) => CellsOf::<6, 2, 2>::boxed::<Triangle6>,
+        (CellKind::Triangle6, _) => CellsOf::<6, 2, 3>::boxed::<Triangle6>,
+        (CellKind::Quadrilateral, 2) => CellsOf::<4, 2, 2>::boxed::<Quadrilateral>,
+        (CellKind::Quadrilateral, _) => CellsOf::<4, 2, 3>::boxed::<Quadrilateral>,
+        (CellKind::Tetrahedron, _) => CellsOf::<4, 3, 3>::boxed::<Tetrahedron>,
+        (CellKind::Tetrahedron10, _) => CellsOf::<10, 3, 3>::boxed::<Tetrahedron10>,
+        (CellKind::Hexahedron, _) => CellsOf::<8, 3, 3>::boxed::<Hexahedron>,
+    };
+    of(mesh, section)
 }
 
 /// Cells of `N` nodes and dimension `M` in a space of dimension `D`.
@@ -273,6 +284,19 @@ impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> 
         self.iter().map(of_cell).sum()
     }
 
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        let u = u.as_chunks::<D>().0;
+        let of_cell = |(_, nodes, points): (usize, &[usize; N], &[StrainPoint<N, M, D>])| {
+            let natural: f64 = points.iter().map(|point| point.volume).sum();
+            let present = points.iter().map(|point| {
+                let f = point.frame + gradient(point, nodes, u);
+                point.volume * stretch_of(&f)
+            });
+            present.sum::<f64>() / natural
+        };
+        self.iter().map(of_cell).collect()
+    }
+
     fn volume(&self) -> f64 {
         self.points.iter().map(|point| point.volume).sum()
     }
@@ -339,16 +363,21 @@ fn material_block<const D: usize>(
     fa * fb.transpose() * lame.lambda + (f_square * stretch + fb * fa.transpose()) * lame.mu
 }
 
+/// Factor by which F stretches a volume: det F, or its size where the cell does not fill space.
+fn stretch_of<const M: usize, const D: usize>(f: &SMatrix<f64, D, M>) -> f64 {
+    match M == D {
+        true => determinant(&SMatrix::<f64, M, M>::from_fn(|i, j| f[(i, j)])),
+        false => determinant(&f.tr_mul(f)).sqrt(),
+    }
+}
+
 /// A cell that is turned inside out has no meaning.
 fn check_orientation<const N: usize, const M: usize, const D: usize>(
     cell: usize,
     nodes: &[usize; N],
     f: &SMatrix<f64, D, M>,
 ) -> Result<(), Failure> {
-    if M < D {
-        return Ok(());
-    }
-    let stretch = determinant(&SMatrix::<f64, M, M>::from_fn(|i, j| f[(i, j)]));
+    let stretch = stretch_of(f);
     if stretch > 0.0 {
         return Ok(());
     }

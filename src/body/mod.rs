@@ -184,7 +184,9 @@ impl BodyBuilder {
             stiffness: Arc::new(stiffness),
             damping: Arc::new(damping),
         };
-        match body.nodal_masses().iter().position(|&mass| mass == 0.0) {
+        // not the nodal masses: those of quadratic cells are 0 and below at corners
+        let mut nodes = 0..body.mesh.node_count();
+        match nodes.find(|&node| body.inertia.get(node, node) == 0.0) {
             Some(node) => Err(Error::input(
                 "node",
                 node + 1,
@@ -202,8 +204,9 @@ impl BodyBuilder {
         match (kind.dimension(), self.area, self.thickness) {
             (1, Some(area), None) => positive("area", area, "m^2"),
             (2, None, Some(thickness)) => positive("thickness", thickness, "m"),
-            (1, _, Some(thickness)) => misplaced("thickness", thickness),
-            (2, Some(area), _) => misplaced("area", area),
+            (3, None, None) => Ok(1.0),
+            (1 | 3, _, Some(thickness)) => misplaced("thickness", thickness),
+            (2 | 3, Some(area), _) => misplaced("area", area),
             (1, None, None) => Err(missing("area", "a one-dimensional body needs its area in m^2")),
             _ => Err(missing("thickness", "a two-dimensional body needs its thickness in m")),
         }
@@ -291,6 +294,11 @@ impl Body {
         })
     }
 
+    /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
+    pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        self.cells.volume_ratios(u)
+    }
+
     /// Volume of the cells (m^3).
     pub fn volume(&self) -> f64 {
         self.cells.volume()
@@ -323,7 +331,8 @@ impl Body {
         self.inertia.values.iter().sum()
     }
 
-    /// Mass that moves with each node (kg): the row sums of m.
+    /// Mass that moves with each node (kg): the row sums of m. Corners of quadratic cells may have
+    /// none, or less than none.
     pub fn nodal_masses(&self) -> Vec<f64> {
         let pattern = self.inertia.pattern();
         let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();

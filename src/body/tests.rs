@@ -10,9 +10,24 @@ use crate::samples::SQUARE_MATERIAL;
 
 /// Bodies of every kind of cell, in every space they may live in, somewhat irregular.
 fn bodies() -> Vec<(String, Body)> {
+    let square = [0.0, 0.0, 1.0, 0.2, 1.3, 1.1, -0.1, 0.9];
+    let wedge = [0.0, 0.0, 1.2, 0.1, 0.2, 1.0, 0.6, 0.1, 0.7, 0.6, 0.1, 0.5];
+    let solid = [0.0, 0.0, 0.0, 1.1, 0.1, 0.0, 0.2, 1.0, -0.1, 0.1, 0.2, 1.2];
+    let brick: Vec<f64> = (0..8_u8)
+        .flat_map(|k| {
+            let corner = [(k & 1) ^ (k >> 1 & 1), k >> 1 & 1, k >> 2 & 1].map(f64::from);
+            let bump = 0.1 * f64::from(k);
+            [corner[0] + bump.sin() * 0.2, corner[1] - bump.cos() * 0.1, corner[2] + bump * 0.1]
+        })
+        .collect();
     let kinds = [
         (CellKind::Segment, vec![0.0, 1.0, 2.2], vec![0, 1, 1, 2]),
-        (CellKind::Triangle, vec![0.0, 0.0, 1.0, 0.2, 1.3, 1.1, -0.1, 0.9], vec![0, 1, 2, 0, 2, 3]),
+        (CellKind::Triangle, square.to_vec(), vec![0, 1, 2, 0, 2, 3]),
+        (CellKind::Triangle6, wedge.to_vec(), (0..6).collect()),
+        (CellKind::Quadrilateral, square.to_vec(), (0..4).collect()),
+        (CellKind::Tetrahedron, solid.to_vec(), (0..4).collect()),
+        (CellKind::Tetrahedron10, tetrahedron10(&solid), (0..10).collect()),
+        (CellKind::Hexahedron, brick, (0..8).collect()),
     ];
     let mut bodies = Vec::new();
     for (kind, flat, cells) in kinds {
@@ -42,6 +57,19 @@ fn bodies() -> Vec<(String, Body)> {
     bodies
 }
 
+/// The corners of a tetrahedron and the middles of its edges, somewhat bent.
+fn tetrahedron10(corners: &[f64; 12]) -> Vec<f64> {
+    let edges = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+    let mut positions = corners.to_vec();
+    for (k, [a, b]) in edges.into_iter().enumerate() {
+        for i in 0..3 {
+            let bend = 0.03 * (k as f64 + 2.0 * i as f64).sin();
+            positions.push(0.5 * (corners[3 * a + i] + corners[3 * b + i]) + bend);
+        }
+    }
+    positions
+}
+
 /// Numbers between -`size` and `size` without a pattern.
 fn noise(length: usize, size: f64, seed: f64) -> Vec<f64> {
     (0..length)
@@ -65,16 +93,17 @@ fn moved(x: &[f64], j: usize, by: f64) -> Vec<f64> {
 fn forces_and_tangents_are_derivatives() {
     for (name, body) in bodies() {
         let n = body.dofs();
-        let (u, v) = (noise(n, 0.15, 1.0), noise(n, 2.0, 7.0));
+        let (u, v) = (noise(n, 0.05, 1.0), noise(n, 2.0, 7.0));
         let elastic = body.elastic().unwrap();
         let pattern = body.inertia().pattern();
         let mut stiffness = BlockMatrix::zeros(pattern, body.dimension());
         let mut damping = stiffness.clone();
         elastic.add_tangents(0.0, &u, &v, &mut stiffness, &mut damping);
         let at = forces(&body, &u, &v);
-        let scale = body.stiffness().get(0, 0);
-        // forces are cubic: central differences with h = 1e-4 are off by h^2 = 1e-8, relative
-        let h = 1e-4;
+        let scale = body.stiffness().values.iter().fold(0.0_f64, |s, k| s.max(k.abs()));
+        // Forces are cubic: central differences are off by (h/L)^2 = 1e-8 with the size L = 0.1 of
+        // the smallest cells, and by round-off of 1e-16/h.
+        let h = 1e-5;
         for j in 0..n {
             let energy = |by: f64| elastic.potential(0.0, &moved(&u, j, by));
             let slope = (energy(h) - energy(-h)) / (2.0 * h);

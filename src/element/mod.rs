@@ -7,13 +7,25 @@
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
 //! then described in coordinates of its own, along an orthonormal frame in its tangent space.
 
+mod hexahedron;
+mod quadrilateral;
 mod segment;
+#[cfg(test)]
+mod tests;
+mod tetrahedron;
+mod tetrahedron10;
 mod triangle;
+mod triangle6;
 
 use nalgebra::{SMatrix, SVector};
 
+pub(crate) use hexahedron::Hexahedron;
+pub(crate) use quadrilateral::Quadrilateral;
 pub(crate) use segment::Segment;
+pub(crate) use tetrahedron::Tetrahedron;
+pub(crate) use tetrahedron10::Tetrahedron10;
 pub(crate) use triangle::Triangle;
+pub(crate) use triangle6::Triangle6;
 
 /// A reference cell of `N` nodes in dimension `M`.
 pub(crate) trait ReferenceCell<const N: usize, const M: usize> {

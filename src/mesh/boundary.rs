@@ -1,20 +1,36 @@
 //! Boundary extraction: the faces that belong to one cell only.
 
-use std::collections::BTreeMap;
-
 use super::Mesh;
 
-/// A face of a cell: a node in 1D, an edge in 2D. Its nodes run so that the body lies to the left.
+/// A face of a cell: a node in 1D, an edge in 2D, a face in 3D. Its corners come first and run so
+/// that the body lies to the left (2D), counter-clockwise as seen from outside (3D); the mid nodes
+/// of a quadratic cell follow, as in [`CellKind::faces`](super::CellKind::faces).
 pub type Face = Vec<usize>;
+
+/// Nodes of a face of any kind of cell, ascending, filled up with `usize::MAX`.
+type Key = [usize; 6];
 
 impl Mesh {
     /// The faces that belong to one cell only, in the order of the cells.
+    ///
+    /// A body of lower dimension than space (string, membrane) is all boundary: its faces are its
+    /// cells.
     pub fn boundary_faces(&self) -> Vec<Face> {
-        let mut times_seen: BTreeMap<Face, usize> = BTreeMap::new();
-        for face in self.faces() {
-            *times_seen.entry(sorted(&face)).or_default() += 1;
+        if self.dimension > self.kind.dimension() {
+            return self.cells().map(<[usize]>::to_vec).collect();
         }
-        self.faces().filter(|face| times_seen[&sorted(face)] == 1).collect()
+        let mut once: Vec<usize> = Vec::new();
+        let mut keys: Vec<(Key, usize)> = Vec::new();
+        let (offsets, faces) = self.faces_by_smallest_node();
+        for range in offsets.windows(2) {
+            keys.clear();
+            keys.extend(faces[range[0]..range[1]].iter().map(|&face| (self.key(face), face)));
+            keys.sort_unstable();
+            let same = keys.chunk_by(|(a, _), (b, _)| a == b);
+            once.extend(same.filter(|faces| faces.len() == 1).map(|faces| faces[0].1));
+        }
+        once.sort_unstable();
+        once.into_iter().map(|face| self.face(face).collect()).collect()
     }
 
     pub(super) fn find_boundary_nodes(&self) -> Vec<usize> {
@@ -24,20 +40,40 @@ impl Mesh {
         nodes
     }
 
-    fn faces(&self) -> impl Iterator<Item = Face> {
-        self.cells().flat_map(|cell| {
-            self.kind
-                .faces()
-                .iter()
-                .map(move |face| face.iter().map(|&local| cell[local]).collect::<Face>())
-        })
+    /// Nodes of face `face`; all faces of a cell are counted before those of the next.
+    fn face(&self, face: usize) -> impl Iterator<Item = usize> {
+        let faces = self.kind.faces();
+        let cell = &self.connectivity[face / faces.len() * self.kind.nodes()..];
+        faces[face % faces.len()].iter().map(|&local| cell[local])
     }
-}
 
-fn sorted(face: &[usize]) -> Face {
-    let mut key = face.to_vec();
-    key.sort_unstable();
-    key
+    /// All faces, sorted by their smallest node: those of node k are
+    /// `faces[offsets[k]..offsets[k + 1]]`. Faces with the same nodes are neighbours then, and
+    /// time and memory grow in proportion to the mesh.
+    fn faces_by_smallest_node(&self) -> (Vec<usize>, Vec<usize>) {
+        let count = self.cell_count() * self.kind.faces().len();
+        let smallest = |face| self.face(face).fold(usize::MAX, usize::min);
+        let mut offsets = vec![0; self.node_count() + 1];
+        (0..count).for_each(|face| offsets[smallest(face) + 1] += 1);
+        for node in 1..offsets.len() {
+            offsets[node] += offsets[node - 1];
+        }
+        let mut next = offsets.clone();
+        let mut faces = vec![0; count];
+        for face in 0..count {
+            let place = &mut next[smallest(face)];
+            faces[*place] = face;
+            *place += 1;
+        }
+        (offsets, faces)
+    }
+
+    fn key(&self, face: usize) -> Key {
+        let mut key = [usize::MAX; 6];
+        key.iter_mut().zip(self.face(face)).for_each(|(place, node)| *place = node);
+        key.sort_unstable();
+        key
+    }
 }
 
 #[cfg(test)]

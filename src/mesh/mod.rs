@@ -4,54 +4,25 @@
 //! person names nodes by number (selections, messages) they count from 1, as in the literature.
 
 mod boundary;
+mod cell;
 mod generate;
 mod select;
 
 use std::collections::BTreeMap;
 
 pub use boundary::Face;
-pub use generate::Cells;
+pub use cell::CellKind;
+pub use generate::{Cells, SolidCells};
 pub use select::Selection;
 
 use crate::error::{Error, finite};
 
-/// Shape of a cell, with the order of its nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum CellKind {
-    /// Two nodes.
-    Segment,
-    /// Three nodes, counter-clockwise.
-    Triangle,
-}
-
-impl CellKind {
-    /// Nodes of one cell.
-    pub fn nodes(self) -> usize {
-        match self {
-            Self::Segment => 2,
-            Self::Triangle => 3,
-        }
-    }
-
-    /// Dimension of the cell itself: 1 for a segment, 2 for a triangle.
-    pub fn dimension(self) -> usize {
-        match self {
-            Self::Segment => 1,
-            Self::Triangle => 2,
-        }
-    }
-
-    /// The faces of the cell, as local node numbers, seen from outside in positive order.
-    pub(crate) fn faces(self) -> &'static [&'static [usize]] {
-        match self {
-            Self::Segment => &[&[0], &[1]],
-            Self::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
-        }
-    }
-}
-
-/// A finite element mesh in its natural shape.
+/// A finite element mesh in its natural shape: cells of one kind, in a space of their dimension or
+/// of a higher one (a string in the plane or in space, a membrane in space).
+///
+/// Axes are x, y, z in this order. Generators name the sides of a body by them: `left` and `right`
+/// are its ends along x; `bottom` and `top` those along the last axis, y in 2D and z in 3D; `front`
+/// and `back` those along y in 3D.
 #[derive(Debug, Clone)]
 pub struct Mesh {
     dimension: usize,
@@ -66,21 +37,15 @@ impl Mesh {
     /// after the other; `connectivity` the nodes of one cell after the other, counted from 0.
     ///
     /// # Errors
-    /// Coordinates that are not finite, a dimension that does not fit the cells, a cell with a
-    /// node that does not exist. (Inverted and flat cells are found when a body is made of it.)
+    /// Coordinates that are not finite, a dimension below that of the cells or above 3, a cell with
+    /// a node that does not exist. (Inverted and flat cells are found when a body is made of it.)
     pub fn new(
         dimension: usize,
         positions: Vec<f64>,
         kind: CellKind,
         connectivity: Vec<usize>,
     ) -> Result<Self, Error> {
-        if !(kind.dimension()..=3).contains(&dimension) {
-            return Err(Error::input(
-                "mesh.dimension",
-                dimension,
-                format!("{kind:?} cells live in dimension {} to 3", kind.dimension()),
-            ));
-        }
+        check_dimension(dimension, kind)?;
         if positions.is_empty() || !positions.len().is_multiple_of(dimension) {
             return Err(Error::input(
                 "number of mesh coordinates",
@@ -161,6 +126,44 @@ impl Mesh {
         Ok(self)
     }
 
+    /// The same mesh with the node at x (m) moved to `map(x)` (m): a grid bent into another shape,
+    /// or placed in a space of higher dimension. Cells and node sets stay what they are; the set
+    /// `boundary` is found anew if the dimension changes.
+    ///
+    /// ```
+    /// # use pliant::{Cells, Mesh};
+    /// let square = Mesh::rectangle([1.0, 1.0], [3, 3], Cells::Triangles)?;
+    /// let membrane = square.mapped(|x| [x[0], x[1], 0.1 * x[0] * x[1]])?;
+    /// assert_eq!(membrane.dimension(), 3);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A new position that is not finite, a dimension below that of the cells or above 3. (Cells
+    /// that the map turns over are found when a body is made of the mesh.)
+    pub fn mapped<const D: usize>(
+        mut self,
+        mut map: impl FnMut(&[f64]) -> [f64; D],
+    ) -> Result<Self, Error> {
+        check_dimension(D, self.kind)?;
+        let mut moved = Vec::with_capacity(D * self.node_count());
+        for (node, from) in self.positions.chunks_exact(self.dimension).enumerate() {
+            let to = map(from);
+            if to.iter().any(|x| !x.is_finite()) {
+                let mend = format!("the map must give finite coordinates (m) for {from:?}");
+                let input = format!("mapped position of node {}", node + 1);
+                return Err(Error::input(input, format!("{to:?}"), mend));
+            }
+            moved.extend(to);
+        }
+        self.positions = moved;
+        if D != self.dimension {
+            self.dimension = D;
+            self.sets.insert("boundary".into(), self.find_boundary_nodes());
+        }
+        Ok(self)
+    }
+
     /// Dimension of space: coordinates per node.
     pub fn dimension(&self) -> usize {
         self.dimension
@@ -196,14 +199,21 @@ impl Mesh {
         self.connectivity.chunks_exact(self.kind.nodes())
     }
 
-    /// The named node sets (nodes counted from 0, ascending).
+    /// The named node sets (nodes counted from 0, in the order in which they were named; those of
+    /// the generators run along their side, `all` and `boundary` ascend).
     pub fn sets(&self) -> &BTreeMap<String, Vec<usize>> {
         &self.sets
     }
 
-    /// Nodes on the boundary, counted from 0, ascending.
+    /// Nodes on the boundary, counted from 0, ascending. In a space of higher dimension than the
+    /// cells these are all nodes of cells.
     pub fn boundary_nodes(&self) -> &[usize] {
         &self.sets["boundary"]
+    }
+
+    /// The values of a vector field at all nodes, one node after the other.
+    pub(crate) fn field(&self, field: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+        self.positions.chunks_exact(self.dimension).flat_map(field).collect()
     }
 
     /// Length of the diagonal of the box around the mesh (m).
@@ -217,4 +227,14 @@ impl Mesh {
         };
         (0..self.dimension).map(|axis| extent(axis).powi(2)).sum::<f64>().sqrt()
     }
+}
+
+fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), Error> {
+    let least = kind.dimension();
+    if (least..=3).contains(&dimension) {
+        return Ok(());
+    }
+    let allowed = if least == 3 { "3".into() } else { format!("{least} to 3") };
+    let mend = format!("{kind:?} cells need a space of dimension {allowed}");
+    Err(Error::input("mesh.dimension", dimension, mend))
 }

@@ -9,7 +9,8 @@ use crate::error::Error;
 /// `body.hold("bottom")`, `body.hold([14, 15])`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Selection {
-    /// A named set of the mesh (`bottom`, `top`, `left`, `right`, `boundary`, `all`, or one's own).
+    /// A named set of the mesh (`bottom`, `top`, `left`, `right`, `front`, `back`, `inner`, `outer`
+    /// where the mesh has them, `boundary`, `all`, or one's own).
     Set(String),
     /// Node numbers, counted from 1 as in the literature.
     Numbers(Vec<usize>),
@@ -41,8 +42,7 @@ impl<const N: usize> From<[usize; N]> for Selection {
 }
 
 impl Mesh {
-    /// The nodes that `selection` names, counted from 0, in the order given (sets and boxes:
-    /// ascending).
+    /// The nodes that `selection` names, counted from 0, in the order given (boxes: ascending).
     ///
     /// # Errors
     /// An unknown set, a number out of range or given twice, an empty selection.

@@ -76,6 +76,11 @@ fn grid(mesh: &Mesh, sample: &Sample) -> Vtk {
     let kind = match mesh.kind() {
         CellKind::Segment => CellType::Line,
         CellKind::Triangle => CellType::Triangle,
+        CellKind::Triangle6 => CellType::QuadraticTriangle,
+        CellKind::Quadrilateral => CellType::Quad,
+        CellKind::Tetrahedron => CellType::Tetra,
+        CellKind::Tetrahedron10 => CellType::QuadraticTetra,
+        CellKind::Hexahedron => CellType::Hexahedron,
     };
     let corners = mesh.kind().nodes() as u64;
     Vtk {

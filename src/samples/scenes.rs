@@ -1,6 +1,7 @@
 //! Scenes of Hirai, *Computing Dynamic Deformation*.
 
-use crate::body::{Body, BodyBuilder};
+use crate::body::{Body, BodyBuilder, CellSelection, Strain, Viscosity};
+use crate::constraint::Axis;
 use crate::error::Error;
 use crate::force::Obstacle;
 use crate::material::Material;
@@ -15,6 +16,10 @@ pub const SQUARE_MATERIAL: Material =
 pub const BEAM_MATERIAL: Material =
     Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 200.0 };
 
+/// Material of the bent beam: E = 0.1 MPa, c = 4 Pa s, nu = 0.48, rho = 1 g/cm^3.
+pub const BENT_BEAM_MATERIAL: Material =
+    Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 4.0 };
+
 /// Figs 4.3 and 4.4: an elastic square of 30 cm, `nodes` x `nodes`, 1 cm thick. Its bottom is
 /// fixed and the middle third of its top pressed down at 16 cm/s until 0.5 s, held until 1 s,
 /// and released until 2 s.
@@ -22,7 +27,7 @@ pub const BEAM_MATERIAL: Material =
 /// # Errors
 /// Fewer than 4 nodes: the top has no middle third then.
 pub fn square_press(nodes: usize) -> Result<Scene, Error> {
-    let scene = Scene::new(square(nodes)?.build()?);
+    let scene = Scene::new(square(nodes, Cells::Triangles)?.build()?);
     Ok(press(scene, nodes).phase(Phase::until(2.0).named("released").hold("bottom")))
 }
 
@@ -40,6 +45,8 @@ pub fn square_jump(nodes: usize) -> Result<Scene, Error> {
 pub struct SquareJump {
     /// Nodes along a side, 4 at least. Default: 4 (Fig. 4.5); Fig. 4.6 has 10.
     pub nodes: usize,
+    /// How the square is divided. Default: triangles; Fig. 4.7 has rectangles.
+    pub cells: Cells,
     /// Stiffness of the floor under all nodes of the bottom together (N/m). Default: 400, the
     /// 100 N/m per node of the documents on 4 nodes and 40 on 10.
     pub floor: f64,
@@ -51,7 +58,7 @@ pub struct SquareJump {
 
 impl Default for SquareJump {
     fn default() -> Self {
-        Self { nodes: 4, floor: 400.0, gravity: 0.0, until: 1.5 }
+        Self { nodes: 4, cells: Cells::Triangles, floor: 400.0, gravity: 0.0, until: 1.5 }
     }
 }
 
@@ -62,7 +69,7 @@ impl SquareJump {
     /// Fewer than 4 nodes.
     pub fn scene(&self) -> Result<Scene, Error> {
         let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
-        let mut scene = Scene::new(square(self.nodes)?.build()?)
+        let mut scene = Scene::new(square(self.nodes, self.cells)?.build()?)
             .obstacle(floor.stiffness(self.floor / self.nodes as f64));
         if self.gravity != 0.0 {
             scene = scene.gravity([0.0, -self.gravity]);
@@ -85,17 +92,84 @@ pub fn beam_jump() -> Result<Scene, Error> {
         .phase(Phase::until(0.6).named("free")))
 }
 
+/// Figs 4.9 and 4.10: an elastic beam of 10 x 2 cm (11 x 3 nodes), 1 cm thick, its left end fixed.
+/// The middle of its right end, node 22, is pushed down by 5 cm within 5 s, its horizontal component
+/// held too if `holds_tip`; then it is released until 6 s. Viscosity is natural, as in the documents.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn beam_bend(strain: Strain, holds_tip: bool) -> Result<Scene, Error> {
+    let mesh = Mesh::rectangle([0.10, 0.02], [11, 3], Cells::Triangles)?;
+    let body = Body::new(mesh, BENT_BEAM_MATERIAL)
+        .thickness(0.01)
+        .strain(strain)
+        .viscosity(Viscosity::Natural)
+        .build()?;
+    let push = Phase::until(5.0).named("push").hold("left");
+    let push = match holds_tip {
+        true => push.move_nodes([22], [0.0, -0.01]),
+        false => push.move_axis([22], Axis::Y, -0.01),
+    };
+    Ok(Scene::new(body).phase(push).phase(Phase::until(6.0).named("released").hold("left")))
+}
+
+/// Fig. 4.11: an elastic ring, its right half ten times as heavy as its left one, rolls on a floor.
+/// Radii 2 and 4 cm, 16 x 3 nodes, 1 cm thick; floor of 1000 N/m and 20 N s/m per node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RingRoll {
+    /// Default: Green.
+    pub strain: Strain,
+    /// Default: natural, as in the documents. It brakes the rotation, and the ring creeps to rest;
+    /// with objective viscosity it rolls through and swings.
+    pub viscosity: Viscosity,
+    /// Tangential damping B_t (N s/m per node). Default: 20.
+    pub friction: f64,
+    /// End (s). Default: 5.
+    pub until: f64,
+}
+
+impl Default for RingRoll {
+    fn default() -> Self {
+        let (strain, viscosity) = (Strain::Green, Viscosity::Natural);
+        Self { strain, viscosity, friction: 20.0, until: 5.0 }
+    }
+}
+
+impl RingRoll {
+    /// The scene.
+    ///
+    /// # Errors
+    /// Friction or end out of range.
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let light = Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 40.0 };
+        let heavy = Material { density: 10_000.0, ..light };
+        let mesh = Mesh::ring(0.02, 0.04, [16, 3], Cells::Triangles)?.translated(&[0.0, 0.04])?;
+        let body = Body::new(mesh, light)
+            .region(CellSelection::inside([0.0, -1.0], [1.0, 1.0]), heavy)
+            .thickness(0.01)
+            .strain(self.strain)
+            .viscosity(self.viscosity)
+            .build()?;
+        let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
+        let scene = Scene::new(body)
+            .gravity([0.0, -9.8])
+            .obstacle(floor.stiffness(1000.0).friction(self.friction))
+            .phase(Phase::until(self.until).named("rolls"));
+        scene.validate().map(|()| scene)
+    }
+}
+
 /// Numbers (from 1) of the nodes in the middle third of the top edge of the square.
 pub fn pushed_nodes(nodes: usize) -> Vec<usize> {
     let first = nodes * (nodes - 1);
     (first + nodes / 3 + 1..=first + nodes - nodes / 3).collect()
 }
 
-fn square(nodes: usize) -> Result<BodyBuilder, Error> {
+fn square(nodes: usize, cells: Cells) -> Result<BodyBuilder, Error> {
     if nodes < 4 {
         return Err(Error::input("nodes", nodes, "the square needs 4 nodes along a side at least"));
     }
-    let mesh = Mesh::rectangle([0.30, 0.30], [nodes, nodes], Cells::Triangles)?;
+    let mesh = Mesh::rectangle([0.30, 0.30], [nodes, nodes], cells)?;
     Ok(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01))
 }
 

@@ -10,7 +10,7 @@ pub use phase::Phase;
 
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
-use crate::error::Error;
+use crate::error::{Error, finite};
 use crate::force::{Chamber, Obstacle, Spring};
 use crate::model::Model;
 use crate::system::System;
@@ -39,6 +39,8 @@ pub struct Scene {
     chambers: Vec<Chamber>,
     obstacles: Vec<Obstacle>,
     phases: Vec<Phase>,
+    /// Displacements and velocities at t = 0.
+    start: [Vec<f64>; 2],
 }
 
 /// What a constraint makes a node do.
@@ -51,6 +53,7 @@ pub(crate) enum Role {
 impl Scene {
     /// A scene with a body alone, at rest in its natural shape at t = 0.
     pub fn new(body: Body) -> Self {
+        let rest = vec![0.0; body.dofs()];
         Self {
             body: Arc::new(body),
             gravity: None,
@@ -58,7 +61,20 @@ impl Scene {
             chambers: Vec::new(),
             obstacles: Vec::new(),
             phases: Vec::new(),
+            start: [rest.clone(), rest],
         }
+    }
+
+    /// Displacements at t = 0 (m): `field` gives one for each natural position. Default: none.
+    pub fn initial_displacement(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        self.start[0] = self.body.mesh().field(field);
+        self
+    }
+
+    /// Velocities at t = 0 (m/s): `field` gives one for each natural position. Default: rest.
+    pub fn initial_velocity(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        self.start[1] = self.body.mesh().field(field);
+        self
     }
 
     /// Acceleration of gravity (m/s^2), one component per dimension. Default: none.
@@ -149,6 +165,16 @@ impl Scene {
         if self.phases.is_empty() {
             return Err(Error::input("number of phases", 0, "a scene needs one phase at least"));
         }
+        for (name, vector) in
+            ["initial displacement", "initial velocity"].into_iter().zip(&self.start)
+        {
+            if vector.len() != self.body.dofs() {
+                let mend = format!("it needs {} components at each node", self.body.dimension());
+                let value = format!("{} numbers in all", vector.len());
+                return Err(Error::input(name, value, mend));
+            }
+            finite(name, vector)?;
+        }
         let mut start = 0.0;
         for phase in &self.phases {
             let input = format!("end of phase \"{}\"", phase.name);
@@ -170,7 +196,7 @@ impl Scene {
         for obstacle in &self.obstacles {
             obstacle.validated(self.body.dimension())?;
         }
-        let (mut time, mut u) = (0.0, vec![0.0; self.body.dofs()]);
+        let (mut time, mut u) = (0.0, self.start[0].clone());
         for phase in &self.phases {
             let rows = self.rows(phase, &Start { time, u: &u })?;
             self.forces(phase)?;
@@ -178,6 +204,11 @@ impl Scene {
             tell(&rows, time, &mut u);
         }
         Ok(())
+    }
+
+    /// Displacements and velocities at t = 0.
+    pub(crate) fn start(&self) -> [&[f64]; 2] {
+        [&self.start[0], &self.start[1]]
     }
 
     /// The constant numbers of the scene.

@@ -138,7 +138,7 @@ impl fmt::Display for IntegrationFailure {
 impl std::error::Error for IntegrationFailure {}
 
 impl Scene {
-    /// Runs the scene from rest in its natural shape.
+    /// Runs the scene, from rest in its natural shape if nothing else was said.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Solver};
@@ -188,7 +188,7 @@ impl<'a> Run<'a> {
             solver,
             atol: solver.tolerances(scene.body()),
             time: 0.0,
-            state: vec![0.0; 2 * scene.body().dofs() + ENERGIES],
+            state: [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat(),
             trajectory: Trajectory::new(scene, report),
         }
     }

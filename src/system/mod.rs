@@ -17,6 +17,7 @@
 //! began. They cost two dot products, nothing depends on them, and the error control leaves them
 //! out; they make the energy balance as accurate as the integration itself.
 
+mod at_rest;
 mod cholesky;
 mod dae;
 mod newton;
@@ -27,6 +28,7 @@ mod tests;
 
 use std::sync::Arc;
 
+pub(crate) use at_rest::{AtRest, Balance};
 pub(crate) use dae::IndexOne;
 use newton::Newton;
 pub(crate) use ode::ENERGIES;

@@ -22,9 +22,9 @@ use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
 pub(super) struct Newton {
-    solver: Reduced,
-    stiffness: Tangent,
-    damping: Tangent,
+    pub(super) solver: Reduced,
+    pub(super) stiffness: Tangent,
+    pub(super) damping: Tangent,
     /// Whether the tangents follow the state, and have been evaluated.
     follows: bool,
     is_set: bool,
@@ -39,7 +39,7 @@ pub(super) struct Newton {
 }
 
 /// Kt or D.
-enum Tangent {
+pub(super) enum Tangent {
     /// The constant matrix of the model, in a phase without forces that change it.
     Constant(Arc<BlockMatrix>),
     /// A matrix of its own.
@@ -54,7 +54,7 @@ impl Tangent {
         }
     }
 
-    fn get(&self) -> &BlockMatrix {
+    pub(super) fn get(&self) -> &BlockMatrix {
         match self {
             Self::Constant(matrix) => matrix,
             Self::Own(matrix) => matrix,
@@ -62,7 +62,10 @@ impl Tangent {
     }
 
     /// Its own matrix, set back to the constant part.
-    fn begin(&mut self, constant: &Option<Arc<BlockMatrix>>) -> Option<&mut BlockMatrix> {
+    pub(super) fn begin(
+        &mut self,
+        constant: &Option<Arc<BlockMatrix>>,
+    ) -> Option<&mut BlockMatrix> {
         let Self::Own(matrix) = self else { return None };
         match constant {
             Some(constant) => matrix.values.copy_from_slice(&constant.values),

@@ -105,29 +105,52 @@ fn clip(polygon: &[Point], level: impl Fn(&Point) -> f64) -> Vec<Point> {
     clipped
 }
 
-/// Positions of all nodes as drawn: a one-dimensional body stands upright.
+/// How space is seen: from the front, turned 30 degrees to the right and 20 degrees from above.
+/// Axes of the drawing, to the right and upward, and the direction away from the viewer.
+const RIGHTWARD: [f64; 3] = [0.866_025, 0.5, 0.0];
+const UPWARD: [f64; 3] = [-0.171_010, 0.296_198, 0.939_693];
+const AWAY: [f64; 3] = [-0.469_846, 0.813_798, -0.342_020];
+
+/// Positions of all nodes as drawn: a one-dimensional body stands upright, space is seen obliquely.
 pub(super) fn positions(trajectory: &Trajectory, sample: &Sample) -> Vec<Point> {
-    let mesh = trajectory.body().mesh();
-    let displaced: Vec<f64> = mesh.positions().iter().zip(&sample.u).map(|(x, u)| x + u).collect();
-    displaced.chunks_exact(mesh.dimension()).map(upright).collect()
+    let dimension = trajectory.body().dimension();
+    displaced(trajectory, sample).chunks_exact(dimension).map(drawn).collect()
 }
 
+/// How far away from the viewer each node of a body in space is (m, from an arbitrary plane).
+pub(super) fn depths(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
+    displaced(trajectory, sample).chunks_exact(3).map(|x| along(x, AWAY)).collect()
+}
+
+fn displaced(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
+    let natural = trajectory.body().mesh().positions().iter();
+    natural.zip(&sample.u).map(|(x, u)| x + u).collect()
+}
+
+fn along(x: &[f64], direction: [f64; 3]) -> f64 {
+    x.iter().zip(direction).map(|(x, d)| x * d).sum()
+}
+
+/// Lines in the plane of the drawing; in space, surfaces are not drawn.
 fn planes(trajectory: &Trajectory) -> Vec<[Point; 2]> {
+    if trajectory.body().dimension() == 3 {
+        return Vec::new();
+    }
     let obstacles = trajectory.scene().obstacles().iter();
     let plane = obstacles.map(|obstacle| {
         let (point, normal) = obstacle.plane();
-        let (point, normal) = (upright(point), upright(normal));
+        let (point, normal) = (drawn(point), drawn(normal));
         let length = normal[0].hypot(normal[1]);
         [point, normal.map(|x| x / length)]
     });
     plane.collect()
 }
 
-fn upright(x: &[f64]) -> Point {
+fn drawn(x: &[f64]) -> Point {
     match *x {
         [x] => [0.0, x],
-        [x, y, ..] => [x, y],
-        [] => [0.0, 0.0],
+        [x, y] => [x, y],
+        _ => [RIGHTWARD, UPWARD].map(|axis| along(x, axis)),
     }
 }
 

@@ -20,7 +20,8 @@ use crate::trajectory::{Sample, Trajectory};
 /// Snapshots of a motion: one panel per chosen time, all on the same scale, each with the deformed
 /// mesh, the obstacles, and the nodes that the phase holds or moves.
 ///
-/// A one-dimensional body is drawn upright, its axis upward, with a visible width.
+/// A one-dimensional body is drawn upright, its axis upward, with a visible width. A body in space
+/// is seen obliquely, from the front, the right and above, with z upward and without obstacles.
 ///
 /// ```
 /// use pliant::output::Snapshots;

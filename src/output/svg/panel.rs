@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use svg::node::element::{Group, Path};
 
-use super::layout::{BAR_WIDTH, Layout, Point, View, positions};
+use super::layout::{BAR_WIDTH, Layout, Point, View, depths, positions};
 use super::{INK, text};
 use crate::mesh::{CellKind, Mesh};
 use crate::trajectory::{Sample, Trajectory};
@@ -49,9 +49,11 @@ impl Panel<'_> {
         let points: Vec<Point> =
             points.iter().map(|&x| self.layout.place(self.number, x)).collect();
         let mesh = self.trajectory.body().mesh();
-        panel = match mesh.kind() {
-            CellKind::Segment => panel.add(self.bar(mesh, &points)),
-            CellKind::Triangle => panel.add(cells(mesh, &points)),
+        panel = match (mesh.kind(), mesh.dimension()) {
+            (CellKind::Segment, 1) => panel.add(self.bar(mesh, &points)),
+            (CellKind::Segment, _) => panel.add(string(mesh, &points)),
+            (_, 2) => panel.add(cells(mesh, &points)),
+            _ => panel.add(surface(mesh, &points, &depths(self.trajectory, self.sample))),
         };
         for (&node, mark) in self.marks {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
@@ -96,22 +98,79 @@ impl Panel<'_> {
     }
 }
 
-/// A two-dimensional body: its cells, and its outline stronger.
+/// A one-dimensional body in a plane or in space.
+fn string(mesh: &Mesh, points: &[Point]) -> Group {
+    let mut data = Data::default();
+    for cell in mesh.cells() {
+        data.polyline(&[points[cell[0]], points[cell[1]]], false);
+    }
+    Group::new().add(body("cells", data, 1.8).set("fill", "none").set("stroke-linecap", "round"))
+}
+
+/// A body that fills an area of the plane: its cells, and its outline stronger.
 fn cells(mesh: &Mesh, points: &[Point]) -> Group {
     let mut data = Data::default();
     for cell in mesh.cells() {
-        let corners: Vec<Point> = cell.iter().map(|&node| points[node]).collect();
-        data.polyline(&corners, true);
+        let around = around(mesh.kind()).map(|local| points[cell[local]]);
+        data.polyline(&around.collect::<Vec<_>>(), true);
     }
     let mut outline = Data::default();
     for face in mesh.boundary_faces() {
-        let ends: Vec<Point> = face.iter().map(|&node| points[node]).collect();
-        outline.polyline(&ends, false);
+        let along: Vec<Point> = through_middle(&face).map(|node| points[node]).collect();
+        outline.polyline(&along, false);
     }
     let fine = line_width(mesh, points);
     Group::new()
         .add(body("cells", data, fine).set("fill", FILL).set("fill-opacity", 0.75))
         .add(body("outline", outline, 1.5).set("fill", "none").set("stroke-linecap", "round"))
+}
+
+/// A body in space: its surface, what is far away first. A solid shows the faces that look at the
+/// viewer only.
+fn surface(mesh: &Mesh, points: &[Point], depths: &[f64]) -> Group {
+    let solid = mesh.kind().dimension() == 3;
+    let mut faces: Vec<(f64, Vec<Point>)> = Vec::new();
+    for face in mesh.boundary_faces() {
+        let kind = match face.len() {
+            3 => CellKind::Triangle,
+            4 => CellKind::Quadrilateral,
+            _ => CellKind::Triangle6,
+        };
+        let around: Vec<Point> = around(kind).map(|local| points[face[local]]).collect();
+        if !solid || looks_at_viewer(&around) {
+            let depth: f64 = face.iter().map(|&node| depths[node]).sum();
+            faces.push((depth / face.len() as f64, around));
+        }
+    }
+    faces.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let mut group = Group::new()
+        .set("class", "cells")
+        .set("fill", FILL)
+        .set("stroke", EDGE)
+        .set("stroke-width", format!("{:.2}", line_width(mesh, points)))
+        .set("stroke-linejoin", "round");
+    for (_, around) in faces {
+        let mut data = Data::default();
+        data.polyline(&around, true);
+        group = group.add(Path::new().set("d", data.0));
+    }
+    group
+}
+
+/// Whether a polygon runs counter-clockwise on the page, whose second axis points down.
+fn looks_at_viewer(polygon: &[Point]) -> bool {
+    let next = polygon.iter().cycle().skip(1);
+    polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>() < 0.0
+}
+
+/// The nodes of a two-dimensional cell in the order in which they stand around it.
+fn around(kind: CellKind) -> impl Iterator<Item = usize> {
+    kind.edges().iter().flat_map(|edge| through_middle(edge).take(edge.len() - 1))
+}
+
+/// The nodes of an edge from end to end: through the mid node, where there is one.
+fn through_middle(edge: &[usize]) -> impl Iterator<Item = usize> {
+    edge.first().into_iter().chain(edge.get(2)).chain(edge.get(1)).copied()
 }
 
 /// Finer lines for finer meshes.

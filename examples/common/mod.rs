@@ -1,0 +1,40 @@
+//! What the examples share: arguments, and how they end.
+#![allow(dead_code)] // each example uses its part
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pliant::{Error, Method, Solver};
+
+/// Arguments of every example.
+#[derive(Args)]
+pub struct Common {
+    /// Integration method: cvode-bdf, cvode-adams, ida, ida-klu or rk
+    #[arg(long, default_value_t = Method::CvodeBdf)]
+    pub method: Method,
+    /// Relative tolerance
+    #[arg(long, default_value_t = 1e-6)]
+    pub rtol: f64,
+    /// Rate of the constraint stabilization (1/s)
+    #[arg(long, default_value_t = 1e3)]
+    pub alpha: f64,
+    /// Directory for the pictures
+    #[arg(long, default_value = "out")]
+    pub out: PathBuf,
+}
+
+impl Common {
+    /// The solver they ask for.
+    pub fn solver(&self) -> Solver {
+        let &Self { method, rtol, alpha, .. } = self;
+        Solver { method, rtol, alpha, ..Solver::default() }
+    }
+}
+
+/// Ends the program: with the message and code 1 after an error.
+pub fn finish(result: Result<(), Error>) {
+    if let Err(error) = result {
+        eprintln!("{error}");
+        std::process::exit(1);
+    }
+}

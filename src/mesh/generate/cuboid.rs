@@ -1,0 +1,81 @@
+//! Cuboids.
+
+use super::grid::Grid;
+use super::{check_nodes, grid_line};
+use crate::error::{Error, positive};
+use crate::mesh::{CellKind, Mesh};
+
+/// How a three-dimensional grid is divided into cells, row by row along x.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum SolidCells {
+    /// One eight-node hexahedron per grid cell.
+    Hexahedra,
+    /// Six four-node tetrahedra per grid cell, all around its diagonal from the least to the
+    /// greatest coordinates, so that neighbours fit. In each row first the first one of every grid
+    /// cell, then the second ones, and so on.
+    Tetrahedra,
+    /// Ten-node tetrahedra, divided as [`SolidCells::Tetrahedra`]. Corner nodes are numbered as
+    /// there; the nodes in the middle of edges come after all of them, in the order of the grid
+    /// with half the spacing.
+    Tetrahedra10,
+}
+
+/// One tetrahedron per order of the axes: it steps from corner to corner along them.
+const TETRAHEDRA: [[[usize; 3]; 4]; 6] = {
+    let [o, x, y, z] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    let [xy, xz, yz, xyz] = [[1, 1, 0], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
+    [
+        [o, x, xy, xyz],
+        [o, xz, x, xyz],
+        [o, xy, y, xyz],
+        [o, y, yz, xyz],
+        [o, z, xz, xyz],
+        [o, yz, z, xyz],
+    ]
+};
+
+/// The corners of a grid cell in the order of [`CellKind::Hexahedron`].
+const HEXAHEDRON: [[[usize; 3]; 8]; 1] =
+    [[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]];
+
+impl Mesh {
+    /// A cuboid of `size` = [along x, along y, along z] (m) with its least corner at the origin and
+    /// `nodes` corner nodes along the axes, numbered along x first, then y, then z; sets `left`,
+    /// `right` (its ends along x), `front`, `back` (along y) and `bottom`, `top` (along z), with
+    /// the mid nodes on them.
+    ///
+    /// # Errors
+    /// A side that is not above 0, fewer than 2 nodes along a side.
+    pub fn cuboid(size: [f64; 3], nodes: [usize; 3], cells: SolidCells) -> Result<Self, Error> {
+        for (axis, &length) in size.iter().enumerate() {
+            positive(&format!("cuboid.size[{axis}]"), length, "m")?;
+        }
+        check_nodes("cuboid", nodes)?;
+        let quadratic = cells == SolidCells::Tetrahedra10;
+        let grid = Grid::new(nodes.map(|count| count - 1), false, quadratic);
+        let (kind, connectivity) = match cells {
+            SolidCells::Hexahedra => {
+                (CellKind::Hexahedron, grid.divide(CellKind::Hexahedron, |_| &HEXAHEDRON))
+            }
+            SolidCells::Tetrahedra => {
+                (CellKind::Tetrahedron, grid.divide(CellKind::Tetrahedron, |_| &TETRAHEDRA))
+            }
+            SolidCells::Tetrahedra10 => {
+                (CellKind::Tetrahedron10, grid.divide(CellKind::Tetrahedron10, |_| &TETRAHEDRA))
+            }
+        };
+        let position = |place: &[usize; 3]| {
+            [0, 1, 2].map(|i| grid_line(place[i], grid.steps * (nodes[i] - 1), size[i]))
+        };
+        let positions = grid.places.iter().flat_map(position).collect();
+        let mut mesh = Mesh::new(3, positions, kind, connectivity)?;
+        for (axis, [least, greatest]) in
+            [["left", "right"], ["front", "back"], ["bottom", "top"]].into_iter().enumerate()
+        {
+            mesh = grid.name_side(mesh, least, axis, false)?;
+            mesh = grid.name_side(mesh, greatest, axis, true)?;
+        }
+        Ok(mesh)
+    }
+}

@@ -1,0 +1,234 @@
+//! The search for an equilibrium: Newton's method downhill, load step by load step.
+
+use super::{Stability, Statics};
+use crate::force::dot;
+use crate::ode::Failure;
+use crate::system::{AtRest, Balance};
+
+/// The search stopped: why, and the largest unbalanced force (N).
+pub(super) struct Stuck {
+    pub(super) cause: String,
+    pub(super) residual: f64,
+}
+
+/// A search on its way.
+pub(super) struct Search<'a> {
+    pub(super) rest: AtRest,
+    statics: &'a Statics,
+    /// Size of the body (m): no iteration moves a node by more than half of it.
+    size: f64,
+    /// Multiples of M that are added to K: the least one, and the present one (1/s^2).
+    floor: f64,
+    shift: f64,
+    /// Order of the largest eigenvalue of K x = eigenvalue M x.
+    highest: f64,
+    /// K is constant, and has been factorized.
+    is_done: bool,
+    is_linear: bool,
+    /// Part of constraints and loads in force at `u`.
+    pub(super) fraction: f64,
+    /// Part last tried.
+    pub(super) tried: f64,
+    pub(super) u: Vec<f64>,
+    /// Constraint forces there.
+    pub(super) mu: Vec<f64>,
+    pub(super) at: Balance,
+    pub(super) residual: f64,
+    pub(super) iterations: usize,
+    pub(super) load_steps: usize,
+    pub(super) failed_steps: usize,
+    trial: Balance,
+    x: Vec<f64>,
+    d: Vec<f64>,
+    work: Vec<f64>,
+}
+
+/// Parts of the highest eigenvalue: the smallest shift that is tried (and the one that stays on if
+/// rigid motions are free), and the largest.
+const SHIFTS: [f64; 2] = [1e-10, 1e3];
+
+impl<'a> Search<'a> {
+    /// From the natural shape of a body of `size` (m), `loose` if the constraints alone do not hold
+    /// it.
+    pub(super) fn new(mut rest: AtRest, statics: &'a Statics, size: f64, loose: bool) -> Self {
+        let (dofs, rows) = (rest.system().dofs(), rest.system().rows().len());
+        let u = vec![0.0; dofs];
+        rest.update_tangent(1.0, &u);
+        let highest = rest.highest();
+        let floor = if loose { SHIFTS[0] * highest } else { 0.0 };
+        Self {
+            is_linear: rest.is_linear(),
+            rest,
+            statics,
+            size,
+            floor,
+            shift: floor,
+            highest,
+            is_done: false,
+            fraction: 0.0,
+            tried: 0.0,
+            u,
+            mu: vec![0.0; rows],
+            at: Balance::zeros(dofs),
+            residual: 0.0,
+            iterations: 0,
+            load_steps: 0,
+            failed_steps: 0,
+            trial: Balance::zeros(dofs),
+            x: vec![0.0; dofs],
+            d: vec![0.0; rows],
+            work: vec![0.0; dofs],
+        }
+    }
+
+    /// Brings on the whole load.
+    pub(super) fn all(&mut self) -> Result<(), Stuck> {
+        let largest = 1.0 / self.statics.load_steps as f64;
+        let mut step = largest;
+        while self.fraction < 1.0 {
+            // what round-off alone keeps apart from the whole load is the whole load
+            let target = self.fraction + step;
+            self.tried = if target > 1.0 - 1e-9 { 1.0 } else { target };
+            let (u, mu) = (self.u.clone(), self.mu.clone());
+            match self.balance() {
+                Ok(()) => {
+                    self.fraction = self.tried;
+                    self.load_steps += 1;
+                    step = largest.min(2.0 * step);
+                }
+                Err(stuck) => {
+                    (self.u, self.mu) = (u, mu);
+                    self.failed_steps += 1;
+                    step *= 0.5;
+                    if self.is_linear || step < self.statics.min_load_step {
+                        return Err(stuck);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Finds the equilibrium for the part `tried` of the load, from `u`.
+    fn balance(&mut self) -> Result<(), Stuck> {
+        let Statics { rtol, max_iterations, .. } = *self.statics;
+        self.shift = self.floor;
+        self.evaluate()?;
+        for iteration in 0..max_iterations {
+            self.iterations += 1;
+            self.prepare()?;
+            self.rest.lacking(self.tried, &self.u, &mut self.d);
+            self.rest.solve(&self.at.total, &self.d, &mut self.x, &mut self.mu);
+            self.residual = self.rest.residual(&self.at.total, &self.mu, &mut self.work);
+            let largest = |x: &[f64]| x.iter().fold(0.0, |most, x| f64::max(most, x.abs()));
+            let (lacking, length) = (largest(&self.d), largest(&self.x));
+            if !length.is_finite() {
+                return Err(self.stuck("the displacements grow without bound".into()));
+            }
+            if lacking > 1e-12 * self.size && iteration < 2 {
+                // the constraints are met first, whatever it costs
+                self.u.iter_mut().zip(&self.x).for_each(|(u, x)| *u += x);
+                self.evaluate()?;
+                continue;
+            }
+            let is_newton = self.shift == self.floor;
+            let is_round_off = is_newton && length <= 1e-3 * rtol * self.size;
+            if self.residual <= rtol * self.at.scale || is_round_off {
+                return Ok(());
+            }
+            self.descend((0.5 * self.size / length).min(1.0))?;
+        }
+        Err(self.stuck(format!(
+            "not converged after {max_iterations} iterations: raise max_iterations or load_steps"
+        )))
+    }
+
+    fn evaluate(&mut self) -> Result<(), Stuck> {
+        let result = self.rest.evaluate(self.tried, &self.u, &mut self.at);
+        result.map_err(|failure| self.stuck(reason(failure)))
+    }
+
+    /// Factorizes K, shifted just so far that it is positive definite.
+    fn prepare(&mut self) -> Result<(), Stuck> {
+        if self.is_linear && self.is_done {
+            return Ok(());
+        }
+        self.rest.update_tangent(self.tried, &self.u);
+        let [least, most] = SHIFTS.map(|part| part * self.highest);
+        self.shift = if self.shift <= 10.0 * least { self.floor } else { 0.1 * self.shift };
+        while !self.rest.factorize(self.shift) {
+            if self.is_linear || self.shift > most {
+                let cause = "the stiffness matrix is not positive definite: hold more of the body";
+                return Err(self.stuck(cause.into()));
+            }
+            self.shift = (10.0 * self.shift).max(100.0 * least);
+        }
+        self.is_done = true;
+        Ok(())
+    }
+
+    /// Goes along x as far as the energy falls, `factor` times its length at most.
+    fn descend(&mut self, mut factor: f64) -> Result<(), Stuck> {
+        let slope = -dot(&self.at.total, &self.x);
+        let mut refused = None;
+        for _ in 0..40 {
+            self.work.copy_from_slice(&self.u);
+            self.work.iter_mut().zip(&self.x).for_each(|(u, x)| *u += factor * x);
+            let shorter = match self.rest.evaluate(self.tried, &self.work, &mut self.trial) {
+                Ok(()) => {
+                    let rise = self.trial.energy_since(&self.at, factor, &self.x);
+                    let round_off = self.trial.round_off() + self.at.round_off();
+                    if rise <= 1e-4 * factor * slope + round_off {
+                        std::mem::swap(&mut self.at, &mut self.trial);
+                        std::mem::swap(&mut self.u, &mut self.work);
+                        return Ok(());
+                    }
+                    // lowest point of the parabola through what is known
+                    -0.5 * slope * factor / (rise / factor - slope)
+                }
+                Err(Failure::Recoverable(message)) => {
+                    refused = Some(message);
+                    0.5 * factor
+                }
+                Err(fatal) => return Err(self.stuck(reason(fatal))),
+            };
+            // not a number, say: half
+            let shorter = if shorter.is_finite() { shorter } else { 0.5 * factor };
+            factor = shorter.clamp(0.1 * factor, 0.5 * factor);
+        }
+        let stalled = "the energy falls no further along the Newton step: forces without a \
+                       potential, or with a jump, may have no equilibrium here";
+        Err(self.stuck(refused.unwrap_or_else(|| stalled.into())))
+    }
+
+    /// What a small push does to the equilibrium at `u`. Factorizes K there once more if need be.
+    pub(super) fn stability(&mut self) -> Stability {
+        let eigenvalue = self.rest.lowest_eigenvalue(self.shift);
+        let omega = eigenvalue.abs().sqrt();
+        // round-off of K against M
+        match eigenvalue.abs() <= 1e-13 * self.highest {
+            true => Stability::Neutral,
+            false if eigenvalue > 0.0 => {
+                Stability::Stable { frequency: omega / std::f64::consts::TAU }
+            }
+            false => Stability::Unstable { growth: omega },
+        }
+    }
+
+    /// Largest |A^T u - b| (m).
+    pub(super) fn drift(&mut self) -> f64 {
+        self.rest.lacking(self.fraction, &self.u, &mut self.d);
+        self.d.iter().fold(0.0, |most, d| f64::max(most, d.abs()))
+    }
+
+    fn stuck(&self, cause: String) -> Stuck {
+        Stuck { cause, residual: self.residual }
+    }
+}
+
+fn reason(failure: Failure) -> String {
+    match failure {
+        Failure::Recoverable(message) => message,
+        Failure::Fatal(error) => error.to_string(),
+    }
+}

@@ -1,0 +1,192 @@
+//! Rigid motions that constraints leave free.
+
+use nalgebra::DMatrix;
+
+use crate::constraint::Row;
+use crate::mesh::Mesh;
+use crate::sparse::NodePattern;
+
+/// Squares of velocities below this, relative to the largest, are round-off.
+const NOTHING: f64 = 1e-12;
+
+/// The rigid motions that `rows` leave free, in words; those of each connected piece of the body.
+pub(super) fn free_motions(mesh: &Mesh, pattern: &NodePattern, rows: &[Row]) -> Vec<String> {
+    let pieces = pieces(pattern);
+    let count = pieces.iter().max().map_or(0, |last| last + 1);
+    let mut nodes = vec![Vec::new(); count];
+    pieces.iter().enumerate().for_each(|(node, &piece)| nodes[piece].push(node));
+    let mut motions = Vec::new();
+    for (piece, nodes) in nodes.iter().enumerate() {
+        let modes = Modes::new(mesh, nodes);
+        let inside = |dof: usize| pieces[dof / mesh.dimension()] == piece;
+        for mode in modes.free(mesh, rows, inside) {
+            let who = match count {
+                1 => String::new(),
+                _ => format!("the piece with node {} ", nodes[0] + 1),
+            };
+            motions.push(who + &modes.describe(&mode));
+        }
+    }
+    motions
+}
+
+/// For each node, the number of its connected piece.
+fn pieces(pattern: &NodePattern) -> Vec<usize> {
+    let mut pieces = vec![usize::MAX; pattern.nodes()];
+    let mut count = 0;
+    for first in 0..pattern.nodes() {
+        if pieces[first] != usize::MAX {
+            continue;
+        }
+        pieces[first] = count;
+        let mut open = vec![first];
+        while let Some(node) = open.pop() {
+            for (_, next) in pattern.row(node) {
+                if pieces[next] == usize::MAX {
+                    pieces[next] = count;
+                    open.push(next);
+                }
+            }
+        }
+        count += 1;
+    }
+    pieces
+}
+
+/// Rigid motions of some nodes: along each axis, then in each plane of two axes about the centre,
+/// scaled to displacements of about 1.
+struct Modes {
+    dimension: usize,
+    planes: &'static [[usize; 2]],
+    centre: Vec<f64>,
+    radius: f64,
+    /// Their scalar products with each other.
+    products: DMatrix<f64>,
+}
+
+impl Modes {
+    fn new(mesh: &Mesh, nodes: &[usize]) -> Self {
+        let dimension = mesh.dimension();
+        let mean = |axis| nodes.iter().map(|&n| mesh.position(n)[axis]).sum::<f64>();
+        let centre: Vec<f64> = (0..dimension).map(|i| mean(i) / nodes.len() as f64).collect();
+        let planes: &[[usize; 2]] = match dimension {
+            1 => &[],
+            2 => &[[0, 1]],
+            _ => &[[1, 2], [2, 0], [0, 1]],
+        };
+        let count = dimension + planes.len();
+        let products = DMatrix::zeros(count, count);
+        let mut modes = Self { dimension, planes, centre, radius: mesh.size(), products };
+        for &node in nodes {
+            for axis in 0..dimension {
+                let values: Vec<f64> =
+                    (0..count).map(|mode| modes.value(mode, mesh.position(node), axis)).collect();
+                add_square(&mut modes.products, &values);
+            }
+        }
+        modes
+    }
+
+    /// Displacement of a mode at `position` along `axis`.
+    fn value(&self, mode: usize, position: &[f64], axis: usize) -> f64 {
+        let arm = |i: usize| (position[i] - self.centre[i]) / self.radius;
+        match mode.checked_sub(self.dimension).map(|turn| self.planes[turn]) {
+            None => f64::from(mode == axis),
+            Some([i, j]) if axis == i => -arm(j),
+            Some([i, j]) if axis == j => arm(i),
+            Some(_) => 0.0,
+        }
+    }
+
+    /// Coefficients of the modes that move nothing of `rows`, reduced to echelon form.
+    fn free(&self, mesh: &Mesh, rows: &[Row], inside: impl Fn(usize) -> bool) -> Vec<Vec<f64>> {
+        let count = self.products.nrows();
+        let mut hold = DMatrix::zeros(count, count);
+        for row in rows {
+            let largest = row.terms.iter().fold(0.0_f64, |most, (_, c)| most.max(c.abs()));
+            let mut values = vec![0.0; count];
+            for &(dof, c) in row.terms.iter().filter(|(dof, _)| inside(*dof)) {
+                let (position, axis) = (mesh.position(dof / self.dimension), dof % self.dimension);
+                for (mode, value) in values.iter_mut().enumerate() {
+                    *value += c / largest * self.value(mode, position, axis);
+                }
+            }
+            add_square(&mut hold, &values);
+        }
+        // some modes move nothing: the turn of a single node, or of a straight line about itself
+        let moving = eigenvectors(&self.products, |value, largest| value > NOTHING * largest);
+        let held = moving.transpose() * hold * &moving;
+        let free = &moving * eigenvectors(&held, |value, largest| value <= NOTHING * largest);
+        echelon(free.transpose())
+    }
+
+    fn describe(&self, mode: &[f64]) -> String {
+        let (along, turn) = mode.split_at(self.dimension);
+        if turn.iter().all(|&w| w == 0.0) {
+            return format!("moving along {}", tuple(along));
+        }
+        match self.dimension {
+            2 => {
+                // where the velocity vanishes
+                let x = self.centre[0] - along[1] * self.radius / turn[0];
+                let y = self.centre[1] + along[0] * self.radius / turn[0];
+                let round_off = 1e-9 * self.radius;
+                let clean = |x: f64| if x.abs() < round_off { 0.0 } else { x };
+                format!("turning about the point {}", tuple(&[clean(x), clean(y)]))
+            }
+            _ => format!("turning about the direction {}", tuple(turn)),
+        }
+    }
+}
+
+fn add_square(matrix: &mut DMatrix<f64>, values: &[f64]) {
+    for i in 0..values.len() {
+        for j in 0..values.len() {
+            matrix[(i, j)] += values[i] * values[j];
+        }
+    }
+}
+
+/// The eigenvectors whose value, compared to the largest (1 at least), is `wanted`.
+fn eigenvectors(matrix: &DMatrix<f64>, wanted: impl Fn(f64, f64) -> bool) -> DMatrix<f64> {
+    let eigen = matrix.clone().symmetric_eigen();
+    let largest = eigen.eigenvalues.iter().fold(1.0_f64, |most, value| most.max(value.abs()));
+    let chosen: Vec<_> = (0..matrix.nrows())
+        .filter(|&k| wanted(eigen.eigenvalues[k], largest))
+        .map(|k| eigen.eigenvectors.column(k))
+        .collect();
+    match chosen.is_empty() {
+        true => DMatrix::zeros(matrix.nrows(), 0),
+        false => DMatrix::from_columns(&chosen),
+    }
+}
+
+/// The rows of `matrix` reduced so that each has a 1 where the others have 0, from the last column
+/// to the first: turns before translations.
+fn echelon(mut matrix: DMatrix<f64>) -> Vec<Vec<f64>> {
+    let mut done = 0;
+    for column in (0..matrix.ncols()).rev() {
+        let largest = (done..matrix.nrows())
+            .max_by(|&a, &b| matrix[(a, column)].abs().total_cmp(&matrix[(b, column)].abs()));
+        let Some(pivot) = largest.filter(|&row| matrix[(row, column)].abs() > 1e-6) else {
+            continue;
+        };
+        matrix.swap_rows(done, pivot);
+        let scaled = matrix.row(done) / matrix[(done, column)];
+        matrix.set_row(done, &scaled);
+        for row in (0..matrix.nrows()).filter(|&row| row != done) {
+            let factor = matrix[(row, column)];
+            let reduced = matrix.row(row) - &scaled * factor;
+            matrix.set_row(row, &reduced);
+        }
+        done += 1;
+    }
+    let clean = |x: &f64| if x.abs() < 1e-6 { 0.0 } else { *x };
+    matrix.row_iter().map(|row| row.iter().map(clean).collect()).collect()
+}
+
+/// Numbers of three digits, without trailing zeros.
+fn tuple(numbers: &[f64]) -> String {
+    let short = |x: &f64| format!("{x:.2e}").parse().unwrap_or(*x).to_string();
+    format!("({})", numbers.iter().map(short).collect::<Vec<_>>().join(", "))
+}

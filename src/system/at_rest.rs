@@ -1,0 +1,262 @@
+//! A phase at rest: forces without motion, tangents, and the saddle-point system of statics
+//!
+//! ```text
+//! [ K   -A ] [ x  ]   [ f ]
+//! [ -A^T 0 ] [ mu ] = [ -d ]
+//! ```
+//!
+//! with K = -df/du. Gravity and loads act with a fraction of their strength, so that they can be
+//! brought on little by little; the body, contacts and springs are what they are.
+
+use super::reduced::Source;
+use super::{System, nodal_multipliers};
+use crate::constraint::Prescribed;
+use crate::error::Error;
+use crate::force::{Force, NodalForces, Reservoir, dot};
+use crate::ode::Failure;
+use crate::sparse::BlockMatrix;
+use crate::system::Energy;
+
+/// The system of a phase at its end, without velocities.
+pub(crate) struct AtRest {
+    system: System,
+    time: f64,
+    still: Vec<f64>,
+    nodal: NodalForces,
+    factorizations: usize,
+}
+
+/// Forces and energy at some displacements.
+#[derive(Clone)]
+pub(crate) struct Balance {
+    /// Sum of all nodal forces but those of the constraints (N).
+    pub(crate) total: Vec<f64>,
+    /// Those among them that have no potential.
+    unbound: Vec<f64>,
+    /// Potential energy of the others (J).
+    potential: f64,
+    /// Sum of the absolute values that add up to `potential`: what its round-off compares to.
+    terms: f64,
+    /// Largest nodal force of any one kind (N): the scale of the forces in balance.
+    pub(crate) scale: f64,
+}
+
+impl Balance {
+    pub(crate) fn zeros(dofs: usize) -> Self {
+        let zeros = vec![0.0; dofs];
+        Self { total: zeros.clone(), unbound: zeros, potential: 0.0, terms: 0.0, scale: 0.0 }
+    }
+
+    /// Energy (J) at `self` less that at `from`, a step of `factor` `x` before. The work of forces
+    /// without a potential is that of their mean: exact for constant ones.
+    pub(crate) fn energy_since(&self, from: &Balance, factor: f64, x: &[f64]) -> f64 {
+        let work = 0.5 * factor * (dot(&self.unbound, x) + dot(&from.unbound, x));
+        self.potential - from.potential - work
+    }
+
+    /// Size of the round-off in differences of energy (J).
+    pub(crate) fn round_off(&self) -> f64 {
+        8.0 * f64::EPSILON * self.terms
+    }
+
+    fn clear(&mut self) {
+        self.total.fill(0.0);
+        self.unbound.fill(0.0);
+        (self.potential, self.terms, self.scale) = (0.0, 0.0, 0.0);
+    }
+
+    fn add_potential(&mut self, energy: f64) {
+        self.potential += energy;
+        self.terms += energy.abs();
+    }
+
+    /// Adds `share` times the forces `nodal`, of which the conservative ones have a potential if
+    /// `bound`.
+    fn add(&mut self, nodal: &NodalForces, share: f64, bound: bool) {
+        let NodalForces { conservative, dissipative, applied } = nodal;
+        for (i, total) in self.total.iter_mut().enumerate() {
+            let unbound = dissipative[i] + applied[i] + if bound { 0.0 } else { conservative[i] };
+            let force = conservative[i] + dissipative[i] + applied[i];
+            *total += share * force;
+            self.unbound[i] += share * unbound;
+            self.scale = self.scale.max((share * force).abs());
+        }
+    }
+}
+
+impl AtRest {
+    /// # Errors
+    /// A path of a constraint that gives no finite displacement at `time` (s).
+    pub(crate) fn new(system: System, time: f64, phase: &str) -> Result<Self, Error> {
+        let lost = |prescribed: Prescribed| !prescribed.displacement.is_finite();
+        if let Some(row) = system.rows.iter().find(|row| lost(row.prescribed(time))) {
+            return Err(Error::Constraint {
+                phase: phase.into(),
+                nodes: row.label(system.model.dimension),
+                problem: format!("prescribe no finite displacement at t = {time} s"),
+            });
+        }
+        let dofs = system.dofs();
+        let (still, nodal) = (vec![0.0; dofs], NodalForces::zeros(dofs));
+        Ok(Self { system, time, still, nodal, factorizations: 0 })
+    }
+
+    pub(crate) fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Number of factorizations so far.
+    pub(crate) fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+
+    /// Whether no force but the linear elastic one depends on the displacements.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.system.forces.iter().all(|force| !force.is_nonlinear())
+    }
+
+    /// Potential energies with a fraction of gravity.
+    pub(crate) fn energy(&self, fraction: f64, u: &[f64]) -> Energy {
+        let energy = self.system.energy(self.time, u, &self.still);
+        Energy { gravity: fraction * energy.gravity, ..energy }
+    }
+
+    /// What the constraints lack, b - A^T u, with b for a fraction of the way: a path that begins in
+    /// the natural shape is followed, another one is shortened.
+    pub(crate) fn lacking(&self, fraction: f64, u: &[f64], d: &mut [f64]) {
+        for (d, row) in d.iter_mut().zip(&self.system.rows) {
+            let b = |t: f64| row.prescribed(t).displacement;
+            let part = match b(0.0) == 0.0 {
+                true => b(fraction * self.time),
+                false => fraction * b(self.time),
+            };
+            *d = part - row.apply(u);
+        }
+    }
+
+    /// Evaluates the forces at `u` with a fraction of gravity and loads.
+    pub(crate) fn evaluate(
+        &mut self,
+        fraction: f64,
+        u: &[f64],
+        at: &mut Balance,
+    ) -> Result<(), Failure> {
+        at.clear();
+        if let Some(stiffness) = &self.system.model.stiffness {
+            self.nodal.clear();
+            stiffness.add_product(-1.0, u, &mut self.nodal.conservative);
+            at.add(&self.nodal, 1.0, true);
+            at.add_potential(-0.5 * dot(u, &self.nodal.conservative));
+        }
+        for force in &self.system.forces {
+            self.nodal.clear();
+            force.add_forces(self.time, u, &self.still, &mut self.nodal)?;
+            let share = if is_load(&**force) { fraction } else { 1.0 };
+            let bound = force.reservoir() != Reservoir::None;
+            at.add(&self.nodal, share, bound);
+            if bound {
+                at.add_potential(share * force.potential(self.time, u));
+            }
+        }
+        Ok(())
+    }
+
+    /// Brings K to `u`. A linear phase has it at once.
+    pub(crate) fn update_tangent(&mut self, fraction: f64, u: &[f64]) {
+        let newton = &mut self.system.newton;
+        let own = (newton.stiffness.begin(&None), newton.damping.begin(&None));
+        let (Some(stiffness), Some(damping)) = own else { return };
+        let (time, still) = (self.time, &self.still);
+        let mut add = |loads: bool, stiffness: &mut BlockMatrix| {
+            for force in self.system.forces.iter().filter(|force| is_load(&***force) == loads) {
+                force.add_tangents(time, u, still, stiffness, damping);
+            }
+        };
+        add(true, stiffness);
+        stiffness.values.iter_mut().for_each(|k| *k *= fraction);
+        add(false, stiffness);
+        if let Some(constant) = &self.system.model.stiffness {
+            stiffness.values.iter_mut().zip(&constant.values).for_each(|(k, c)| *k += c);
+        }
+    }
+
+    /// Largest K_ii / M_ii (1/s^2): of the order of the square of the highest frequency.
+    pub(crate) fn highest(&self) -> f64 {
+        let (k, _) = self.system.tangents();
+        let (m, d) = (&self.system.model.inertia, self.system.model.dimension);
+        let ratio = |dof: usize| k.get(dof, dof).abs() / m.get(dof / d, dof / d);
+        (0..self.system.dofs()).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Factorizes the symmetric part of K + `shift` M. Returns whether it is positive definite
+    /// at the free degrees of freedom.
+    pub(crate) fn factorize(&mut self, shift: f64) -> bool {
+        self.factorizations += 1;
+        let System { model, newton, .. } = &mut self.system;
+        let (inertia, d) = (&model.inertia, model.dimension);
+        let values = &newton.stiffness.get().values;
+        let entry = |source: Source| {
+            let [row, column] = source.axes;
+            let mass = if row == column { inertia.values[source.entry] } else { 0.0 };
+            let at = (source.entry * d + row) * d + column;
+            let transposed = (source.transposed * d + column) * d + row;
+            shift * mass + 0.5 * (values[at] + values[transposed])
+        };
+        newton.solver.factorize(entry).is_ok()
+    }
+
+    /// Solves the saddle-point system above, K shifted as in the last factorization. `mu` gets the
+    /// multipliers that balance `f` where the rows act: those of an equilibrium once x vanishes.
+    pub(crate) fn solve(&mut self, f: &[f64], d: &[f64], x: &mut [f64], mu: &mut [f64]) {
+        let System { rows, newton, .. } = &mut self.system;
+        newton.solver.solve(rows, f, d, x, mu);
+        nodal_multipliers(rows, mu, |dof| -f[dof]);
+    }
+
+    /// Largest component of f + A mu (N).
+    pub(crate) fn residual(&self, f: &[f64], mu: &[f64], work: &mut [f64]) -> f64 {
+        work.copy_from_slice(f);
+        for (row, mu) in self.system.rows.iter().zip(mu) {
+            row.terms.iter().for_each(|&(dof, c)| work[dof] += c * mu);
+        }
+        work.iter().fold(0.0, |largest, f| f64::max(largest, f.abs()))
+    }
+
+    /// Lowest eigenvalue (1/s^2) of K x = eigenvalue M x among the motions that the constraints
+    /// allow, by inverse iteration with the last factorization, that of K + `shift` M: from above,
+    /// so that a value below zero is a proof. Infinite if nothing can move.
+    pub(crate) fn lowest_eigenvalue(&mut self, shift: f64) -> f64 {
+        let (dofs, count) = (self.system.dofs(), self.system.rows.len());
+        let noise = |i: usize| (12.9898 * (i as f64 + 1.0)).sin().mul_add(43.758, 0.3).sin();
+        let mut right: Vec<f64> = (0..dofs).map(noise).collect();
+        let (mut x, mut mu) = (vec![0.0; dofs], vec![0.0; count]);
+        let nowhere = vec![0.0; count];
+        let mut lowest = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let System { rows, newton, .. } = &mut self.system;
+            newton.solver.solve(rows, &right, &nowhere, &mut x, &mut mu);
+            let System { model, newton, .. } = &self.system;
+            right.fill(0.0);
+            model.inertia.add_product(model.dimension, 1.0, &x, &mut right);
+            let square = dot(&x, &right);
+            if square == 0.0 {
+                break;
+            }
+            let before = lowest;
+            lowest = newton.stiffness.get().quadratic_form(&x) / square;
+            if before - lowest <= 1e-8 * (lowest + shift) {
+                break;
+            }
+            right.iter_mut().for_each(|r| *r /= square.sqrt());
+        }
+        lowest
+    }
+}
+
+/// Bound on inverse iterations: enough for six digits even of close pairs of eigenvalues.
+const ITERATIONS: usize = 300;
+
+/// Whether a force is brought on by fractions.
+fn is_load(force: &dyn Force) -> bool {
+    matches!(force.reservoir(), Reservoir::Gravity | Reservoir::None)
+}
