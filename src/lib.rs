@@ -48,7 +48,7 @@ pub mod trajectory;
 pub use body::{Body, CellSelection, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use error::Error;
-pub use force::{Chamber, Obstacle, Spring};
+pub use force::{Chamber, Obstacle, Shape, Spring};
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use scene::{Phase, Scene};

@@ -2,8 +2,8 @@
 
 use pliant::samples::{SQUARE_MATERIAL, square_press};
 use pliant::{
-    Axis, Body, Cells, Error, Material, Mesh, Method, Obstacle, Phase, Plane, Prescribed, Sampling,
-    Scene, Selection, Solver, Trajectory,
+    Axis, Body, Cells, Chamber, Error, Material, Mesh, Method, Obstacle, Phase, Plane, Prescribed,
+    Sampling, Scene, Selection, Shape, SolidCells, Solver, Spring, Trajectory,
 };
 
 fn grid() -> Mesh {
@@ -147,8 +147,20 @@ fn phases() {
         &["component 2 of load = inf"],
     );
     says(
+        simulate(&scene().phase(phase(0.1).load_total("top", [1.0]))),
+        &["load = [1.0]", "2 component"],
+    );
+    says(
+        simulate(&scene().phase(phase(0.1).load_with("top", |_| [1.0; 3]))),
+        &["components of a load = 3", "2 component"],
+    );
+    says(
+        simulate(&scene().phase(phase(0.1).load_with("top", |t| [1.0, t / t]))),
+        &["component 2 of a load is NaN at t = 0 s"],
+    );
+    says(
         simulate(&scene().phase(phase(0.1).contact_with(["wall"]))),
-        &["contact of phase \"phase 1\" = wall"],
+        &["contact of phase \"phase 1\" = \"wall\""],
     );
     says(simulate(&scene().gravity([9.8]).phase(phase(0.1))), &["gravity = [9.8]", "2 component"]);
 }
@@ -164,8 +176,103 @@ fn obstacles() {
     let flat = Obstacle::half_plane([0.0, 0.0], [0.0, 0.0]).named("ramp").stiffness(1.0);
     says(with(flat), &["obstacle \"ramp\" normal", "must not be zero"]);
     says(with(Obstacle::half_plane([0.0], [0.0, 1.0]).stiffness(1.0)), &["point", "2 component"]);
+    let stiff = |shape| Obstacle::new(shape).stiffness(1.0);
+    says(with(stiff(Shape::disc([0.0], 1.0))), &["centre = [0.0]", "2 component"]);
+    says(with(stiff(Shape::disc([0.0, 0.0], 0.0))), &["obstacle \"floor\" radius = 0"]);
+    says(with(stiff(Shape::cavity([0.0, f64::NAN], 1.0))), &["centre = NaN"]);
+    says(with(stiff(Shape::box_between([0.0, 0.0], [1.0, 0.0]))), &["max", "above min"]);
+    says(with(stiff(Shape::capsule([1.0, 0.0], [1.0, 0.0], 1.0))), &["to = [1.0, 0.0]", "disc"]);
+    says(with(stiff(Shape::union([]))), &["number of parts = 0"]);
+    let parts = [Shape::disc([0.0, 0.0], 1.0), Shape::disc([0.0, 0.0], -1.0)];
+    says(with(stiff(Shape::union(parts))), &["obstacle \"floor\" part 2 radius = -1"]);
+    says(with(floor().stiffness_density(-1.0)), &["stiffness_density = -1", "N/m^3"]);
+    says(with(floor().velocity([1.0])), &["velocity = [1.0]", "2 component", "m/s"]);
+    says(with(floor().velocity([1.0, f64::INFINITY])), &["component 2", "velocity = inf"]);
+    let wrong = |distance: f64, slope: f64| {
+        let shape = Obstacle::custom(move |_, gradient| {
+            gradient.copy_from_slice(&[0.0, slope]);
+            distance
+        });
+        with(shape.named("own").stiffness(1.0))
+    };
+    says(wrong(-1.0, 2.0), &["obstacle \"own\"", "node [1]", "gradient of length 2", "t = 0 s"]);
+    says(wrong(f64::NAN, 1.0), &["obstacle \"own\"", "distance NaN"]);
     let twice = scene().obstacle(floor()).obstacle(floor()).phase(Phase::until(0.1));
     says(simulate(&twice), &["obstacle name = \"floor\"", "taken"]);
+}
+
+#[test]
+fn springs() {
+    let phase = || Phase::until(0.1).named("walk");
+    let with = |spring: Spring| simulate(&scene().spring(spring).phase(phase()));
+    let good = || Spring::between([1], [16]).named("A1").stiffness(20.0);
+    assert!(with(good()).is_ok());
+    says(with(good().stiffness(-1.0)), &["spring \"A1\" stiffness = -1", "0 or above (N/m)"]);
+    says(with(good().damping(f64::NAN)), &["spring \"A1\" damping = NaN"]);
+    says(with(good().length(0.0)), &["spring \"A1\" length = 0", "above 0 (m)"]);
+    says(with(Spring::between([1], "top")), &["\"spring 1\" second end", "4 nodes", "one node"]);
+    says(with(Spring::between([1, 2], [16])), &["first end", "2 nodes"]);
+    says(with(Spring::between([1], "hub")), &["node set = \"hub\"", "the node sets"]);
+    says(with(Spring::between([1], [1])), &["distance of its ends = 0 m", "no direction"]);
+    let run = |phase| simulate(&scene().spring(good()).phase(phase));
+    says(run(phase().actuate(["A2"], 1.0)), &["phase \"walk\"", "\"A2\"", "springs [\"A1\"]"]);
+    says(run(phase().actuate(["A1"], f64::NAN)), &["actuation of phase \"walk\"", "NaN"]);
+    says(
+        run(phase().actuate_with(["A1"], |t| if t < 0.05 { 0.0 } else { f64::NAN })),
+        &["actuation of spring \"A1\" is NaN at t = 0.0"],
+    );
+    let twice = scene().spring(good()).spring(good()).phase(phase());
+    says(simulate(&twice), &["spring name = \"A1\"", "taken"]);
+}
+
+#[test]
+fn chambers() {
+    let phase = || Phase::until(0.1).named("inflate").hold("bottom");
+    let with = |chamber: Chamber| simulate(&scene().chamber(chamber).phase(phase()));
+    let polygon = |nodes: Selection| with(Chamber::polygon("cell", nodes));
+    assert!(polygon([6, 7, 11, 10].into()).is_ok());
+    says(polygon([6, 7].into()), &["chamber \"cell\" number of nodes = 2", "3 nodes"]);
+    says(polygon([6, 7, 17].into()), &["node = 17", "1 to 16"]);
+    // a row inside the body has no side
+    says(polygon([5, 6, 7, 8].into()), &["chamber \"cell\" area (m^2)", "enclose nothing"]);
+    let corners = Selection::Box { min: vec![0.0, 0.0], max: vec![0.31, 0.0] };
+    assert!(polygon(corners).is_ok());
+    says(polygon("all".into()), &["chamber \"cell\" nodes", "along the boundary"]);
+    says(
+        with(Chamber::surface("bag", [[1, 2, 3]])),
+        &["chamber \"bag\" in dimension = 2", "3 dimensions"],
+    );
+    let cell = || Chamber::polygon("cell", [6, 7, 11, 10]);
+    says(with(cell().thickness(-1.0)), &["chamber \"cell\" thickness = -1"]);
+    let run = |phase| simulate(&scene().chamber(cell()).phase(phase));
+    says(
+        run(phase().pressure("lung", 1.0)),
+        &["pressure of phase \"inflate\" = \"lung\"", "chambers [\"cell\"]"],
+    );
+    says(run(phase().pressure("cell", f64::INFINITY)), &["pressure of phase \"inflate\"", "inf"]);
+    says(
+        run(phase().pressure_with("cell", |_| f64::NAN)),
+        &["pressure in chamber \"cell\" is NaN at t = 0 s"],
+    );
+    let twice = scene().chamber(cell()).chamber(cell()).phase(phase());
+    says(simulate(&twice), &["chamber name = \"cell\"", "taken"]);
+}
+
+#[test]
+fn closed_surfaces() {
+    let mesh = Mesh::cuboid([1.0, 1.0, 1.0], [2, 2, 2], SolidCells::Tetrahedra).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).build().unwrap();
+    let with = |walls: &[[usize; 3]]| {
+        let chamber = Chamber::surface("bag", walls.iter().copied());
+        simulate(&Scene::new(body.clone()).chamber(chamber).phase(Phase::until(0.01)))
+    };
+    let closed = [[1, 2, 3], [1, 3, 5], [2, 1, 5], [2, 5, 3]];
+    assert!(with(&closed).is_ok());
+    says(with(&closed[..3]), &["chamber \"bag\" edge", "must be closed"]);
+    let turned = [[1, 2, 3], [1, 3, 5], [1, 2, 5], [2, 5, 3]];
+    says(with(&turned), &["triangle 3 = [1, 2, 5]", "edge [1, 2]", "running the same way"]);
+    says(with(&[[1, 2, 9]]), &["node = 9", "1 to 8"]);
+    says(with(&[]), &["volume (m^3)", "enclose nothing"]);
 }
 
 #[test]

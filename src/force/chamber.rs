@@ -3,7 +3,7 @@
 mod walls;
 
 use super::signal::{self, Signal, finite_at};
-use super::{Force, NodalForces, Reservoir};
+use super::{Force, NodalForces, Reservoir, cross, dot};
 use crate::body::Body;
 use crate::error::{Error, positive};
 use crate::mesh::Selection;
@@ -207,7 +207,7 @@ impl Surface {
 
     /// Signed volume V = (1/6) sum a . (b x c) over the triangles abc.
     fn volume(&self, u: &[f64]) -> f64 {
-        self.iter(u).map(|(_, [a, b, c])| super::dot(&a, &cross(&b, &c)) / 6.0).sum()
+        self.iter(u).map(|(_, [a, b, c])| dot(&a, &cross(&b, &c)) / 6.0).sum()
     }
 
     /// Adds `factor` dV/du.
@@ -238,10 +238,6 @@ impl Surface {
             }
         }
     }
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 impl Force for ChamberForce {

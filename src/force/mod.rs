@@ -4,16 +4,21 @@ mod chamber;
 mod contact;
 mod gravity;
 mod load;
+mod obstacle;
+mod shape;
 mod signal;
 mod spring;
+mod surface;
 #[cfg(test)]
 mod tests;
 
 pub use chamber::Chamber;
 pub(crate) use contact::Contact;
-pub use contact::Obstacle;
 pub(crate) use gravity::Gravity;
 pub(crate) use load::{Load, VaryingLoad};
+pub use obstacle::Obstacle;
+pub(crate) use shape::Kind as ShapeKind;
+pub use shape::Shape;
 pub(crate) use signal::{Signal, VectorFunction};
 pub use spring::Spring;
 
@@ -29,13 +34,24 @@ pub struct NodalForces {
     pub dissipative: Vec<f64>,
     /// Forces from outside: their power f.v is supplied.
     pub applied: Vec<f64>,
+    /// Power (W) that obstacles in motion add to the heat: their own velocity times the
+    /// dissipative forces on the body.
+    pub carried_heat: f64,
+    /// Power (W) that keeps obstacles in motion: their velocity times their forces on the body.
+    pub carried_power: f64,
 }
 
 impl NodalForces {
     /// No forces on `dofs` degrees of freedom.
     pub fn zeros(dofs: usize) -> Self {
         let zeros = vec![0.0; dofs];
-        Self { conservative: zeros.clone(), dissipative: zeros.clone(), applied: zeros }
+        Self {
+            conservative: zeros.clone(),
+            dissipative: zeros.clone(),
+            applied: zeros,
+            carried_heat: 0.0,
+            carried_power: 0.0,
+        }
     }
 
     /// Sets all forces to 0.
@@ -43,6 +59,7 @@ impl NodalForces {
         self.conservative.fill(0.0);
         self.dissipative.fill(0.0);
         self.applied.fill(0.0);
+        (self.carried_heat, self.carried_power) = (0.0, 0.0);
     }
 
     /// Writes the sum of all forces.
@@ -53,12 +70,23 @@ impl NodalForces {
 
     /// Power that is dissipated and power that is supplied (W) at the velocities `v`.
     pub(crate) fn powers(&self, v: &[f64]) -> (f64, f64) {
-        (-dot(&self.dissipative, v), dot(&self.applied, v))
+        let (dissipated, supplied) = self.work(v);
+        (dissipated + self.carried_heat, supplied + self.carried_power)
+    }
+
+    /// Energy that is dissipated and energy that is supplied (J) along the displacements `x`.
+    pub(crate) fn work(&self, x: &[f64]) -> (f64, f64) {
+        (-dot(&self.dissipative, x), dot(&self.applied, x))
     }
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// a x b
+fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Where the potential energy of a force is accounted for.

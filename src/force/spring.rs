@@ -121,7 +121,10 @@ impl Spring {
             *x = mesh.position(nodes[1])[i] - mesh.position(nodes[0])[i];
         }
         let distance = dot(&natural, &natural).sqrt();
-        let length = positive(&input("length"), self.length.unwrap_or(distance), "m")?;
+        let length = match self.length {
+            Some(length) => positive(&input("length"), length, "m")?,
+            None => distance,
+        };
         if distance <= COLLAPSED * length {
             let mend =
                 "its ends are in the same place, so that it has no direction: move them apart";

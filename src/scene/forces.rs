@@ -12,7 +12,7 @@ type Forces = Vec<Arc<dyn Force>>;
 impl Scene {
     /// All forces but those of constant matrices.
     pub(super) fn forces(&self, phase: &Phase) -> Result<Forces, Error> {
-        let (mesh, dimension) = (self.body.mesh(), self.body.dimension());
+        let dimension = self.body.dimension();
         let mut forces = Forces::new();
         if let Some(elastic) = self.body.elastic() {
             forces.push(Arc::new(elastic));
@@ -26,7 +26,7 @@ impl Scene {
         self.add_springs(phase, &mut forces)?;
         self.add_chambers(phase, &mut forces)?;
         for obstacle in phase.contacts(&self.obstacles)? {
-            forces.push(Arc::new(Contact::new(mesh, obstacle.validated(dimension)?)));
+            forces.push(Arc::new(Contact::new(&self.body, obstacle)?));
         }
         Ok(forces)
     }

@@ -11,7 +11,7 @@ pub use phase::Phase;
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
 use crate::error::{Error, finite};
-use crate::force::{Chamber, Obstacle, Spring};
+use crate::force::{Chamber, Contact, Obstacle, Spring};
 use crate::model::Model;
 use crate::system::System;
 
@@ -194,7 +194,7 @@ impl Scene {
             chamber.force(&self.body, Vec::new())?;
         }
         for obstacle in &self.obstacles {
-            obstacle.validated(self.body.dimension())?;
+            Contact::new(&self.body, obstacle)?;
         }
         let (mut time, mut u) = (0.0, self.start[0].clone());
         for phase in &self.phases {

@@ -73,7 +73,7 @@ impl Balance {
     /// Adds `share` times the forces `nodal`, of which the conservative ones have a potential if
     /// `bound`.
     fn add(&mut self, nodal: &NodalForces, share: f64, bound: bool) {
-        let NodalForces { conservative, dissipative, applied } = nodal;
+        let NodalForces { conservative, dissipative, applied, .. } = nodal;
         for (i, total) in self.total.iter_mut().enumerate() {
             let unbound = dissipative[i] + applied[i] + if bound { 0.0 } else { conservative[i] };
             let force = conservative[i] + dissipative[i] + applied[i];

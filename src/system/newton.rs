@@ -200,7 +200,7 @@ impl System {
     /// system, the forces themselves taken as they are.
     pub(super) fn power_changes(&self, multipliers: &[f64]) -> (f64, f64) {
         let Newton { xv, mu, gamma, .. } = &self.newton;
-        let (dissipated, mut supplied) = self.at.nodal.powers(xv);
+        let (dissipated, mut supplied) = self.at.nodal.work(xv);
         for (k, row) in self.rows.iter().enumerate() {
             supplied += multipliers[k] * row.apply(xv) + mu[k] / gamma * self.at.rates[k];
         }

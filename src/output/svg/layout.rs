@@ -1,5 +1,6 @@
 //! Where panels stand on the page, and which part of space they show.
 
+use super::obstacle::{Outline, outlines};
 use crate::trajectory::{Sample, Trajectory};
 
 /// Width that a page aims at, its least width, and the limits of a panel (px).
@@ -25,8 +26,8 @@ pub(super) struct View {
     high: Point,
     /// Upper edge of each panel by itself, which a row of panels that stays low ends at.
     tops: Vec<f64>,
-    /// Surface and outward normal of each obstacle.
-    pub(super) planes: Vec<[Point; 2]>,
+    /// The obstacles of each panel.
+    pub(super) obstacles: Vec<Vec<Outline>>,
 }
 
 impl View {
@@ -36,7 +37,7 @@ impl View {
             low: [f64::INFINITY; 2],
             high: [f64::NEG_INFINITY; 2],
             tops: Vec::new(),
-            planes: planes(trajectory),
+            obstacles: samples.iter().map(|sample| outlines(trajectory, sample.time)).collect(),
         };
         for sample in samples {
             let points = positions(trajectory, sample);
@@ -50,12 +51,13 @@ impl View {
         }
         let size = view.width().hypot(view.height());
         let centre = [0, 1].map(|i| (view.low[i] + view.high[i]) / 2.0);
-        for [point, normal] in view.planes.clone() {
-            let distance: f64 = (0..2).map(|i| (centre[i] - point[i]) * normal[i]).sum();
-            if distance.abs() < size {
-                view.include([0, 1].map(|i| centre[i] - distance * normal[i]));
-            }
-        }
+        let near: Vec<Point> = view
+            .obstacles
+            .iter()
+            .flatten()
+            .flat_map(|outline| outline.near(centre, size))
+            .collect();
+        near.into_iter().for_each(|point| view.include(point));
         let pad = 0.06 * view.width().max(view.height());
         view.low.iter_mut().for_each(|x| *x -= pad);
         view.high.iter_mut().chain(&mut view.tops).for_each(|x| *x += pad);
@@ -77,7 +79,15 @@ impl View {
         self.high[1] - self.low[1]
     }
 
-    /// The part of the view below `top` that is inside an obstacle, less than `depth` from its
+    /// The part of a convex polygon (or a line, of two points) within the view below `top`.
+    pub(super) fn clip(&self, polygon: &[Point], top: f64) -> Vec<Point> {
+        let ([left, bottom], right) = (self.low, self.high[0]);
+        let above = clip(polygon, |x| x[1] - bottom);
+        let below = clip(&above, |x| top - x[1]);
+        clip(&clip(&below, |x| x[0] - left), |x| right - x[0])
+    }
+
+    /// The part of the view below `top` that is inside a half-plane, less than `depth` from its
     /// surface.
     pub(super) fn band(&self, top: f64, [point, normal]: [Point; 2], depth: f64) -> Vec<Point> {
         let distance = |x: &Point| (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum::<f64>();
@@ -131,22 +141,7 @@ fn along(x: &[f64], direction: [f64; 3]) -> f64 {
     x.iter().zip(direction).map(|(x, d)| x * d).sum()
 }
 
-/// Lines in the plane of the drawing; in space, surfaces are not drawn.
-fn planes(trajectory: &Trajectory) -> Vec<[Point; 2]> {
-    if trajectory.body().dimension() == 3 {
-        return Vec::new();
-    }
-    let obstacles = trajectory.scene().obstacles().iter();
-    let plane = obstacles.map(|obstacle| {
-        let (point, normal) = obstacle.plane();
-        let (point, normal) = (drawn(point), drawn(normal));
-        let length = normal[0].hypot(normal[1]);
-        [point, normal.map(|x| x / length)]
-    });
-    plane.collect()
-}
-
-fn drawn(x: &[f64]) -> Point {
+pub(super) fn drawn(x: &[f64]) -> Point {
     match *x {
         [x] => [0.0, x],
         [x, y] => [x, y],

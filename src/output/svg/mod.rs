@@ -1,6 +1,7 @@
 //! Pictures of the deformed body.
 
 mod layout;
+mod obstacle;
 mod panel;
 
 use std::collections::{BTreeMap, BTreeSet};

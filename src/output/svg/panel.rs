@@ -12,8 +12,6 @@ use crate::trajectory::{Sample, Trajectory};
 
 const EDGE: &str = "#35618f";
 const FILL: &str = "#a9cbe8";
-/// Thickness of the hatched band along the surface of an obstacle (px).
-const BAND: f64 = 14.0;
 
 /// How a node is marked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -42,8 +40,8 @@ impl Panel<'_> {
         let mut panel = Group::new()
             .set("class", "panel")
             .set("transform", format!("translate({x:.2} {y:.2})"));
-        for &plane in &self.view.planes {
-            panel = panel.add(self.obstacle(plane));
+        for outline in &self.view.obstacles[self.number] {
+            panel = panel.add(self.obstacle(outline));
         }
         let points = positions(self.trajectory, self.sample);
         let points: Vec<Point> =
@@ -63,30 +61,6 @@ impl Panel<'_> {
         }
         let [x, y] = self.layout.caption(self.number);
         panel.add(text(self.caption, x, y).set("text-anchor", "middle").set("fill", INK))
-    }
-
-    fn obstacle(&self, plane: [Point; 2]) -> Group {
-        let band = self.view.band(self.layout.top(self.number), plane, self.layout.metres(BAND));
-        let on_surface = |x: &&Point| {
-            let [point, normal] = plane;
-            let distance: f64 = (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum();
-            distance.abs() < 1e-9 * self.view.width()
-        };
-        let surface: Vec<Point> = band.iter().filter(on_surface).copied().collect();
-        let mut group = Group::new().set("class", "obstacle");
-        for (points, close, fill, stroke) in
-            [(&band, true, "url(#hatch)", "none"), (&surface, false, "none", "#555555")]
-        {
-            if points.len() > 1 {
-                let points: Vec<Point> =
-                    points.iter().map(|&x| self.layout.place(self.number, x)).collect();
-                let mut data = Data::default();
-                data.polyline(&points, close);
-                let path = Path::new().set("d", data.0).set("fill", fill);
-                group = group.add(path.set("stroke", stroke).set("stroke-width", 1.5));
-            }
-        }
-        group
     }
 
     /// The springs, as straight lines.
@@ -212,10 +186,10 @@ fn body(class: &str, data: Data, stroke_width: f64) -> Path {
 
 /// The data of a path, in hundredths of a pixel and relative steps, for short files.
 #[derive(Default)]
-struct Data(String);
+pub(super) struct Data(pub(super) String);
 
 impl Data {
-    fn polyline(&mut self, points: &[Point], close: bool) {
+    pub(super) fn polyline(&mut self, points: &[Point], close: bool) {
         let mut pen: Option<[i64; 2]> = None;
         for point in points {
             let at = point.map(|x| (100.0 * x).round() as i64);

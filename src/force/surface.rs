@@ -1,0 +1,143 @@
+//! Points of the boundary of a body at which contact is felt.
+
+use super::{cross, dot};
+use crate::body::Body;
+
+/// A point that moves with some nodes.
+pub(super) struct SurfacePoint {
+    /// How many of the places below are taken.
+    count: usize,
+    nodes: [usize; 3],
+    shares: [f64; 3],
+    /// Area (m^2) of the boundary for which it stands; 1 for a node.
+    pub(super) area: f64,
+}
+
+impl SurfacePoint {
+    /// The nodes that it moves with (counted from 0), and their shares in it, which add up to 1.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
+        self.nodes.into_iter().zip(self.shares).take(self.count)
+    }
+
+    /// Its position or velocity in a field of `dimension` components per node; 0 beyond them.
+    pub(super) fn at(&self, field: &[f64], dimension: usize) -> [f64; 3] {
+        let mut x = [0.0; 3];
+        for (node, share) in self.nodes() {
+            let of_node = &field[node * dimension..][..dimension];
+            x.iter_mut().zip(of_node).for_each(|(x, y)| *x += share * y);
+        }
+        x
+    }
+}
+
+/// Each boundary node by itself.
+pub(super) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
+    let nodes = body.mesh().boundary_nodes().iter();
+    nodes.map(|&node| point(&[node], &[1.0], 1.0)).collect()
+}
+
+/// Gauss points of the faces of the boundary, which are cut into segments or triangles for them. A
+/// membrane in space is boundary all over; a string has no area: `None`.
+///
+/// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
+/// touch.
+pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
+    let (mesh, cell) = (body.mesh(), body.mesh().kind().dimension());
+    let (face_dimension, section) = match (cell, body.dimension()) {
+        (cell, space) if cell == space => (cell - 1, body.section()),
+        (2, 3) => (2, 1.0),
+        _ => return None,
+    };
+    let mut points = Vec::new();
+    for face in mesh.boundary_faces() {
+        let (parts, weight) = pieces(face_dimension, face.len());
+        for part in parts {
+            let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
+            let area = weight * section * measure(body, &corners);
+            let rule: &[&[f64]] = match corners.len() {
+                1 => &[&[1.0]],
+                2 => &[&[NEAR, FAR], &[FAR, NEAR]],
+                _ => &TRIANGLE,
+            };
+            let share = area / rule.len() as f64;
+            points.extend(rule.iter().map(|shares| point(&corners, shares, share)));
+        }
+    }
+    Some(points)
+}
+
+/// (1 +- 1/sqrt 3)/2
+const NEAR: f64 = 0.788_675_134_594_812_9;
+const FAR: f64 = 0.211_324_865_405_187_1;
+const TRIANGLE: [&[f64]; 3] = [
+    &[2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
+    &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+    &[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
+];
+
+fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
+    let mut point = SurfacePoint { count: nodes.len(), nodes: [0; 3], shares: [0.0; 3], area };
+    point.nodes[..nodes.len()].copy_from_slice(nodes);
+    point.shares[..nodes.len()].copy_from_slice(shares);
+    point
+}
+
+/// A face with `nodes` nodes, corners first, cut into segments or triangles, and the weight of each:
+/// a quadrilateral is cut along both diagonals.
+fn pieces(dimension: usize, nodes: usize) -> (&'static [&'static [usize]], f64) {
+    match (dimension, nodes) {
+        (0, _) => (&[&[0]], 1.0),
+        (1, 2) => (&[&[0, 1]], 1.0),
+        (1, _) => (&[&[0, 2], &[2, 1]], 1.0),
+        (_, 3) => (&[&[0, 1, 2]], 1.0),
+        (_, 4) => (&[&[0, 1, 2], &[0, 2, 3], &[1, 2, 3], &[1, 3, 0]], 0.5),
+        _ => (&[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]], 1.0),
+    }
+}
+
+/// Length of a segment, area of a triangle, 1 of a point.
+fn measure(body: &Body, corners: &[usize]) -> f64 {
+    let length = |x: [f64; 3]| dot(&x, &x).sqrt();
+    let edge = |a: usize, b: usize| -> [f64; 3] {
+        let (a, b) = (body.mesh().position(a), body.mesh().position(b));
+        std::array::from_fn(|i| if i < a.len() { b[i] - a[i] } else { 0.0 })
+    };
+    match *corners {
+        [a, b] => length(edge(a, b)),
+        [a, b, c] => 0.5 * length(cross(&edge(a, b), &edge(a, c))),
+        _ => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::{Cells, Mesh, SolidCells};
+    use crate::samples::SQUARE_MATERIAL;
+
+    fn assert_total(body: &Body, expected: f64) {
+        let points = gauss_points(body).unwrap();
+        let total: f64 = points.iter().map(|point| point.area).sum();
+        assert!((total - expected).abs() < 1e-14, "{total} {expected}");
+        for point in points {
+            assert!(point.area > 0.0);
+            let shares: f64 = point.nodes().map(|(_, share)| share).sum();
+            assert!((shares - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn areas_add_up_to_the_boundary() {
+        for cells in [Cells::Triangles, Cells::Rectangles, Cells::Triangles6] {
+            let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], cells).unwrap();
+            let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+            assert_total(&body, 0.01);
+        }
+        for cells in [SolidCells::Tetrahedra, SolidCells::Hexahedra, SolidCells::Tetrahedra10] {
+            let mesh = Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells).unwrap();
+            assert_total(&Body::new(mesh, SQUARE_MATERIAL).build().unwrap(), 0.22);
+        }
+        let bar = Body::new(Mesh::bar(0.1, 5).unwrap(), SQUARE_MATERIAL).area(2e-4);
+        assert_total(&bar.build().unwrap(), 4e-4);
+    }
+}

@@ -1,0 +1,144 @@
+//! Obstacles as drawn: half-planes by a hatched band along their surface, others by their outline.
+
+use std::f64::consts::{PI, TAU};
+
+use svg::node::element::{Group, Path};
+
+use super::layout::{Point, drawn};
+use super::panel::{Data, Panel};
+use crate::force::{Shape, ShapeKind};
+use crate::trajectory::Trajectory;
+
+/// Thickness of the hatched band along the surface of a half-plane (px).
+const BAND: f64 = 14.0;
+/// Chords of a full circle.
+const CHORDS: usize = 96;
+
+/// An obstacle in the plane of the drawing.
+pub(super) enum Outline {
+    /// A point of the surface and the outward normal.
+    HalfPlane([Point; 2]),
+    /// A convex polygon, the obstacle inside.
+    Solid(Vec<Point>),
+    /// A convex polygon, the obstacle outside.
+    Cavity(Vec<Point>),
+}
+
+/// The obstacles at time `t`; none in space, and none that only a function knows.
+pub(super) fn outlines(trajectory: &Trajectory, t: f64) -> Vec<Outline> {
+    let mut outlines = Vec::new();
+    for obstacle in trajectory.scene().obstacles() {
+        let dimension = trajectory.body().dimension();
+        let offset = obstacle.drift().map(|w| w * t);
+        add(obstacle.shape(), drawn(&offset[..dimension]), dimension, &mut outlines);
+    }
+    outlines
+}
+
+fn add(shape: &Shape, offset: Point, dimension: usize, outlines: &mut Vec<Outline>) {
+    let at = |x: &[f64]| shifted(drawn(x), offset);
+    match (shape.kind(), dimension) {
+        (ShapeKind::Union(parts), _) => {
+            parts.iter().for_each(|part| add(part, offset, dimension, outlines));
+        }
+        (ShapeKind::HalfPlane { point, normal }, 1 | 2) => {
+            let normal = drawn(normal);
+            let length = normal[0].hypot(normal[1]);
+            outlines.push(Outline::HalfPlane([at(point), normal.map(|x| x / length)]));
+        }
+        (ShapeKind::Ball { centre, radius, cavity }, 2) => {
+            let circle = arc(at(centre), *radius, 0.0, CHORDS, TAU);
+            outlines.push(if *cavity { Outline::Cavity(circle) } else { Outline::Solid(circle) });
+        }
+        (ShapeKind::Box { min, max }, 2) => {
+            let (low, high) = (at(min), at(max));
+            let corners = vec![low, [high[0], low[1]], high, [low[0], high[1]]];
+            outlines.push(Outline::Solid(corners));
+        }
+        (ShapeKind::Capsule { from, to, radius }, 2) => {
+            let (from, to) = (at(from), at(to));
+            let across = (to[1] - from[1]).atan2(to[0] - from[0]) - PI / 2.0;
+            let mut around = arc(to, *radius, across, CHORDS / 2 + 1, PI);
+            around.extend(arc(from, *radius, across + PI, CHORDS / 2 + 1, PI));
+            outlines.push(Outline::Solid(around));
+        }
+        _ => {}
+    }
+}
+
+fn shifted(x: Point, offset: Point) -> Point {
+    [x[0] + offset[0], x[1] + offset[1]]
+}
+
+/// `count` points on a circle, counter-clockwise from the angle `start` in steps of a chord.
+fn arc(centre: Point, radius: f64, start: f64, count: usize, turn: f64) -> Vec<Point> {
+    let chords = (turn / TAU * CHORDS as f64).round();
+    let at = |k: usize| {
+        let angle = start + turn * k as f64 / chords;
+        shifted(centre, [radius * angle.cos(), radius * angle.sin()])
+    };
+    (0..count).map(at).collect()
+}
+
+impl Outline {
+    /// The points that a picture around `centre` of the given `size` (m) should include: of a
+    /// half-plane the nearest one, of other obstacles all, if they are neither large nor far away.
+    pub(super) fn near(&self, centre: Point, size: f64) -> Vec<Point> {
+        match self {
+            Self::HalfPlane([point, normal]) => {
+                let distance: f64 = (0..2).map(|i| (centre[i] - point[i]) * normal[i]).sum();
+                let nearest = [0, 1].map(|i| centre[i] - distance * normal[i]);
+                if distance.abs() < size { vec![nearest] } else { Vec::new() }
+            }
+            Self::Solid(points) | Self::Cavity(points) => {
+                let is_near = |x: &Point| (x[0] - centre[0]).hypot(x[1] - centre[1]) < size;
+                if points.iter().all(is_near) { points.clone() } else { Vec::new() }
+            }
+        }
+    }
+}
+
+impl Panel<'_> {
+    pub(super) fn obstacle(&self, outline: &Outline) -> Group {
+        let (view, top) = (self.view, self.layout.top(self.number));
+        let mut group = Group::new().set("class", "obstacle");
+        let (inside, surface) = match outline {
+            Outline::HalfPlane(plane) => {
+                let band = view.band(top, *plane, self.layout.metres(BAND));
+                let [point, normal] = plane;
+                let on_surface = |x: &&Point| {
+                    let distance: f64 = (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum();
+                    distance.abs() < 1e-9 * view.width()
+                };
+                let surface = band.iter().filter(on_surface).copied().collect();
+                (band, vec![surface])
+            }
+            Outline::Solid(points) => (view.clip(points, top), self.edges(points)),
+            Outline::Cavity(points) => (Vec::new(), self.edges(points)),
+        };
+        let mut hatched = Data::default();
+        hatched.polyline(&self.placed(&inside), true);
+        let mut line = Data::default();
+        for part in surface.iter().filter(|part| part.len() > 1) {
+            line.polyline(&self.placed(part), false);
+        }
+        for (data, fill, stroke) in [(hatched, "url(#hatch)", "none"), (line, "none", "#555555")] {
+            if data.0.len() > 1 {
+                let path = Path::new().set("d", data.0).set("fill", fill);
+                group = group.add(path.set("stroke", stroke).set("stroke-width", 1.5));
+            }
+        }
+        group
+    }
+
+    /// The edges of a polygon, as far as they are in the view.
+    fn edges(&self, polygon: &[Point]) -> Vec<Vec<Point>> {
+        let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
+        let top = self.layout.top(self.number);
+        ends.map(|(&p, &q)| self.view.clip(&[p, q], top)).collect()
+    }
+
+    fn placed(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|&x| self.layout.place(self.number, x)).collect()
+    }
+}
