@@ -4,8 +4,8 @@
 mod common;
 
 use common::{Table, difference, run};
-use pliant::samples::{BEAM_MATERIAL, beam_jump};
-use pliant::{Body, Mesh, Method, Obstacle, Phase, Sampling, Scene, Solver, Trajectory};
+use pliant::samples::{BEAM_MATERIAL, BeamJump, beam_jump};
+use pliant::{Body, Mesh, Method, Phase, Sampling, Scene, Solver, Trajectory};
 
 const ALPHAS: [f64; 4] = [10.0, 1e2, 1e4, 1e6];
 
@@ -64,12 +64,7 @@ fn static_shortening() {
 /// take-off the centre of mass flies as a stone does, whatever the bar's vibration.
 #[test]
 fn jump_under_gravity() {
-    let body = Body::new(Mesh::bar(0.10, 6).unwrap(), BEAM_MATERIAL).area(2e-4).build().unwrap();
-    let scene = Scene::new(body)
-        .gravity([-9.8])
-        .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
-        .phase(Phase::until(0.2).hold("left").load("right", [-2.0]).without_contact())
-        .phase(Phase::until(0.3021208));
+    let scene = BeamJump { gravity: 9.8, until: 0.3021208 }.scene().unwrap();
     for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
         let solver = Solver { method, rtol: 1e-9, ..Solver::default() };
         let trajectory = run(&scene, &solver, &[0.2144264711]);

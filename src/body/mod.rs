@@ -2,6 +2,7 @@
 
 mod cells;
 mod elastic;
+mod polynomial;
 mod regions;
 #[cfg(test)]
 mod tests;
@@ -12,12 +13,15 @@ use std::sync::Arc;
 pub(crate) use cells::Cells;
 use cells::{Law, cells};
 pub(crate) use elastic::Elastic;
+pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;
 use regions::Regions;
 
 use crate::error::{Error, positive};
+use crate::force::NodalForces;
 use crate::material::{Lame, Material, Plane};
 use crate::mesh::Mesh;
+use crate::ode::Failure;
 use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 
 /// How the strain of a body follows from its displacements.
@@ -297,6 +301,17 @@ impl Body {
     /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
     pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
         self.cells.volume_ratios(u)
+    }
+
+    /// Adds the nodal forces (N) of Green strain at the displacements `u` (m, dimension components
+    /// per node) to the conservative ones of `forces`, cell by cell, whatever strain the body has.
+    ///
+    /// # Errors
+    /// A cell that `u` turns inside out.
+    pub fn add_green_forces(&self, u: &[f64], forces: &mut NodalForces) -> Result<(), Failure> {
+        // without objective viscosity velocities count for nothing
+        let law = Law { green: true, objective: false };
+        self.cells.add_forces(&self.regions, law, u, u, forces)
     }
 
     /// Volume of the cells (m^3).

@@ -42,7 +42,8 @@ pub struct NodalForces {
 }
 
 impl NodalForces {
-    pub(crate) fn zeros(dofs: usize) -> Self {
+    /// No forces on `dofs` degrees of freedom.
+    pub fn zeros(dofs: usize) -> Self {
         let zeros = vec![0.0; dofs];
         Self {
             conservative: zeros.clone(),
@@ -53,7 +54,8 @@ impl NodalForces {
         }
     }
 
-    pub(crate) fn clear(&mut self) {
+    /// Sets all forces to 0.
+    pub fn clear(&mut self) {
         self.conservative.fill(0.0);
         self.dissipative.fill(0.0);
         self.applied.fill(0.0);

@@ -58,14 +58,15 @@ pub(super) fn finite_at(t: f64, what: fmt::Arguments<'_>, value: f64) -> Result<
     ))
 }
 
-type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
+/// Writes the vector at a time (s).
+type Write = dyn Fn(f64, &mut [f64]) + Send + Sync;
 
 /// A vector as a function of time (s), written to a slice with one component per dimension.
 #[derive(Clone)]
 pub(crate) struct VectorFunction {
     /// Components that it writes.
     pub(crate) dimension: usize,
-    function: Arc<WriteVector>,
+    function: Arc<Write>,
 }
 
 impl VectorFunction {

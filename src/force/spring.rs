@@ -91,6 +91,10 @@ impl Spring {
         &self.name
     }
 
+    pub(crate) fn ends(&self) -> &[Selection; 2] {
+        &self.ends
+    }
+
     pub(crate) fn or_named(self, name: String) -> Self {
         if self.name.is_empty() { self.named(name) } else { self }
     }

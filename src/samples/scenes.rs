@@ -79,17 +79,47 @@ impl SquareJump {
 }
 
 /// Fig. 4.1: an elastic bar of 10 cm and 2 cm^2, 6 nodes, standing on the floor. Its top is
-/// pressed with 2 N until 0.2 s; then it jumps off a floor of 0.1 MPa/cm, until 0.6 s.
+/// pressed with 2 N until 0.2 s; then it jumps off a floor of 0.1 MPa/cm, until 0.6 s, without
+/// gravity. [`BeamJump`] has variants.
 ///
 /// # Errors
 /// None; the signature is that of its kind.
 pub fn beam_jump() -> Result<Scene, Error> {
-    let body = Body::new(Mesh::bar(0.10, 6)?, BEAM_MATERIAL).area(2e-4).build()?;
-    let push = Phase::until(0.2).named("push").hold("left").load("right", [-2.0]);
-    Ok(Scene::new(body)
-        .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
-        .phase(push.without_contact())
-        .phase(Phase::until(0.6).named("free")))
+    BeamJump::default().scene()
+}
+
+/// The jumping beam with other numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BeamJump {
+    /// Acceleration of gravity downward (m/s^2). Default: 0, as in the documents.
+    pub gravity: f64,
+    /// End of the jump (s), after 0.2. Default: 0.6.
+    pub until: f64,
+}
+
+impl Default for BeamJump {
+    fn default() -> Self {
+        Self { gravity: 0.0, until: 0.6 }
+    }
+}
+
+impl BeamJump {
+    /// The scene.
+    ///
+    /// # Errors
+    /// None; the signature is that of its kind.
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let body = Body::new(Mesh::bar(0.10, 6)?, BEAM_MATERIAL).area(2e-4).build()?;
+        let push = Phase::until(0.2).named("push").hold("left").load("right", [-2.0]);
+        let mut scene = Scene::new(body)
+            .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
+            .phase(push.without_contact())
+            .phase(Phase::until(self.until).named("free"));
+        if self.gravity != 0.0 {
+            scene = scene.gravity([-self.gravity]);
+        }
+        Ok(scene)
+    }
 }
 
 /// Figs 4.9 and 4.10: an elastic beam of 10 x 2 cm (11 x 3 nodes), 1 cm thick, its left end fixed.

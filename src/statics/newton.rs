@@ -201,7 +201,7 @@ impl<'a> Search<'a> {
         Err(self.stuck(refused.unwrap_or_else(|| stalled.into())))
     }
 
-    /// What a small push does to the equilibrium at `u`. Factorizes K there once more if need be.
+    /// What a small push does to the equilibrium at `u`, by the last factorization: that of K there.
     pub(super) fn stability(&mut self) -> Stability {
         let eigenvalue = self.rest.lowest_eigenvalue(self.shift);
         let omega = eigenvalue.abs().sqrt();
@@ -230,5 +230,40 @@ fn reason(failure: Failure) -> String {
     match failure {
         Failure::Recoverable(message) => message,
         Failure::Fatal(error) => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Body, Strain};
+    use crate::constraint::Start;
+    use crate::mesh::Mesh;
+    use crate::samples::BEAM_MATERIAL;
+    use crate::scene::{Phase, Scene};
+
+    /// A direction downhill, a hundred times too long: the bar is stretched no further than the
+    /// energy falls.
+    #[test]
+    fn no_step_goes_uphill() {
+        let mesh = Mesh::bar(0.1, 3).unwrap();
+        let body = Body::new(mesh, BEAM_MATERIAL).area(2e-4).strain(Strain::Green).build();
+        let phase = Phase::until(1.0).hold("left").load("right", [1.0]);
+        let scene = Scene::new(body.unwrap()).phase(phase.clone());
+        let start = Start { time: 0.0, u: &[0.0; 3] };
+        let system = scene.system(&scene.model().unwrap(), &phase, &start, 0.0).unwrap();
+        let rest = AtRest::new(system, 1.0, "test").unwrap();
+        let statics = Statics::default();
+        let mut search = Search::new(rest, &statics, 0.1, false);
+        search.tried = 1.0;
+        assert!(search.evaluate().is_ok());
+        let start = search.at.clone();
+        // F L/(E A) = 1 cm: the energy of both halves of the bar is least there
+        search.x = vec![0.0, 0.5, 1.0];
+        assert!(search.descend(1.0).is_ok());
+        let change = search.at.energy_since(&start, search.u[2], &[0.0, 0.5, 1.0]);
+        // at 1 cm it is -F^2 L/(2 E A) = -5 mJ, were the bar linear
+        assert!(change < 0.0 && search.u[2] < 0.02, "{} m, {change} J", search.u[2]);
+        assert!((search.u[1] - 0.5 * search.u[2]).abs() < 1e-16);
     }
 }

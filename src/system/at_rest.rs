@@ -260,3 +260,93 @@ const ITERATIONS: usize = 300;
 fn is_load(force: &dyn Force) -> bool {
     matches!(force.reservoir(), Reservoir::Gravity | Reservoir::None)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::body::{Body, Strain};
+    use crate::mesh::Mesh;
+    use crate::model::Model;
+    use crate::samples::BEAM_MATERIAL;
+
+    /// A load on the last of three nodes that grows with the square of its displacement.
+    struct Growing;
+
+    impl Force for Growing {
+        fn add_forces(
+            &self,
+            _t: f64,
+            u: &[f64],
+            _v: &[f64],
+            forces: &mut NodalForces,
+        ) -> Result<(), Failure> {
+            forces.applied[2] += 500.0 * u[2] * u[2];
+            Ok(())
+        }
+
+        fn add_tangents(
+            &self,
+            _t: f64,
+            u: &[f64],
+            _v: &[f64],
+            stiffness: &mut BlockMatrix,
+            _damping: &mut BlockMatrix,
+        ) {
+            stiffness.block_mut(2, 2).unwrap()[0] -= 1000.0 * u[2];
+        }
+
+        fn is_nonlinear(&self) -> bool {
+            true
+        }
+
+        fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
+            0.0
+        }
+
+        fn reservoir(&self) -> Reservoir {
+            Reservoir::None
+        }
+    }
+
+    /// K is the derivative of the forces, and their total that of the energy, when a part of the
+    /// loads acts: linear elasticity, Green's, and a load that follows the body.
+    #[test]
+    fn partial_loads_have_partial_tangents() {
+        for strain in [Strain::Cauchy, Strain::Green] {
+            let mesh = Mesh::bar(0.1, 3).unwrap();
+            let body = Body::new(mesh, BEAM_MATERIAL).area(2e-4).strain(strain).build().unwrap();
+            let mut forces: Vec<Arc<dyn Force>> = vec![Arc::new(Growing)];
+            if let Some(elastic) = body.elastic() {
+                forces.push(Arc::new(elastic));
+            }
+            let model = Arc::new(Model::new(&body, forces.iter().map(|force| &**force)));
+            let system = System::new(model, forces, Vec::new(), 0.0, "test").unwrap();
+            let mut rest = AtRest::new(system, 1.0, "test").unwrap();
+            let (u, part) = ([0.001, 0.004, 0.01], 0.3);
+            rest.update_tangent(part, &u);
+            let h = 1e-6;
+            for j in 0..3 {
+                let mut at = |by: f64| {
+                    let (mut moved, mut balance) = (u, Balance::zeros(3));
+                    moved[j] += by;
+                    rest.evaluate(part, &moved, &mut balance).unwrap();
+                    balance
+                };
+                let (here, ahead, behind) = (at(0.0), at(h), at(-h));
+                let mut step = [0.0; 3];
+                step[j] = 2.0 * h;
+                let fall = -ahead.energy_since(&behind, 1.0, &step) / (2.0 * h);
+                // central differences: h^2 U'''/6, about 2e-9, of forces of 0.7 N
+                assert!((fall - here.total[j]).abs() < 1e-8, "{strain:?} {j}: {fall}");
+                for i in 0..3 {
+                    let slope = (behind.total[i] - ahead.total[i]) / (2.0 * h);
+                    let k = rest.system.tangents().0.get(i, j);
+                    // forces of 1 N, known to 1e-16, over 1e-6 m; stiffness 200 N/m
+                    assert!((k - slope).abs() < 1e-6, "{strain:?} ({i}, {j}): {k} {slope}");
+                }
+            }
+        }
+    }
+}

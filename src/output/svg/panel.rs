@@ -53,11 +53,28 @@ impl Panel<'_> {
             (_, 2) => panel.add(cells(mesh, &points)),
             _ => panel.add(surface(mesh, &points, &depths(self.trajectory, self.sample))),
         };
+        if !self.trajectory.scene().springs().is_empty() {
+            panel = panel.add(self.springs(&points));
+        }
         for (&node, mark) in self.marks {
             panel = panel.add(mark.draw(points[node][0], points[node][1]));
         }
         let [x, y] = self.layout.caption(self.number);
         panel.add(text(self.caption, x, y).set("text-anchor", "middle").set("fill", INK))
+    }
+
+    /// The springs, as straight lines.
+    fn springs(&self, points: &[Point]) -> Path {
+        let mesh = self.trajectory.body().mesh();
+        let mut data = Data::default();
+        for spring in self.trajectory.scene().springs() {
+            let [first, second] = spring.ends();
+            if let (Ok(first), Ok(second)) = (mesh.select(first), mesh.select(second)) {
+                data.polyline(&[points[first[0]], points[second[0]]], false);
+            }
+        }
+        let path = Path::new().set("class", "springs").set("d", data.0).set("fill", "none");
+        path.set("stroke", "#8a5a2b").set("stroke-width", 1.2)
     }
 
     /// A one-dimensional body, with a width for the eye, its nodes as lines across.

@@ -1,0 +1,107 @@
+//! Scenes of Hirai, *Computing Dynamic Deformation*, with pressure, springs and pairs of forces.
+
+use super::BENT_BEAM_MATERIAL;
+use crate::body::{Body, Strain, Viscosity};
+use crate::error::Error;
+use crate::force::{Chamber, Obstacle, Spring};
+use crate::material::Material;
+use crate::mesh::{Cells, Mesh};
+use crate::scene::{Phase, Scene};
+
+/// Material of membranes and of the ring with springs: E = 0.1 MPa, c = 40 Pa s, nu = 0.48.
+pub const MEMBRANE_MATERIAL: Material = Material { viscosity: 40.0, ..BENT_BEAM_MATERIAL };
+
+/// Fig. 4.8: a membrane of 10 x 1 cm (11 x 2 nodes, 1 cm thick), fixed at its four corners, inflated
+/// from below by 2 kPa until 1.5 s and left alone until 3 s.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn membrane() -> Result<Scene, Error> {
+    let mesh = Mesh::rectangle([0.10, 0.01], [11, 2], Cells::Triangles)?;
+    let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).build()?;
+    let bottom: Vec<usize> = (1..=11).rev().collect();
+    let hold = |until: f64| Phase::until(until).hold([1, 11, 12, 22]);
+    Ok(Scene::new(body)
+        .chamber(Chamber::polygon("chamber", bottom))
+        .phase(hold(1.5).named("inflated").pressure("chamber", 2000.0))
+        .phase(hold(3.0).named("left alone")))
+}
+
+/// Fig. 4.8, second scene: a clamped half-ring of radii 4 and 5 cm (21 x 3 nodes, 1 cm thick) over a
+/// chamber, inflated by 2 kPa until 1.5 s and left alone until 3 s; Green strain.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn membrane_arch() -> Result<Scene, Error> {
+    let mesh = Mesh::half_ring(0.04, 0.05, [21, 3], Cells::Triangles)?;
+    let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).strain(Strain::Green).build()?;
+    let inner: Vec<usize> = (0..21).map(|station| 3 * station + 1).collect();
+    let hold = |until: f64| Phase::until(until).hold("left").hold("right");
+    Ok(Scene::new(body)
+        .chamber(Chamber::polygon("chamber", inner))
+        .phase(hold(1.5).named("inflated").pressure("chamber", 2000.0))
+        .phase(hold(3.0).named("left alone")))
+}
+
+/// Fig. 4.12 without its timeline: an elastic ring of radii 4 and 5 cm (32 x 3 nodes, 1 cm thick, Green
+/// strain, natural viscosity) on a floor; eight springs `A1` to `A8` of 20 N/m and 4 cm join a
+/// mass of 1 g at its centre with its inner side, `A1` straight below, then counter-clockwise.
+fn spring_ring() -> Result<Scene, Error> {
+    let mesh = Mesh::ring(0.04, 0.05, [32, 3], Cells::Triangles)?.translated(&[0.0, 0.05])?;
+    let body = Body::new(mesh, MEMBRANE_MATERIAL)
+        .thickness(0.01)
+        .strain(Strain::Green)
+        .viscosity(Viscosity::Natural)
+        .point_mass("mass", [0.0, 0.05], 0.001)
+        .build()?;
+    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
+    let scene =
+        Scene::new(body).gravity([0.0, -9.8]).obstacle(floor.stiffness(1000.0).friction(20.0));
+    Ok((1..=8).fold(scene, |scene, k| {
+        let inner = 12 * (k - 1) + 1;
+        let spring = Spring::between([inner], "mass").named(format!("A{k}"));
+        scene.spring(spring.stiffness(20.0).length(0.04))
+    }))
+}
+
+/// Fig. 4.12: the ring settles for 0.2 s, then pairs of opposite springs shrink with `force` (N) one
+/// after the other: A2 and A6 until 2 s, A3 and A7 from 2.1 to 6.9 s, A4 and A8 from 7 to 12 s.
+/// With 1 N the ring walks to the right. The 5 N of the documents pull springs to length zero.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn ring_springs(force: f64) -> Result<Scene, Error> {
+    Ok(spring_ring()?
+        .phase(Phase::until(0.2).named("settle"))
+        .phase(Phase::until(2.0).named("A2 and A6").actuate(["A2", "A6"], -force))
+        .phase(Phase::until(2.1).named("relax"))
+        .phase(Phase::until(6.9).named("A3 and A7").actuate(["A3", "A7"], -force))
+        .phase(Phase::until(7.0).named("relax again"))
+        .phase(Phase::until(12.0).named("A4 and A8").actuate(["A4", "A8"], -force)))
+}
+
+/// The ring of [`ring_springs`] jumps: A1 and A5 shrink with a force that grows to 1 N within 0.1 s,
+/// then everything is let go until 1 s.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn ring_jump() -> Result<Scene, Error> {
+    Ok(spring_ring()?
+        .phase(Phase::until(0.1).named("crouch").actuate_with(["A1", "A5"], |t| -10.0 * t))
+        .phase(Phase::until(1.0).named("jump")))
+}
+
+/// Slides, "Report #8": a rectangle of 6 x 9 cm (7 x 10 nodes, 1 cm thick, Green strain) stands on its
+/// fixed bottom. Two opposite forces of 1 N press its sides for half a second, from the left at
+/// two thirds of its height and from the right at one third; then it is left alone until 1 s.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn report_8() -> Result<Scene, Error> {
+    let mesh = Mesh::rectangle([0.06, 0.09], [7, 10], Cells::Triangles)?;
+    let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).strain(Strain::Green).build()?;
+    let press = Phase::until(0.5).named("pressed").hold("bottom");
+    Ok(Scene::new(body)
+        .phase(press.load([43], [1.0, 0.0]).load([28], [-1.0, 0.0]))
+        .phase(Phase::until(1.0).named("left alone").hold("bottom")))
+}
