@@ -185,3 +185,26 @@ fn loads_push_the_centre_of_mass() {
     assert!((v[1] * mass / 1.0 - 1.0).abs() < 1e-7, "{v:?}");
     assert_balanced(&trajectory, 1e-6);
 }
+
+/// A spring that pulls a corner of a square through its diagonal turns cells inside out, which
+/// Green strain does not survive. The run ends there and says so, instead of taking steps that are
+/// too small to move time ahead.
+#[test]
+fn a_run_that_cannot_go_on_ends() {
+    let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+    let scene = Scene::new(body.build().unwrap())
+        .spring(Spring::between([1], [4]).named("A1").stiffness(20.0))
+        .phase(Phase::until(1.0).named("crush").hold([2, 3, 4]).actuate(["A1"], -5e4));
+    for method in Method::ALL {
+        for rtol in [1e-3, 1e-6] {
+            let solver = Solver { method, rtol, ..Solver::default() };
+            let result = scene.simulate(&solver, &Sampling::phase_ends());
+            let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
+            let message = failure.to_string();
+            println!("{message}");
+            assert!(message.contains("crush") && message.contains("is inverted"), "{message}");
+            assert!(failure.trajectory.report().steps() < 100_000, "{message}");
+        }
+    }
+}

@@ -5,7 +5,9 @@ use std::fs;
 use std::path::Path;
 
 use pliant::output::{Chart, Snapshots, write_csv, write_vtk};
-use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Solver, Trajectory};
+use pliant::{
+    Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Shape, Solver, Trajectory,
+};
 use vtkio::model::{
     Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
 };
@@ -131,6 +133,39 @@ fn snapshots_have_a_panel_per_time_and_all_cells() -> Outcome {
         assert!(texts.iter().any(|text| text.trim() == label), "{label} in {texts:?}");
     }
     assert_eq!(picture(&path, "obstacle")?.1, 5);
+    Ok(())
+}
+
+/// Obstacles of all kinds that a plane has are drawn, those in motion where they are at the time.
+#[test]
+fn snapshots_show_obstacles() -> Outcome {
+    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    let named = |name: &str, shape: Shape| Obstacle::new(shape).named(name).stiffness(1.0);
+    let pair = [Shape::disc([0.0, -0.1], 0.05), Shape::capsule([0.1, -0.1], [0.2, -0.1], 0.05)];
+    let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+        .obstacle(named("floor", Shape::half_plane([0.0, -0.2], [0.0, 1.0])))
+        .obstacle(named("bowl", Shape::cavity([0.15, 0.15], 0.3)))
+        .obstacle(named("step", Shape::box_between([0.4, 0.0], [0.45, 0.1])).velocity([1.0, 0.0]))
+        .obstacle(named("pair", Shape::union(pair)))
+        .obstacle(Obstacle::custom(|_, _| 1.0).named("own").stiffness(1.0))
+        .phase(Phase::until(0.1));
+    let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("obstacles.svg");
+    Snapshots::at([0.0, 0.1]).write(&trajectory, &path)?;
+    let (text, obstacles) = picture(&path, "obstacle")?;
+    // five outlines in each of two panels; the function of one's own has none
+    assert_eq!(obstacles, 10);
+    let document = roxmltree::Document::parse(&text)?;
+    let group = |k: usize| {
+        let all = document.descendants().filter(|node| node.attribute("class") == Some("obstacle"));
+        let paths = all.clone().nth(k)?.children().filter_map(|node| node.attribute("d"));
+        Some(paths.collect::<Vec<_>>())
+    };
+    assert_eq!(group(0), group(5), "the floor stays");
+    assert_eq!(group(1).map(|paths| paths.len()), Some(1), "a cavity is not hatched");
+    assert_ne!(group(2), group(7), "the step moves");
     Ok(())
 }
 

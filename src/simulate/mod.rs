@@ -172,6 +172,8 @@ struct Run<'a> {
     time: f64,
     /// (u, v, energies)
     state: Vec<f64>,
+    /// Steps in a row that did not move time ahead.
+    standing: usize,
     trajectory: Trajectory,
 }
 
@@ -189,6 +191,7 @@ impl<'a> Run<'a> {
             atol: solver.tolerances(scene.body()),
             time: 0.0,
             state: [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat(),
+            standing: 0,
             trajectory: Trajectory::new(scene, report),
         }
     }
@@ -263,6 +266,10 @@ impl<'a> Run<'a> {
         sample: &mut [f64],
     ) -> Result<(), Failed> {
         let time = stepper.step(end)?;
+        self.standing = if time > self.time { 0 } else { self.standing + 1 };
+        if self.standing == STANDING {
+            return Err(standing_still(stepper.system().refusal()));
+        }
         let n = self.scene.body().dofs();
         let (before, after) = (&self.state[..n], &stepper.state()[..n]);
         stepper.system().check_step(time, before, after).map_err(into_error)?;
@@ -311,6 +318,18 @@ impl<'a> Run<'a> {
         })
         .into()
     }
+}
+
+/// Steps in a row that may be too small to move time ahead in double precision.
+const STANDING: usize = 100;
+
+fn standing_still(refusal: &str) -> Failed {
+    let reason = match refusal {
+        "" => "the motion changes without end in no time: check the model near this time",
+        reason => reason,
+    };
+    format!("{STANDING} steps, too small to move time ahead, have not led past this: {reason}")
+        .into()
 }
 
 fn too_many_steps(steps: usize, counts: &Counts) -> Failed {

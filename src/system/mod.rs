@@ -50,6 +50,8 @@ pub(crate) struct System {
     inertia: Reduced,
     newton: Newton,
     at: Evaluation,
+    /// Why a force had no meaning, the last time that one had none.
+    refusal: String,
 }
 
 /// What the last evaluation of the equations found.
@@ -131,7 +133,7 @@ impl System {
             rates: vec![0.0; rows.len()],
             demands: vec![0.0; rows.len()],
         };
-        Ok(Self { model, forces, rows, alpha, inertia, newton, at })
+        Ok(Self { model, forces, rows, alpha, inertia, newton, at, refusal: String::new() })
     }
 
     /// Number of displacement components.
@@ -166,6 +168,12 @@ impl System {
         }
         let Evaluation { total, demands, multipliers, .. } = &mut self.at;
         self.inertia.solve(&self.rows, total, demands, v, multipliers);
+    }
+
+    /// Why a force had no meaning at a trial point, the last time that one had none; empty if all
+    /// always had.
+    pub(crate) fn refusal(&self) -> &str {
+        &self.refusal
     }
 
     /// Asks the forces whether the step from displacements `before` to `after` makes sense.
@@ -223,7 +231,11 @@ impl System {
             damping.add_product(-1.0, v, &mut nodal.dissipative);
         }
         for force in &self.forces {
-            force.add_forces(t, u, v, nodal)?;
+            let added = force.add_forces(t, u, v, nodal);
+            if let Err(Failure::Recoverable(reason)) = &added {
+                self.refusal.clone_from(reason);
+            }
+            added?;
         }
         nodal.add_up(total);
         Ok(())
