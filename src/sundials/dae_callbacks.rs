@@ -8,7 +8,7 @@ use std::ffi::c_void;
 use super::{
     error::Callback,
     ffi,
-    host::{Host, STOP, linear_solver_code},
+    host::{Host, STOP},
     matrix::{self, Entries},
     vector::{slice, slice_mut},
 };
@@ -91,27 +91,4 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
     // SAFETY: as above; the user's access has ended.
     let values = unsafe { matrix::stored(jacobian, solver, host.n) };
     host.check_finite(callback, t, values)
-}
-
-/// The `solve` operation of a user-supplied linear solver, whose content is the [`Host`].
-pub(super) unsafe extern "C" fn newton_solve<S: Dae>(
-    solver: ffi::SUNLinearSolver,
-    _: ffi::SUNMatrix,
-    x: ffi::N_Vector,
-    b: ffi::N_Vector,
-    _: f64,
-) -> i32 {
-    // SAFETY: the content is the host of the integrator, which outlives the linear solver;
-    // SUNDIALS passes two different vectors of its length.
-    let (host, x) = unsafe {
-        let host = &mut *(*solver).content.cast::<Host<S>>();
-        let n = host.n;
-        let x = slice_mut(x, n);
-        x.copy_from_slice(slice(b, n));
-        (host, x)
-    };
-    let t = host.setup_time;
-    let outcome =
-        host.guard_output(Callback::NewtonSolve, t, x, |system, x| system.newton_solve(x));
-    linear_solver_code(outcome)
 }

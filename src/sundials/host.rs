@@ -14,7 +14,6 @@ use std::{
 
 use super::{
     error::{Callback, Cause, Error},
-    ffi,
     linear::LinearSolver,
 };
 use crate::ode::Failure;
@@ -24,15 +23,8 @@ pub(super) const RETRY: i32 = 1;
 /// Return value of a callback that asks SUNDIALS to stop.
 pub(super) const STOP: i32 = -1;
 
-/// The return value of a linear solver for an outcome of [`Host::guard`]: SUNDIALS takes codes
-/// that it does not know from a linear solver for success.
-pub(super) fn linear_solver_code(outcome: i32) -> i32 {
-    match outcome {
-        RETRY => ffi::SUNLS_PACKAGE_FAIL_REC as i32,
-        STOP => ffi::SUNLS_PACKAGE_FAIL_UNREC,
-        _ => 0,
-    }
-}
+/// `newton_solve` of an `Ode` or a `Dae`.
+pub(super) type NewtonSolve<S> = fn(&mut S, &mut [f64]) -> Result<(), Failure>;
 
 /// The user's system and what happened in its callbacks.
 pub(super) struct Host<S> {
@@ -42,6 +34,8 @@ pub(super) struct Host<S> {
     pub(super) root_count: usize,
     /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
+    /// The system's `newton_solve`; none for a fixed-point iteration.
+    pub(super) newton_solve: Option<NewtonSolve<S>>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
     pub(super) troubles: Troubles,
@@ -121,7 +115,15 @@ impl<S> Host<S> {
         linear_solver: Option<LinearSolver>,
     ) -> Self {
         let troubles = Troubles::default();
-        Self { system, n, root_count, linear_solver, setup_time: f64::NAN, troubles }
+        Self {
+            system,
+            n,
+            root_count,
+            linear_solver,
+            newton_solve: None,
+            setup_time: f64::NAN,
+            troubles,
+        }
     }
 
     /// Runs user code of a callback and translates its outcome for SUNDIALS.

@@ -3,7 +3,13 @@
 use std::ffi::c_void;
 
 use super::{
-    context::Context, error::Error, ffi, matrix::Matrix, pattern::Pattern, vector::Vector,
+    context::Context,
+    error::{Callback, Error},
+    ffi,
+    host::{Host, RETRY, STOP},
+    matrix::Matrix,
+    pattern::Pattern,
+    vector::{Vector, slice, slice_mut},
 };
 
 /// Where the entries of a Jacobian come from.
@@ -68,15 +74,6 @@ impl LinearSolver {
     }
 }
 
-/// The `solve` operation of a user-supplied solver: (solver, matrix, x, b, tolerance).
-pub(super) type Solve = unsafe extern "C" fn(
-    ffi::SUNLinearSolver,
-    ffi::SUNMatrix,
-    ffi::N_Vector,
-    ffi::N_Vector,
-    f64,
-) -> i32;
-
 /// Owns a `SUNLinearSolver` and the matrix it factorizes, freed in this order.
 pub(super) struct Linear {
     solver: RawSolver,
@@ -86,15 +83,12 @@ pub(super) struct Linear {
 struct RawSolver(ffi::SUNLinearSolver);
 
 impl Linear {
-    /// `solve` and its `data` are used by [`LinearSolver::Custom`] only.
-    ///
     /// # Safety
-    /// `solve` may be called with `data` as the solver's content as long as the result lives.
-    pub(super) unsafe fn new(
+    /// `data` is the [`Host<S>`] of the integrator, which outlives the result.
+    pub(super) unsafe fn new<S>(
         kind: &LinearSolver,
         template: &Vector,
         context: &Context,
-        solve: Solve,
         data: *mut c_void,
     ) -> Result<Self, Error> {
         let n = template.as_slice().len();
@@ -110,8 +104,8 @@ impl Linear {
             }
             // SAFETY: as above.
             LinearSolver::Klu(_) => ("SUNLinSol_KLU", unsafe { ffi::SUNLinSol_KLU(y, m, c) }),
-            // SAFETY: the context is alive; the caller vouches for `solve` and `data`.
-            LinearSolver::Custom => ("SUNLinSolNewEmpty", unsafe { custom(c, solve, data) }),
+            // SAFETY: the context is alive; the caller vouches for `data`.
+            LinearSolver::Custom => ("SUNLinSolNewEmpty", unsafe { custom::<S>(c, data) }),
         };
         if raw.is_null() {
             return Err(Error::out_of_memory(function));
@@ -139,12 +133,8 @@ impl Drop for RawSolver {
 /// `solve` asks the user's system.
 ///
 /// # Safety
-/// `context` is alive.
-unsafe fn custom(
-    context: ffi::SUNContext,
-    solve: Solve,
-    data: *mut c_void,
-) -> ffi::SUNLinearSolver {
+/// `context` is alive, and `data` is a [`Host<S>`] that outlives the result.
+unsafe fn custom<S>(context: ffi::SUNContext, data: *mut c_void) -> ffi::SUNLinearSolver {
     extern "C" fn kind(_: ffi::SUNLinearSolver) -> ffi::SUNLinearSolver_Type {
         ffi::SUNLinearSolver_Type_SUNLINEARSOLVER_DIRECT
     }
@@ -175,10 +165,36 @@ unsafe fn custom(
             ops.getid = Some(id);
             ops.initialize = Some(nothing);
             ops.setup = Some(setup);
-            ops.solve = Some(solve);
+            ops.solve = Some(solve::<S>);
             ops.free = Some(free);
             (*solver).content = data;
         }
         solver
+    }
+}
+
+/// The `solve` operation of a user-supplied linear solver, whose content is the [`Host`].
+unsafe extern "C" fn solve<S>(
+    solver: ffi::SUNLinearSolver,
+    _: ffi::SUNMatrix,
+    x: ffi::N_Vector,
+    b: ffi::N_Vector,
+    _: f64,
+) -> i32 {
+    // SAFETY: the content is the host of the integrator, which outlives the linear solver;
+    // SUNDIALS passes two different vectors of its length.
+    let (host, x) = unsafe {
+        let host = &mut *(*solver).content.cast::<Host<S>>();
+        let n = host.n;
+        let x = slice_mut(x, n);
+        x.copy_from_slice(slice(b, n));
+        (host, x)
+    };
+    let Some(newton_solve) = host.newton_solve else { return ffi::SUNLS_PACKAGE_FAIL_UNREC };
+    // SUNDIALS takes codes that it does not know from a linear solver for success.
+    match host.guard_output(Callback::NewtonSolve, host.setup_time, x, newton_solve) {
+        RETRY => ffi::SUNLS_PACKAGE_FAIL_REC as i32,
+        STOP => ffi::SUNLS_PACKAGE_FAIL_UNREC,
+        _ => 0,
     }
 }

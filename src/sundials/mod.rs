@@ -35,6 +35,8 @@ mod cvode;
 mod dae_callbacks;
 mod error;
 mod ffi;
+mod fixed_point;
+mod functions;
 mod host;
 mod ida;
 mod kernels;
@@ -43,6 +45,7 @@ mod matrix;
 mod ode_callbacks;
 mod options;
 mod pattern;
+mod session;
 mod statistics;
 mod vector;
 

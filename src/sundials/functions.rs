@@ -1,0 +1,97 @@
+//! The C functions which the integrators have in common but for their names.
+
+use std::ffi::c_void;
+
+use super::ffi;
+
+/// A C function with its name, for errors.
+pub(super) type Named<F> = (&'static str, F);
+
+/// A function with one argument besides the memory block, mostly to set an option.
+pub(super) type Set<T> = Named<unsafe extern "C" fn(*mut c_void, T) -> i32>;
+
+/// A function that reads one value.
+pub(super) type Get<T> = unsafe extern "C" fn(*mut c_void, *mut T) -> i32;
+
+/// Reads the counters, orders, step sizes and time that every integrator keeps.
+pub(super) type GetIntegratorStats = unsafe extern "C" fn(
+    memory: *mut c_void,
+    steps: *mut i64,
+    evaluations: *mut i64,
+    setups: *mut i64,
+    error_test_failures: *mut i64,
+    last_order: *mut i32,
+    current_order: *mut i32,
+    initial_step: *mut f64,
+    last_step: *mut f64,
+    current_step: *mut f64,
+    current_time: *mut f64,
+) -> i32;
+
+/// Integrates: (memory, target, time reached, y, y', task). An ODE has null for y'.
+pub(super) type Solve =
+    unsafe fn(*mut c_void, f64, *mut f64, ffi::N_Vector, ffi::N_Vector, i32) -> i32;
+
+/// Starts again: (memory, time, y, y'). An ODE has null for y'.
+pub(super) type Reinit = unsafe fn(*mut c_void, f64, ffi::N_Vector, ffi::N_Vector) -> i32;
+
+type SetErrorHandler = unsafe extern "C" fn(*mut c_void, ffi::CVErrHandlerFn, *mut c_void) -> i32;
+type SetLinearSolver =
+    unsafe extern "C" fn(*mut c_void, ffi::SUNLinearSolver, ffi::SUNMatrix) -> i32;
+
+/// One integrator of SUNDIALS. All functions take its memory block first; a table never mixes
+/// functions of two integrators.
+pub(super) struct Functions {
+    /// What errors call the integrator.
+    pub(super) solver: &'static str,
+    pub(super) free: unsafe extern "C" fn(*mut *mut c_void),
+    pub(super) solve: Named<Solve>,
+    pub(super) reinit: Named<Reinit>,
+    /// Codes of `solve` for a call that can not be made.
+    pub(super) refusals: &'static [i32],
+
+    pub(super) set_error_handler: Named<SetErrorHandler>,
+    pub(super) set_user_data: Set<*mut c_void>,
+    pub(super) scalar_tolerances: Named<unsafe extern "C" fn(*mut c_void, f64, f64) -> i32>,
+    pub(super) vector_tolerances:
+        Named<unsafe extern "C" fn(*mut c_void, f64, ffi::N_Vector) -> i32>,
+    pub(super) set_linear_solver: Named<SetLinearSolver>,
+    pub(super) allow_inactive_roots: Named<unsafe extern "C" fn(*mut c_void) -> i32>,
+    pub(super) set_max_steps: Set<i64>,
+    pub(super) set_initial_step: Set<f64>,
+    pub(super) set_max_step: Set<f64>,
+    pub(super) set_min_step: Set<f64>,
+    pub(super) set_max_order: Set<i32>,
+    pub(super) set_convergence_coefficient: Set<f64>,
+    pub(super) set_stop_time: Set<f64>,
+
+    pub(super) get_root_info: Set<*mut i32>,
+    pub(super) get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, ffi::N_Vector) -> i32>,
+    /// Codes of `get_dky` for a time outside the last step, and for too high a derivative.
+    pub(super) bad_time: i32,
+    pub(super) bad_derivative: i32,
+    pub(super) get_linear_flag: Get<i64>,
+    pub(super) get_integrator_stats: GetIntegratorStats,
+    pub(super) get_nonlinear_stats: unsafe extern "C" fn(*mut c_void, *mut i64, *mut i64) -> i32,
+    pub(super) get_step_failures: Get<i64>,
+    pub(super) get_jacobian_evaluations: Get<i64>,
+    pub(super) get_quotient_evaluations: Get<i64>,
+    pub(super) get_root_evaluations: Get<i64>,
+    /// CVODE alone detects stability limits.
+    pub(super) get_stability_reductions: Option<Get<i64>>,
+    pub(super) get_tolerance_scale: Get<f64>,
+}
+
+// Tasks and codes that all integrators number alike: the shared code has CVODE's names for them.
+const _: () = assert!(
+    ffi::CV_NORMAL == ffi::IDA_NORMAL
+        && ffi::CV_ONE_STEP == ffi::IDA_ONE_STEP
+        && ffi::CV_ROOT_RETURN == ffi::IDA_ROOT_RETURN
+        && ffi::CV_TOO_MUCH_WORK == ffi::IDA_TOO_MUCH_WORK
+        && ffi::CV_TOO_MUCH_ACC == ffi::IDA_TOO_MUCH_ACC
+        && ffi::CV_ERR_FAILURE == ffi::IDA_ERR_FAIL
+        && ffi::CV_CONV_FAILURE == ffi::IDA_CONV_FAIL
+        && ffi::CV_LINIT_FAIL == ffi::IDA_LINIT_FAIL
+        && ffi::CV_LSETUP_FAIL == ffi::IDA_LSETUP_FAIL
+        && ffi::CV_LSOLVE_FAIL == ffi::IDA_LSOLVE_FAIL
+);
