@@ -399,6 +399,8 @@ impl<S> Session<S> {
 
     /// The error for a return code of the integrator.
     pub(super) fn stopped(&mut self, code: i32) -> Error {
+        // asked first: asking for counters that do not apply leaves messages, too
+        let message = self.host.get_mut().troubles.message().to_owned();
         let statistics = self.statistics();
         let is_dae = self.yp.is_some();
         let (otherwise, blame_retries) = match code {
@@ -428,7 +430,7 @@ impl<S> Session<S> {
             step: statistics.current_step,
             order: statistics.current_order,
             code,
-            message: troubles.message().to_owned(),
+            message,
             source,
         }))
     }
