@@ -295,7 +295,7 @@ fn contacts() {
 /// potential by time alone, and f . w.
 #[test]
 fn a_moving_obstacle_supplies_what_its_drive_does() {
-    let w = [0.4, 0.3];
+    let w = [0.4, -0.1];
     let slope = Obstacle::half_plane([0.5, 0.5], [-3.0, 4.0]).stiffness(50.0).damping(7.0);
     let contact = Contact::new(&plate(2), &slope.friction(3.0).velocity(w)).unwrap();
     let (u, v) = (noise(8, 0.1, 2.0), noise(8, 2.0, 20.0));
