@@ -274,7 +274,7 @@ impl<S> Session<S> {
     /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
     /// step, `step` can not.
     fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
-        let statistics = self.statistics();
+        let statistics = self.step_statistics();
         let earliest = match task {
             ffi::CV_ONE_STEP => self.t,
             _ => statistics.current_time - statistics.last_step,
@@ -287,7 +287,7 @@ impl<S> Session<S> {
     }
 
     pub(super) fn last_step(&self) -> (f64, f64) {
-        let statistics = self.statistics();
+        let statistics = self.step_statistics();
         (statistics.current_time - statistics.last_step, statistics.current_time)
     }
 
@@ -309,7 +309,7 @@ impl<S> Session<S> {
             return Err(Error::input("t", t, format!("the last step is [{start}, {end}]")));
         }
         if code == functions.bad_derivative {
-            let order = self.statistics().last_order;
+            let order = self.step_statistics().last_order;
             let mend = format!("the last step was of order {order}");
             return Err(Error::input("derivative", derivative, mend));
         }
@@ -321,7 +321,7 @@ impl<S> Session<S> {
     pub(super) fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(t) = t {
             check_time("stop time", t)?;
-            let statistics = self.statistics();
+            let statistics = self.step_statistics();
             if (t - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
                 let mend = format!("the steps have reached {} already", statistics.current_time);
                 return Err(Error::input("stop time", t, mend));
@@ -333,10 +333,8 @@ impl<S> Session<S> {
 
     pub(super) fn statistics(&self) -> Statistics {
         let Memory { raw: memory, functions } = self.memory;
-        let mut s = Statistics::default();
-        let [mut steps, mut evaluations, mut setups, mut error_fails] = [0; 4];
+        let mut s = self.step_statistics();
         let [mut iterations, mut nonlinear_fails] = [0; 2];
-        let [mut last_order, mut current_order] = [0; 2];
         let count = |get: unsafe extern "C" fn(*mut c_void, *mut i64) -> i32| {
             let mut count = 0;
             // SAFETY: the memory is alive, the result has a place. Functions which do not apply,
@@ -346,8 +344,29 @@ impl<S> Session<S> {
         };
         // SAFETY: the memory is alive, every result has a place.
         unsafe {
-            (functions.get_integrator_stats)(
-                memory,
+            (functions.get_nonlinear_stats)(memory, &raw mut iterations, &raw mut nonlinear_fails);
+            (functions.get_tolerance_scale)(memory, &raw mut s.tolerance_scale);
+        }
+        s.nonlinear_iterations = iterations as u64;
+        s.nonlinear_failures = nonlinear_fails as u64;
+        s.step_failures = count(functions.get_step_failures);
+        s.jacobian_evaluations = count(functions.get_jacobian_evaluations);
+        s.difference_quotient_evaluations = count(functions.get_quotient_evaluations);
+        s.root_evaluations = count(functions.get_root_evaluations);
+        s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
+        s
+    }
+
+    /// The statistics that one call tells, among them those of the last step: cheap enough to be
+    /// asked for at every step.
+    fn step_statistics(&self) -> Statistics {
+        let mut s = Statistics::default();
+        let [mut steps, mut evaluations, mut setups, mut error_fails] = [0; 4];
+        let [mut last_order, mut current_order] = [0; 2];
+        // SAFETY: the memory is alive, every result has a place.
+        unsafe {
+            (self.memory.functions.get_integrator_stats)(
+                self.memory.raw,
                 &raw mut steps,
                 &raw mut evaluations,
                 &raw mut setups,
@@ -359,8 +378,6 @@ impl<S> Session<S> {
                 &raw mut s.current_step,
                 &raw mut s.current_time,
             );
-            (functions.get_nonlinear_stats)(memory, &raw mut iterations, &raw mut nonlinear_fails);
-            (functions.get_tolerance_scale)(memory, &raw mut s.tolerance_scale);
         }
         if steps == 0 {
             s.current_time = self.t;
@@ -369,13 +386,6 @@ impl<S> Session<S> {
         s.evaluations = evaluations as u64;
         s.linear_setups = setups as u64;
         s.error_test_failures = error_fails as u64;
-        s.nonlinear_iterations = iterations as u64;
-        s.nonlinear_failures = nonlinear_fails as u64;
-        s.step_failures = count(functions.get_step_failures);
-        s.jacobian_evaluations = count(functions.get_jacobian_evaluations);
-        s.difference_quotient_evaluations = count(functions.get_quotient_evaluations);
-        s.root_evaluations = count(functions.get_root_evaluations);
-        s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
         s.last_order = last_order as u32;
         s.current_order = current_order as u32;
         s
@@ -399,9 +409,9 @@ impl<S> Session<S> {
 
     /// The error for a return code of the integrator.
     pub(super) fn stopped(&mut self, code: i32) -> Error {
-        // asked first: asking for counters that do not apply leaves messages, too
+        // first of all: asking the linear solver for its flag may leave a message, too
         let message = self.host.get_mut().troubles.message().to_owned();
-        let statistics = self.statistics();
+        let statistics = self.step_statistics();
         let is_dae = self.yp.is_some();
         let (otherwise, blame_retries) = match code {
             ffi::CV_TOO_MUCH_WORK => (Cause::TooManySteps, true),
