@@ -54,7 +54,7 @@ pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use scene::{Phase, Scene};
 pub use simulate::{Method, Sampling, Solver};
 pub use statics::{Equilibrium, Stability, Statics};
-pub use system::Energy;
+pub use system::{Energy, Spectrum};
 pub use trajectory::{Sample, Trajectory};
 
 /// Compiles the code blocks of the README.

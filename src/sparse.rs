@@ -213,6 +213,19 @@ impl BlockMatrix {
         Some(&mut self.values[entry * size..][..size])
     }
 
+    /// Number at the axes `[row, column]` of the block `entry` in the symmetric part of the matrix,
+    /// `transposed` being the entry of the same nodes the other way round.
+    pub(crate) fn symmetric(
+        &self,
+        entry: usize,
+        transposed: usize,
+        [row, column]: [usize; 2],
+    ) -> f64 {
+        let d = self.dimension;
+        let (at, across) = ((entry * d + row) * d + column, (transposed * d + column) * d + row);
+        0.5 * (self.values[at] + self.values[across])
+    }
+
     /// A x at one degree of freedom.
     pub(crate) fn row_product(&self, dof: usize, x: &[f64]) -> f64 {
         let d = self.dimension;

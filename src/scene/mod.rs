@@ -13,7 +13,7 @@ use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell}
 use crate::error::{Error, finite};
 use crate::force::{Chamber, Contact, Obstacle, Spring};
 use crate::model::Model;
-use crate::system::System;
+use crate::system::{Spectrum, System};
 
 /// A body, gravity, springs, chambers, obstacles, and what happens when.
 ///
@@ -204,6 +204,33 @@ impl Scene {
             tell(&rows, time, &mut u);
         }
         Ok(())
+    }
+
+    /// How fast the body can move in each phase, in its natural shape and at rest: what makes a scene
+    /// stiff, and which method is the right one for it.
+    ///
+    /// ```
+    /// let scene = pliant::samples::square_jump(4)?;
+    /// let free = scene.spectrum()?[2];
+    /// assert!(free.highest_frequency > 4e3 && free.slowest_period().unwrap() > 0.01);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn spectrum(&self) -> Result<Vec<Spectrum>, Error> {
+        self.validate()?;
+        let model = self.model()?;
+        let rest = vec![0.0; self.body.dofs()];
+        let mut time = 0.0;
+        let mut spectrum = |phase: &Phase| {
+            let start = Start { time, u: &rest };
+            let mut system = self.system(&model, phase, &start, 0.0)?;
+            let spectrum = system.spectrum(time, &rest, &rest);
+            time = phase.until;
+            Ok(spectrum)
+        };
+        self.phases.iter().map(&mut spectrum).collect()
     }
 
     /// Displacements and velocities at t = 0.

@@ -14,7 +14,7 @@ use crate::constraint::Prescribed;
 use crate::error::Error;
 use crate::force::{Force, NodalForces, Reservoir, dot};
 use crate::ode::Failure;
-use crate::sparse::BlockMatrix;
+use crate::sparse::{BlockMatrix, NodeMatrix};
 use crate::system::Energy;
 
 /// The system of a phase at its end, without velocities.
@@ -193,16 +193,8 @@ impl AtRest {
     pub(crate) fn factorize(&mut self, shift: f64) -> bool {
         self.factorizations += 1;
         let System { model, newton, .. } = &mut self.system;
-        let (inertia, d) = (&model.inertia, model.dimension);
-        let values = &newton.stiffness.get().values;
-        let entry = |source: Source| {
-            let [row, column] = source.axes;
-            let mass = if row == column { inertia.values[source.entry] } else { 0.0 };
-            let at = (source.entry * d + row) * d + column;
-            let transposed = (source.transposed * d + column) * d + row;
-            shift * mass + 0.5 * (values[at] + values[transposed])
-        };
-        newton.solver.factorize(entry).is_ok()
+        let (inertia, stiffness) = (&model.inertia, newton.stiffness.get());
+        newton.solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
     }
 
     /// Solves the saddle-point system above, K shifted as in the last factorization. `mu` gets the
@@ -251,6 +243,17 @@ impl AtRest {
         }
         lowest
     }
+}
+
+/// Entry of `shift` M + the symmetric part of K.
+pub(super) fn shifted(
+    inertia: &NodeMatrix,
+    stiffness: &BlockMatrix,
+    shift: f64,
+    Source { entry, transposed, axes }: Source,
+) -> f64 {
+    let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
+    shift * mass + stiffness.symmetric(entry, transposed, axes)
 }
 
 /// Bound on inverse iterations: enough for six digits even of close pairs of eigenvalues.

@@ -23,6 +23,7 @@ mod dae;
 mod newton;
 mod ode;
 mod reduced;
+mod spectrum;
 #[cfg(test)]
 mod tests;
 
@@ -33,6 +34,7 @@ pub(crate) use dae::IndexOne;
 use newton::Newton;
 pub(crate) use ode::ENERGIES;
 use reduced::{Coupling, Reduced};
+pub use spectrum::Spectrum;
 
 use crate::constraint::{Prescribed, Row};
 use crate::error::Error;

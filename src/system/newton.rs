@@ -14,7 +14,7 @@
 
 use std::sync::Arc;
 
-use super::reduced::{Coupling, Reduced};
+use super::reduced::{Coupling, Reduced, Source};
 use super::{System, nodal_multipliers};
 use crate::constraint::Row;
 use crate::model::Model;
@@ -135,14 +135,12 @@ impl System {
         self.newton.factorizations += 1;
         let Newton { solver, stiffness, damping, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
-        let (inertia, d) = (&self.model.inertia, self.model.dimension);
+        let inertia = &self.model.inertia;
         let factorized = solver.factorize(|source| {
-            let [row, column] = source.axes;
-            let mass = if row == column { inertia.values[source.entry] } else { 0.0 };
+            let Source { entry, transposed, axes } = source;
+            let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
             // the symmetric part: tangents of viscosity and contact need not be symmetric
-            let at = (source.entry * d + row) * d + column;
-            let transposed = (source.transposed * d + column) * d + row;
-            let part = |matrix: &BlockMatrix| 0.5 * (matrix.values[at] + matrix.values[transposed]);
+            let part = |matrix: &BlockMatrix| matrix.symmetric(entry, transposed, axes);
             mass + gamma * (part(damping) + gamma * part(stiffness))
         });
         factorized.map_err(|_| {

@@ -1,0 +1,211 @@
+//! How fast the motions of a phase are: the numbers that choose a method.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::System;
+use super::at_rest::shifted;
+use super::reduced::{Coupling, Reduced};
+use crate::force::dot;
+use crate::sparse::BlockMatrix;
+
+/// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
+/// the constraints allow. Contacts and springs count as far as they act in that state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spectrum {
+    /// Highest angular frequency (rad/s), of Kt x = omega^2 M x: an estimate from below, good to a
+    /// few per cent.
+    pub highest_frequency: f64,
+    /// Lowest angular frequency (rad/s) of a vibration, rigid motions left out; `None` if nothing
+    /// vibrates.
+    pub lowest_frequency: Option<f64>,
+    /// Largest rate of decay (1/s), of D x = rate M x: likewise an estimate from below.
+    pub damping_rate: f64,
+    /// Damping ratio of the lowest vibration, x.D x / (2 omega x.M x) of its shape x.
+    pub lowest_damping_ratio: f64,
+}
+
+impl Spectrum {
+    /// Period of the slowest vibration (s).
+    pub fn slowest_period(&self) -> Option<f64> {
+        self.lowest_frequency.map(|omega| std::f64::consts::TAU / omega)
+    }
+
+    /// Largest |eigenvalue| (1/s) of the equations of motion, those of the constraints' stabilization
+    /// left out: what bounds the step of an explicit method. The fastest decay and the fastest
+    /// vibration are taken to have the same shape, as they have in a body of one material.
+    pub fn stiffest_rate(&self) -> f64 {
+        let (omega, half) = (self.highest_frequency, 0.5 * self.damping_rate);
+        if half > omega { half + (half * half - omega * omega).sqrt() } else { omega }
+    }
+
+    /// Twice the damping ratio over the angular frequency of the lowest vibration (s): c/E where
+    /// viscosity alone damps. The damping ratio of other vibrations is about half of it times theirs.
+    pub fn retardation_time(&self) -> f64 {
+        self.lowest_frequency.map_or(0.0, |omega| 2.0 * self.lowest_damping_ratio / omega)
+    }
+}
+
+/// Vectors iterated at once for the lowest vibrations: more than there are rigid motions.
+const BLOCK: usize = 9;
+
+/// Bounds on iterations. Power iteration is within some per cent by then; subspace iteration ends
+/// when the lowest vibration is known to three digits.
+const POWER_ITERATIONS: usize = 40;
+const SUBSPACE_ITERATIONS: usize = 30;
+
+/// Parts of the highest eigenvalue: those below the first are of rigid motions; the second is the
+/// shift that makes Kt + shift M definite and leaves the solves their digits.
+const RIGID: f64 = 1e-12;
+const SHIFT: f64 = 1e-8;
+
+impl System {
+    /// The spectrum at (t, u, v).
+    pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
+        self.update_tangents(t, u, v, false);
+        let highest = self.highest(|system| system.tangents().0);
+        let damping_rate = self.highest(|system| system.tangents().1);
+        let mut spectrum = Spectrum {
+            highest_frequency: highest.sqrt(),
+            lowest_frequency: None,
+            damping_rate,
+            lowest_damping_ratio: 0.0,
+        };
+        if let Some((eigenvalue, x)) = self.lowest(highest) {
+            let omega = eigenvalue.sqrt();
+            spectrum.lowest_frequency = Some(omega);
+            spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
+        }
+        spectrum
+    }
+
+    /// Largest eigenvalue of X x = eigenvalue M x, X symmetric, by power iteration; 0 if nothing can
+    /// move.
+    fn highest(&mut self, matrix: impl Fn(&Self) -> &BlockMatrix) -> f64 {
+        let (dofs, count) = (self.dofs(), self.rows.len());
+        let (mut x, mut image) = (noise(dofs, 0), vec![0.0; dofs]);
+        let (nowhere, mut mu) = (vec![0.0; count], vec![0.0; count]);
+        let mut highest = 0.0;
+        for iteration in 0..=POWER_ITERATIONS {
+            // the constraints take their part out of the first guess as out of all others
+            image.fill(0.0);
+            match iteration {
+                0 => self.model.inertia.add_product(self.model.dimension, 1.0, &x, &mut image),
+                _ => matrix(self).add_product(1.0, &x, &mut image),
+            }
+            if iteration > 0 {
+                // x has length 1 in the norm of M
+                highest = f64::max(highest, dot(&x, &image));
+            }
+            self.inertia.solve(&self.rows, &image, &nowhere, &mut x, &mut mu);
+            let length = self.length(&x);
+            if length == 0.0 {
+                break;
+            }
+            x.iter_mut().for_each(|x| *x /= length);
+        }
+        highest
+    }
+
+    /// Lowest eigenvalue of Kt x = eigenvalue M x above those of rigid motions, and its x of length 1
+    /// in the norm of M, by subspace iteration.
+    fn lowest(&mut self, highest: f64) -> Option<(f64, Vec<f64>)> {
+        let (dofs, d) = (self.dofs(), self.model.dimension);
+        if highest == 0.0 {
+            return None;
+        }
+        let mut solver = Reduced::new(self.model.pattern(), d, &self.rows, Coupling::AllAxes);
+        let mut shift = SHIFT * highest;
+        // Kt may have become indefinite by compression
+        let (inertia, stiffness) = (&self.model.inertia, self.tangents().0);
+        while solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_err() {
+            shift *= 100.0;
+            if shift > highest {
+                return None;
+            }
+        }
+        let block = BLOCK.min(dofs);
+        let mut basis: Vec<Vec<f64>> = (0..block).map(|k| noise(dofs, k)).collect();
+        let (nowhere, mut mu) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
+        let mut found: Option<(f64, Vec<f64>)> = None;
+        for _ in 0..SUBSPACE_ITERATIONS {
+            for x in &mut basis {
+                let mut image = vec![0.0; dofs];
+                self.model.inertia.add_product(d, 1.0, x, &mut image);
+                solver.solve(&self.rows, &image, &nowhere, x, &mut mu);
+            }
+            self.orthonormalize(&mut basis);
+            let values = self.ritz(&mut basis);
+            let lowest = values.iter().position(|&value| value > RIGID * highest)?;
+            let before = found.replace((values[lowest], basis[lowest].clone()));
+            if before.is_some_and(|(value, _)| (value - values[lowest]).abs() < 1e-4 * value) {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Makes `basis` orthonormal by M, one vector after the other; what follows from the others is
+    /// dropped.
+    fn orthonormalize(&self, basis: &mut Vec<Vec<f64>>) {
+        let Self { model, .. } = self;
+        let mut done: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(basis.len());
+        for mut x in basis.drain(..) {
+            let before = self.length(&x);
+            // twice is enough: the first round leaves round-off of the part it takes out
+            for _ in 0..2 {
+                for (other, image) in &done {
+                    let part = dot(image, &x);
+                    x.iter_mut().zip(other).for_each(|(x, other)| *x -= part * other);
+                }
+            }
+            let length = self.length(&x);
+            if length > 1e-12 * before {
+                x.iter_mut().for_each(|x| *x /= length);
+                let mut image = vec![0.0; x.len()];
+                model.inertia.add_product(model.dimension, 1.0, &x, &mut image);
+                done.push((x, image));
+            }
+        }
+        basis.extend(done.into_iter().map(|(x, _)| x));
+    }
+
+    /// Turns a basis that is orthonormal by M into one that is orthogonal by Kt as well, and tells
+    /// its eigenvalues, ascending.
+    fn ritz(&self, basis: &mut Vec<Vec<f64>>) -> Vec<f64> {
+        let dofs = self.dofs();
+        let image = |x: &Vec<f64>| {
+            let mut image = vec![0.0; dofs];
+            self.tangents().0.add_product(1.0, x, &mut image);
+            image
+        };
+        let images: Vec<Vec<f64>> = basis.iter().map(image).collect();
+        let product = |i: usize, j: usize| dot(&basis[i], &images[j]);
+        let size = basis.len();
+        let small = DMatrix::from_fn(size, size, |i, j| 0.5 * (product(i, j) + product(j, i)));
+        let eigen = SymmetricEigen::new(small);
+        let mut order: Vec<usize> = (0..size).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        let combined = |&mode: &usize| {
+            let mut x = vec![0.0; dofs];
+            for (vector, &part) in basis.iter().zip(eigen.eigenvectors.column(mode).iter()) {
+                x.iter_mut().zip(vector).for_each(|(x, v)| *x += part * v);
+            }
+            x
+        };
+        let combined = order.iter().map(combined).collect();
+        *basis = combined;
+        order.iter().map(|&mode| eigen.eigenvalues[mode]).collect()
+    }
+
+    /// sqrt(x.M x)
+    fn length(&self, x: &[f64]) -> f64 {
+        self.model.inertia.quadratic_form(self.model.dimension, x).sqrt()
+    }
+}
+
+/// Numbers between -1 and 1 without a pattern, the same in all runs.
+fn noise(length: usize, seed: usize) -> Vec<f64> {
+    let number =
+        |i: usize| (12.9898 * (i + 1 + 7919 * seed) as f64).sin().mul_add(43.758, 0.3).sin();
+    (0..length).map(number).collect()
+}
