@@ -55,6 +55,26 @@ pub enum Error {
     #[error(transparent)]
     Statics(#[from] Box<NoEquilibrium>),
 
+    /// A scene file says something that cannot be used.
+    #[error("{}:{line}: {message}", path.display())]
+    SceneFile {
+        /// The file.
+        path: PathBuf,
+        /// Number of the line, from 1.
+        line: usize,
+        /// The key, what is wrong with it and how to mend it.
+        message: String,
+    },
+
+    /// A file could not be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
+
     /// A file could not be written.
     #[error("cannot write {}: {source}", path.display())]
     Output {

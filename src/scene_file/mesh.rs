@@ -1,0 +1,111 @@
+//! `mesh` of `[body]`: generators and files.
+
+use super::table::Table;
+use super::value::Value;
+use crate::error::Error;
+use crate::mesh::{Cells, Mesh, SolidCells};
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Bar,
+    Rectangle,
+    Ring,
+    HalfRing,
+    Cuboid,
+    Gmsh,
+}
+
+const KINDS: [(&str, Kind); 6] = [
+    ("bar", Kind::Bar),
+    ("rectangle", Kind::Rectangle),
+    ("ring", Kind::Ring),
+    ("half-ring", Kind::HalfRing),
+    ("cuboid", Kind::Cuboid),
+    ("gmsh", Kind::Gmsh),
+];
+
+const ALL_KEYS: &[&str] =
+    &["kind", "length", "size", "inner", "outer", "nodes", "cells", "file", "origin"];
+
+/// The mesh that `value` describes, in a space of `dimension` (default: its own).
+pub(super) fn mesh(value: &Value, dimension: Option<usize>) -> Result<Mesh, Error> {
+    let kind = value.table(ALL_KEYS)?.required("kind", "the kind of mesh", |v| v.word(&KINDS))?;
+    let table = value.table(match kind {
+        Kind::Bar => &["kind", "length", "nodes", "origin"],
+        Kind::Rectangle | Kind::Cuboid => &["kind", "size", "nodes", "cells", "origin"],
+        Kind::Ring | Kind::HalfRing => &["kind", "inner", "outer", "nodes", "cells", "origin"],
+        Kind::Gmsh => &["kind", "file", "origin"],
+    })?;
+    let mesh = generate(kind, &table).map_err(|error| table.blame(error))?;
+    let mesh = match dimension {
+        Some(dimension) => placed(mesh, dimension).map_err(|error| table.error(error))?,
+        None => mesh,
+    };
+    let origin = table
+        .optional("origin", "the place of the mesh (m)", |value| value.vector(mesh.dimension()))?;
+    match origin {
+        Some(origin) => mesh.translated(&origin).map_err(|error| table.blame(error)),
+        None => Ok(mesh),
+    }
+}
+
+fn generate(kind: Kind, table: &Table) -> Result<Mesh, Error> {
+    match kind {
+        Kind::Bar => Mesh::bar(
+            table.required("length", "the length (m)", Value::number)?,
+            table.required("nodes", "the number of nodes", Value::count)?,
+        ),
+        Kind::Rectangle => Mesh::rectangle(
+            table.required("size", "width and height (m)", Value::array)?,
+            table.required("nodes", "corner nodes along x and y", Value::counts)?,
+            table.required("cells", "how the grid is divided", cells)?,
+        ),
+        Kind::Ring | Kind::HalfRing => {
+            let inner = table.required("inner", "the inner radius (m)", Value::number)?;
+            let outer = table.required("outer", "the outer radius (m)", Value::number)?;
+            let meaning = "corner nodes around and along the radius";
+            let nodes = table.required("nodes", meaning, Value::counts)?;
+            let cells = table.required("cells", "how the grid is divided", cells)?;
+            match kind {
+                Kind::Ring => Mesh::ring(inner, outer, nodes, cells),
+                _ => Mesh::half_ring(inner, outer, nodes, cells),
+            }
+        }
+        Kind::Cuboid => Mesh::cuboid(
+            table.required("size", "lengths along x, y and z (m)", Value::array)?,
+            table.required("nodes", "corner nodes along x, y and z", Value::counts)?,
+            table.required("cells", "how the grid is divided", solid_cells)?,
+        ),
+        Kind::Gmsh => table.required("file", "the path of a Gmsh mesh", |value| {
+            let file = value.source.beside(value.string()?);
+            Err(value.error(format!("{}: Gmsh meshes cannot be read yet", file.display())))
+        }),
+    }
+}
+
+fn cells(value: &Value) -> Result<Cells, Error> {
+    value.word(&Cells::ALL.map(|cells| (cells.name(), cells)))
+}
+
+fn solid_cells(value: &Value) -> Result<SolidCells, Error> {
+    value.word(&[
+        ("tetrahedra", SolidCells::Tetrahedra),
+        ("hexahedra", SolidCells::Hexahedra),
+        ("tetrahedra10", SolidCells::Tetrahedra10),
+    ])
+}
+
+/// The mesh in a space of `dimension`: along the first axes, where it has fewer of its own.
+fn placed(mesh: Mesh, dimension: usize) -> Result<Mesh, Error> {
+    let at = |x: &[f64], i: usize| x.get(i).copied().unwrap_or(0.0);
+    match (mesh.dimension(), dimension) {
+        (own, dimension) if own == dimension => Ok(mesh),
+        (1, 2) => mesh.mapped(|x| [x[0], 0.0]),
+        (1 | 2, 3) => mesh.mapped(|x| [x[0], at(x, 1), 0.0]),
+        (own, dimension) => Err(Error::input(
+            "dimension",
+            dimension,
+            format!("this mesh has {own} dimensions: give that, or leave it out"),
+        )),
+    }
+}

@@ -1,0 +1,39 @@
+//! Unknown words, and the known ones that may have been meant.
+
+use strsim::damerau_levenshtein;
+
+/// What to say about a `word` that is none of the `known` ones.
+pub(super) fn unknown(word: &str, known: &[&str]) -> String {
+    let all = known.iter().map(|known| format!("\"{known}\"")).collect::<Vec<_>>().join(", ");
+    match nearest(word, known) {
+        Some(nearest) => format!("did you mean \"{nearest}\"? Known: {all}"),
+        None => format!("known: {all}"),
+    }
+}
+
+/// The known word with the fewest slips of the pen between it and `word`, if more of the longer one
+/// is right than wrong.
+fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    let slips = |known: &str| damerau_levenshtein(&word.to_lowercase(), &known.to_lowercase());
+    let best = known.iter().copied().min_by_key(|known| slips(known))?;
+    let length = word.chars().count().max(best.chars().count());
+    (2 * slips(best) < length).then_some(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slips_of_the_pen_are_understood() {
+        let known = ["density", "young", "poisson", "viscosity"];
+        assert_eq!(nearest("yuong", &known), Some("young"));
+        assert_eq!(nearest("Poison", &known), Some("poisson"));
+        assert_eq!(nearest("colour", &known), None);
+        assert_eq!(nearest("x", &[]), None);
+        assert_eq!(
+            unknown("viscousity", &known),
+            "did you mean \"viscosity\"? Known: \"density\", \"young\", \"poisson\", \"viscosity\""
+        );
+    }
+}

@@ -1,0 +1,56 @@
+//! Node selections, wherever `nodes` stands.
+
+use toml::de::DeValue;
+
+use super::value::Value;
+use crate::error::Error;
+use crate::mesh::{Mesh, Selection};
+
+/// The nodes that a value names: a set, a number or a list of them, or a box. All of them are nodes
+/// of `mesh`.
+pub(super) fn selection(value: &Value, mesh: &Mesh) -> Result<Selection, Error> {
+    let selection = match value.value {
+        DeValue::String(name) => {
+            if !mesh.sets().contains_key(&**name) {
+                let known: Vec<&str> = mesh.sets().keys().map(String::as_str).collect();
+                return Err(value.unknown(name, &known));
+            }
+            Selection::Set(name.to_string())
+        }
+        DeValue::Integer(_) => Selection::Numbers(vec![value.count()?]),
+        DeValue::Array(_) => {
+            let numbers = value.list()?;
+            Selection::Numbers(numbers.iter().map(Value::count).collect::<Result<_, Error>>()?)
+        }
+        DeValue::Table(_) => {
+            let table = value.table(&["box"])?;
+            let [min, max] = table.required("box", BOX, |value| corners(value, mesh))?;
+            Selection::Box { min, max }
+        }
+        _ => {
+            return Err(value.unexpected(
+                "the name of a node set, a list of node numbers, or { box = [[..], [..]] }",
+            ));
+        }
+    };
+    match mesh.select(&selection) {
+        Ok(_) => Ok(selection),
+        Err(error) => Err(value.error(error)),
+    }
+}
+
+pub(super) const BOX: &str = "the lower and the upper corner (m)";
+
+/// The two corners of a box.
+pub(super) fn corners(value: &Value, mesh: &Mesh) -> Result<[Vec<f64>; 2], Error> {
+    let corners = value.list()?;
+    let corners = corners.iter().map(Value::numbers).collect::<Result<Vec<_>, Error>>()?;
+    let dimension = mesh.dimension();
+    let fits = |corner: &Vec<f64>| {
+        corner.len() == dimension && !corner.iter().any(|number| number.is_nan())
+    };
+    match <[Vec<f64>; 2]>::try_from(corners) {
+        Ok(corners) if corners.iter().all(fits) => Ok(corners),
+        _ => Err(value.unexpected(format!("two corners of {dimension} number(s) each"))),
+    }
+}

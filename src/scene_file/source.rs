@@ -1,0 +1,35 @@
+//! The text of a scene file, and errors that point into it.
+
+use std::fmt::Display;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use crate::error::Error;
+
+/// The text of a scene file and where it comes from.
+pub(super) struct Source<'a> {
+    pub(super) path: &'a Path,
+    pub(super) text: &'a str,
+}
+
+impl Source<'_> {
+    /// An error about the part `at` of the text, the value of `key` (empty: of none).
+    pub(super) fn error(&self, at: &Range<usize>, key: &str, message: impl Display) -> Error {
+        let message = match key {
+            "" => message.to_string(),
+            key => format!("{key}: {message}"),
+        };
+        Error::SceneFile { path: self.path.into(), line: self.line(at.start), message }
+    }
+
+    /// The path of a `file` that is named relative to this one.
+    pub(super) fn beside(&self, file: &str) -> PathBuf {
+        self.path.parent().unwrap_or(Path::new("")).join(file)
+    }
+
+    /// Number of the line that holds a byte of the text, from 1.
+    pub(super) fn line(&self, byte: usize) -> usize {
+        let before = &self.text.as_bytes()[..byte.min(self.text.len())];
+        1 + before.iter().filter(|&&byte| byte == b'\n').count()
+    }
+}

@@ -1,0 +1,116 @@
+//! Tables of a scene file, and which of their keys an error is about.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use toml::de::DeTable;
+
+use super::nearest::unknown;
+use super::source::Source;
+use super::value::Value;
+use crate::error::Error;
+
+/// A table all of whose keys are known.
+pub(super) struct Table<'a> {
+    source: &'a Source<'a>,
+    /// Its key, with those of the tables around it; empty for the whole file.
+    key: String,
+    at: Range<usize>,
+    entries: &'a DeTable<'a>,
+}
+
+impl<'a> Table<'a> {
+    /// # Errors
+    /// A key that is none of the `known` ones.
+    pub(super) fn new(
+        source: &'a Source<'a>,
+        key: String,
+        at: Range<usize>,
+        entries: &'a DeTable<'a>,
+        known: &[&str],
+    ) -> Result<Self, Error> {
+        let table = Self { source, key, at, entries };
+        let strange = entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
+        match strange.min_by_key(|key| key.span().start) {
+            Some(key) => {
+                let message = format!("unknown key; {}", unknown(key.get_ref(), known));
+                Err(source.error(&key.span(), &table.full(key.get_ref()), message))
+            }
+            None => Ok(table),
+        }
+    }
+
+    /// The value of `key`, if it is there. `meaning` says what it is, with its unit.
+    pub(super) fn get(&self, key: &str, meaning: &'static str) -> Option<Value<'a>> {
+        let value = self.entries.get(key)?;
+        let (key, at) = (self.full(key), value.span());
+        Some(Value { source: self.source, key, meaning, at, value: value.get_ref() })
+    }
+
+    /// The value of `key` as `read` reads it, if it is there.
+    pub(super) fn optional<T>(
+        &self,
+        key: &str,
+        meaning: &'static str,
+        read: impl FnOnce(&Value<'a>) -> Result<T, Error>,
+    ) -> Result<Option<T>, Error> {
+        self.get(key, meaning).map(|value| read(&value)).transpose()
+    }
+
+    /// The value of `key` as `read` reads it.
+    pub(super) fn required<T>(
+        &self,
+        key: &str,
+        meaning: &'static str,
+        read: impl FnOnce(&Value<'a>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        self.optional(key, meaning, read)?.ok_or_else(|| self.missing(key, meaning))
+    }
+
+    /// `key` should be there.
+    pub(super) fn missing(&self, key: &str, meaning: impl Display) -> Error {
+        self.source.error(&self.at, &self.full(key), format!("missing: {meaning}"))
+    }
+
+    /// An error about the whole table.
+    pub(super) fn error(&self, message: impl Display) -> Error {
+        self.source.error(&self.at, &self.key, message)
+    }
+
+    fn full(&self, key: &str) -> String {
+        if self.key.is_empty() { key.into() } else { format!("{}.{key}", self.key) }
+    }
+
+    /// Puts an error about what was made of this table on the line of the key it is about, if that
+    /// can be told, or else on that of the table. One that has its line already is left alone.
+    pub(super) fn blame(&self, error: Error) -> Error {
+        let (input, value, mend) = match &error {
+            Error::Input { input, value, mend } => (input, value, mend),
+            Error::SceneFile { .. } => return error,
+            _ => return self.error(error),
+        };
+        if value == "(missing)" {
+            return self.missing(input, mend);
+        }
+        match self.culprit(input) {
+            None => self.error(&error),
+            Some(found) if last_word(&found.key) == last_word(input) => {
+                found.error(format!("{value} cannot be used: {mend}"))
+            }
+            Some(found) => found.error(&error),
+        }
+    }
+
+    /// The value, in this table or one inside of it, that the last possible word of `input` names.
+    fn culprit(&self, input: &str) -> Option<Value<'a>> {
+        let mut words = input.split(|c: char| !c.is_alphanumeric() && c != '_').rev();
+        let found = words.find_map(|word| self.get(word, ""))?;
+        let Some(entries) = found.entries() else { return Some(found) };
+        let Value { source, key, at, .. } = found.clone();
+        Table { source, key, at, entries }.culprit(input).or(Some(found))
+    }
+}
+
+fn last_word(name: &str) -> Option<&str> {
+    name.rsplit(['.', ' ']).next()
+}

@@ -1,0 +1,178 @@
+//! Values of a scene file, read with errors that say what was expected instead.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use toml::de::{DeTable, DeValue};
+
+use super::nearest::unknown;
+use super::source::Source;
+use super::table::Table;
+use crate::error::Error;
+
+/// A value with all that an error about it needs.
+#[derive(Clone)]
+pub(super) struct Value<'a> {
+    pub(super) source: &'a Source<'a>,
+    /// Its key, with those of the tables around it.
+    pub(super) key: String,
+    /// What it means, with its unit.
+    pub(super) meaning: &'static str,
+    pub(super) at: Range<usize>,
+    pub(super) value: &'a DeValue<'a>,
+}
+
+impl<'a> Value<'a> {
+    /// An error about this value.
+    pub(super) fn error(&self, message: impl Display) -> Error {
+        self.source.error(&self.at, &self.key, message)
+    }
+
+    /// This value is not of the `expected` kind.
+    pub(super) fn unexpected(&self, expected: impl Display) -> Error {
+        let found = match self.value {
+            DeValue::String(string) => format!("the string \"{string}\""),
+            DeValue::Integer(integer) => integer.to_string(),
+            DeValue::Float(float) => float.to_string(),
+            DeValue::Boolean(flag) => flag.to_string(),
+            DeValue::Datetime(date) => format!("the date {date}"),
+            DeValue::Array(list) => format!("a list of {}", list.len()),
+            DeValue::Table(_) => "a table".into(),
+        };
+        self.error(format!("expected {expected}, {}, not {found}", self.meaning))
+    }
+
+    /// A number, whole or not.
+    pub(super) fn number(&self) -> Result<f64, Error> {
+        let number = match self.value {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) => {
+                i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|i| i as f64)
+            }
+            _ => None,
+        };
+        number.ok_or_else(|| self.unexpected("a number"))
+    }
+
+    /// A whole number, 0 or above.
+    pub(super) fn count(&self) -> Result<usize, Error> {
+        let count = match self.value {
+            DeValue::Integer(integer) => {
+                usize::from_str_radix(integer.as_str(), integer.radix()).ok()
+            }
+            _ => None,
+        };
+        count.ok_or_else(|| self.unexpected("a whole number, 0 or above"))
+    }
+
+    pub(super) fn flag(&self) -> Result<bool, Error> {
+        match self.value {
+            DeValue::Boolean(flag) => Ok(*flag),
+            _ => Err(self.unexpected("true or false")),
+        }
+    }
+
+    pub(super) fn string(&self) -> Result<&'a str, Error> {
+        match self.value {
+            DeValue::String(string) => Ok(string),
+            _ => Err(self.unexpected("a string")),
+        }
+    }
+
+    /// One of the `known` words, with what it stands for.
+    pub(super) fn word<T: Clone>(&self, known: &[(&str, T)]) -> Result<T, Error> {
+        let words: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
+        let DeValue::String(string) = self.value else {
+            return Err(self.unexpected(format!("one of {}", quoted(&words))));
+        };
+        let found = known.iter().find(|(word, _)| word == string);
+        found.map(|(_, meant)| meant.clone()).ok_or_else(|| self.unknown(string, &words))
+    }
+
+    /// The `word` in this value is none of the `known` ones.
+    pub(super) fn unknown(&self, word: &str, known: &[&str]) -> Error {
+        self.error(format!("\"{word}\" is unknown; {}", unknown(word, known)))
+    }
+
+    /// The values of a list.
+    pub(super) fn list(&self) -> Result<Vec<Value<'a>>, Error> {
+        let DeValue::Array(list) = self.value else {
+            return Err(self.unexpected("a list"));
+        };
+        let item = |item: &'a toml::Spanned<DeValue<'a>>| Value {
+            at: item.span(),
+            value: item.get_ref(),
+            ..self.clone()
+        };
+        Ok(list.iter().map(item).collect())
+    }
+
+    /// A list, or one value alone.
+    pub(super) fn one_or_more(&self) -> Result<Vec<Value<'a>>, Error> {
+        match self.value {
+            DeValue::Array(_) => self.list(),
+            _ => Ok(vec![self.clone()]),
+        }
+    }
+
+    pub(super) fn numbers(&self) -> Result<Vec<f64>, Error> {
+        self.list()
+            .map_err(|_| self.unexpected("a list of numbers"))?
+            .iter()
+            .map(Self::number)
+            .collect()
+    }
+
+    /// A list of so many numbers.
+    pub(super) fn array<const N: usize>(&self) -> Result<[f64; N], Error> {
+        let numbers = self.numbers()?;
+        numbers.try_into().map_err(|_| self.unexpected(format!("{N} numbers")))
+    }
+
+    /// A list of so many whole numbers, 0 or above.
+    pub(super) fn counts<const N: usize>(&self) -> Result<[usize; N], Error> {
+        let expected = || self.unexpected(format!("{N} whole numbers"));
+        let list = self.list().map_err(|_| expected())?;
+        let counts = list.iter().map(Self::count).collect::<Result<Vec<_>, Error>>()?;
+        counts.try_into().map_err(|_| expected())
+    }
+
+    /// A list of finite numbers, one per dimension of space.
+    pub(super) fn vector(&self, dimension: usize) -> Result<Vec<f64>, Error> {
+        let numbers = self.numbers()?;
+        if numbers.len() != dimension {
+            return Err(self.unexpected(format!("{dimension} number(s), one per dimension")));
+        }
+        match numbers.iter().find(|number| !number.is_finite()) {
+            Some(number) => {
+                Err(self.error(format!("expected finite numbers, {}, not {number}", self.meaning)))
+            }
+            None => Ok(numbers),
+        }
+    }
+
+    /// A table with the keys `known`.
+    pub(super) fn table(&self, known: &[&str]) -> Result<Table<'a>, Error> {
+        let DeValue::Table(entries) = self.value else {
+            return Err(self.unexpected("a table"));
+        };
+        Table::new(self.source, self.key.clone(), self.at.clone(), entries, known)
+    }
+
+    /// Tables with the keys `known`: a list of them, or one alone.
+    pub(super) fn tables(&self, known: &[&str]) -> Result<Vec<Table<'a>>, Error> {
+        self.one_or_more()?.iter().map(|value| value.table(known)).collect()
+    }
+
+    /// The entries, if the value is a table.
+    pub(super) fn entries(&self) -> Option<&'a DeTable<'a>> {
+        match self.value {
+            DeValue::Table(entries) => Some(entries),
+            _ => None,
+        }
+    }
+}
+
+fn quoted(words: &[&str]) -> String {
+    words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
+}
