@@ -12,7 +12,8 @@ use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use pliant::output::Snapshots;
-use pliant::{Body, Cells, Error, Material, Mesh, Phase, Scene, Statics, Strain};
+use pliant::samples::static_square;
+use pliant::{Error, Statics, Strain};
 
 /// The static square: displacements of its top, the force of the probe, and a picture.
 #[derive(Parser)]
@@ -43,13 +44,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         Measure::Cauchy => Strain::Cauchy,
         Measure::Green => Strain::Green,
     };
-    let mesh = Mesh::rectangle([3.0, 3.0], [4, 4], Cells::Triangles)?;
-    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
-    let body = Body::new(mesh, rubber).thickness(1.0).strain(strain).build()?;
-    let press = Phase::until(1.0).named("pressed").hold("bottom");
-    let scene = Scene::new(body).phase(press.move_nodes([14, 15], [0.0, -0.3]));
-
-    let equilibrium = scene.equilibrium(&Statics::default())?;
+    let equilibrium = static_square(strain)?.equilibrium(&Statics::default())?;
     println!("Static square, {strain:?} strain: {equilibrium}");
     println!("{:>6} {:>12} {:>12}", "node", "u (m)", "v (m)");
     for node in 13..=16 {

@@ -4,8 +4,12 @@
 //! general linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0
 //! (Hirai (4.1.3)); the equations are those of `system`.
 
+mod spline;
+
 use std::fmt;
 use std::sync::Arc;
+
+pub(crate) use spline::Spline;
 
 use crate::error::Error;
 use crate::mesh::{Mesh, Selection};
@@ -76,6 +80,8 @@ pub(crate) enum Motion {
     Velocity(Vec<f64>),
     /// Follow a path (all axes alike).
     Path(Path),
+    /// Follow a smooth path through points (all axes alike).
+    Spline(Arc<Spline>),
 }
 
 impl fmt::Debug for Motion {
@@ -84,6 +90,17 @@ impl fmt::Debug for Motion {
             Self::Hold => f.write_str("Hold"),
             Self::Velocity(velocity) => f.debug_tuple("Velocity").field(velocity).finish(),
             Self::Path(_) => f.write_str("Path"),
+            Self::Spline(spline) => spline.fmt(f),
+        }
+    }
+}
+
+impl Motion {
+    /// Times (s) at which the motion changes its law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        match self {
+            Self::Spline(spline) => spline.times(),
+            Self::Hold | Self::Velocity(_) | Self::Path(_) => &[],
         }
     }
 }
@@ -100,6 +117,7 @@ pub(crate) struct Row {
 enum RowMotion {
     Linear { start: f64, since: f64, velocity: f64 },
     Path(Path),
+    Spline(Arc<Spline>),
 }
 
 impl Row {
@@ -112,6 +130,7 @@ impl Row {
                 acceleration: 0.0,
             },
             RowMotion::Path(path) => path(t),
+            RowMotion::Spline(spline) => spline.at(t),
         }
     }
 
@@ -160,7 +179,7 @@ pub(crate) fn tell(rows: &[Row], t: f64, u: &mut [f64]) {
 ///
 /// # Errors
 /// Unknown nodes, axes that the body does not have, a velocity of the wrong length, numbers that
-/// are not finite, the same component constrained twice.
+/// are not finite, a path through points out of order, the same component constrained twice.
 pub(crate) fn rows(
     constraints: &[Constraint],
     mesh: &Mesh,
@@ -169,26 +188,29 @@ pub(crate) fn rows(
 ) -> Result<Vec<Row>, Error> {
     let dimension = mesh.dimension();
     let mut rows: Vec<Row> = Vec::new();
-    for constraint in constraints {
-        match &constraint.what {
+    for Constraint { what, how } in constraints {
+        if let Motion::Spline(spline) = how {
+            spline.validate()?;
+        }
+        match what {
             Constrained::Nodes(selection, axes) => {
                 let axes: &[Axis] = match axes {
                     Axes::All => Axis::all(dimension),
                     Axes::These(axes) => axes,
                 };
                 check_axes(axes, dimension)?;
-                check_velocity(&constraint.how, axes.len())?;
+                check_velocity(how, axes.len())?;
                 for node in mesh.select(selection)? {
                     for (k, axis) in axes.iter().enumerate() {
                         let terms = vec![(node * dimension + axis.index(), 1.0)];
-                        rows.push(row(terms, &constraint.how, k, start));
+                        rows.push(row(terms, how, k, start));
                     }
                 }
             }
             Constrained::Row(terms) => {
-                check_velocity(&constraint.how, 1)?;
+                check_velocity(how, 1)?;
                 let terms = general_terms(terms, mesh)?;
-                rows.push(row(terms, &constraint.how, 0, start));
+                rows.push(row(terms, how, 0, start));
             }
         }
     }
@@ -209,6 +231,7 @@ fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &Star
         Motion::Hold => linear(0.0),
         Motion::Velocity(velocity) => linear(velocity[component]),
         Motion::Path(path) => RowMotion::Path(path.clone()),
+        Motion::Spline(spline) => RowMotion::Spline(spline.clone()),
     };
     Row { terms, motion }
 }

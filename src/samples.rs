@@ -4,12 +4,14 @@
 
 mod actuated;
 mod scenes;
+mod statics;
 
 pub use actuated::{MEMBRANE_MATERIAL, membrane, membrane_arch, report_8, ring_jump, ring_springs};
 pub use scenes::{
     BEAM_MATERIAL, BENT_BEAM_MATERIAL, BeamJump, RingRoll, SQUARE_MATERIAL, SquareJump, beam_bend,
     beam_jump, pushed_nodes, square_jump, square_press,
 };
+pub use statics::{beam_static, static_square};
 
 use faer::MatMut;
 

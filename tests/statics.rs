@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use pliant::mesh::CellKind;
 use pliant::{
     Axis, Body, Cells, Equilibrium, Material, Mesh, Phase, Prescribed, Scene, Stability, Statics,
-    Strain,
+    Strain, samples,
 };
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
@@ -49,10 +49,7 @@ fn static_square() {
         -254488.4962155085,
         -342841.2060022152,
     ];
-    let mesh = Mesh::rectangle([3.0, 3.0], [4, 4], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, RUBBER).thickness(1.0).build().unwrap();
-    let press = Phase::until(1.0).hold("bottom").move_nodes([14, 15], [0.0, -0.3]);
-    let equilibrium = solve(&Scene::new(body).phase(press));
+    let equilibrium = solve(&samples::static_square(Strain::Cauchy).unwrap());
     let u = equilibrium.displacements();
     assert!(u[..8].iter().all(|&u| u == 0.0), "the bottom is held");
     for (i, (u, expected)) in u[8..].iter().zip(expected).enumerate() {

@@ -25,7 +25,7 @@ impl CellSelection {
     }
 
     /// The cells, counted from 0.
-    fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, Error> {
+    pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, Error> {
         let cells = match self {
             Self::Numbers(numbers) => {
                 let count = mesh.cell_count();

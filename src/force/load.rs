@@ -1,6 +1,6 @@
 //! Loads: given forces on nodes.
 
-use super::signal::{VectorFunction, finite_at};
+use super::signal::{VectorSignal, finite_at};
 use super::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
 
@@ -37,12 +37,14 @@ impl Force for Load {
     }
 }
 
-/// The same force, a function of time, on each of some nodes.
+/// The same force, which changes with time, on each of some nodes.
 pub(crate) struct VaryingLoad {
     /// Nodes, counted from 0.
     pub(crate) nodes: Vec<usize>,
     /// Force (N) on each of them.
-    pub(crate) force: VectorFunction,
+    pub(crate) force: VectorSignal,
+    /// Components of the force.
+    pub(crate) dimension: usize,
 }
 
 impl Force for VaryingLoad {
@@ -53,15 +55,14 @@ impl Force for VaryingLoad {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let dimension = self.force.dimension;
         let mut buffer = [0.0; 3];
-        let force = &mut buffer[..dimension];
+        let force = &mut buffer[..self.dimension];
         self.force.at(t, force);
         for (i, &component) in force.iter().enumerate() {
             let what = format_args!("component {} of a load", i + 1);
             finite_at(t, what, component)?;
             for node in &self.nodes {
-                forces.applied[node * dimension + i] += component;
+                forces.applied[node * self.dimension + i] += component;
             }
         }
         Ok(())

@@ -19,7 +19,7 @@ pub(crate) use load::{Load, VaryingLoad};
 pub use obstacle::Obstacle;
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
-pub(crate) use signal::{Signal, VectorFunction};
+pub(crate) use signal::{Signal, Table, VectorSignal};
 pub use spring::Spring;
 
 use crate::ode::Failure;

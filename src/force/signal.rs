@@ -6,11 +6,75 @@ use std::sync::Arc;
 use crate::error::{Error, finite};
 use crate::ode::Failure;
 
-/// A number, constant or a function of time (s).
+/// Vectors at given times (s). In between they change along straight lines; before the first time
+/// and after the last they are constant.
+#[derive(Debug, Clone)]
+pub(crate) struct Table {
+    times: Vec<f64>,
+    /// The components at each time.
+    values: Vec<Vec<f64>>,
+}
+
+impl Table {
+    pub(crate) fn new(times: Vec<f64>, values: Vec<Vec<f64>>) -> Self {
+        Self { times, values }
+    }
+
+    /// A table of numbers.
+    pub(crate) fn of_numbers(times: Vec<f64>, values: Vec<f64>) -> Self {
+        Self { times, values: values.into_iter().map(|value| vec![value]).collect() }
+    }
+
+    /// One component at time `t`.
+    fn at(&self, t: f64, component: usize) -> f64 {
+        let value = |k: usize| self.values[k][component];
+        match self.times.partition_point(|&time| time <= t) {
+            0 => value(0),
+            next if next == self.times.len() => value(next - 1),
+            next => {
+                let (from, to) = (self.times[next - 1], self.times[next]);
+                let share = (t - from) / (to - from);
+                value(next - 1) + share * (value(next) - value(next - 1))
+            }
+        }
+    }
+
+    /// Checks that there are vectors of `dimension` at ascending times.
+    fn validate(&self, input: &str, dimension: usize) -> Result<(), Error> {
+        let Self { times, values } = self;
+        let input_times = format!("times of {input}");
+        finite(&input_times, times)?;
+        if times.is_empty() || values.len() != times.len() {
+            let mend = format!(
+                "a table has one value at each time, and one time at least; there are {} values",
+                values.len()
+            );
+            return Err(Error::input(input_times, format!("{times:?}"), mend));
+        }
+        if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let mend = format!(
+                "times must ascend: it must lie after {} s (for a jump, begin another phase)",
+                pair[0]
+            );
+            return Err(Error::input(input_times, format!("{} s", pair[1]), mend));
+        }
+        for value in values {
+            if value.len() != dimension {
+                let mend = format!("it needs {dimension} component(s)");
+                return Err(Error::input(input, format!("{value:?}"), mend));
+            }
+            finite(input, value)?;
+        }
+        Ok(())
+    }
+}
+
+/// A number, constant or changing with time (s).
 #[derive(Clone)]
 pub(crate) enum Signal {
     Constant(f64),
     Function(Arc<dyn Fn(f64) -> f64 + Send + Sync>),
+    Table(Table),
 }
 
 impl Signal {
@@ -22,6 +86,15 @@ impl Signal {
         match self {
             Self::Constant(value) => *value,
             Self::Function(function) => function(t),
+            Self::Table(table) => table.at(t, 0),
+        }
+    }
+
+    /// Times (s) at which the signal changes its law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        match self {
+            Self::Constant(_) | Self::Function(_) => &[],
+            Self::Table(table) => &table.times,
         }
     }
 
@@ -30,6 +103,7 @@ impl Signal {
         match self {
             Self::Constant(value) => finite(input, &[*value]),
             Self::Function(_) => Ok(()),
+            Self::Table(table) => table.validate(input, 1),
         }
     }
 }
@@ -39,6 +113,7 @@ impl fmt::Debug for Signal {
         match self {
             Self::Constant(value) => write!(f, "{value}"),
             Self::Function(_) => f.write_str("function of time"),
+            Self::Table(table) => table.fmt(f),
         }
     }
 }
@@ -61,27 +136,87 @@ pub(super) fn finite_at(t: f64, what: fmt::Arguments<'_>, value: f64) -> Result<
 /// Writes the vector at a time (s).
 type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
 
-/// A vector as a function of time (s), written to a slice with one component per dimension.
+/// A vector that changes with time (s), with one component per dimension.
 #[derive(Clone)]
-pub(crate) struct VectorFunction {
-    /// Components that it writes.
-    pub(crate) dimension: usize,
-    function: Arc<WriteVector>,
+pub(crate) enum VectorSignal {
+    Function { dimension: usize, write: Arc<WriteVector> },
+    Table(Table),
 }
 
-impl VectorFunction {
-    pub(crate) fn new<const D: usize>(f: impl Fn(f64) -> [f64; D] + Send + Sync + 'static) -> Self {
-        let function = move |t: f64, vector: &mut [f64]| vector.copy_from_slice(&f(t));
-        Self { dimension: D, function: Arc::new(function) }
+impl VectorSignal {
+    pub(crate) fn function<const D: usize>(
+        f: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
+    ) -> Self {
+        let write = move |t: f64, vector: &mut [f64]| vector.copy_from_slice(&f(t));
+        Self::Function { dimension: D, write: Arc::new(write) }
     }
 
+    /// Writes it at time `t`.
     pub(super) fn at(&self, t: f64, vector: &mut [f64]) {
-        (self.function)(t, vector);
+        match self {
+            Self::Function { write, .. } => write(t, vector),
+            Self::Table(table) => {
+                vector.iter_mut().enumerate().for_each(|(i, x)| *x = table.at(t, i));
+            }
+        }
+    }
+
+    /// Times (s) at which the vector changes its law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        match self {
+            Self::Function { .. } => &[],
+            Self::Table(table) => &table.times,
+        }
+    }
+
+    /// Checks what can be known beforehand.
+    pub(crate) fn validate(&self, input: &str, needed: usize) -> Result<(), Error> {
+        match self {
+            Self::Function { dimension, .. } if *dimension != needed => Err(Error::input(
+                format!("number of components of {input}"),
+                dimension,
+                format!("it must give {needed} component(s) (N)"),
+            )),
+            Self::Function { .. } => Ok(()),
+            Self::Table(table) => table.validate(input, needed),
+        }
     }
 }
 
-impl fmt::Debug for VectorFunction {
+impl fmt::Debug for VectorSignal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("function of time")
+        match self {
+            Self::Function { .. } => f.write_str("function of time"),
+            Self::Table(table) => table.fmt(f),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_run_along_straight_lines() {
+        let table =
+            Table::new(vec![0.5, 1.0, 3.0], vec![vec![2.0, 0.0], vec![-1.0, 4.0], vec![0.0, 5.0]]);
+        table.validate("f", 2).unwrap();
+        let expected = |t: f64| match t {
+            t if t <= 0.5 => [2.0, 0.0],
+            t if t <= 1.0 => [2.0 - 6.0 * (t - 0.5), 8.0 * (t - 0.5)],
+            t if t <= 3.0 => [-1.0 + 0.5 * (t - 1.0), 4.0 + 0.5 * (t - 1.0)],
+            _ => [0.0, 5.0],
+        };
+        let signal = VectorSignal::Table(table);
+        for k in 0..=35 {
+            let (t, mut found) = (0.1 * f64::from(k), [f64::NAN; 2]);
+            signal.at(t, &mut found);
+            for (found, expected) in found.into_iter().zip(expected(t)) {
+                assert!((found - expected).abs() < 1e-14, "{t}: {found} {expected}");
+            }
+        }
+        assert_eq!(signal.breaks(), [0.5, 1.0, 3.0]);
+        let ramp = Signal::Table(Table::of_numbers(vec![0.0, 0.1], vec![0.0, -1.0]));
+        assert_eq!([-1.0, 0.0, 0.025, 0.1, 2.0].map(|t| ramp.at(t)), [0.0, 0.0, -0.25, -1.0, -1.0]);
     }
 }

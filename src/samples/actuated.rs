@@ -86,8 +86,9 @@ pub fn ring_springs(force: f64) -> Result<Scene, Error> {
 /// # Errors
 /// None; the signature is that of its kind.
 pub fn ring_jump() -> Result<Scene, Error> {
+    let crouch = Phase::until(0.1).named("crouch");
     Ok(spring_ring()?
-        .phase(Phase::until(0.1).named("crouch").actuate_with(["A1", "A5"], |t| -10.0 * t))
+        .phase(crouch.actuate_table(["A1", "A5"], [0.0, 0.1], [0.0, -1.0]))
         .phase(Phase::until(1.0).named("jump")))
 }
 

@@ -39,13 +39,10 @@ impl Scene {
             let (force, share) = match load {
                 PhaseLoad::Each(force) => (force, 1.0),
                 PhaseLoad::Total(force) => (force, 1.0 / nodes.len() as f64),
-                PhaseLoad::Function(function) => {
-                    if function.dimension != dimension {
-                        let mend = format!("it must give {dimension} component(s) (N)");
-                        let input = "number of components of a load";
-                        return Err(Error::input(input, function.dimension, mend));
-                    }
-                    forces.push(Arc::new(VaryingLoad { nodes, force: function.clone() }));
+                PhaseLoad::Varying(force) => {
+                    force.validate("a load", dimension)?;
+                    let force = force.clone();
+                    forces.push(Arc::new(VaryingLoad { nodes, force, dimension }));
                     continue;
                 }
             };

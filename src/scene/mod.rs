@@ -120,7 +120,7 @@ impl Scene {
         for Constraint { what, how } in &phase.constraints {
             let role = match how {
                 Motion::Hold => Role::Held,
-                Motion::Velocity(_) | Motion::Path(_) => Role::Moved,
+                Motion::Velocity(_) | Motion::Path(_) | Motion::Spline(_) => Role::Moved,
             };
             let selected = match what {
                 Constrained::Nodes(selection, _) => self.body.mesh().select(selection)?,
@@ -149,6 +149,17 @@ impl Scene {
     /// The phases, in order.
     pub fn phases(&self) -> &[Phase] {
         &self.phases
+    }
+
+    /// Times (s) within a phase, counted from 0, at which what it prescribes changes its law: those
+    /// of its paths and tables.
+    pub fn breaks(&self, phase: usize) -> Vec<f64> {
+        let start = phase.checked_sub(1).and_then(|before| self.phases.get(before));
+        let start = start.map_or(0.0, |before| before.until);
+        let Some(phase) = self.phases.get(phase) else { return Vec::new() };
+        let mut breaks = phase.breaks();
+        breaks.retain(|&time| start < time && time < phase.until);
+        breaks
     }
 
     /// End of the last phase (s); 0 without phases.

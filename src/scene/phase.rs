@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed};
+use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
 use crate::error::Error;
-use crate::force::{Obstacle, Signal, VectorFunction};
+use crate::force::{Obstacle, Signal, Table, VectorSignal};
 use crate::mesh::Selection;
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
@@ -31,7 +31,7 @@ pub(super) enum Load {
     /// On all of them together.
     Total(Vec<f64>),
     /// On each of them, changing with time.
-    Function(VectorFunction),
+    Varying(VectorSignal),
 }
 
 #[derive(Debug, Clone)]
@@ -97,6 +97,22 @@ impl Phase {
         self.constrain(nodes, Axes::These(vec![axis]), Motion::Path(Arc::new(path)))
     }
 
+    /// One component of nodes that follows a smooth path through points: at the `times` (s,
+    /// ascending, two at least) it has the `displacements` (m, from the natural position).
+    ///
+    /// The path is a cubic spline, twice continuously differentiable, that starts and ends with
+    /// velocity 0; before the first time and after the last the component rests.
+    pub fn path(
+        self,
+        nodes: impl Into<Selection>,
+        axis: Axis,
+        times: impl Into<Vec<f64>>,
+        displacements: impl Into<Vec<f64>>,
+    ) -> Self {
+        let spline = Spline::new(times.into(), displacements.into());
+        self.constrain(nodes, Axes::These(vec![axis]), Motion::Spline(Arc::new(spline)))
+    }
+
     /// A linear combination of displacements that keeps the value it has when the phase begins:
     /// `terms` are (node number from 1, axis, coefficient).
     pub fn hold_combination(mut self, terms: impl IntoIterator<Item = (usize, Axis, f64)>) -> Self {
@@ -124,7 +140,21 @@ impl Phase {
         nodes: impl Into<Selection>,
         force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
     ) -> Self {
-        self.loads.push((nodes.into(), Load::Function(VectorFunction::new(force))));
+        self.loads.push((nodes.into(), Load::Varying(VectorSignal::function(force))));
+        self
+    }
+
+    /// A force (N) on each of the nodes that has the values `forces`, one component per dimension, at
+    /// the `times` (s, ascending). In between it changes along straight lines; before and after it is
+    /// constant.
+    pub fn load_table(
+        mut self,
+        nodes: impl Into<Selection>,
+        times: impl Into<Vec<f64>>,
+        forces: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Self {
+        let table = Table::new(times.into(), forces.into_iter().map(Into::into).collect());
+        self.loads.push((nodes.into(), Load::Varying(VectorSignal::Table(table))));
         self
     }
 
@@ -147,6 +177,18 @@ impl Phase {
         self.actuated(springs, Signal::function(force))
     }
 
+    /// As [`actuate`](Self::actuate), with a force that has the values `forces` (N) at the `times` (s,
+    /// ascending). In between it changes along straight lines; before and after it is constant.
+    pub fn actuate_table<N: Into<String>>(
+        self,
+        springs: impl IntoIterator<Item = N>,
+        times: impl Into<Vec<f64>>,
+        forces: impl Into<Vec<f64>>,
+    ) -> Self {
+        let table = Table::of_numbers(times.into(), forces.into());
+        self.actuated(springs, Signal::Table(table))
+    }
+
     /// A constant pressure (Pa) in a chamber; a positive one enlarges it. Pressures in the same
     /// chamber add up.
     pub fn pressure(self, chamber: impl Into<String>, pressure: f64) -> Self {
@@ -160,6 +202,17 @@ impl Phase {
         pressure: impl Fn(f64) -> f64 + Send + Sync + 'static,
     ) -> Self {
         self.pressurized(chamber, Signal::function(pressure))
+    }
+
+    /// As [`pressure`](Self::pressure), with a pressure that has the `values` (Pa) at the `times` (s,
+    /// ascending). In between it changes along straight lines; before and after it is constant.
+    pub fn pressure_table(
+        self,
+        chamber: impl Into<String>,
+        times: impl Into<Vec<f64>>,
+        values: impl Into<Vec<f64>>,
+    ) -> Self {
+        self.pressurized(chamber, Signal::Table(Table::of_numbers(times.into(), values.into())))
     }
 
     /// No obstacle acts in this phase.
@@ -189,6 +242,23 @@ impl Phase {
     /// End of the phase (s).
     pub fn end(&self) -> f64 {
         self.until
+    }
+
+    /// Times (s) at which what the phase prescribes changes its law, ascending; not only those
+    /// within it.
+    pub(super) fn breaks(&self) -> Vec<f64> {
+        let paths = self.constraints.iter().map(|constraint| constraint.how.breaks());
+        let loads = self.loads.iter().map(|(_, load)| match load {
+            Load::Each(_) | Load::Total(_) => &[],
+            Load::Varying(force) => force.breaks(),
+        });
+        let actuations = self.actuations.iter().map(|(_, force)| force.breaks());
+        let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
+        let all = paths.chain(loads).chain(actuations).chain(pressures);
+        let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
     }
 
     pub(super) fn or_named(self, name: String) -> Self {

@@ -13,8 +13,8 @@ const BODY: &[&str] =
 /// The body that `value`, the table `[body]`, describes, with the point masses of `points`.
 pub(super) fn body(
     value: &Value,
-    dimension: Option<usize>,
-    points: Option<Value>,
+    dimension: Option<&Value>,
+    points: Option<&Value>,
 ) -> Result<Body, Error> {
     let table = value.table(BODY)?;
     let mut mesh = table
@@ -44,7 +44,7 @@ pub(super) fn body(
         body = add_regions(body, &regions, &mesh, material)?;
     }
     if let Some(points) = points {
-        body = add_points(body, &points, &mut mesh)?;
+        body = add_points(body, points, &mut mesh)?;
     }
     body.build().map_err(|error| table.blame(error))
 }
@@ -79,8 +79,12 @@ fn add_regions(
 ) -> Result<BodyBuilder, Error> {
     for table in regions.tables(&["name", "box", "group", "material"])? {
         table.optional("name", "the name of the region", Value::string)?;
-        let [min, max] = table.required("box", BOX, |value| corners(value, mesh))?;
-        let cells = CellSelection::Box { min, max };
+        let cells = table.required("box", BOX, |value| {
+            let [min, max] = corners(value, mesh)?;
+            let cells = CellSelection::Box { min, max };
+            cells.cells(mesh).map_err(|error| value.error(error))?;
+            Ok(cells)
+        })?;
         let meaning = "the keys of the material that differ";
         let material = table.required("material", meaning, |value| material(value, Some(base)))?;
         body = body.region(cells, material);

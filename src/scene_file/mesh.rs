@@ -28,7 +28,7 @@ const ALL_KEYS: &[&str] =
     &["kind", "length", "size", "inner", "outer", "nodes", "cells", "file", "origin"];
 
 /// The mesh that `value` describes, in a space of `dimension` (default: its own).
-pub(super) fn mesh(value: &Value, dimension: Option<usize>) -> Result<Mesh, Error> {
+pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Error> {
     let kind = value.table(ALL_KEYS)?.required("kind", "the kind of mesh", |v| v.word(&KINDS))?;
     let table = value.table(match kind {
         Kind::Bar => &["kind", "length", "nodes", "origin"],
@@ -38,7 +38,7 @@ pub(super) fn mesh(value: &Value, dimension: Option<usize>) -> Result<Mesh, Erro
     })?;
     let mesh = generate(kind, &table).map_err(|error| table.blame(error))?;
     let mesh = match dimension {
-        Some(dimension) => placed(mesh, dimension).map_err(|error| table.error(error))?,
+        Some(dimension) => placed(mesh, dimension)?,
         None => mesh,
     };
     let origin = table
@@ -95,17 +95,16 @@ fn solid_cells(value: &Value) -> Result<SolidCells, Error> {
     ])
 }
 
-/// The mesh in a space of `dimension`: along the first axes, where it has fewer of its own.
-fn placed(mesh: Mesh, dimension: usize) -> Result<Mesh, Error> {
-    let at = |x: &[f64], i: usize| x.get(i).copied().unwrap_or(0.0);
-    match (mesh.dimension(), dimension) {
-        (own, dimension) if own == dimension => Ok(mesh),
+/// The mesh in a space of `dimension`: along its first axes, where the mesh has fewer of its own.
+fn placed(mesh: Mesh, dimension: &Value) -> Result<Mesh, Error> {
+    match (mesh.dimension(), dimension.count()?) {
+        (own, wanted) if own == wanted => Ok(mesh),
         (1, 2) => mesh.mapped(|x| [x[0], 0.0]),
-        (1 | 2, 3) => mesh.mapped(|x| [x[0], at(x, 1), 0.0]),
-        (own, dimension) => Err(Error::input(
-            "dimension",
-            dimension,
-            format!("this mesh has {own} dimensions: give that, or leave it out"),
-        )),
+        (1, 3) => mesh.mapped(|x| [x[0], 0.0, 0.0]),
+        (2, 3) => mesh.mapped(|x| [x[0], x[1], 0.0]),
+        (own, _) => {
+            let expected = if own == 3 { "3".into() } else { format!("a number from {own} to 3") };
+            Err(dimension.unexpected(format!("{expected} for this mesh")))
+        }
     }
 }

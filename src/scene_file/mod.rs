@@ -136,57 +136,34 @@ impl SceneFile {
 
 fn convert(top: &Table) -> Result<SceneFile, Error> {
     let title = top.optional("title", "the title", Value::string)?.unwrap_or_default();
-    let dimension = top.optional("dimension", "the dimension of space", |value| {
-        value.count().and_then(|dimension| match dimension {
-            1..=3 => Ok(dimension),
-            _ => Err(value.unexpected("1, 2 or 3")),
-        })
+    let dimension = top.get("dimension", "the dimension of space");
+    let points = top.get("point", "point masses, [[point]]");
+    let body = top.required("body", "the table [body]", |value| {
+        body::body(value, dimension.as_ref(), points.as_ref())
     })?;
-    let points = top.get("point", "point masses");
-    let body =
-        top.required("body", "the table [body]", |value| body::body(value, dimension, points))?;
     let mut scene = Scene::new(body);
-    let gravity = top.optional("gravity", "the acceleration of gravity (m/s^2)", |value| {
-        value.vector(scene.body().dimension())
-    })?;
-    if let Some(gravity) = gravity {
+    if let Some(gravity) = top.get("gravity", "the acceleration of gravity (m/s^2)") {
+        let gravity = gravity.vector(scene.body().dimension())?;
         scene = scene.gravity(gravity);
     }
-    if let Some(springs) = top.get("spring", "springs") {
-        for table in springs.tables(&["name", "ends", "stiffness", "length", "damping"])? {
-            scene = {
-                let spring = surroundings::spring(&table, scene.body())?;
-                scene.spring(spring)
-            };
+    let parts: [(&str, &str, fn(Scene, &Value) -> Result<Scene, Error>); 4] = [
+        ("spring", "springs, [[spring]]", surroundings::add_spring),
+        ("chamber", "chambers, [[chamber]]", surroundings::add_chamber),
+        ("obstacle", "obstacles, [[obstacle]]", surroundings::add_obstacle),
+        ("phase", "phases, [[phase]]", phase::add_phase),
+    ];
+    for (key, meaning, add) in parts {
+        if let Some(values) = top.get(key, meaning) {
+            scene = values.one_or_more()?.iter().try_fold(scene, add)?;
         }
     }
-    if let Some(chambers) = top.get("chamber", "chambers") {
-        for table in chambers.tables(&["name", "nodes", "thickness"])? {
-            scene = {
-                let chamber = surroundings::chamber(&table, scene.body())?;
-                scene.chamber(chamber)
-            };
-        }
+    if scene.phases().is_empty() {
+        return Err(top.missing("phase", "a scene needs one phase at least, [[phase]]"));
     }
-    if let Some(obstacles) = top.get("obstacle", "obstacles") {
-        for value in obstacles.one_or_more()? {
-            let obstacle = surroundings::obstacle(&value, scene.body())?;
-            scene = scene.obstacle(obstacle);
-        }
-    }
-    let phases = top.required("phase", "the phases, [[phase]]", |v| v.tables(phase::KEYS))?;
-    for table in phases {
-        scene = phase::add_phase(scene, &table)?;
-    }
-    let output = top.optional("output", "what is written", |value| {
+    let solver = top.optional("solver", "the table [solver]", settings::solver)?;
+    let output = top.optional("output", "the table [output]", |value| {
         settings::output(value, scene.body().mesh())
     })?;
-    Ok(SceneFile {
-        title: title.into(),
-        solver: top
-            .optional("solver", "how the scene is run", settings::solver)?
-            .unwrap_or_default(),
-        output: output.unwrap_or_default(),
-        scene,
-    })
+    let (solver, output) = (solver.unwrap_or_default(), output.unwrap_or_default());
+    Ok(SceneFile { title: title.into(), scene, solver, output })
 }

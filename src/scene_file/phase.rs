@@ -7,14 +7,38 @@ use super::table::Table;
 use super::value::Value;
 use crate::constraint::Axis;
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::mesh::Selection;
 use crate::scene::{Phase, Scene};
 
-pub(super) const KEYS: &[&str] =
-    &["name", "until", "hold", "move", "load", "pressure", "actuate", "contact"];
+const KEYS: &[&str] = &[
+    "name",
+    "until",
+    "hold",
+    "move",
+    "path",
+    "load",
+    "pressure",
+    "actuate",
+    "contact",
+    "project_velocity",
+];
 
-/// The scene with the phase that `table` describes at its end.
-pub(super) fn add_phase(scene: Scene, table: &Table) -> Result<Scene, Error> {
+/// Adds what a table inside of a phase says.
+type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
+
+/// The tables inside of a phase: key, meaning, their own keys, what they add.
+const PARTS: [(&str, &str, &[&str], Add); 6] = [
+    ("hold", "nodes that stay where they are", &["nodes", "axes"], hold),
+    ("move", "nodes that move on", &["nodes", "axes", "velocity"], moving),
+    ("path", "nodes that follow a path", &["nodes", "axes", "times", "displacements"], path),
+    ("load", "forces on nodes", &["nodes", "force", "total", "times", "forces"], load),
+    ("pressure", "pressures in chambers", &["chamber", "value", "times", "values"], pressure),
+    ("actuate", "forces in springs", &["springs", "force", "times", "forces"], actuate),
+];
+
+/// The scene with the phase that `value` describes at its end.
+pub(super) fn add_phase(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = value.table(KEYS)?;
     let until = table.required("until", "the end of the phase (s)", |value| {
         let until = value.number()?;
         check(&scene, &Phase::until(until)).map_err(|error| value.error(error))?;
@@ -24,26 +48,22 @@ pub(super) fn add_phase(scene: Scene, table: &Table) -> Result<Scene, Error> {
     if let Some(name) = table.optional("name", "the name of the phase", Value::string)? {
         phase = phase.named(name);
     }
-    phase = contact(phase, &scene, table)?;
-    let parts: [(&str, &'static str, &[&str], Part); 5] = [
-        ("hold", "nodes that stay", &["nodes", "axes"], hold),
-        ("move", "nodes that move", &["nodes", "axes", "velocity"], moving),
-        ("load", "forces on nodes", &["nodes", "force", "total"], load),
-        ("pressure", "pressures in chambers", &["chamber", "value"], pressure),
-        ("actuate", "forces in springs", &["springs", "force"], actuate),
-    ];
-    for (key, meaning, keys, add) in parts {
+    if let Some(value) = table.get("contact", "true, false, or the names of obstacles") {
+        phase = contact(phase, &value, &scene)?;
+    }
+    for (key, meaning, keys, add) in PARTS {
         let Some(value) = table.get(key, meaning) else { continue };
         for part in value.tables(keys)? {
             phase = add(phase, &part, &scene)?;
             check(&scene, &phase).map_err(|error| part.blame(error))?;
         }
     }
+    let meaning = "whether the phase begins with velocities that its constraints allow";
+    if table.optional("project_velocity", meaning, Value::flag)? == Some(true) {
+        phase = phase.project_velocity();
+    }
     Ok(scene.phase(phase))
 }
-
-/// Adds what a table inside of a phase says.
-type Part = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// Whether `phase` may follow those of the scene.
 fn check(scene: &Scene, phase: &Phase) -> Result<(), Error> {
@@ -51,88 +71,147 @@ fn check(scene: &Scene, phase: &Phase) -> Result<(), Error> {
 }
 
 fn hold(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let nodes = nodes(table, scene.body().mesh())?;
-    Ok(match axes(table)? {
+    let nodes = nodes(table, scene)?;
+    Ok(match axes(table, scene)? {
         None => phase.hold(nodes),
         Some(axes) => phase.hold_axes(nodes, axes),
     })
 }
 
 fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let dimension = scene.body().dimension();
-    let nodes = nodes(table, scene.body().mesh())?;
-    let axes = axes(table)?;
-    let velocity = table.required("velocity", "the velocity (m/s)", |value| match &axes {
-        None => value.vector(dimension),
-        Some(axes) => per_axis(value, axes.len()),
-    })?;
-    Ok(match axes {
-        None => phase.move_nodes(nodes, velocity),
-        Some(axes) => axes
+    let (nodes, axes) = (nodes(table, scene)?, axes(table, scene)?);
+    table.required("velocity", "the velocity (m/s)", |value| {
+        let Some(axes) = axes else {
+            return Ok(phase.move_nodes(nodes, value.vector(scene.body().dimension())?));
+        };
+        let along = along(value, &axes, scene)?;
+        Ok(axes
             .into_iter()
-            .zip(velocity)
-            .fold(phase, |phase, (axis, velocity)| phase.move_axis(nodes.clone(), axis, velocity)),
+            .zip(along)
+            .fold(phase, |phase, (axis, velocity)| phase.move_axis(nodes.clone(), axis, velocity)))
     })
+}
+
+fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let nodes = nodes(table, scene)?;
+    let axes = match axes(table, scene)? {
+        Some(axes) => axes,
+        None => Axis::all(scene.body().dimension()).into(),
+    };
+    let times = table.required("times", "times, ascending (s)", Value::numbers)?;
+    let points = table.required("displacements", "displacements at these times (m)", |value| {
+        value.list()?.iter().map(|point| along(point, &axes, scene)).collect::<Result<Vec<_>, _>>()
+    })?;
+    let axes = axes.into_iter().enumerate();
+    Ok(axes.fold(phase, |phase, (k, axis)| {
+        let displacements: Vec<f64> = points.iter().map(|point| point[k]).collect();
+        phase.path(nodes.clone(), axis, times.clone(), displacements)
+    }))
 }
 
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let vector = |value: &Value| value.vector(scene.body().dimension());
-    let nodes = nodes(table, scene.body().mesh())?;
+    let nodes = nodes(table, scene)?;
     let force = table.optional("force", "the force on each node (N)", vector)?;
     let total = table.optional("total", "the force on all nodes together (N)", vector)?;
-    match (force, total) {
-        (Some(force), None) => Ok(phase.load(nodes, force)),
-        (None, Some(total)) => Ok(phase.load_total(nodes, total)),
-        _ => Err(table
-            .error("expected either force (N, on each node) or total (N, on all nodes together)")),
+    let times = table.optional("times", "times, ascending (s)", Value::numbers)?;
+    let forces =
+        table.optional("forces", "the force on each node at these times (N)", |value| {
+            value.list()?.iter().map(vector).collect::<Result<Vec<_>, _>>()
+        })?;
+    match (force, total, times, forces) {
+        (Some(force), None, None, None) => Ok(phase.load(nodes, force)),
+        (None, Some(total), None, None) => Ok(phase.load_total(nodes, total)),
+        (None, None, Some(times), Some(forces)) => Ok(phase.load_table(nodes, times, forces)),
+        _ => Err(table.error(
+            "expected one of force (N, on each node), total (N, on all nodes together), and times \
+             (s) with forces (N, on each node)",
+        )),
     }
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let chamber = table.required("chamber", "the name of a chamber", |v| named(v, &known))?;
-    let pressure = table.required("value", "the pressure (Pa)", Value::number)?;
-    Ok(phase.pressure(chamber, pressure))
+    let value = ("value", "the pressure (Pa)");
+    Ok(match course(table, value, ("values", "pressures at these times (Pa)"))? {
+        Course::Constant(pressure) => phase.pressure(chamber, pressure),
+        Course::Table(times, values) => phase.pressure_table(chamber, times, values),
+    })
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
     let springs = table.required("springs", "names of springs", |value| names(value, &known))?;
-    let force = table.required("force", "the actuation force (N)", Value::number)?;
-    Ok(phase.actuate(springs, force))
+    let force = ("force", "the force, positive if it extends (N)");
+    Ok(match course(table, force, ("forces", "forces at these times (N)"))? {
+        Course::Constant(force) => phase.actuate(springs, force),
+        Course::Table(times, forces) => phase.actuate_table(springs, times, forces),
+    })
 }
 
-fn contact(phase: Phase, scene: &Scene, table: &Table) -> Result<Phase, Error> {
-    let meaning = "with which obstacles: all (true), none (false), or a list of names";
-    let Some(value) = table.get("contact", meaning) else { return Ok(phase) };
+fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
     match value.value {
         DeValue::Boolean(true) => Ok(phase),
         DeValue::Boolean(false) => Ok(phase.without_contact()),
-        _ => Ok(phase.contact_with(names(&value, &known)?)),
+        _ => Ok(phase.contact_with(names(value, &known)?)),
     }
 }
 
-fn nodes(table: &Table, mesh: &Mesh) -> Result<crate::mesh::Selection, Error> {
-    let meaning = "a set name, node numbers, or { box = [[..], [..]] }";
-    table.required("nodes", meaning, |value| selection(value, mesh))
+/// A number that may change with time.
+enum Course {
+    Constant(f64),
+    Table(Vec<f64>, Vec<f64>),
 }
 
-fn axes(table: &Table) -> Result<Option<Vec<Axis>>, Error> {
+/// Either `one` number, or `times` and `many` numbers (keys and their meanings).
+fn course(
+    table: &Table,
+    one: (&str, &'static str),
+    many: (&str, &'static str),
+) -> Result<Course, Error> {
+    let constant = table.optional(one.0, one.1, Value::number)?;
+    let times = table.optional("times", "times, ascending (s)", Value::numbers)?;
+    let values = table.optional(many.0, many.1, Value::numbers)?;
+    match (constant, times, values) {
+        (Some(constant), None, None) => Ok(Course::Constant(constant)),
+        (None, Some(times), Some(values)) => Ok(Course::Table(times, values)),
+        _ => Err(table.error(format!(
+            "expected either {}, {}, or times (s) with {}, {}",
+            one.0, one.1, many.0, many.1
+        ))),
+    }
+}
+
+fn nodes(table: &Table, scene: &Scene) -> Result<Selection, Error> {
+    let meaning = "a set name, node numbers, or { box = [[..], [..]] }";
+    table.required("nodes", meaning, |value| selection(value, scene.body().mesh()))
+}
+
+/// The named axes; `None` stands for all.
+fn axes(table: &Table, scene: &Scene) -> Result<Option<Vec<Axis>>, Error> {
     let known = [("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z)];
-    table.optional("axes", "axes, \"x\", \"y\" or \"z\"", |value| {
-        value.one_or_more()?.iter().map(|axis| axis.word(&known)).collect()
+    let known = &known[..scene.body().dimension()];
+    table.optional("axes", "the axes that are prescribed", |value| {
+        value.one_or_more()?.iter().map(|axis| axis.word(known)).collect()
     })
 }
 
-/// One number per named axis; a number alone for one axis.
-fn per_axis(value: &Value, axes: usize) -> Result<Vec<f64>, Error> {
+/// The components along `axes`: one number per named axis (for one axis, a number alone), or one
+/// per dimension, 0 along the axes that are not named.
+fn along(value: &Value, axes: &[Axis], scene: &Scene) -> Result<Vec<f64>, Error> {
+    let dimension = scene.body().dimension();
     let numbers = value.one_or_more()?;
     let numbers = numbers.iter().map(Value::number).collect::<Result<Vec<_>, Error>>()?;
-    match numbers.len() == axes {
-        true => Ok(numbers),
-        false => Err(value.unexpected(format!("{axes} number(s), one per named axis"))),
+    if numbers.len() == axes.len() {
+        return Ok(numbers);
     }
+    let is_free = |i: usize| axes.iter().all(|axis| axis.index() != i);
+    if numbers.len() == dimension && (0..dimension).all(|i| numbers[i] == 0.0 || !is_free(i)) {
+        return Ok(axes.iter().map(|axis| numbers[axis.index()]).collect());
+    }
+    Err(value.unexpected(format!("{} number(s), one per named axis", axes.len())))
 }
 
 fn named(value: &Value, known: &[&str]) -> Result<String, Error> {

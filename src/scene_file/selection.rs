@@ -17,10 +17,9 @@ pub(super) fn selection(value: &Value, mesh: &Mesh) -> Result<Selection, Error> 
             }
             Selection::Set(name.to_string())
         }
-        DeValue::Integer(_) => Selection::Numbers(vec![value.count()?]),
-        DeValue::Array(_) => {
-            let numbers = value.list()?;
-            Selection::Numbers(numbers.iter().map(Value::count).collect::<Result<_, Error>>()?)
+        DeValue::Integer(_) | DeValue::Array(_) => {
+            let numbers = value.one_or_more()?.into_iter().map(number);
+            Selection::Numbers(numbers.collect::<Result<_, Error>>()?)
         }
         DeValue::Table(_) => {
             let table = value.table(&["box"])?;
@@ -28,14 +27,21 @@ pub(super) fn selection(value: &Value, mesh: &Mesh) -> Result<Selection, Error> 
             Selection::Box { min, max }
         }
         _ => {
-            return Err(value.unexpected(
-                "the name of a node set, a list of node numbers, or { box = [[..], [..]] }",
-            ));
+            return Err(value.unexpected("nodes"));
         }
     };
     match mesh.select(&selection) {
         Ok(_) => Ok(selection),
         Err(error) => Err(value.error(error)),
+    }
+}
+
+fn number(value: Value) -> Result<usize, Error> {
+    match value.value {
+        DeValue::String(name) => Err(value.error(format!(
+            "a list holds node numbers: name the set alone, \"{name}\", without a list around it"
+        ))),
+        _ => Value { meaning: "the number of a node, from 1", ..value }.count(),
     }
 }
 

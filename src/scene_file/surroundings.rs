@@ -3,11 +3,14 @@
 use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
-use crate::body::Body;
 use crate::error::Error;
 use crate::force::{Chamber, Contact, Obstacle, Shape, Spring};
+use crate::scene::Scene;
 
-pub(super) fn spring(table: &Table, body: &Body) -> Result<Spring, Error> {
+/// The scene with the spring that `value` describes.
+pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = &value.table(&["name", "ends", "stiffness", "length", "damping"])?;
+    let body = scene.body();
     let meaning = "the two ends: one node each, by number or name";
     let ends = table.required("ends", meaning, |value| match &value.list()?[..] {
         [first, second] => Ok([selection(first, body.mesh())?, selection(second, body.mesh())?]),
@@ -27,11 +30,15 @@ pub(super) fn spring(table: &Table, body: &Body) -> Result<Spring, Error> {
     if let Some(c) = table.optional("damping", "the damping (N s/m)", Value::number)? {
         spring = spring.damping(c);
     }
+    unique(table, spring.name(), scene.springs().iter().map(Spring::name))?;
     spring.force(body.mesh(), Vec::new()).map_err(|error| table.blame(error))?;
-    Ok(spring)
+    Ok(scene.spring(spring))
 }
 
-pub(super) fn chamber(table: &Table, body: &Body) -> Result<Chamber, Error> {
+/// The scene with the chamber that `value` describes.
+pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = &value.table(&["name", "nodes", "thickness"])?;
+    let body = scene.body();
     let name = table.required("name", "the name of the chamber", Value::string)?;
     let meaning = "its nodes: a closed polygon of numbers in order, or a named set";
     let nodes = table.required("nodes", meaning, |value| selection(value, body.mesh()))?;
@@ -39,8 +46,9 @@ pub(super) fn chamber(table: &Table, body: &Body) -> Result<Chamber, Error> {
     if let Some(h) = table.optional("thickness", "the thickness (m)", Value::number)? {
         chamber = chamber.thickness(h);
     }
+    unique(table, name, scene.chambers().iter().map(Chamber::name))?;
     chamber.force(body, Vec::new()).map_err(|error| table.blame(error))?;
-    Ok(chamber)
+    Ok(scene.chamber(chamber))
 }
 
 #[derive(Clone, Copy)]
@@ -74,7 +82,9 @@ const LAW: [&str; 8] = [
 const SHAPES: [&str; 9] =
     ["point", "normal", "centre", "radius", "cavity", "min", "max", "from", "to"];
 
-pub(super) fn obstacle(value: &Value, body: &Body) -> Result<Obstacle, Error> {
+/// The scene with the obstacle that `value` describes.
+pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let body = scene.body();
     let kind = value.table(&[&LAW[..], &SHAPES].concat())?.required(
         "kind",
         "the shape of the obstacle",
@@ -121,8 +131,24 @@ pub(super) fn obstacle(value: &Value, body: &Body) -> Result<Obstacle, Error> {
     {
         obstacle = obstacle.velocity(velocity);
     }
+    unique(table, obstacle.name(), scene.obstacles().iter().map(Obstacle::name))?;
     Contact::new(body, &obstacle).map_err(|error| table.blame(error))?;
-    Ok(obstacle)
+    Ok(scene.obstacle(obstacle))
+}
+
+/// Checks that no other one of its kind has the `name` of the thing that `table` describes.
+fn unique<'a>(
+    table: &Table,
+    name: &str,
+    mut others: impl Iterator<Item = &'a str>,
+) -> Result<(), Error> {
+    match others.any(|other| other == name) {
+        false => Ok(()),
+        true => {
+            let mend = "another one has this name: give each its own";
+            Err(table.blame(Error::input("name", format!("\"{name}\""), mend)))
+        }
+    }
 }
 
 fn shape(kind: Kind, table: &Table, dimension: usize) -> Result<Shape, Error> {
