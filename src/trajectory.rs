@@ -65,6 +65,8 @@ pub struct PhaseReport {
     pub name: String,
     /// Time reached (s).
     pub end: f64,
+    /// Unknowns of the integrator.
+    pub states: usize,
     /// Wall-clock time (s).
     pub wall_seconds: f64,
     /// Steps, evaluations, factorizations.
@@ -82,9 +84,43 @@ impl Report {
         self.phases.iter().map(|phase| phase.counts.evaluations).sum()
     }
 
+    /// Evaluations of the tangents of the forces in all phases.
+    pub fn jacobian_evaluations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.jacobian_evaluations).sum()
+    }
+
     /// Factorizations of the Newton matrix in all phases.
     pub fn factorizations(&self) -> usize {
         self.phases.iter().map(|phase| phase.counts.factorizations).sum()
+    }
+
+    /// Steps of all phases that were repeated because their error was too large.
+    pub fn error_test_failures(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.error_test_failures).sum()
+    }
+
+    /// Newton iterations of all phases that did not converge.
+    pub fn convergence_failures(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.convergence_failures).sum()
+    }
+
+    /// What makes the result doubtful or the run needlessly long: what the integrators noticed, and
+    /// an energy balance that is off by more than a hundredth of the largest energy.
+    pub fn warnings(&self) -> Vec<String> {
+        const DOUBTFUL: f64 = 0.01;
+        let notice = |phase: &PhaseReport| {
+            let notice = phase.counts.notice.as_ref()?;
+            Some(format!("phase \"{}\": {notice}", phase.name))
+        };
+        let mut warnings: Vec<String> = self.phases.iter().filter_map(notice).collect();
+        if self.energy_error > DOUBTFUL * self.energy_scale {
+            let part = 100.0 * self.energy_error / self.energy_scale;
+            warnings.push(format!(
+                "the energy balance is off by {part:.1} % of the largest energy, so the motion may \
+                 be wrong: lower rtol, or choose another method"
+            ));
+        }
+        warnings
     }
 }
 
@@ -99,7 +135,7 @@ impl fmt::Display for Report {
             "phase", "end (s)", "steps", "evaluations", "factorizations", "rejected", "time (s)"
         )?;
         let rejected = |c: &Counts| c.error_test_failures + c.convergence_failures;
-        for PhaseReport { name, end, wall_seconds, counts } in &self.phases {
+        for PhaseReport { name, end, wall_seconds, counts, .. } in &self.phases {
             let Counts { steps, evaluations, factorizations, .. } = counts;
             let rejected = rejected(counts);
             writeln!(
@@ -108,7 +144,7 @@ impl fmt::Display for Report {
                  {wall_seconds:9.4}"
             )?;
         }
-        let rejected: usize = self.phases.iter().map(|phase| rejected(&phase.counts)).sum();
+        let rejected = self.error_test_failures() + self.convergence_failures();
         let (steps, seconds) = (self.steps(), self.wall_seconds);
         let (evaluations, factorizations) = (self.evaluations(), self.factorizations());
         writeln!(
@@ -122,12 +158,7 @@ impl fmt::Display for Report {
             "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
              {energy_error:.1e} of {energy_scale:.1e} J"
         )?;
-        for PhaseReport { name, counts, .. } in &self.phases {
-            if let Some(notice) = &counts.notice {
-                write!(f, "\nphase \"{name}\": {notice}")?;
-            }
-        }
-        Ok(())
+        self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
     }
 }
 
@@ -144,6 +175,12 @@ impl Trajectory {
         let sum = kinetic + strain + contact + springs + dissipated.abs() + supplied.abs();
         report.energy_scale = report.energy_scale.max(sum);
         self.samples.push(sample);
+    }
+
+    /// The last sample alone, with the same report.
+    pub fn at_end(&self) -> Self {
+        let samples = self.samples.last().cloned().into_iter().collect();
+        Self { scene: self.scene.clone(), samples, report: self.report.clone() }
     }
 
     /// The scene that was run.

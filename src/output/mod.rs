@@ -3,6 +3,7 @@
 //! | file | for | written by |
 //! | --- | --- | --- |
 //! | CSV | tables of centre of mass, momentum, energies, tracked nodes | [`write_csv`] |
+//! | JSON | how a result was obtained: method, steps, errors, versions | [`write_report`] |
 //! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
 //! | SVG | quantities over time | [`Chart`] |
 //! | VTK | ParaView and other viewers of meshes | [`write_vtk`] |
@@ -12,6 +13,7 @@
 
 mod chart;
 mod csv;
+mod report;
 mod svg;
 mod vtk;
 
@@ -22,6 +24,7 @@ use std::path::Path;
 
 pub use self::chart::Chart;
 pub use self::csv::write_csv;
+pub use self::report::{write_report, write_static_report};
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;
 

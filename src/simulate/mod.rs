@@ -284,6 +284,7 @@ impl<'a> Run<'a> {
         report.phases.push(PhaseReport {
             name: phase.name.clone(),
             end: self.time,
+            states: stepper.size(),
             wall_seconds: clock.elapsed().as_secs_f64(),
             counts,
         });

@@ -15,6 +15,7 @@ mod newton;
 mod rigid;
 
 use std::fmt;
+use std::time::Instant;
 
 use newton::{Search, Stuck};
 
@@ -195,6 +196,7 @@ impl Scene {
     /// Bad input; [`Error::Constraint`] if a linear body is held so that it can still move as a
     /// whole; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
     pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
+        let clock = Instant::now();
         statics.validate()?;
         let mut forces = self.forces()?;
         let model = self.model(&forces);
@@ -227,6 +229,7 @@ impl Scene {
             state.constraint_drift = search.drift();
             trajectory.push(state);
         }
+        trajectory.report.wall_seconds = clock.elapsed().as_secs_f64();
         if let Err(Stuck { mut cause, residual }) = result {
             if !free.is_empty() {
                 cause += &format!("; the constraints leave the body free for {}", free.join(", "));
