@@ -4,7 +4,9 @@ use crate::ode::Failure;
 use crate::rk::{self, DormandPrince};
 use crate::simulate::solver::Tolerances;
 use crate::simulate::{Counts, Method, Solver};
-use crate::sundials::{Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern};
+use crate::sundials::{
+    Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern, Statistics,
+};
 use crate::system::{ENERGIES, IndexOne, System};
 
 pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
@@ -112,7 +114,7 @@ impl Stepper {
 
     /// What the integration has cost so far, and what it has to say about itself.
     pub(super) fn counts(&self) -> Counts {
-        let sundials = |s: crate::sundials::Statistics, factorizations: usize| Counts {
+        let sundials = |s: Statistics, factorizations: usize, system: &System| Counts {
             steps: s.steps as usize,
             evaluations: s.evaluations as usize,
             jacobian_evaluations: self.system().tangent_evaluations(),
@@ -121,14 +123,16 @@ impl Stepper {
             convergence_failures: s.nonlinear_failures as usize,
             last_step: s.last_step,
             last_order: s.last_order,
-            notice: None,
+            notice: compression(system.indefinite()),
         };
         match self {
-            Self::Cvode(cvode) => sundials(cvode.statistics(), cvode.system().factorizations()),
+            Self::Cvode(cvode) => {
+                sundials(cvode.statistics(), cvode.system().factorizations(), self.system())
+            }
             Self::Ida(ida) => {
                 let statistics = ida.statistics();
                 let setups = statistics.linear_setups as usize;
-                sundials(statistics, setups)
+                sundials(statistics, setups, self.system())
             }
             Self::Rk(rk) => {
                 let s = rk.statistics();
@@ -146,6 +150,16 @@ impl Stepper {
             }
         }
     }
+}
+
+/// What Newton matrices that are not positive definite tell.
+fn compression(indefinite: usize) -> Option<String> {
+    (indefinite > 0).then(|| {
+        format!(
+            "{indefinite} Newton matrices were not positive definite: the body is under strong \
+             compression, where it buckles or collapses"
+        )
+    })
 }
 
 fn cvode(

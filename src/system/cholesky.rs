@@ -1,25 +1,41 @@
-//! Sparse Cholesky factorization with everything allocated beforehand.
+//! Sparse factorization of symmetric matrices.
 
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::solvers::Solve;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
+use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 use faer::{Conj, MatMut, Par, Side, Spec};
 
-/// A symmetric positive definite matrix, given by its lower triangle, and its factor.
+/// A symmetric matrix, given by its lower triangle, and its factor: Cholesky's where the matrix is
+/// positive definite, an LU factor where it is not.
 ///
-/// The fill-reducing order and the pattern of the factor are found once, in [`Cholesky::new`].
+/// The fill-reducing order and the pattern of Cholesky's factor are found once, in
+/// [`Cholesky::new`], and everything is allocated there. LU is the way out for states that few
+/// motions pass through; it finds its pattern when it is first needed, and allocates as it goes.
 pub(super) struct Cholesky {
     pattern: SymbolicSparseColMat<usize>,
     symbolic: SymbolicCholesky<usize>,
     factor: Vec<f64>,
     memory: MemBuffer,
+    /// In force if the last factorization was LU.
+    lu: Option<Lu<usize, f64>>,
+    full: Option<Full>,
 }
 
-/// The matrix is not positive definite.
+/// The whole of the matrix whose lower triangle is known.
+struct Full {
+    pattern: SymbolicSparseColMat<usize>,
+    symbolic: SymbolicLu<usize>,
+    /// For each entry, the one of the lower triangle that it equals.
+    sources: Vec<usize>,
+}
+
+/// The matrix is not positive definite, or singular.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Indefinite;
 
@@ -41,11 +57,12 @@ impl Cholesky {
             symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
         ]));
         let factor = vec![0.0; symbolic.len_val()];
-        Self { pattern, symbolic, factor, memory }
+        Self { pattern, symbolic, factor, memory, lu: None, full: None }
     }
 
-    /// Factorizes the matrix whose lower triangle has these values.
+    /// Factorizes the positive definite matrix whose lower triangle has these values.
     pub(super) fn factorize(&mut self, values: &[f64]) -> Result<(), Indefinite> {
+        self.lu = None;
         let matrix = SparseColMatRef::new(self.pattern.as_ref(), values);
         self.symbolic
             .factorize_numeric_llt(
@@ -61,14 +78,132 @@ impl Cholesky {
             .map_err(|_| Indefinite)
     }
 
+    /// Factorizes a symmetric matrix that may be indefinite.
+    pub(super) fn factorize_indefinite(&mut self, values: &[f64]) -> Result<(), Indefinite> {
+        let full = match self.full.take() {
+            Some(full) => full,
+            None => Full::new(&self.pattern)?,
+        };
+        let values: Vec<f64> = full.sources.iter().map(|&entry| values[entry]).collect();
+        let matrix = SparseColMatRef::new(full.pattern.as_ref(), &values);
+        self.lu = Lu::try_new_with_symbolic(full.symbolic.clone(), matrix).ok();
+        self.full = Some(full);
+        // a pivot of 0 is not refused, but gives no numbers
+        let mut probe = vec![1.0; self.pattern.nrows()];
+        self.solve(&mut probe);
+        let is_regular = self.lu.is_some() && probe.iter().all(|x| x.is_finite());
+        if is_regular { Ok(()) } else { Err(Indefinite) }
+    }
+
     /// Replaces `x` by the solution of A x' = x.
     pub(super) fn solve(&mut self, x: &mut [f64]) {
         let rows = x.len();
-        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(x, rows, 1),
-            Par::Seq,
-            MemStack::new(&mut self.memory),
-        );
+        let x = MatMut::from_column_major_slice_mut(x, rows, 1);
+        match &self.lu {
+            None => LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
+                Conj::No,
+                x,
+                Par::Seq,
+                MemStack::new(&mut self.memory),
+            ),
+            Some(lu) => lu.solve_in_place(x),
+        }
+    }
+}
+
+impl Full {
+    fn new(lower: &SymbolicSparseColMat<usize>) -> Result<Self, Indefinite> {
+        let n = lower.nrows();
+        let mut columns: Vec<Vec<(usize, usize)>> = vec![Vec::new(); n];
+        let (offsets, rows) = (lower.col_ptr(), lower.row_idx());
+        for column in 0..n {
+            for entry in offsets[column]..offsets[column + 1] {
+                columns[column].push((rows[entry], entry));
+                if rows[entry] != column {
+                    columns[rows[entry]].push((column, entry));
+                }
+            }
+        }
+        columns.iter_mut().for_each(|column| column.sort_unstable());
+        let mut offsets = vec![0];
+        offsets.extend(columns.iter().scan(0, |end, column| {
+            *end += column.len();
+            Some(*end)
+        }));
+        let (rows, sources) = columns.into_iter().flatten().unzip();
+        let pattern = SymbolicSparseColMat::new_checked(n, n, offsets, None, rows);
+        let symbolic = SymbolicLu::try_new(pattern.as_ref()).map_err(|_| Indefinite)?;
+        Ok(Self { pattern, symbolic, sources })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+
+    use super::*;
+
+    /// The matrix of a grid of `side` x `side` points, coupled along x and y, with a diagonal that
+    /// `shift` makes definite or not.
+    fn grid(side: usize, shift: f64) -> (SymbolicSparseColMat<usize>, Vec<f64>, Mat<f64>) {
+        let n = side * side;
+        let (mut offsets, mut rows, mut values) = (vec![0], Vec::new(), Vec::new());
+        let mut dense = Mat::zeros(n, n);
+        for column in 0..n {
+            let mut put = |row: usize, value: f64| {
+                rows.push(row);
+                values.push(value);
+                (dense[(row, column)], dense[(column, row)]) = (value, value);
+            };
+            put(column, 4.0 + shift + 0.1 * (column % 5) as f64);
+            if (column + 1) % side != 0 {
+                put(column + 1, -1.0);
+            }
+            if column + side < n {
+                put(column + side, -1.0);
+            }
+            offsets.push(rows.len());
+        }
+        let pattern = SymbolicSparseColMat::new_checked(n, n, offsets, None, rows);
+        (pattern, values, dense)
+    }
+
+    /// Small grids are factorized column by column, large ones by supernodes.
+    #[test]
+    fn definite_or_not_the_solution_is_that_of_a_dense_lu() {
+        for side in [4, 40] {
+            for shift in [0.0, -3.0] {
+                let (pattern, values, dense) = grid(side, shift);
+                let mut factor = Cholesky::new(pattern);
+                assert_eq!(factor.factorize(&values).is_ok(), shift == 0.0);
+                let right: Vec<f64> = (0..side * side).map(|i| (i as f64).sin()).collect();
+                let expected =
+                    dense.partial_piv_lu().solve(&Mat::from_fn(right.len(), 1, |i, _| right[i]));
+                factor.factorize_indefinite(&values).unwrap();
+                let mut x = right.clone();
+                factor.solve(&mut x);
+                // a condition number of some thousands
+                let apart = |x: &[f64]| {
+                    let apart = x.iter().enumerate().map(|(i, x)| (x - expected[(i, 0)]).abs());
+                    apart.fold(0.0, f64::max)
+                };
+                assert!(apart(&x) < 1e-10, "{side} {shift}: {:e}", apart(&x));
+                // and back to a definite matrix
+                let (_, values, dense) = grid(side, 1.0);
+                factor.factorize(&values).unwrap();
+                let mut x = right.clone();
+                factor.solve(&mut x);
+                let residual = (0..x.len())
+                    .map(|i| (0..x.len()).map(|j| dense[(i, j)] * x[j]).sum::<f64>() - right[i]);
+                assert!(residual.fold(0.0, |most: f64, r| most.max(r.abs())) < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_is_refused() {
+        let pattern = SymbolicSparseColMat::new_checked(2, 2, vec![0, 2, 3], None, vec![0, 1, 1]);
+        let mut factor = Cholesky::new(pattern);
+        assert_eq!(factor.factorize_indefinite(&[1.0, 1.0, 1.0]), Err(Indefinite));
     }
 }

@@ -158,6 +158,11 @@ impl System {
         self.newton.tangent_evaluations()
     }
 
+    /// How many of them found a matrix that was not positive definite.
+    pub(crate) fn indefinite(&self) -> usize {
+        self.newton.indefinite()
+    }
+
     /// The constraint forces lambda (N) at (t, u, v), row by row.
     pub(crate) fn multipliers(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<&[f64], Failure> {
         self.evaluate(t, u, v)?;

@@ -31,6 +31,8 @@ pub(super) struct Newton {
     gamma: f64,
     tangent_evaluations: usize,
     factorizations: usize,
+    /// How many of them were not positive definite.
+    indefinite: usize,
     /// f of the linear system, and its solution xv.
     right: Vec<f64>,
     pub(super) xv: Vec<f64>,
@@ -88,6 +90,7 @@ impl Newton {
             gamma: f64::NAN,
             tangent_evaluations: 0,
             factorizations: 0,
+            indefinite: 0,
             right: vec![0.0; dofs],
             xv: vec![0.0; dofs],
             demands: vec![0.0; rows.len()],
@@ -101,6 +104,10 @@ impl Newton {
 
     pub(super) fn tangent_evaluations(&self) -> usize {
         self.tangent_evaluations
+    }
+
+    pub(super) fn indefinite(&self) -> usize {
+        self.indefinite
     }
 }
 
@@ -151,10 +158,13 @@ impl System {
             let part = |matrix: &BlockMatrix| matrix.symmetric(entry, transposed, axes);
             mass + gamma * (part(damping) + gamma * part(stiffness))
         });
-        factorized.map_err(|_| {
+        if factorized.is_ok() {
+            return Ok(());
+        }
+        self.newton.indefinite += 1;
+        self.newton.solver.factorize_indefinite().map_err(|_| {
             Failure::Recoverable(
-                "the Newton matrix is not positive definite (a body under strong compression)"
-                    .into(),
+                "the Newton matrix is singular (a body under strong compression)".into(),
             )
         })
     }

@@ -105,15 +105,25 @@ impl Reduced {
         }
     }
 
-    /// Factorizes X, whose entries `value` tells.
+    /// Factorizes X, positive definite, whose entries `value` tells.
     pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
+        self.assemble(value);
+        self.cholesky.factorize(&self.values)?;
+        self.general.factorize(&mut self.cholesky)
+    }
+
+    /// Factorizes the X last given, which has turned out not to be positive definite.
+    pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
+        self.cholesky.factorize_indefinite(&self.values)?;
+        self.general.factorize(&mut self.cholesky)
+    }
+
+    fn assemble(&mut self, value: impl Fn(Source) -> f64) {
         self.values.iter_mut().zip(&self.sources).for_each(|(x, &source)| *x = value(source));
         self.border_values
             .iter_mut()
             .zip(&self.border)
             .for_each(|(x, &(_, _, source))| *x = value(source));
-        self.cholesky.factorize(&self.values)?;
-        self.general.factorize(&mut self.cholesky)
     }
 
     /// Solves X x - A mu = f, A^T x = d. `d` has one number per row of the constraints. `mu` gets
