@@ -258,7 +258,8 @@ impl Scene {
         System::new(model.clone(), forces, rows, alpha, &phase.name)
     }
 
-    fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
+    /// The rows of its constraints.
+    pub(crate) fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
         rows(&phase.constraints, self.body.mesh(), &phase.name, start)
     }
 }
