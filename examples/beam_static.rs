@@ -50,7 +50,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         let fixed = || Phase::until(1.0).hold("left");
         let bend = fixed().named("bent").move_axis([tip], Axis::Y, -arguments.deflection);
         let bent = Scene::new(beam()?).phase(bend).equilibrium(&Statics::default())?;
-        let force = bent.sample().multipliers[2 * rows];
+        let force = bent.trajectory().constraint_force(bent.sample(), [tip])?[1];
         let load = Scene::new(beam()?).phase(fixed().load([tip], [0.0, force]));
         let loaded = load.equilibrium(&Statics { load_steps: 4, ..Statics::default() })?;
 

@@ -13,7 +13,7 @@ use clap::Parser;
 use common::{Common, finish};
 use pliant::output::{Chart, Snapshots, write_csv, write_vtk};
 use pliant::samples::{pushed_nodes, square_press};
-use pliant::{Error, Sample, Sampling};
+use pliant::{Error, Sampling};
 
 /// The pressed square: a table of its phases, the force of the probe, and pictures.
 #[derive(Parser)]
@@ -34,15 +34,15 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let trajectory = square_press(nodes)?.simulate(&common.solver(), &Sampling::every(0.005))?;
     println!("Pressed square, {nodes} x {nodes} nodes\n{}", trajectory.report());
 
-    // The rows of the bottom come first, two per node; then those of the pushed nodes.
-    let probe = |sample: &Sample| -> f64 {
-        sample.multipliers[2 * nodes..].iter().skip(1).step_by(2).sum()
-    };
-    let pressed: Vec<&Sample> =
-        trajectory.samples().iter().filter(|s| s.phase < 2 && s.time > 0.0).collect();
+    let mut forces = Vec::new();
+    let pressed = trajectory.samples().iter().filter(|s| s.phase < 2 && s.time > 0.0);
+    for sample in pressed {
+        let force = trajectory.constraint_force(sample, pushed_nodes(nodes))?;
+        forces.push((sample.time, -force[1]));
+    }
     for time in [0.25, 0.5, 1.0] {
-        if let Some(sample) = pressed.iter().find(|s| (s.time - time).abs() < 1e-9) {
-            println!("the probe presses with {:.2} N at {time} s", -probe(sample));
+        if let Some((_, force)) = forces.iter().find(|(t, _)| (t - time).abs() < 1e-9) {
+            println!("the probe presses with {force:.2} N at {time} s");
         }
     }
 
@@ -50,7 +50,6 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let title = format!("Dynamic deformation of an elastic square body, {nodes} x {nodes} nodes");
     let times = [0.0, 0.25, 0.5, 1.0, 1.05, 1.1, 1.2, 1.4, 1.7, 2.0];
     Snapshots::at(times).title(&title).write(&trajectory, directory.join("snapshots.svg"))?;
-    let forces = pressed.iter().map(|sample| (sample.time, -probe(sample))).collect::<Vec<_>>();
     Chart::new("Force of the probe")
         .axes("time (s)", "force (N)")
         .series("all pushed nodes", forces)

@@ -51,9 +51,8 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         let u = &equilibrium.displacements()[2 * (node - 1)..2 * node];
         println!("{node:6} {:12.8} {:12.8}", u[0], u[1]);
     }
-    // the rows of the bottom come first, two per node; then those of nodes 14 and 15
-    let probe = &equilibrium.sample().multipliers[8..];
-    let (across, up) = ((probe[0] + probe[2]) / 1e3, (probe[1] + probe[3]) / 1e3);
+    let probe = equilibrium.trajectory().constraint_force(equilibrium.sample(), [14, 15])?;
+    let (across, up) = (probe[0] / 1e3, probe[1] / 1e3);
     println!("force of the probe on the square: ({across:.3}, {up:.3}) kN");
     println!("strain energy {:.3} kJ", equilibrium.sample().energy.strain / 1e3);
 

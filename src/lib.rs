@@ -46,7 +46,7 @@ pub mod sundials;
 mod system;
 pub mod trajectory;
 
-pub use body::{Body, CellSelection, Strain, Viscosity};
+pub use body::{Body, CellField, CellSelection, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use error::Error;
 pub use force::{Chamber, Obstacle, Shape, Spring};

@@ -1,5 +1,7 @@
 //! What a run leaves behind: sampled states, and how they were obtained.
 
+mod forces;
+
 use std::fmt;
 
 use crate::body::Body;
@@ -20,6 +22,7 @@ pub struct Sample {
     pub v: Vec<f64>,
     /// Constraint forces lambda (N) on the body, one per row of the phase's constraints: in the
     /// order in which the phase names them, node by node, axis by axis.
+    /// [`Trajectory::constraint_force`] tells them by nodes.
     pub multipliers: Vec<f64>,
     /// Energies (J).
     pub energy: Energy,
@@ -229,24 +232,28 @@ impl Trajectory {
         self.mean_velocity(sample).iter().map(|v| mass * v).collect()
     }
 
-    /// Angular momentum (kg m^2/s, counter-clockwise) of a two-dimensional body about its centre of
-    /// mass: the sum of (x - c) x (M v) over the nodes, M the consistent inertia matrix. `None` in
-    /// other dimensions.
-    pub fn angular_momentum(&self, sample: &Sample) -> Option<f64> {
+    /// Angular momentum (kg m^2/s) about the centre of mass: the sum of (x - c) x (M v) over the
+    /// nodes, M the consistent inertia matrix. One number in two dimensions (counter-clockwise), a
+    /// vector in three, nothing in one.
+    pub fn angular_momentum(&self, sample: &Sample) -> Vec<f64> {
         let body = self.body();
-        if body.dimension() != 2 {
-            return None;
-        }
+        let d = body.dimension();
         let centre = self.centre_of_mass(sample);
         let mut momenta = vec![0.0; body.dofs()];
-        body.inertia().add_product(2, 1.0, &sample.v, &mut momenta);
-        let positions = body.mesh().positions().chunks_exact(2);
-        let nodes = positions.zip(sample.u.chunks_exact(2)).zip(momenta.chunks_exact(2));
-        let moments = nodes.map(|((x, u), p)| {
-            let arm = [x[0] + u[0] - centre[0], x[1] + u[1] - centre[1]];
-            arm[0] * p[1] - arm[1] * p[0]
-        });
-        Some(moments.sum())
+        body.inertia().add_product(d, 1.0, &sample.v, &mut momenta);
+        let positions = body.mesh().positions();
+        let arm = |dof: usize| positions[dof] + sample.u[dof] - centre[dof % d];
+        // component (x - c)_i p_j - (x - c)_j p_i
+        let moment = |&[i, j]: &[usize; 2]| {
+            let nodes = (0..body.dofs()).step_by(d);
+            nodes.map(|n| arm(n + i) * momenta[n + j] - arm(n + j) * momenta[n + i]).sum()
+        };
+        let planes: &[[usize; 2]] = match d {
+            1 => &[],
+            2 => &[[0, 1]],
+            _ => &[[1, 2], [2, 0], [0, 1]],
+        };
+        planes.iter().map(moment).collect()
     }
 
     /// Angle (rad, counter-clockwise) by which a two-dimensional body has turned as a whole: that

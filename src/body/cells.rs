@@ -12,10 +12,12 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::fields::{CellField, Measure, PointField, mean};
 use super::regions::{Moduli, Regions};
+use super::strain::{energy_density, gradient, green_strain, stress, stretch_of, symmetric_part};
 use crate::element::{
     Hexahedron, MassPoint, Quadrilateral, ReferenceCell, Segment, StrainPoint, Tetrahedron,
-    Tetrahedron10, Triangle, Triangle6, determinant, mass_points, strain_points,
+    Tetrahedron10, Triangle, Triangle6, mass_points, strain_points,
 };
 use crate::error::Error;
 use crate::force::NodalForces;
@@ -64,8 +66,11 @@ pub(crate) trait Cells: Send + Sync {
     /// Present over natural volume of each cell.
     fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
 
-    /// Volume of all cells (m^3).
-    fn volume(&self) -> f64;
+    /// Strain, stress and energy density of each cell.
+    fn fields(&self, regions: &Regions, measure: Measure, u: &[f64]) -> Vec<CellField>;
+
+    /// Natural volume of each cell (m^3).
+    fn volumes(&self) -> Vec<f64>;
 }
 
 /// Which forces are evaluated cell by cell; the others have constant matrices.
@@ -273,13 +278,12 @@ impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> 
     fn green_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
         let u = u.as_chunks::<D>().0;
         let of_cell = |(cell, nodes, points): (usize, &[usize; N], &[StrainPoint<N, M, D>])| {
-            let Lame { lambda, mu } = regions.of(cell).elastic;
-            let density = |point: &StrainPoint<N, M, D>| {
+            let lame = regions.of(cell).elastic;
+            let energy = |point: &StrainPoint<N, M, D>| {
                 let strain = green_strain(point, &gradient(point, nodes, u));
-                let trace = strain.trace();
-                point.volume * (0.5 * lambda * trace * trace + mu * strain.norm_squared())
+                point.volume * energy_density(lame, &strain)
             };
-            points.iter().map(density).sum::<f64>()
+            points.iter().map(energy).sum::<f64>()
         };
         self.iter().map(of_cell).sum()
     }
@@ -297,43 +301,22 @@ impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> 
         self.iter().map(of_cell).collect()
     }
 
-    fn volume(&self) -> f64 {
-        self.points.iter().map(|point| point.volume).sum()
+    fn fields(&self, regions: &Regions, measure: Measure, u: &[f64]) -> Vec<CellField> {
+        let u = u.as_chunks::<D>().0;
+        let of_cell = |(cell, nodes, points): (usize, &[usize; N], &[StrainPoint<N, M, D>])| {
+            let lame = regions.of(cell).elastic;
+            mean(points.iter().map(|point| {
+                let h = gradient(point, nodes, u);
+                (point.volume, PointField::new(measure, lame, point, &h))
+            }))
+        };
+        self.iter().map(of_cell).collect()
     }
-}
 
-/// H = sum x_a g_a^T, with x the displacements or velocities of all nodes.
-fn gradient<const N: usize, const M: usize, const D: usize>(
-    point: &StrainPoint<N, M, D>,
-    nodes: &[usize; N],
-    x: &[[f64; D]],
-) -> SMatrix<f64, D, M> {
-    let mut h = SMatrix::zeros();
-    for (node, g) in nodes.iter().zip(&point.gradients) {
-        for i in 0..D {
-            for j in 0..M {
-                h[(i, j)] += x[*node][i] * g[j];
-            }
-        }
+    fn volumes(&self) -> Vec<f64> {
+        let volume = |points: &[StrainPoint<N, M, D>]| points.iter().map(|p| p.volume).sum();
+        self.points.chunks_exact(self.points_per_cell).map(volume).collect()
     }
-    h
-}
-
-/// E = sym(F_0^T H) + H^T H / 2: as precise for small strains as for large ones.
-fn green_strain<const N: usize, const M: usize, const D: usize>(
-    point: &StrainPoint<N, M, D>,
-    h: &SMatrix<f64, D, M>,
-) -> SMatrix<f64, M, M> {
-    symmetric_part(&point.frame.tr_mul(h)) + h.tr_mul(h) * 0.5
-}
-
-fn symmetric_part<const M: usize>(matrix: &SMatrix<f64, M, M>) -> SMatrix<f64, M, M> {
-    (matrix + matrix.transpose()) * 0.5
-}
-
-/// lambda tr(E) I + 2 mu E
-fn stress<const M: usize>(lame: Lame, strain: &SMatrix<f64, M, M>) -> SMatrix<f64, M, M> {
-    SMatrix::identity() * (lame.lambda * strain.trace()) + strain * (2.0 * lame.mu)
 }
 
 /// Subtracts P g_a from the force on each node, P the stress F S times the volume.
@@ -361,14 +344,6 @@ fn material_block<const D: usize>(
     f_square: &SMatrix<f64, D, D>,
 ) -> SMatrix<f64, D, D> {
     fa * fb.transpose() * lame.lambda + (f_square * stretch + fb * fa.transpose()) * lame.mu
-}
-
-/// Factor by which F stretches a volume: det F, or its size where the cell does not fill space.
-fn stretch_of<const M: usize, const D: usize>(f: &SMatrix<f64, D, M>) -> f64 {
-    match M == D {
-        true => determinant(&SMatrix::<f64, M, M>::from_fn(|i, j| f[(i, j)])),
-        false => determinant(&f.tr_mul(f)).sqrt(),
-    }
 }
 
 /// A cell that is turned inside out has no meaning.

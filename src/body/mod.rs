@@ -2,8 +2,10 @@
 
 mod cells;
 mod elastic;
+mod fields;
 mod polynomial;
 mod regions;
+mod strain;
 #[cfg(test)]
 mod tests;
 
@@ -13,6 +15,8 @@ use std::sync::Arc;
 pub(crate) use cells::Cells;
 use cells::{Law, cells};
 pub(crate) use elastic::Elastic;
+pub use fields::CellField;
+use fields::Measure;
 pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;
 use regions::Regions;
@@ -62,6 +66,7 @@ pub struct Body {
     material: Material,
     strain: Strain,
     viscosity: Viscosity,
+    plane: Plane,
     section: f64,
     cells: Arc<dyn Cells>,
     regions: Arc<Regions>,
@@ -181,6 +186,7 @@ impl BodyBuilder {
             material,
             strain,
             viscosity,
+            plane,
             section,
             cells,
             regions: Arc::new(regions),
@@ -303,6 +309,32 @@ impl Body {
         self.cells.volume_ratios(u)
     }
 
+    /// Strain, stress and strain energy density of each cell under the displacements `u` (m,
+    /// dimension components per node).
+    ///
+    /// ```
+    /// use pliant::{Body, Material, Mesh};
+    ///
+    /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
+    /// let bar = Body::new(Mesh::bar(0.1, 2)?, soft).area(2e-4).build()?;
+    /// let [field] = bar.cell_fields(&[0.0, 0.001])[..] else { panic!("one cell") };
+    /// assert!((field.strain[0][0] - 0.01).abs() < 1e-12);
+    /// assert!((field.stress[0][0] - 500.0).abs() < 1e-9 && (field.von_mises() - 500.0).abs() < 1e-9);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn cell_fields(&self, u: &[f64]) -> Vec<CellField> {
+        let across = match self.mesh.kind().dimension() {
+            1 => Plane::Stress,
+            _ => self.plane,
+        };
+        self.cells.fields(&self.regions, Measure { strain: self.strain, across }, u)
+    }
+
+    /// Natural volume of each cell (m^3).
+    pub fn cell_volumes(&self) -> Vec<f64> {
+        self.cells.volumes()
+    }
+
     /// Adds the nodal forces (N) of Green strain at the displacements `u` (m, dimension components
     /// per node) to the conservative ones of `forces`, cell by cell, whatever strain the body has.
     ///
@@ -316,7 +348,7 @@ impl Body {
 
     /// Volume of the cells (m^3).
     pub fn volume(&self) -> f64 {
-        self.cells.volume()
+        self.cell_volumes().iter().sum()
     }
 
     pub(crate) fn shared_inertia(&self) -> Arc<NodeMatrix> {

@@ -9,7 +9,7 @@ use crate::mesh::{CellKind, Cells};
 use crate::samples::SQUARE_MATERIAL;
 
 /// Bodies of every kind of cell, in every space they may live in, somewhat irregular.
-fn bodies() -> Vec<(String, Body)> {
+pub(super) fn bodies(strain: Strain) -> Vec<(String, Body)> {
     let square = [0.0, 0.0, 1.0, 0.2, 1.3, 1.1, -0.1, 0.9];
     let wedge = [0.0, 0.0, 1.2, 0.1, 0.2, 1.0, 0.6, 0.1, 0.7, 0.6, 0.1, 0.5];
     let solid = [0.0, 0.0, 0.0, 1.1, 0.1, 0.0, 0.2, 1.0, -0.1, 0.1, 0.2, 1.2];
@@ -45,7 +45,7 @@ fn bodies() -> Vec<(String, Body)> {
                 })
                 .collect();
             let mesh = Mesh::new(dimension, positions, kind, cells.clone()).unwrap();
-            let mut builder = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Green);
+            let mut builder = Body::new(mesh, SQUARE_MATERIAL).strain(strain);
             builder = match kind.dimension() {
                 1 => builder.area(1e-4),
                 2 => builder.thickness(0.01),
@@ -71,7 +71,7 @@ fn tetrahedron10(corners: &[f64; 12]) -> Vec<f64> {
 }
 
 /// Numbers between -`size` and `size` without a pattern.
-fn noise(length: usize, size: f64, seed: f64) -> Vec<f64> {
+pub(super) fn noise(length: usize, size: f64, seed: f64) -> Vec<f64> {
     (0..length)
         .map(|i| size * (12.9898 * (i as f64 + seed)).sin().mul_add(43.758, 0.3).sin())
         .collect()
@@ -91,7 +91,7 @@ fn moved(x: &[f64], j: usize, by: f64) -> Vec<f64> {
 
 #[test]
 fn forces_and_tangents_are_derivatives() {
-    for (name, body) in bodies() {
+    for (name, body) in bodies(Strain::Green) {
         let n = body.dofs();
         let (u, v) = (noise(n, 0.05, 1.0), noise(n, 2.0, 7.0));
         let elastic = body.elastic().unwrap();
@@ -124,7 +124,7 @@ fn forces_and_tangents_are_derivatives() {
 }
 
 /// Rotation about a skew axis (about z in the plane), then translation; and its velocities.
-fn rigid_motion(body: &Body) -> (Vec<f64>, Vec<f64>) {
+pub(super) fn rigid_motion(body: &Body) -> (Vec<f64>, Vec<f64>) {
     let axis = match body.dimension() {
         3 => nalgebra::Vector3::new(0.3, -0.5, 0.8),
         _ => nalgebra::Vector3::z(),
@@ -146,8 +146,8 @@ fn rigid_motion(body: &Body) -> (Vec<f64>, Vec<f64>) {
 }
 
 #[test]
-fn rigid_motions_cost_green_bodies_nothing() {
-    for (name, body) in bodies() {
+pub(super) fn rigid_motions_cost_green_bodies_nothing() {
+    for (name, body) in bodies(Strain::Green) {
         let (u, v) = rigid_motion(&body);
         let forces = forces(&body, &u, &v);
         let scale = body.stiffness().get(0, 0);
@@ -164,7 +164,7 @@ fn rigid_motions_cost_green_bodies_nothing() {
 /// In the natural shape Green's tangents are the constant matrices of Cauchy's strain.
 #[test]
 fn at_rest_the_tangents_are_k_and_b() {
-    for (name, body) in bodies() {
+    for (name, body) in bodies(Strain::Green) {
         let rest = vec![0.0; body.dofs()];
         let mut stiffness = BlockMatrix::zeros(body.inertia().pattern(), body.dimension());
         let mut damping = stiffness.clone();

@@ -1,11 +1,11 @@
 //! Tables.
 
-use std::io::{self, Write};
 use std::path::Path;
 
 use super::write_file;
 use crate::error::Error;
 use crate::mesh::Selection;
+use crate::system::Energy;
 use crate::trajectory::{Sample, Trajectory};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -17,10 +17,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// | `t` | time (s) |
 /// | `com_x`, ... | centre of mass (m) |
 /// | `momentum_x`, ... | momentum (kg m/s) |
-/// | `angular_momentum` | about the centre of mass (kg m^2/s), in two dimensions only |
+/// | `angular_momentum` | about the centre of mass (kg m^2/s); `angular_momentum_x`, ... in three dimensions, none in one |
 /// | `kinetic`, `strain`, `gravity`, `contact`, `springs` | energies (J) |
-/// | `dissipated`, `supplied` | energy turned into heat and energy supplied since t = 0 (J) |
-/// | `energy_balance` | kinetic + potential + dissipated - supplied (J), constant but for errors |
 /// | `constraint_drift` | largest error of a constraint (m) |
 /// | `u<N>_x`, ... | displacement of each tracked node N (m), numbers counted from 1 |
 ///
@@ -52,50 +50,77 @@ pub fn write_csv(
         Some(selection) => trajectory.body().mesh().select(selection)?,
         None => Vec::new(),
     };
-    write_file(path.as_ref(), |file| write(trajectory, &nodes, file))
+    let header = header(trajectory.body().dimension(), &nodes);
+    let rows = trajectory.samples().iter().map(|sample| row(trajectory, &nodes, sample));
+    write(path.as_ref(), header, rows)
 }
 
-fn write(trajectory: &Trajectory, nodes: &[usize], file: &mut dyn Write) -> io::Result<()> {
-    let mut table = csv::Writer::from_writer(file);
-    table.write_record(header(trajectory, nodes))?;
-    for sample in trajectory.samples() {
-        table.write_record(row(trajectory, nodes, sample).map(|x| format!("{x:.16e}")))?;
-    }
-    table.flush()
+/// Writes one row per sample with the energies (J) of [`Energy`](crate::Energy), after a row with the
+/// names of the columns: `t` (s), `kinetic`, `strain`, `gravity`, `contact`, `springs`, `dissipated` and
+/// `supplied` since t = 0, and `balance`: the sum of what is stored and dissipated less what was
+/// supplied, constant but for errors of the integration.
+///
+/// # Errors
+/// [`Error::Output`] if the file cannot be written.
+pub fn write_energies(trajectory: &Trajectory, path: impl AsRef<Path>) -> Result<(), Error> {
+    let names = ["t"].into_iter().chain(STORED).chain(["dissipated", "supplied", "balance"]);
+    let header = names.map(str::to_owned).collect();
+    let row = |sample: &Sample| {
+        let energy = &sample.energy;
+        let mut row = vec![sample.time];
+        row.extend(stored(energy));
+        row.extend([energy.dissipated, energy.supplied, energy.balance()]);
+        row
+    };
+    write(path.as_ref(), header, trajectory.samples().iter().map(row))
 }
 
-fn header(trajectory: &Trajectory, nodes: &[usize]) -> Vec<String> {
-    let axes = &AXES[..trajectory.body().dimension()];
-    let vector = |name: String| axes.iter().map(move |axis| format!("{name}_{axis}"));
+fn write(
+    path: &Path,
+    header: Vec<String>,
+    rows: impl Iterator<Item = Vec<f64>>,
+) -> Result<(), Error> {
+    write_file(path, |file| {
+        let mut table = csv::Writer::from_writer(file);
+        table.write_record(header)?;
+        for row in rows {
+            table.write_record(row.iter().map(|x| format!("{x:.16e}")))?;
+        }
+        table.flush()
+    })
+}
+
+/// Energies that are stored.
+const STORED: [&str; 5] = ["kinetic", "strain", "gravity", "contact", "springs"];
+
+fn stored(energy: &Energy) -> [f64; 5] {
+    [energy.kinetic, energy.strain, energy.gravity, energy.contact, energy.springs]
+}
+
+fn header(dimension: usize, nodes: &[usize]) -> Vec<String> {
+    let vector = |name: String| AXES[..dimension].iter().map(move |axis| format!("{name}_{axis}"));
     let mut names = vec!["t".to_owned()];
     names.extend(vector("com".into()));
     names.extend(vector("momentum".into()));
-    if axes.len() == 2 {
-        names.push("angular_momentum".into());
+    match dimension {
+        1 => {}
+        2 => names.push("angular_momentum".into()),
+        _ => names.extend(vector("angular_momentum".into())),
     }
-    let energies = ["kinetic", "strain", "gravity", "contact", "springs"];
-    let balance = ["dissipated", "supplied", "energy_balance", "constraint_drift"];
-    names.extend(energies.iter().chain(&balance).map(|&name| name.to_owned()));
+    names.extend(STORED.map(str::to_owned));
+    names.push("constraint_drift".into());
     names.extend(nodes.iter().flat_map(|node| vector(format!("u{}", node + 1))));
     names
 }
 
-fn row<'a>(
-    trajectory: &'a Trajectory,
-    nodes: &'a [usize],
-    sample: &'a Sample,
-) -> impl Iterator<Item = f64> + 'a {
-    let (dimension, energy) = (trajectory.body().dimension(), &sample.energy);
-    let energies = [energy.kinetic, energy.strain, energy.gravity, energy.contact, energy.springs];
-    let balance = [energy.dissipated, energy.supplied, energy.balance(), sample.constraint_drift];
-    [sample.time]
-        .into_iter()
-        .chain(trajectory.centre_of_mass(sample))
-        .chain(trajectory.momentum(sample))
-        .chain(trajectory.angular_momentum(sample))
-        .chain(energies)
-        .chain(balance)
-        .chain(
-            nodes.iter().flat_map(move |node| &sample.u[node * dimension..][..dimension]).copied(),
-        )
+fn row(trajectory: &Trajectory, nodes: &[usize], sample: &Sample) -> Vec<f64> {
+    let dimension = trajectory.body().dimension();
+    let mut row = vec![sample.time];
+    row.extend(trajectory.centre_of_mass(sample));
+    row.extend(trajectory.momentum(sample));
+    row.extend(trajectory.angular_momentum(sample));
+    row.extend(stored(&sample.energy));
+    row.push(sample.constraint_drift);
+    row.extend(nodes.iter().flat_map(|node| &sample.u[node * dimension..][..dimension]));
+    row
 }

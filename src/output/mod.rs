@@ -3,10 +3,11 @@
 //! | file | for | written by |
 //! | --- | --- | --- |
 //! | CSV | tables of centre of mass, momentum, energies, tracked nodes | [`write_csv`] |
+//! | CSV | tables of all energies and their balance | [`write_energies`] |
 //! | JSON | how a result was obtained: method, steps, errors, versions | [`write_report`] |
 //! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
 //! | SVG | quantities over time | [`Chart`] |
-//! | VTK | ParaView and other viewers of meshes | [`write_vtk`] |
+//! | VTK | ParaView and other viewers of meshes: motion, forces, strain and stress | [`write_vtk`] |
 //!
 //! Directories are created as needed. A file is written under another name first and renamed when
 //! it is complete: what stands under its own name is never half a file.
@@ -23,7 +24,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
 pub use self::chart::Chart;
-pub use self::csv::write_csv;
+pub use self::csv::{write_csv, write_energies};
 pub use self::report::{write_report, write_static_report};
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;

@@ -9,20 +9,32 @@ use vtkio::model::{
 };
 
 use super::write_file;
+use crate::body::CellField;
 use crate::error::Error;
-use crate::mesh::{CellKind, Mesh};
+use crate::mesh::CellKind;
 use crate::trajectory::{Sample, Trajectory};
 
 /// Writes one VTK XML file per sample, `<name>_0000.vtu`, ..., and `<name>.pvd`, the collection
 /// that tells their times and is what one opens.
 ///
-/// The points are the natural positions (m); `displacement` (m) and `velocity` (m/s) are vectors
-/// at the points, with three components whatever the dimension. To see the body as it is, apply
-/// the filter "Warp By Vector" to `displacement`, which is the active vector field.
+/// The points are the natural positions (m). To see the body as it is, apply the filter "Warp By
+/// Vector" to `displacement`, which is the active vector field.
+///
+/// | at | field | meaning |
+/// | --- | --- | --- |
+/// | points | `displacement`, `velocity` | m, m/s |
+/// | points | `contact_force` | of all obstacles together on the node, N |
+/// | points | `constraint_force` | of what holds or moves the node, N |
+/// | cells | `strain` | Cauchy's or Green's, as the body's |
+/// | cells | `stress`, `von_mises` | Pa |
+/// | cells | `strain_energy_density` | J/m^3 of natural volume |
+///
+/// Vectors have three components and tensors the six XX, YY, ZZ, XY, YZ, XZ, whatever the
+/// dimension; [`CellField`] says more of those at the cells.
 ///
 /// # Errors
 /// [`Error::Input`] for a `name` with other characters than letters, digits, `.`, `-` and `_`;
-/// [`Error::Output`] if a file cannot be written.
+/// [`Error::Output`] if a file cannot be written; as [`Trajectory::contact_forces`].
 ///
 /// ```
 /// use pliant::output::write_vtk;
@@ -49,8 +61,9 @@ pub fn write_vtk(
     let directory = directory.as_ref();
     let file_name = |number: usize| format!("{name}_{number:04}.vtu");
     for (number, sample) in trajectory.samples().iter().enumerate() {
+        let grid = grid(trajectory, sample)?;
         write_file(&directory.join(file_name(number)), |file| {
-            grid(trajectory.body().mesh(), sample).write_xml(file).map_err(io::Error::other)
+            grid.write_xml(file).map_err(io::Error::other)
         })?;
     }
     write_file(&directory.join(format!("{name}.pvd")), |file| {
@@ -65,13 +78,23 @@ pub fn write_vtk(
     })
 }
 
-fn grid(mesh: &Mesh, sample: &Sample) -> Vtk {
+fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
+    let mesh = trajectory.body().mesh();
     let spatial = |components: &[f64]| -> Vec<f64> {
         let nodes = components.chunks_exact(mesh.dimension());
         nodes.flat_map(|x| (0..3).map(|i| x.get(i).copied().unwrap_or(0.0))).collect()
     };
     let vectors = |name: &str, components: &[f64]| {
         Attribute::DataArray(DataArray::vectors(name).with_vec(spatial(components)))
+    };
+    let fields = trajectory.body().cell_fields(&sample.u);
+    let scalars = |name: &str, value: fn(&CellField) -> f64| {
+        let values: Vec<f64> = fields.iter().map(value).collect();
+        Attribute::DataArray(DataArray::scalars(name, 1).with_vec(values))
+    };
+    let tensors = |name: &str, tensor: fn(&CellField) -> [[f64; 3]; 3]| {
+        let values: Vec<f64> = fields.iter().flat_map(|field| six(tensor(field))).collect();
+        Attribute::generic(name, 6).with_data(values)
     };
     let kind = match mesh.kind() {
         CellKind::Segment => CellType::Line,
@@ -83,7 +106,7 @@ fn grid(mesh: &Mesh, sample: &Sample) -> Vtk {
         CellKind::Hexahedron => CellType::Hexahedron,
     };
     let corners = mesh.kind().nodes() as u64;
-    Vtk {
+    Ok(Vtk {
         version: Version::new_xml(1, 0),
         title: String::new(),
         byte_order: ByteOrder::LittleEndian,
@@ -97,10 +120,25 @@ fn grid(mesh: &Mesh, sample: &Sample) -> Vtk {
                 types: vec![kind; mesh.cell_count()],
             },
             data: Attributes {
-                point: vec![vectors("displacement", &sample.u), vectors("velocity", &sample.v)],
-                cell: Vec::new(),
+                point: vec![
+                    vectors("displacement", &sample.u),
+                    vectors("velocity", &sample.v),
+                    vectors("contact_force", &trajectory.contact_forces(sample)?),
+                    vectors("constraint_force", &trajectory.constraint_forces(sample)?),
+                ],
+                cell: vec![
+                    tensors("strain", |field| field.strain),
+                    tensors("stress", |field| field.stress),
+                    scalars("von_mises", CellField::von_mises),
+                    scalars("strain_energy_density", |field| field.energy_density),
+                ],
             },
         }),
         file_path: None,
-    }
+    })
+}
+
+/// The components of a symmetric tensor in the order of VTK.
+fn six(tensor: [[f64; 3]; 3]) -> [f64; 6] {
+    [[0, 0], [1, 1], [2, 2], [0, 1], [1, 2], [0, 2]].map(|[i, j]| tensor[i][j])
 }

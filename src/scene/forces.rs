@@ -26,10 +26,16 @@ impl Scene {
         self.add_loads(phase, &mut forces)?;
         self.add_springs(phase, &mut forces)?;
         self.add_chambers(phase, &mut forces)?;
-        for obstacle in phase.contacts(&self.obstacles)? {
-            forces.push(Arc::new(Contact::new(&self.body, obstacle)?));
+        for contact in self.contacts(phase)? {
+            forces.push(Arc::new(contact));
         }
         Ok(forces)
+    }
+
+    /// The contact forces among them.
+    pub(crate) fn contacts(&self, phase: &Phase) -> Result<Vec<Contact>, Error> {
+        let obstacles = phase.contacts(&self.obstacles)?.into_iter();
+        obstacles.map(|obstacle| Contact::new(&self.body, obstacle)).collect()
     }
 
     fn add_loads(&self, phase: &Phase, forces: &mut Forces) -> Result<(), Error> {

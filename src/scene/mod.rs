@@ -274,7 +274,8 @@ impl Scene {
         System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
     }
 
-    fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
+    /// The rows of its constraints.
+    pub(crate) fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
         rows(&phase.constraints, self.body.mesh(), &phase.name, start)
     }
 }
