@@ -53,6 +53,8 @@ pub struct Report {
     pub constraint_drift: f64,
     /// Largest change of the energy balance (J): kinetic + potential + dissipated - supplied.
     pub energy_error: f64,
+    /// Largest rise of the energy balance (J): energy that the integrator has created.
+    pub energy_created: f64,
     /// Largest sum of the energies (J), as the scale of `energy_error`.
     pub energy_scale: f64,
     /// Wall-clock time of the whole run (s).
@@ -72,6 +74,10 @@ pub struct PhaseReport {
     pub states: usize,
     /// Wall-clock time (s).
     pub wall_seconds: f64,
+    /// Method at the end of the phase: the one asked for, or the choice of [`Method::Auto`].
+    pub method: Method,
+    /// Why that method, if it was chosen.
+    pub reason: Option<String>,
     /// Steps, evaluations, factorizations.
     pub counts: Counts,
 }
@@ -110,22 +116,39 @@ impl Report {
     /// What makes the result doubtful or the run needlessly long: what the integrators noticed, and
     /// an energy balance that is off by more than a hundredth of the largest energy.
     pub fn warnings(&self) -> Vec<String> {
-        const DOUBTFUL: f64 = 0.01;
         let notice = |phase: &PhaseReport| {
             let notice = phase.counts.notice.as_ref()?;
             Some(format!("phase \"{}\": {notice}", phase.name))
         };
         let mut warnings: Vec<String> = self.phases.iter().filter_map(notice).collect();
-        if self.energy_error > DOUBTFUL * self.energy_scale {
-            let part = 100.0 * self.energy_error / self.energy_scale;
-            warnings.push(format!(
-                "the energy balance is off by {part:.1} % of the largest energy, so the motion may \
-                 be wrong: lower rtol, or choose another method"
-            ));
-        }
+        let doubt = self.creation(0.0).or_else(|| {
+            let part = self.energy_error / self.energy_scale;
+            (part > DOUBTFUL).then(|| {
+                format!("the energy balance is off by {:.1} % of the largest energy", 100.0 * part)
+            })
+        });
+        warnings.extend(doubt.map(|doubt| {
+            format!("{doubt}, so the motion may be wrong: lower rtol, or choose another method")
+        }));
         warnings
     }
+
+    /// What the integrator has created, if it is more than a hundredth of the largest energy, which
+    /// counts as `least` (J) at least.
+    pub(crate) fn creation(&self, least: f64) -> Option<String> {
+        let part = self.energy_created / self.energy_scale.max(least);
+        (part > DOUBTFUL).then(|| {
+            format!(
+                "the integrator created {:.1e} J, {:.1} % of the largest energy",
+                self.energy_created,
+                100.0 * part
+            )
+        })
+    }
 }
+
+/// Error of the energy balance, as part of the largest energy, from which a result is doubtful.
+const DOUBTFUL: f64 = 0.01;
 
 impl fmt::Display for Report {
     /// A table of the phases and the sums over them, then what is conserved and what is not.
@@ -161,6 +184,11 @@ impl fmt::Display for Report {
             "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
              {energy_error:.1e} of {energy_scale:.1e} J"
         )?;
+        for PhaseReport { name, method, reason, .. } in &self.phases {
+            if let Some(reason) = reason {
+                write!(f, "\nphase \"{name}\": {method}, as {reason}")?;
+            }
+        }
         self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
     }
 }
@@ -171,13 +199,27 @@ impl Trajectory {
     }
 
     pub(crate) fn push(&mut self, sample: Sample) {
-        let start = self.samples.first().map_or(sample.energy.balance(), |s| s.energy.balance());
-        let Energy { kinetic, strain, contact, springs, dissipated, supplied, .. } = sample.energy;
-        let report = &mut self.report;
-        report.energy_error = report.energy_error.max((sample.energy.balance() - start).abs());
+        self.watch(&sample.energy);
+        self.samples.push(sample);
+    }
+
+    /// Takes note of the energies of a state.
+    pub(crate) fn watch(&mut self, energy: &Energy) {
+        let start = self.samples.first().map_or(energy.balance(), |s| s.energy.balance());
+        let Energy { kinetic, strain, contact, springs, dissipated, supplied, .. } = energy;
+        let (report, change) = (&mut self.report, energy.balance() - start);
+        report.energy_error = report.energy_error.max(change.abs());
+        report.energy_created = report.energy_created.max(change);
         let sum = kinetic + strain + contact + springs + dissipated.abs() + supplied.abs();
         report.energy_scale = report.energy_scale.max(sum);
-        self.samples.push(sample);
+    }
+
+    /// Forgets the samples after the first `count`, and the energies seen since: what was noted
+    /// until then is in `report`.
+    pub(crate) fn go_back(&mut self, count: usize, [error, created, scale]: [f64; 3]) {
+        self.samples.truncate(count);
+        let report = &mut self.report;
+        (report.energy_error, report.energy_created, report.energy_scale) = (error, created, scale);
     }
 
     /// The last sample alone, with the same report.

@@ -24,8 +24,8 @@ use crate::trajectory::{PhaseReport, Report, Trajectory};
 /// | `factorizations` | factorizations of the Newton matrix |
 /// | `error_test_failures`, `convergence_failures` | steps repeated as their error was too large, Newton iterations that did not converge |
 /// | `wall_seconds` | wall-clock time of the whole run (s) |
-/// | `phases` | for each phase `name`, `end` (time reached, s), all of the above from `method` on, `last_step` (s) and `last_order` |
-/// | `energy_balance_error`, `energy_scale` | largest change of the energy balance and largest sum of the energies (J) |
+/// | `phases` | for each phase `name`, `end` (time reached, s), `reason` (why that method, or `null` if it was asked for), all of the above from `method` on, `last_step` (s) and `last_order` |
+/// | `energy_balance_error`, `energy_created`, `energy_scale` | largest change and largest rise of the energy balance, largest sum of the energies (J) |
 /// | `max_constraint_drift` | largest error of a constraint at the end of a step (m) |
 /// | `warnings` | what makes the result doubtful, in words |
 /// | `versions` | `pliant`, and the linked `sundials` and `suitesparse` (KLU) |
@@ -82,6 +82,7 @@ pub fn write_report(
             "wall_seconds": report.wall_seconds,
             "phases": phases,
             "energy_balance_error": report.energy_error,
+            "energy_created": report.energy_created,
             "energy_scale": report.energy_scale,
             "max_constraint_drift": report.constraint_drift,
             "warnings": report.warnings(),
@@ -91,11 +92,12 @@ pub fn write_report(
 }
 
 fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
-    let PhaseReport { name, end, states, wall_seconds, counts } = phase;
+    let PhaseReport { name, end, states, wall_seconds, method, reason, counts } = phase;
     json!({
         "name": name,
         "end": end,
-        "method": report.method.name(),
+        "method": method.name(),
+        "reason": reason,
         "rtol": report.rtol,
         "alpha": report.alpha,
         "states": states,

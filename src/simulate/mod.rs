@@ -1,27 +1,23 @@
 //! Running a scene: phase by phase, with restarts in between and samples along the way.
 
+mod auto;
 mod failure;
 mod progress;
+mod run;
 mod solver;
 mod stepper;
 
-use std::iter::Peekable;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
 pub use failure::{IntegrationFailure, Interrupted};
-use failure::{STANDING, into_error, standing_still, too_many_steps};
-use progress::Observer;
 pub use progress::Progress;
-use solver::Tolerances;
+use run::Run;
 pub use solver::{Method, Solver};
-use stepper::{Failed, Stepper};
 
-use crate::constraint::{Start, tell};
 use crate::error::{Error, positive};
-use crate::scene::{Forces, Phase, Scene};
-use crate::system::{ENERGIES, System};
-use crate::trajectory::{PhaseReport, Report, Sample, Trajectory};
+use crate::scene::Scene;
+use crate::trajectory::Trajectory;
 
 /// When the motion is sampled. The start and the end of each phase always are.
 ///
@@ -111,6 +107,20 @@ pub struct Counts {
     pub notice: Option<String>,
 }
 
+impl Counts {
+    /// Adds what a further part of the phase cost.
+    fn add(&mut self, further: Counts) {
+        self.steps += further.steps;
+        self.evaluations += further.evaluations;
+        self.jacobian_evaluations += further.jacobian_evaluations;
+        self.factorizations += further.factorizations;
+        self.error_test_failures += further.error_test_failures;
+        self.convergence_failures += further.convergence_failures;
+        (self.last_step, self.last_order) = (further.last_step, further.last_order);
+        self.notice = self.notice.take().or(further.notice);
+    }
+}
+
 impl Scene {
     /// Runs the scene, from rest in its natural shape if nothing else was said.
     ///
@@ -174,200 +184,6 @@ impl Scene {
         let forces = self.forces()?;
         sampling.validate(self.end())?;
         Run::new(self, solver, clock).all(forces, sampling, &mut observer)
-    }
-}
-
-/// A scene on its way.
-struct Run<'a> {
-    scene: &'a Scene,
-    solver: &'a Solver,
-    atol: Tolerances,
-    /// Started with the run.
-    clock: Instant,
-    time: f64,
-    /// (u, v, energies)
-    state: Vec<f64>,
-    /// Steps taken since t = 0.
-    steps: usize,
-    /// Steps in a row that did not move time ahead.
-    standing: usize,
-    trajectory: Trajectory,
-}
-
-impl<'a> Run<'a> {
-    fn new(scene: &'a Scene, solver: &'a Solver, clock: Instant) -> Self {
-        let report = Report {
-            method: solver.method,
-            rtol: solver.rtol,
-            alpha: solver.alpha,
-            ..Report::default()
-        };
-        Self {
-            scene,
-            solver,
-            atol: solver.tolerances(scene.body()),
-            clock,
-            time: 0.0,
-            state: [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat(),
-            steps: 0,
-            standing: 0,
-            trajectory: Trajectory::new(scene, report),
-        }
-    }
-
-    fn all(
-        mut self,
-        forces: Vec<Forces>,
-        sampling: &Sampling,
-        observer: Observer,
-    ) -> Result<Trajectory, Error> {
-        let n = self.scene.body().dofs();
-        let model = self.scene.model(&forces);
-        let mut rows = Vec::new();
-        for (number, (phase, forces)) in self.scene.phases().iter().zip(forces).enumerate() {
-            let mut u = self.state[..n].to_vec();
-            tell(&rows, self.time, &mut u);
-            let start = Start { time: self.time, u: &u };
-            let mut system = self.scene.system(&model, phase, forces, &start, self.solver.alpha)?;
-            rows = system.rows().to_vec();
-            if phase.projects_velocity {
-                system.project(self.time, &mut self.state[n..2 * n]);
-            }
-            if let Err((source, step)) = self.phase(number, phase, system, sampling, observer) {
-                return Err(self.failure(phase, source, step));
-            }
-        }
-        Ok(self.trajectory)
-    }
-
-    /// Integrates one phase to its end.
-    fn phase(
-        &mut self,
-        number: usize,
-        phase: &Phase,
-        mut system: System,
-        sampling: &Sampling,
-        observer: Observer,
-    ) -> Result<(), (Failed, f64)> {
-        let clock = Instant::now();
-        let end = phase.until;
-        if number == 0 {
-            let state = self.state.clone();
-            self.sample(number, &mut system, 0.0, &state).map_err(|source| (source, 0.0))?;
-        }
-        let mut times = sampling.within(self.time, end).into_iter().peekable();
-        let mut stepper =
-            Stepper::new(system, self.solver, &self.atol, self.time, end, &self.state)
-                .map_err(|source| (source, 0.0))?;
-        let mut sample = vec![0.0; stepper.size()];
-        let mut result = Ok(());
-        let before = self.steps;
-        while result.is_ok() && self.time < end {
-            let steps = self.steps - before;
-            result = match steps == self.solver.max_steps {
-                false => self
-                    .step(number, end, &mut stepper, &mut times, &mut sample)
-                    .and_then(|step| self.tell(number, step, stepper.last_order(), observer)),
-                true => Err(too_many_steps(steps, &stepper.counts())),
-            };
-        }
-        if result.is_err() && self.time > self.trajectory.last().time {
-            // the state that the last step led to, unless the equations have no meaning there
-            let state = self.state.clone();
-            let _ = self.sample(number, stepper.system_mut(), self.time, &state);
-        }
-        let counts = stepper.counts();
-        let step = counts.last_step;
-        let report = &mut self.trajectory.report;
-        report.wall_seconds = self.clock.elapsed().as_secs_f64();
-        report.states = stepper.size();
-        report.phases.push(PhaseReport {
-            name: phase.name.clone(),
-            end: self.time,
-            states: stepper.size(),
-            wall_seconds: clock.elapsed().as_secs_f64(),
-            counts,
-        });
-        result.map_err(|source| (source, step))
-    }
-
-    /// Takes one step, and the samples within it. Returns its size (s).
-    fn step(
-        &mut self,
-        number: usize,
-        end: f64,
-        stepper: &mut Stepper,
-        times: &mut Peekable<impl Iterator<Item = f64>>,
-        sample: &mut [f64],
-    ) -> Result<f64, Failed> {
-        let time = stepper.step(end)?;
-        self.standing = if time > self.time { 0 } else { self.standing + 1 };
-        if self.standing == STANDING {
-            return Err(standing_still(stepper.system().refusal()));
-        }
-        let n = self.scene.body().dofs();
-        let (before, after) = (&self.state[..n], &stepper.state()[..n]);
-        stepper.system().check_step(time, before, after).map_err(into_error)?;
-        while let Some(t) = times.next_if(|&t| t <= time) {
-            stepper.interpolate(t, sample)?;
-            self.sample(number, stepper.system_mut(), t, sample)?;
-        }
-        let step = time - self.time;
-        self.time = time;
-        self.steps += 1;
-        let length = self.state.len();
-        self.state.copy_from_slice(&stepper.state()[..length]);
-        let drift = stepper.system().drift(time, &self.state[..n]);
-        let worst = &mut self.trajectory.report.constraint_drift;
-        *worst = worst.max(drift);
-        Ok(step)
-    }
-
-    /// Tells how far the run has come.
-    fn tell(&self, phase: usize, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
-        let Self { time, steps, .. } = *self;
-        let name = &self.scene.phases()[phase].name;
-        let answer = observer(&Progress { time, phase, name, steps, step, order });
-        // the last step leaves nothing to be stopped
-        if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
-    }
-
-    /// Records `state` = (u, v, energies, ...) at `time`.
-    fn sample(
-        &mut self,
-        phase: usize,
-        system: &mut System,
-        time: f64,
-        state: &[f64],
-    ) -> Result<(), Failed> {
-        let n = system.dofs();
-        let (u, v) = (&state[..n], &state[n..2 * n]);
-        let multipliers = system.multipliers(time, u, v).map_err(into_error)?.to_vec();
-        let mut energy = system.energy(time, u, v);
-        energy.dissipated = state[2 * n];
-        energy.supplied = state[2 * n + 1];
-        self.trajectory.push(Sample {
-            time,
-            phase,
-            u: u.to_vec(),
-            v: v.to_vec(),
-            multipliers,
-            energy,
-            constraint_drift: system.drift(time, u),
-        });
-        Ok(())
-    }
-
-    fn failure(self, phase: &Phase, source: Failed, step: f64) -> Error {
-        Box::new(IntegrationFailure {
-            phase: phase.name.clone(),
-            method: self.solver.method,
-            time: self.time,
-            step,
-            source,
-            trajectory: self.trajectory,
-        })
-        .into()
     }
 }
 

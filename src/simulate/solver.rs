@@ -10,6 +10,10 @@ use crate::error::{Error, positive};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Method {
+    /// Chooses one of the others for each phase, by what the phase asks for; looks at the energy
+    /// balance while it runs, and goes on with another method if need be. The report tells what
+    /// was chosen and why.
+    Auto,
     /// CVODE, backward differentiation formulas of order 1 to 5: for stiff motion.
     #[default]
     CvodeBdf,
@@ -26,12 +30,13 @@ pub enum Method {
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 5] =
-        [Self::CvodeBdf, Self::CvodeAdams, Self::Ida, Self::IdaKlu, Self::Rk];
+    pub const ALL: [Self; 6] =
+        [Self::Auto, Self::CvodeBdf, Self::CvodeAdams, Self::Ida, Self::IdaKlu, Self::Rk];
 
-    /// Name of the method: `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`, `rk`.
+    /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`, `rk`.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::CvodeBdf => "cvode-bdf",
             Self::CvodeAdams => "cvode-adams",
             Self::Ida => "ida",

@@ -33,7 +33,10 @@ impl Stepper {
         tolerances.resize(2 * n, atol.velocity);
         tolerances.resize(2 * n + ENERGIES, atol.energy);
         match solver.method {
-            Method::CvodeBdf => cvode(system, solver, Multistep::Bdf, tolerances, t, end, state),
+            // a plan names a method of its own
+            Method::Auto | Method::CvodeBdf => {
+                cvode(system, solver, Multistep::Bdf, tolerances, t, end, state)
+            }
             Method::CvodeAdams => {
                 cvode(system, solver, Multistep::Adams, tolerances, t, end, state)
             }
@@ -109,6 +112,15 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.system_mut(),
             Self::Ida(ida) => &mut ida.system_mut().system,
             Self::Rk(rk) => rk.system_mut(),
+        }
+    }
+
+    /// The equations, back from the integrator.
+    pub(super) fn into_system(self) -> System {
+        match self {
+            Self::Cvode(cvode) => cvode.into_system(),
+            Self::Ida(ida) => ida.into_system().system,
+            Self::Rk(rk) => rk.into_system(),
         }
     }
 

@@ -148,6 +148,11 @@ impl System {
         &self.rows
     }
 
+    /// Starts the counts below from 0.
+    pub(crate) fn forget_counts(&mut self) {
+        self.newton.forget_counts();
+    }
+
     /// Number of factorizations of the Newton matrix so far.
     pub(crate) fn factorizations(&self) -> usize {
         self.newton.factorizations()

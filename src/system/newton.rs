@@ -98,6 +98,11 @@ impl Newton {
         }
     }
 
+    /// Starts all counts from 0.
+    pub(super) fn forget_counts(&mut self) {
+        (self.tangent_evaluations, self.factorizations, self.indefinite) = (0, 0, 0);
+    }
+
     pub(super) fn factorizations(&self) -> usize {
         self.factorizations
     }

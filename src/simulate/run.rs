@@ -1,0 +1,335 @@
+//! A scene on its way: phases, the legs they consist of, and samples.
+
+use std::time::Instant;
+
+use super::auto::Plan;
+use super::failure::{
+    IntegrationFailure, Interrupted, STANDING, into_error, standing_still, too_many_steps,
+};
+use super::progress::{Observer, Progress};
+use super::solver::Tolerances;
+use super::stepper::{Failed, Stepper};
+use super::{Counts, Sampling, Solver};
+use crate::constraint::{Start, tell};
+use crate::error::Error;
+use crate::scene::{Forces, Phase, Scene};
+use crate::system::{ENERGIES, System};
+use crate::trajectory::{PhaseReport, Report, Sample, Trajectory};
+
+/// A scene on its way.
+pub(super) struct Run<'a> {
+    scene: &'a Scene,
+    solver: &'a Solver,
+    atol: Tolerances,
+    /// Started with the run.
+    clock: Instant,
+    time: f64,
+    /// (u, v, energies)
+    state: Vec<f64>,
+    /// Steps taken since t = 0.
+    steps: usize,
+    /// Steps in a row that did not move time ahead.
+    standing: usize,
+    trajectory: Trajectory,
+    /// Where the energy balance last was in order.
+    good: Checkpoint,
+    /// Energies below this (J) are too small to be watched.
+    least_energy: f64,
+}
+
+/// A state to go back to.
+#[derive(Default)]
+struct Checkpoint {
+    time: f64,
+    state: Vec<f64>,
+    /// Sampling times of the phase, and samples of the run, that have been taken.
+    taken: usize,
+    samples: usize,
+    /// Error, rise and scale of the energy balance (J).
+    energies: [f64; 3],
+}
+
+/// How a leg ended.
+enum Ending {
+    /// At its end.
+    Reached,
+    /// The energy balance tells that the method cannot be trusted.
+    Doubtful(String),
+}
+
+/// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
+const WATCH: usize = 32;
+
+/// A phase on its way.
+struct Leg<'a> {
+    number: usize,
+    /// Sampling times of the phase, and the number of those that have been taken.
+    times: &'a [f64],
+    taken: usize,
+    /// End of the leg (s): of the phase, or where a force breaks off.
+    stop: f64,
+    /// Steps that the phase may still take.
+    steps: usize,
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn new(scene: &'a Scene, solver: &'a Solver, clock: Instant) -> Self {
+        let report = Report {
+            method: solver.method,
+            rtol: solver.rtol,
+            alpha: solver.alpha,
+            ..Report::default()
+        };
+        Self {
+            scene,
+            solver,
+            atol: solver.tolerances(scene.body()),
+            clock,
+            time: 0.0,
+            state: [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat(),
+            steps: 0,
+            standing: 0,
+            trajectory: Trajectory::new(scene, report),
+            good: Checkpoint::default(),
+            // that of strains of a thousandth
+            least_energy: 1e-6 * scene.body().material().young * scene.body().volume(),
+        }
+    }
+
+    pub(super) fn all(
+        mut self,
+        forces: Vec<Forces>,
+        sampling: &Sampling,
+        observer: Observer,
+    ) -> Result<Trajectory, Error> {
+        let n = self.scene.body().dofs();
+        let model = self.scene.model(&forces);
+        let mut rows = Vec::new();
+        for (number, (phase, forces)) in self.scene.phases().iter().zip(forces).enumerate() {
+            let mut u = self.state[..n].to_vec();
+            tell(&rows, self.time, &mut u);
+            let start = Start { time: self.time, u: &u };
+            let mut system = self.scene.system(&model, phase, forces, &start, self.solver.alpha)?;
+            rows = system.rows().to_vec();
+            if phase.projects_velocity {
+                self.project(&mut system);
+            }
+            if let Err((source, step)) = self.phase(number, phase, system, sampling, observer) {
+                return Err(self.failure(phase, source, step));
+            }
+        }
+        Ok(self.trajectory)
+    }
+
+    /// Projects the velocities on those that the constraints allow. What that takes from the kinetic
+    /// energy, or gives to it, is supplied by the constraints.
+    fn project(&mut self, system: &mut System) {
+        let n = system.dofs();
+        let (u, rest) = self.state.split_at_mut(n);
+        let (v, energies) = rest.split_at_mut(n);
+        let before = system.energy(self.time, u, v).kinetic;
+        system.project(self.time, v);
+        energies[1] += system.energy(self.time, u, v).kinetic - before;
+    }
+
+    /// Integrates one phase to its end.
+    fn phase(
+        &mut self,
+        number: usize,
+        phase: &Phase,
+        mut system: System,
+        sampling: &Sampling,
+        observer: Observer,
+    ) -> Result<(), (Failed, f64)> {
+        let clock = Instant::now();
+        if number == 0 {
+            let state = self.state.clone();
+            self.sample(number, &mut system, 0.0, &state).map_err(|source| (source, 0.0))?;
+        }
+        let times = sampling.within(self.time, phase.until);
+        let mut plan = Plan::new(self.solver, &mut system, self.time, &self.state);
+        let mut leg =
+            Leg { number, times: &times, taken: 0, stop: 0.0, steps: self.solver.max_steps };
+        let (mut counts, mut states) = (Counts::default(), 0);
+        let mut stops = self.scene.breaks(number).into_iter().chain([phase.until]);
+        self.remember(&leg);
+        let mut result = Ok(Ending::Reached);
+        while let Ok(ending) = &result {
+            match ending {
+                Ending::Reached => match stops.next() {
+                    Some(stop) => leg.stop = stop,
+                    None => break,
+                },
+                Ending::Doubtful(trouble) => match plan.instead(trouble) {
+                    Some(other) => {
+                        plan = other;
+                        self.go_back(&mut leg);
+                    }
+                    None => break,
+                },
+            }
+            system.forget_counts();
+            let stepper =
+                Stepper::new(system, &plan.solver, &self.atol, self.time, leg.stop, &self.state);
+            let mut stepper = stepper.map_err(|source| (source, 0.0))?;
+            result = self.leg(&mut leg, &plan, &mut stepper, observer);
+            counts.add(stepper.counts());
+            states = stepper.size();
+            system = stepper.into_system();
+        }
+        if result.is_err() && self.time > self.trajectory.last().time {
+            // the state that the last step led to, unless the equations have no meaning there
+            let state = self.state.clone();
+            let _ = self.sample(number, &mut system, self.time, &state);
+        }
+        let step = counts.last_step;
+        let report = &mut self.trajectory.report;
+        report.wall_seconds = self.clock.elapsed().as_secs_f64();
+        report.states = states;
+        report.phases.push(PhaseReport {
+            name: phase.name.clone(),
+            end: self.time,
+            states,
+            wall_seconds: clock.elapsed().as_secs_f64(),
+            method: plan.solver.method,
+            reason: plan.reason,
+            counts,
+        });
+        result.map(|_| ()).map_err(|source| (source, step))
+    }
+
+    /// Integrates to the end of a leg, unless the energy balance casts doubt on a method that can be
+    /// exchanged.
+    fn leg(
+        &mut self,
+        leg: &mut Leg,
+        plan: &Plan,
+        stepper: &mut Stepper,
+        observer: Observer,
+    ) -> Result<Ending, Failed> {
+        let mut sample = vec![0.0; stepper.size()];
+        while self.time < leg.stop {
+            if leg.steps == 0 {
+                return Err(too_many_steps(self.solver.max_steps, &stepper.counts()));
+            }
+            leg.steps -= 1;
+            let step = self.step(leg, stepper, &mut sample)?;
+            if self.steps.is_multiple_of(WATCH) || self.time >= leg.stop {
+                self.watch(stepper.system_mut());
+                if plan.is_on_trial() {
+                    match self.trajectory.report.creation(self.least_energy) {
+                        Some(trouble) => return Ok(Ending::Doubtful(trouble)),
+                        None => self.remember(leg),
+                    }
+                }
+            }
+            self.tell(leg.number, step, stepper.last_order(), observer)?;
+        }
+        Ok(Ending::Reached)
+    }
+
+    /// Keeps the present state to go back to.
+    fn remember(&mut self, leg: &Leg) {
+        let Report { energy_error, energy_created, energy_scale, .. } = self.trajectory.report;
+        let good = &mut self.good;
+        (good.time, good.taken, good.samples) =
+            (self.time, leg.taken, self.trajectory.samples().len());
+        good.energies = [energy_error, energy_created, energy_scale];
+        good.state.clone_from(&self.state);
+    }
+
+    /// Goes back to the state last kept.
+    fn go_back(&mut self, leg: &mut Leg) {
+        let Checkpoint { time, ref state, taken, samples, energies } = self.good;
+        (self.time, leg.taken, self.standing) = (time, taken, 0);
+        self.state.clone_from(state);
+        self.trajectory.go_back(samples, energies);
+    }
+
+    /// Looks at the energy balance.
+    fn watch(&mut self, system: &mut System) {
+        let n = system.dofs();
+        let (u, v) = (&self.state[..n], &self.state[n..2 * n]);
+        let mut energy = system.energy(self.time, u, v);
+        (energy.dissipated, energy.supplied) = (self.state[2 * n], self.state[2 * n + 1]);
+        self.trajectory.watch(&energy);
+    }
+
+    /// Takes one step, and the samples within it. Returns its size (s).
+    fn step(
+        &mut self,
+        leg: &mut Leg,
+        stepper: &mut Stepper,
+        sample: &mut [f64],
+    ) -> Result<f64, Failed> {
+        let time = stepper.step(leg.stop)?;
+        self.standing = if time > self.time { 0 } else { self.standing + 1 };
+        if self.standing == STANDING {
+            return Err(standing_still(stepper.system().refusal()));
+        }
+        let n = self.scene.body().dofs();
+        let (before, after) = (&self.state[..n], &stepper.state()[..n]);
+        stepper.system().check_step(time, before, after).map_err(into_error)?;
+        while let Some(&t) = leg.times.get(leg.taken).filter(|&&t| t <= time) {
+            leg.taken += 1;
+            stepper.interpolate(t, sample)?;
+            self.sample(leg.number, stepper.system_mut(), t, sample)?;
+        }
+        let step = time - self.time;
+        self.time = time;
+        self.steps += 1;
+        let length = self.state.len();
+        self.state.copy_from_slice(&stepper.state()[..length]);
+        let drift = stepper.system().drift(time, &self.state[..n]);
+        let worst = &mut self.trajectory.report.constraint_drift;
+        *worst = worst.max(drift);
+        Ok(step)
+    }
+
+    /// Tells how far the run has come.
+    fn tell(&self, phase: usize, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
+        let Self { time, steps, .. } = *self;
+        let name = &self.scene.phases()[phase].name;
+        let answer = observer(&Progress { time, phase, name, steps, step, order });
+        // the last step leaves nothing to be stopped
+        if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
+    }
+
+    /// Records `state` = (u, v, energies, ...) at `time`.
+    fn sample(
+        &mut self,
+        phase: usize,
+        system: &mut System,
+        time: f64,
+        state: &[f64],
+    ) -> Result<(), Failed> {
+        let n = system.dofs();
+        let (u, v) = (&state[..n], &state[n..2 * n]);
+        let multipliers = system.multipliers(time, u, v).map_err(into_error)?.to_vec();
+        let mut energy = system.energy(time, u, v);
+        energy.dissipated = state[2 * n];
+        energy.supplied = state[2 * n + 1];
+        self.trajectory.push(Sample {
+            time,
+            phase,
+            u: u.to_vec(),
+            v: v.to_vec(),
+            multipliers,
+            energy,
+            constraint_drift: system.drift(time, u),
+        });
+        Ok(())
+    }
+
+    fn failure(self, phase: &Phase, source: Failed, step: f64) -> Error {
+        Box::new(IntegrationFailure {
+            phase: phase.name.clone(),
+            method: self.solver.method,
+            time: self.time,
+            step,
+            source,
+            trajectory: self.trajectory,
+        })
+        .into()
+    }
+}
