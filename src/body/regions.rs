@@ -1,5 +1,7 @@
 //! Regions: parts of a body with a material of their own.
 
+use std::fmt;
+
 use crate::error::Error;
 use crate::material::{Lame, Material, Plane};
 use crate::mesh::Mesh;
@@ -16,6 +18,15 @@ pub enum CellSelection {
         /// Upper corner.
         max: Vec<f64>,
     },
+}
+
+impl fmt::Display for CellSelection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Numbers(numbers) => write!(f, "cells {numbers:?}"),
+            Self::Box { min, max } => write!(f, "box [{min:?}, {max:?}]"),
+        }
+    }
 }
 
 impl CellSelection {
@@ -55,7 +66,7 @@ impl CellSelection {
         };
         if cells.is_empty() {
             let mend = "it contains no cell of the mesh";
-            return Err(Error::input("region", format!("{self:?}"), mend));
+            return Err(Error::input("region", self, mend));
         }
         Ok(cells)
     }

@@ -45,10 +45,7 @@ impl Table {
         let input_times = format!("times of {input}");
         finite(&input_times, times)?;
         if times.is_empty() || values.len() != times.len() {
-            let mend = format!(
-                "a table has one value at each time, and one time at least; there are {} values",
-                values.len()
-            );
+            let mend = format!("one value is needed for each time, there are {}", values.len());
             return Err(Error::input(input_times, format!("{times:?}"), mend));
         }
         if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {

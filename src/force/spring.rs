@@ -109,7 +109,7 @@ impl Spring {
             [node] => Ok(node),
             ref nodes => Err(Error::input(
                 input(which),
-                format!("{selection:?}"),
+                selection,
                 format!("it selects {} nodes: an end is one node", nodes.len()),
             )),
         };

@@ -1,5 +1,7 @@
 //! Selections: how nodes are named.
 
+use std::fmt;
+
 use super::Mesh;
 use crate::error::Error;
 
@@ -21,6 +23,16 @@ pub enum Selection {
         /// Upper corner.
         max: Vec<f64>,
     },
+}
+
+impl fmt::Display for Selection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Set(name) => write!(f, "\"{name}\""),
+            Self::Numbers(numbers) => write!(f, "{numbers:?}"),
+            Self::Box { min, max } => write!(f, "box [{min:?}, {max:?}]"),
+        }
+    }
 }
 
 impl From<&str> for Selection {
@@ -59,7 +71,7 @@ impl Mesh {
         if nodes.is_empty() {
             return Err(Error::input(
                 "node selection",
-                format!("{selection:?}"),
+                selection,
                 "it contains no node of the mesh; name at least one",
             ));
         }

@@ -59,7 +59,7 @@ fn material(value: &Value, base: Option<Material>) -> Result<Material, Error> {
     let table = value.table(&["density", "young", "poisson", "viscosity"])?;
     let number = |key: &str, meaning: &'static str, base: Option<f64>| {
         let given = table.optional(key, meaning, Value::number)?;
-        given.or(base).ok_or_else(|| table.missing(key, meaning))
+        given.or(base).ok_or_else(|| table.missing(key, format!("expected {meaning}")))
     };
     let material = Material {
         density: number("density", "the density (kg/m^3)", base.map(|m| m.density))?,

@@ -15,27 +15,22 @@ enum Kind {
     Gmsh,
 }
 
-const KINDS: [(&str, Kind); 6] = [
-    ("bar", Kind::Bar),
-    ("rectangle", Kind::Rectangle),
-    ("ring", Kind::Ring),
-    ("half-ring", Kind::HalfRing),
-    ("cuboid", Kind::Cuboid),
-    ("gmsh", Kind::Gmsh),
-];
+const GRID: &[&str] = &["size", "nodes", "cells"];
+const ROUND: &[&str] = &["inner", "outer", "nodes", "cells"];
 
-const ALL_KEYS: &[&str] =
-    &["kind", "length", "size", "inner", "outer", "nodes", "cells", "file", "origin"];
+/// The words for them, and their keys.
+const KINDS: [(&str, Kind, &[&str]); 6] = [
+    ("bar", Kind::Bar, &["length", "nodes"]),
+    ("rectangle", Kind::Rectangle, GRID),
+    ("ring", Kind::Ring, ROUND),
+    ("half-ring", Kind::HalfRing, ROUND),
+    ("cuboid", Kind::Cuboid, GRID),
+    ("gmsh", Kind::Gmsh, &["file"]),
+];
 
 /// The mesh that `value` describes, in a space of `dimension` (default: its own).
 pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Error> {
-    let kind = value.table(ALL_KEYS)?.required("kind", "the kind of mesh", |v| v.word(&KINDS))?;
-    let table = value.table(match kind {
-        Kind::Bar => &["kind", "length", "nodes", "origin"],
-        Kind::Rectangle | Kind::Cuboid => &["kind", "size", "nodes", "cells", "origin"],
-        Kind::Ring | Kind::HalfRing => &["kind", "inner", "outer", "nodes", "cells", "origin"],
-        Kind::Gmsh => &["kind", "file", "origin"],
-    })?;
+    let (kind, table) = value.table_of_kind(&KINDS, &["origin"])?;
     let mesh = generate(kind, &table).map_err(|error| table.blame(error))?;
     let mesh = match dimension {
         Some(dimension) => placed(mesh, dimension)?,
@@ -103,8 +98,8 @@ fn placed(mesh: Mesh, dimension: &Value) -> Result<Mesh, Error> {
         (1, 3) => mesh.mapped(|x| [x[0], 0.0, 0.0]),
         (2, 3) => mesh.mapped(|x| [x[0], x[1], 0.0]),
         (own, _) => {
-            let expected = if own == 3 { "3".into() } else { format!("a number from {own} to 3") };
-            Err(dimension.unexpected(format!("{expected} for this mesh")))
+            let allowed = ["1, 2 or 3", "2 or 3", "3"][own - 1];
+            Err(dimension.unexpected(format!("{allowed} for this mesh")))
         }
     }
 }

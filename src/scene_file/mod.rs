@@ -1,6 +1,67 @@
-//! Scene files: a scene, how it is integrated and what is written, in TOML.
+//! Scene files: a scene, how it is integrated and what is written, in TOML. SI units; the words are
+//! those of the API.
 //!
-//! The words are those of the API, units are SI.
+//! ```
+//! use std::path::Path;
+//! use pliant::SceneFile;
+//!
+//! let text = r#"
+//!     title = "A rubber square falls on the floor"
+//!     dimension = 2
+//!     gravity = [0.0, -9.8]
+//!
+//!     [body]
+//!     mesh = { kind = "rectangle", size = [0.1, 0.1], nodes = [4, 4], cells = "crossed", origin = [0.0, 0.02] }
+//!     thickness = 0.01
+//!     strain = "green"
+//!     material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }
+//!
+//!     [[obstacle]]
+//!     name = "floor"
+//!     kind = "half-plane"
+//!     point = [0.0, 0.0]
+//!     normal = [0.0, 1.0]
+//!     stiffness_density = 1.0e7
+//!
+//!     [[phase]]
+//!     until = 0.2
+//! "#;
+//! let file = SceneFile::parse(text, Path::new("fall.toml"))?;
+//! let trajectory = file.scene.simulate(&file.solver, &file.output.sampling())?;
+//! assert_eq!(trajectory.last().time, 0.2);
+//! # Ok::<(), pliant::Error>(())
+//! ```
+//!
+//! | table | keys |
+//! | --- | --- |
+//! | top | `title`; `dimension`: 1, 2 or 3 (default: that of the mesh; in a higher one, bars are strings and surfaces membranes); `gravity` (m/s^2) |
+//! | `[body]` | `mesh`; `thickness` (m) in 2D, `area` (m^2) in 1D; `strain`: `"cauchy"` (default), `"green"` or `"auto"`; `viscous`: `"natural"` or `"objective"` (defaults: with Cauchy, with Green strain); `plane`: `"strain"` (default) or `"stress"`; `material` = { `density` (kg/m^3), `young` (Pa), `poisson`, `viscosity` (Pa s) } |
+//! | `mesh` | `kind`, and for `"bar"` `length`, `nodes`; for `"rectangle"` and `"cuboid"` `size`, `nodes`, `cells`; for `"ring"` and `"half-ring"` `inner`, `outer`, `nodes` = [around, radial], `cells`; for `"gmsh"` `file`. For all: `origin` (m), the lower corner, or the centre of a ring |
+//! | `cells` | `"triangles"`, `"crossed"`, `"rectangles"`, `"triangles6"` ([`Cells`](crate::Cells)); `"tetrahedra"`, `"hexahedra"`, `"tetrahedra10"` ([`SolidCells`](crate::SolidCells)) |
+//! | `[[body.region]]` | `name`; `box` (cells whose centroid lies in it); `material`: the keys that differ |
+//! | `[[point]]` | `name`, `position` (m), `mass` (kg): a point mass, whose name is a node set |
+//! | `[[spring]]` | `name`; `ends`: two selections of one node each; `stiffness` (N/m), `length` (m), `damping` (N s/m) |
+//! | `[[chamber]]` | `name`; `nodes`; `thickness` (m; default: that of the body) |
+//! | `[[obstacle]]` | `name`; `kind`: `"half-plane"` with `point`, `normal`, `"disc"` with `centre`, `radius`, `cavity`, `"box"` with `min`, `max`, or `"capsule"` with `from`, `to`, `radius`; `stiffness` (N/m per node) or `stiffness_density` (N/m^3); `damping`, `friction`; `adhesion` (default true); `velocity` (m/s) |
+//! | `[[phase]]` | `name`; `until` (s); `contact`: `true` (default), `false` or names of obstacles; `project_velocity` (default false); and the lists below |
+//! | `hold` | { `nodes`, `axes` } |
+//! | `move` | { `nodes`, `axes`, `velocity` (m/s) } |
+//! | `path` | { `nodes`, `axes`, `times` (s), `displacements` (m) }: [`Phase::path`](crate::Phase::path) |
+//! | `load` | { `nodes`, `force` (N on each) }, { `nodes`, `total` (N on all together) } or { `nodes`, `times` (s), `forces` (N on each) } |
+//! | `pressure` | { `chamber`, `value` (Pa) } or { `chamber`, `times` (s), `values` (Pa) } |
+//! | `actuate` | { `springs`, `force` (N) } or { `springs`, `times` (s), `forces` (N) } |
+//! | `[solver]` | as [`Solver`]; `contact_events`: `"step-over"` or `"locate"` |
+//! | `[output]` | as [`OutputRequest`] |
+//!
+//! - **Nodes** are the name of a set, a number (from 1) or a list of them, or { `box` = [min, max] }.
+//! - **Axes** are `"x"`, `"y"`, `"z"` or a list of them; without them all are meant. Numbers along axes
+//!   (`velocity`, each of `displacements`) are one per named axis, for one axis a number alone; or one
+//!   per dimension, 0 along the axes that are not named.
+//! - **Paths** run smoothly through their points and begin and end at rest; tables of loads, pressures
+//!   and forces run along straight lines. Before and after, all of them are constant.
+//! - **`strain = "auto"`** is Green strain: small strain takes rotation for swelling, and Green strain,
+//!   which does not, costs little more.
+//! - Where a list of tables is expected, a table alone will do.
 
 mod body;
 mod mesh;
@@ -126,13 +187,18 @@ impl SceneFile {
         let source = Source { path, text };
         let document = DeTable::parse(text).map_err(|error| {
             let at = error.span().unwrap_or(0..0);
-            source.error(&at, "", error.message())
+            let line = source.line(at.start);
+            let written = text.lines().nth(line - 1).unwrap_or_default().trim();
+            source.error(&at, "", format!("this is not TOML ({}): {written}", error.message()))
         })?;
         let (at, entries) = (document.span(), document.get_ref());
         let top = Table::new(&source, String::new(), at, entries, TOP)?;
         convert(&top)
     }
 }
+
+/// Adds what a table says to a scene.
+type Add = fn(Scene, &Value) -> Result<Scene, Error>;
 
 fn convert(top: &Table) -> Result<SceneFile, Error> {
     let title = top.optional("title", "the title", Value::string)?.unwrap_or_default();
@@ -146,7 +212,7 @@ fn convert(top: &Table) -> Result<SceneFile, Error> {
         let gravity = gravity.vector(scene.body().dimension())?;
         scene = scene.gravity(gravity);
     }
-    let parts: [(&str, &str, fn(Scene, &Value) -> Result<Scene, Error>); 4] = [
+    let parts: [(&str, &str, Add); 4] = [
         ("spring", "springs, [[spring]]", surroundings::add_spring),
         ("chamber", "chambers, [[chamber]]", surroundings::add_chamber),
         ("obstacle", "obstacles, [[obstacle]]", surroundings::add_obstacle),
@@ -158,7 +224,7 @@ fn convert(top: &Table) -> Result<SceneFile, Error> {
         }
     }
     if scene.phases().is_empty() {
-        return Err(top.missing("phase", "a scene needs one phase at least, [[phase]]"));
+        return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
     }
     let solver = top.optional("solver", "the table [solver]", settings::solver)?;
     let output = top.optional("output", "the table [output]", |value| {

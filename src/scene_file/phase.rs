@@ -4,7 +4,7 @@ use toml::de::DeValue;
 
 use super::selection::selection;
 use super::table::Table;
-use super::value::Value;
+use super::value::{Value, number_of};
 use crate::constraint::Axis;
 use crate::error::Error;
 use crate::mesh::Selection;
@@ -48,7 +48,7 @@ pub(super) fn add_phase(scene: Scene, value: &Value) -> Result<Scene, Error> {
     if let Some(name) = table.optional("name", "the name of the phase", Value::string)? {
         phase = phase.named(name);
     }
-    if let Some(value) = table.get("contact", "true, false, or the names of obstacles") {
+    if let Some(value) = table.get("contact", "the obstacles that act") {
         phase = contact(phase, &value, &scene)?;
     }
     for (key, meaning, keys, add) in PARTS {
@@ -100,7 +100,7 @@ fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     };
     let times = table.required("times", "times, ascending (s)", Value::numbers)?;
     let points = table.required("displacements", "displacements at these times (m)", |value| {
-        value.list()?.iter().map(|point| along(point, &axes, scene)).collect::<Result<Vec<_>, _>>()
+        value.list_of("points, one per time", |point| along(point, &axes, scene))
     })?;
     let axes = axes.into_iter().enumerate();
     Ok(axes.fold(phase, |phase, (k, axis)| {
@@ -117,15 +117,15 @@ fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let times = table.optional("times", "times, ascending (s)", Value::numbers)?;
     let forces =
         table.optional("forces", "the force on each node at these times (N)", |value| {
-            value.list()?.iter().map(vector).collect::<Result<Vec<_>, _>>()
+            value.list_of("forces, one per time", vector)
         })?;
     match (force, total, times, forces) {
         (Some(force), None, None, None) => Ok(phase.load(nodes, force)),
         (None, Some(total), None, None) => Ok(phase.load_total(nodes, total)),
         (None, None, Some(times), Some(forces)) => Ok(phase.load_table(nodes, times, forces)),
         _ => Err(table.error(
-            "expected one of force (N, on each node), total (N, on all nodes together), and times \
-             (s) with forces (N, on each node)",
+            "expected either force (N, on each node), or total (N, on all nodes together), or times \
+             (s) and forces (N, on each node)",
         )),
     }
 }
@@ -155,7 +155,8 @@ fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
     match value.value {
         DeValue::Boolean(true) => Ok(phase),
         DeValue::Boolean(false) => Ok(phase.without_contact()),
-        _ => Ok(phase.contact_with(names(value, &known)?)),
+        DeValue::String(_) | DeValue::Array(_) => Ok(phase.contact_with(names(value, &known)?)),
+        _ => Err(value.unexpected("true, false, or a list of names")),
     }
 }
 
@@ -171,22 +172,21 @@ fn course(
     one: (&str, &'static str),
     many: (&str, &'static str),
 ) -> Result<Course, Error> {
-    let constant = table.optional(one.0, one.1, Value::number)?;
+    let constant = table.optional(one.0, one.1, Value::finite)?;
     let times = table.optional("times", "times, ascending (s)", Value::numbers)?;
     let values = table.optional(many.0, many.1, Value::numbers)?;
     match (constant, times, values) {
         (Some(constant), None, None) => Ok(Course::Constant(constant)),
         (None, Some(times), Some(values)) => Ok(Course::Table(times, values)),
         _ => Err(table.error(format!(
-            "expected either {}, {}, or times (s) with {}, {}",
+            "expected either {}, {}, or times (s) and {}, {}",
             one.0, one.1, many.0, many.1
         ))),
     }
 }
 
 fn nodes(table: &Table, scene: &Scene) -> Result<Selection, Error> {
-    let meaning = "a set name, node numbers, or { box = [[..], [..]] }";
-    table.required("nodes", meaning, |value| selection(value, scene.body().mesh()))
+    table.required("nodes", "nodes", |value| selection(value, scene.body().mesh()))
 }
 
 /// The named axes; `None` stands for all.
@@ -203,7 +203,7 @@ fn axes(table: &Table, scene: &Scene) -> Result<Option<Vec<Axis>>, Error> {
 fn along(value: &Value, axes: &[Axis], scene: &Scene) -> Result<Vec<f64>, Error> {
     let dimension = scene.body().dimension();
     let numbers = value.one_or_more()?;
-    let numbers = numbers.iter().map(Value::number).collect::<Result<Vec<_>, Error>>()?;
+    let numbers = numbers.iter().map(Value::finite).collect::<Result<Vec<_>, Error>>()?;
     if numbers.len() == axes.len() {
         return Ok(numbers);
     }
@@ -211,7 +211,7 @@ fn along(value: &Value, axes: &[Axis], scene: &Scene) -> Result<Vec<f64>, Error>
     if numbers.len() == dimension && (0..dimension).all(|i| numbers[i] == 0.0 || !is_free(i)) {
         return Ok(axes.iter().map(|axis| numbers[axis.index()]).collect());
     }
-    Err(value.unexpected(format!("{} number(s), one per named axis", axes.len())))
+    Err(value.unexpected(format!("{}, one per named axis", number_of(axes.len(), "number"))))
 }
 
 fn named(value: &Value, known: &[&str]) -> Result<String, Error> {

@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use super::value::Value;
+use super::value::{Value, number_of};
 use crate::error::Error;
 use crate::mesh::{Mesh, Selection};
 
@@ -27,7 +27,7 @@ pub(super) fn selection(value: &Value, mesh: &Mesh) -> Result<Selection, Error> 
             Selection::Box { min, max }
         }
         _ => {
-            return Err(value.unexpected("nodes"));
+            return Err(value.unexpected("a set name, node numbers, or { box = [[..], [..]] }"));
         }
     };
     match mesh.select(&selection) {
@@ -49,14 +49,17 @@ pub(super) const BOX: &str = "the lower and the upper corner (m)";
 
 /// The two corners of a box.
 pub(super) fn corners(value: &Value, mesh: &Mesh) -> Result<[Vec<f64>; 2], Error> {
-    let corners = value.list()?;
-    let corners = corners.iter().map(Value::numbers).collect::<Result<Vec<_>, Error>>()?;
+    let corners =
+        value.list_of("two corners", |corner| corner.list_of("numbers", Value::number))?;
     let dimension = mesh.dimension();
     let fits = |corner: &Vec<f64>| {
         corner.len() == dimension && !corner.iter().any(|number| number.is_nan())
     };
     match <[Vec<f64>; 2]>::try_from(corners) {
         Ok(corners) if corners.iter().all(fits) => Ok(corners),
-        _ => Err(value.unexpected(format!("two corners of {dimension} number(s) each"))),
+        _ => {
+            let numbers = number_of(dimension, "number");
+            Err(value.unexpected(format!("[min, max], two corners of {numbers} each")))
+        }
     }
 }

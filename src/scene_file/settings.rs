@@ -3,7 +3,7 @@
 use super::selection::selection;
 use super::value::Value;
 use super::{Format, OutputRequest};
-use crate::error::Error;
+use crate::error::{Error, positive};
 use crate::mesh::Mesh;
 use crate::simulate::{Method, Solver};
 
@@ -52,10 +52,10 @@ fn method(value: &Value) -> Result<Method, Error> {
 
 pub(super) fn output(value: &Value, mesh: &Mesh) -> Result<OutputRequest, Error> {
     let table = value.table(&["step", "track", "formats"])?;
-    let step = table.optional("step", "the time between samples (s)", |value| {
-        let step = value.number()?;
-        crate::error::positive("step", step, "s").map_err(|error| value.error(error))
-    })?;
+    let step = table.optional("step", "the time between samples (s)", Value::number)?;
+    if let Some(step) = step {
+        positive("step", step, "s").map_err(|error| table.blame(error))?;
+    }
     let meaning = "nodes whose motion is written";
     let track = table.optional("track", meaning, |value| selection(value, mesh))?;
     let formats = table.optional("formats", "what is written", |value| {

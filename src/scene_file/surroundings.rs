@@ -11,16 +11,17 @@ use crate::scene::Scene;
 pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&["name", "ends", "stiffness", "length", "damping"])?;
     let body = scene.body();
-    let meaning = "the two ends: one node each, by number or name";
-    let ends = table.required("ends", meaning, |value| match &value.list()?[..] {
-        [first, second] => Ok([selection(first, body.mesh())?, selection(second, body.mesh())?]),
-        _ => Err(value.unexpected("two ends")),
+    let name = table.optional("name", "the name of the spring", Value::string)?;
+    let name = name.map_or_else(|| format!("spring {}", scene.springs().len() + 1), Into::into);
+    unique(table, &name, scene.springs().iter().map(Spring::name))?;
+    let mut spring = table.required("ends", "one node each, by number or name", |value| {
+        let list = value.list()?;
+        let [first, second] = &list[..] else { return Err(value.unexpected("two ends")) };
+        let ends = [selection(first, body.mesh())?, selection(second, body.mesh())?];
+        let spring = Spring::between(ends[0].clone(), ends[1].clone()).named(name);
+        spring.force(body.mesh(), Vec::new()).map_err(|error| value.error(error))?;
+        Ok(spring)
     })?;
-    let [first, second] = ends;
-    let mut spring = Spring::between(first, second);
-    if let Some(name) = table.optional("name", "the name of the spring", Value::string)? {
-        spring = spring.named(name);
-    }
     if let Some(k) = table.optional("stiffness", "the stiffness (N/m)", Value::number)? {
         spring = spring.stiffness(k);
     }
@@ -30,7 +31,6 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
     if let Some(c) = table.optional("damping", "the damping (N s/m)", Value::number)? {
         spring = spring.damping(c);
     }
-    unique(table, spring.name(), scene.springs().iter().map(Spring::name))?;
     spring.force(body.mesh(), Vec::new()).map_err(|error| table.blame(error))?;
     Ok(scene.spring(spring))
 }
@@ -59,58 +59,39 @@ enum Kind {
     Capsule,
 }
 
-const KINDS: [(&str, Kind); 4] = [
-    ("half-plane", Kind::HalfPlane),
-    ("disc", Kind::Disc),
-    ("box", Kind::Box),
-    ("capsule", Kind::Capsule),
+/// The words for them, and their keys.
+const KINDS: [(&str, Kind, &[&str]); 4] = [
+    ("half-plane", Kind::HalfPlane, &["point", "normal"]),
+    ("disc", Kind::Disc, &["centre", "radius", "cavity"]),
+    ("box", Kind::Box, &["min", "max"]),
+    ("capsule", Kind::Capsule, &["from", "to", "radius"]),
 ];
 
 /// Keys of all obstacles.
-const LAW: [&str; 8] = [
-    "name",
-    "kind",
-    "stiffness",
-    "stiffness_density",
-    "damping",
-    "friction",
-    "adhesion",
-    "velocity",
-];
-
-/// Keys of the shapes.
-const SHAPES: [&str; 9] =
-    ["point", "normal", "centre", "radius", "cavity", "min", "max", "from", "to"];
+const LAW: &[&str] =
+    &["name", "stiffness", "stiffness_density", "damping", "friction", "adhesion", "velocity"];
 
 /// The scene with the obstacle that `value` describes.
 pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let body = scene.body();
-    let kind = value.table(&[&LAW[..], &SHAPES].concat())?.required(
-        "kind",
-        "the shape of the obstacle",
-        |value| value.word(&KINDS),
-    )?;
-    let keys: &[&str] = match kind {
-        Kind::HalfPlane => &["point", "normal"],
-        Kind::Disc => &["centre", "radius", "cavity"],
-        Kind::Box => &["min", "max"],
-        Kind::Capsule => &["from", "to", "radius"],
-    };
-    let table = &value.table(&[&LAW[..], keys].concat())?;
-    let mut obstacle = Obstacle::new(shape(kind, table, body.dimension())?);
+    let (kind, table) = &value.table_of_kind(&KINDS, LAW)?;
+    let mut obstacle = Obstacle::new(shape(*kind, table, body.dimension())?);
     if let Some(name) = table.optional("name", "the name of the obstacle", Value::string)? {
         obstacle = obstacle.named(name);
     }
-    let per_node = table.optional("stiffness", "N/m per node", Value::number)?;
-    let per_area = table.optional("stiffness_density", "N/m^3", Value::number)?;
+    let meaning = "the stiffness per node (N/m)";
+    let per_node = table.optional("stiffness", meaning, Value::number)?;
+    let meaning = "the stiffness per area of the body's boundary (N/m^3)";
+    let per_area = table.optional("stiffness_density", meaning, Value::number)?;
     obstacle = match (per_node, per_area) {
         (Some(stiffness), None) => obstacle.stiffness(stiffness),
         (None, Some(stiffness)) => obstacle.stiffness_density(stiffness),
-        _ => {
-            return Err(table.error(
-                "expected either stiffness (N/m per node) or stiffness_density (N/m^3, per area \
-                 of the body's boundary)",
-            ));
+        (None, None) => {
+            let mend = "expected the stiffness per node (N/m), or stiffness_density (N/m^3)";
+            return Err(table.missing("stiffness", mend));
+        }
+        (Some(_), Some(_)) => {
+            return Err(table.error("expected stiffness or stiffness_density, found both"));
         }
     };
     if let Some(damping) = table.optional("damping", "the damping (N s/m)", Value::number)? {
@@ -145,7 +126,7 @@ fn unique<'a>(
     match others.any(|other| other == name) {
         false => Ok(()),
         true => {
-            let mend = "another one has this name: give each its own";
+            let mend = "another one has it already: give each a name of its own";
             Err(table.blame(Error::input("name", format!("\"{name}\""), mend)))
         }
     }

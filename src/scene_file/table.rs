@@ -3,9 +3,10 @@
 use std::fmt::Display;
 use std::ops::Range;
 
-use toml::de::DeTable;
+use toml::Spanned;
+use toml::de::{DeString, DeTable};
 
-use super::nearest::unknown;
+use super::nearest::{list, unknown};
 use super::source::Source;
 use super::value::Value;
 use crate::error::Error;
@@ -30,14 +31,30 @@ impl<'a> Table<'a> {
         known: &[&str],
     ) -> Result<Self, Error> {
         let table = Self { source, key, at, entries };
-        let strange = entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
-        match strange.min_by_key(|key| key.span().start) {
+        match table.first_beside(known) {
+            None => Ok(table),
             Some(key) => {
                 let message = format!("unknown key; {}", unknown(key.get_ref(), known));
                 Err(source.error(&key.span(), &table.full(key.get_ref()), message))
             }
-            None => Ok(table),
         }
+    }
+
+    /// The same table, if it has no keys but those of its `kind`.
+    pub(super) fn restricted(self, known: &[&str], kind: &str) -> Result<Self, Error> {
+        match self.first_beside(known) {
+            None => Ok(self),
+            Some(key) => {
+                let message = format!("kind = \"{kind}\" has no such key; it has {}", list(known));
+                Err(self.source.error(&key.span(), &self.full(key.get_ref()), message))
+            }
+        }
+    }
+
+    /// The first key in the file that is none of the `known` ones.
+    fn first_beside(&self, known: &[&str]) -> Option<&'a Spanned<DeString<'a>>> {
+        let strange = self.entries.keys().filter(|key| !known.contains(&key.get_ref().as_ref()));
+        strange.min_by_key(|key| key.span().start)
     }
 
     /// The value of `key`, if it is there. `meaning` says what it is, with its unit.
@@ -64,12 +81,13 @@ impl<'a> Table<'a> {
         meaning: &'static str,
         read: impl FnOnce(&Value<'a>) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        self.optional(key, meaning, read)?.ok_or_else(|| self.missing(key, meaning))
+        self.optional(key, meaning, read)?
+            .ok_or_else(|| self.missing(key, format!("expected {meaning}")))
     }
 
     /// `key` should be there.
-    pub(super) fn missing(&self, key: &str, meaning: impl Display) -> Error {
-        self.source.error(&self.at, &self.full(key), format!("missing: {meaning}"))
+    pub(super) fn missing(&self, key: &str, mend: impl Display) -> Error {
+        self.source.error(&self.at, &self.full(key), format!("missing; {mend}"))
     }
 
     /// An error about the whole table.
@@ -94,8 +112,8 @@ impl<'a> Table<'a> {
         }
         match self.culprit(input) {
             None => self.error(&error),
-            Some(found) if last_word(&found.key) == last_word(input) => {
-                found.error(format!("{value} cannot be used: {mend}"))
+            Some(found) if is_name_of(input, &found.key) => {
+                found.error(format!("{} cannot be used: {mend}", found.found()))
             }
             Some(found) => found.error(&error),
         }
@@ -111,6 +129,10 @@ impl<'a> Table<'a> {
     }
 }
 
-fn last_word(name: &str) -> Option<&str> {
-    name.rsplit(['.', ' ']).next()
+/// Whether `input`, as in `material.young` or `obstacle "floor" stiffness`, is the value of `key` and
+/// not a part of it or something that follows from it.
+fn is_name_of(input: &str, key: &str) -> bool {
+    let key = key.rsplit('.').next().unwrap_or(key);
+    let owner = input.strip_suffix(key);
+    owner.is_some_and(|owner| owner.is_empty() || owner.ends_with(['.']) || owner.ends_with("\" "))
 }

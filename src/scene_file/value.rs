@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::nearest::unknown;
+use super::nearest::{list, unknown};
 use super::source::Source;
 use super::table::Table;
 use crate::error::Error;
@@ -30,16 +30,18 @@ impl<'a> Value<'a> {
 
     /// This value is not of the `expected` kind.
     pub(super) fn unexpected(&self, expected: impl Display) -> Error {
-        let found = match self.value {
-            DeValue::String(string) => format!("the string \"{string}\""),
-            DeValue::Integer(integer) => integer.to_string(),
-            DeValue::Float(float) => float.to_string(),
-            DeValue::Boolean(flag) => flag.to_string(),
-            DeValue::Datetime(date) => format!("the date {date}"),
+        self.error(format!("expected {}: {expected}; found {}", self.meaning, self.found()))
+    }
+
+    /// The value as it is written, or its kind if that is long.
+    pub(super) fn found(&self) -> String {
+        let text = self.source.text.get(self.at.clone()).unwrap_or_default();
+        match self.value {
+            _ if (1..60).contains(&text.len()) && !text.contains('\n') => text.into(),
             DeValue::Array(list) => format!("a list of {}", list.len()),
             DeValue::Table(_) => "a table".into(),
-        };
-        self.error(format!("expected {expected}, {}, not {found}", self.meaning))
+            _ => "a long text".into(),
+        }
     }
 
     /// A number, whole or not.
@@ -52,6 +54,12 @@ impl<'a> Value<'a> {
             _ => None,
         };
         number.ok_or_else(|| self.unexpected("a number"))
+    }
+
+    /// A finite number.
+    pub(super) fn finite(&self) -> Result<f64, Error> {
+        let number = self.number()?;
+        if number.is_finite() { Ok(number) } else { Err(self.unexpected("a finite number")) }
     }
 
     /// A whole number, 0 or above.
@@ -75,7 +83,7 @@ impl<'a> Value<'a> {
     pub(super) fn string(&self) -> Result<&'a str, Error> {
         match self.value {
             DeValue::String(string) => Ok(string),
-            _ => Err(self.unexpected("a string")),
+            _ => Err(self.unexpected("a text in quotes")),
         }
     }
 
@@ -83,7 +91,7 @@ impl<'a> Value<'a> {
     pub(super) fn word<T: Clone>(&self, known: &[(&str, T)]) -> Result<T, Error> {
         let words: Vec<&str> = known.iter().map(|(word, _)| *word).collect();
         let DeValue::String(string) = self.value else {
-            return Err(self.unexpected(format!("one of {}", quoted(&words))));
+            return Err(self.unexpected(format!("one of {}", list(&words))));
         };
         let found = known.iter().find(|(word, _)| word == string);
         found.map(|(_, meant)| meant.clone()).ok_or_else(|| self.unknown(string, &words))
@@ -115,40 +123,38 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// A list of finite numbers.
     pub(super) fn numbers(&self) -> Result<Vec<f64>, Error> {
-        self.list()
-            .map_err(|_| self.unexpected("a list of numbers"))?
-            .iter()
-            .map(Self::number)
-            .collect()
+        self.list_of("finite numbers", Self::finite)
+    }
+
+    /// A list of values that `read` reads.
+    pub(super) fn list_of<T>(
+        &self,
+        what: &str,
+        read: impl FnMut(&Value<'a>) -> Result<T, Error>,
+    ) -> Result<Vec<T>, Error> {
+        let list = self.list().map_err(|_| self.unexpected(format!("a list of {what}")))?;
+        list.iter().map(read).collect()
     }
 
     /// A list of so many numbers.
     pub(super) fn array<const N: usize>(&self) -> Result<[f64; N], Error> {
         let numbers = self.numbers()?;
-        numbers.try_into().map_err(|_| self.unexpected(format!("{N} numbers")))
+        numbers.try_into().map_err(|_| self.unexpected(number_of(N, "number")))
     }
 
     /// A list of so many whole numbers, 0 or above.
     pub(super) fn counts<const N: usize>(&self) -> Result<[usize; N], Error> {
-        let expected = || self.unexpected(format!("{N} whole numbers"));
-        let list = self.list().map_err(|_| expected())?;
-        let counts = list.iter().map(Self::count).collect::<Result<Vec<_>, Error>>()?;
-        counts.try_into().map_err(|_| expected())
+        let counts = self.list_of("whole numbers", Self::count)?;
+        counts.try_into().map_err(|_| self.unexpected(number_of(N, "whole number")))
     }
 
     /// A list of finite numbers, one per dimension of space.
     pub(super) fn vector(&self, dimension: usize) -> Result<Vec<f64>, Error> {
+        let expected = || format!("{}, one per dimension", number_of(dimension, "number"));
         let numbers = self.numbers()?;
-        if numbers.len() != dimension {
-            return Err(self.unexpected(format!("{dimension} number(s), one per dimension")));
-        }
-        match numbers.iter().find(|number| !number.is_finite()) {
-            Some(number) => {
-                Err(self.error(format!("expected finite numbers, {}, not {number}", self.meaning)))
-            }
-            None => Ok(numbers),
-        }
+        if numbers.len() == dimension { Ok(numbers) } else { Err(self.unexpected(expected())) }
     }
 
     /// A table with the keys `known`.
@@ -164,6 +170,23 @@ impl<'a> Value<'a> {
         self.one_or_more()?.iter().map(|value| value.table(known)).collect()
     }
 
+    /// A table with a key `kind`, one of the words of `kinds`. Its other keys are those that come
+    /// with the kind and the `common` ones.
+    pub(super) fn table_of_kind<K: Copy>(
+        &self,
+        kinds: &[(&str, K, &[&str])],
+        common: &[&str],
+    ) -> Result<(K, Table<'a>), Error> {
+        let mut all = [&["kind"], common].concat();
+        all.extend(kinds.iter().flat_map(|(_, _, keys)| keys.iter()));
+        let words: Vec<(&str, usize)> = kinds.iter().map(|(word, ..)| *word).zip(0..).collect();
+        let table = self.table(&all)?;
+        let chosen = table.required("kind", "the kind", |value| value.word(&words))?;
+        let (word, kind, keys) = kinds[chosen];
+        let table = table.restricted(&[&["kind"], keys, common].concat(), word)?;
+        Ok((kind, table))
+    }
+
     /// The entries, if the value is a table.
     pub(super) fn entries(&self) -> Option<&'a DeTable<'a>> {
         match self.value {
@@ -173,6 +196,7 @@ impl<'a> Value<'a> {
     }
 }
 
-fn quoted(words: &[&str]) -> String {
-    words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
+/// As in "1 number", "2 numbers".
+pub(super) fn number_of(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
