@@ -36,6 +36,14 @@ fn bar() -> Result<Trajectory, pliant::Error> {
         .simulate(&Solver::default(), &Sampling::every(0.005))
 }
 
+fn block() -> Result<Trajectory, pliant::Error> {
+    let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], SolidCells::Hexahedra)?;
+    let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
+    Scene::new(Body::new(mesh, soft).build()?)
+        .phase(Phase::until(0.01).hold("bottom").move_nodes("top", [0.3, -0.2, 0.1]))
+        .simulate(&Solver::default(), &Sampling::phase_ends())
+}
+
 type Table = (Vec<String>, Vec<Vec<f64>>);
 
 fn table(path: &Path) -> Result<Table, Box<dyn Error>> {
@@ -102,11 +110,7 @@ fn tables_in_one_and_three_dimensions() -> Outcome {
     assert_eq!(names.join(" "), expected);
     assert_eq!(rows.len(), 3);
 
-    let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], SolidCells::Hexahedra)?;
-    let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
-    let scene = Scene::new(Body::new(mesh, soft).build()?).phase(Phase::until(0.001));
-    let cube = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
-    write_csv(&cube, &path, Some(&[8].into()))?;
+    write_csv(&block()?, &path, Some(&[8].into()))?;
     let expected = "t com_x com_y com_z momentum_x momentum_y momentum_z angular_momentum_x \
                     angular_momentum_y angular_momentum_z kinetic strain gravity contact springs \
                     constraint_drift u8_x u8_y u8_z";
@@ -249,17 +253,17 @@ fn check_arrays(
 #[test]
 fn vtk_files_hold_mesh_motion_and_forces() -> Outcome {
     let directory = tempfile::tempdir()?;
-    for (name, trajectory, kind) in
-        [("square", square()?, CellType::Triangle), ("bar", bar()?, CellType::Line)]
-    {
+    for (name, trajectory, kind) in [
+        ("square", square()?, CellType::Triangle),
+        ("bar", bar()?, CellType::Line),
+        ("block", block()?, CellType::Hexahedron),
+    ] {
         write_vtk(&trajectory, directory.path(), name)?;
         let (mut held, mut touched) = (false, false);
         let mesh = trajectory.body().mesh();
         let spatial = |x: &[f64]| -> Vec<f64> {
-            match mesh.dimension() {
-                1 => x.iter().flat_map(|&x| [x, 0.0, 0.0]).collect(),
-                _ => x.chunks(2).flat_map(|x| [x[0], x[1], 0.0]).collect(),
-            }
+            let nodes = x.chunks(mesh.dimension());
+            nodes.flat_map(|x| [0, 1, 2].map(|i| x.get(i).copied().unwrap_or(0.0))).collect()
         };
         for (number, sample) in trajectory.samples().iter().enumerate() {
             let piece = read_grid(&directory.path().join(format!("{name}_{number:04}.vtu")))?;
