@@ -54,7 +54,7 @@ pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use scene::{Phase, Scene};
 pub use scene_file::{OutputRequest, SceneFile};
-pub use simulate::{Method, Sampling, Solver};
+pub use simulate::{ContactEvents, Method, Sampling, Solver};
 pub use statics::{Equilibrium, Stability, Statics};
 pub use system::{Energy, Spectrum};
 pub use trajectory::{Sample, Trajectory};

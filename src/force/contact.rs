@@ -1,5 +1,7 @@
 //! Penalty contact (Hirai (4.3.5), (4.4.2)): obstacles push boundary nodes out of themselves.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use super::obstacle::{Law, Obstacle};
 use super::shape::Nearest;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
@@ -17,6 +19,24 @@ pub(crate) struct Contact {
     drift: [f64; 3],
     is_custom: bool,
     points: Vec<ContactPoint>,
+    switches: Switches,
+}
+
+/// Which points touch: by their distance, or as held from one contact event to the next.
+struct Switches {
+    are_held: AtomicBool,
+    on: Vec<AtomicBool>,
+}
+
+impl Switches {
+    /// Whether point number `k` touches, at this distance. One that is no number is taken along, to
+    /// be found out.
+    fn is_on(&self, k: usize, distance: f64) -> bool {
+        match self.are_held.load(Ordering::Relaxed) {
+            true => self.on[k].load(Ordering::Relaxed),
+            false => distance.is_nan() || distance <= 0.0,
+        }
+    }
 }
 
 struct ContactPoint {
@@ -64,9 +84,13 @@ impl Contact {
             law: obstacle.law(on.area),
             on,
         });
-        let (points, drift) = (points.collect(), obstacle.drift());
+        let (points, drift): (Vec<_>, _) = (points.collect(), obstacle.drift());
         let is_custom = obstacle.shape().is_custom();
-        Ok(Self { obstacle, dimension, drift, is_custom, points })
+        let switches = Switches {
+            are_held: AtomicBool::new(false),
+            on: points.iter().map(|_| AtomicBool::new(false)).collect(),
+        };
+        Ok(Self { obstacle, dimension, drift, is_custom, points, switches })
     }
 
     fn nearest(&self, t: f64, point: &ContactPoint, u: &[f64]) -> Nearest {
@@ -81,10 +105,9 @@ impl Contact {
         u: &'a [f64],
         v: &'a [f64],
     ) -> impl Iterator<Item = Touch<'a>> + 'a {
-        self.points.iter().filter_map(move |point| {
+        self.points.iter().enumerate().filter_map(move |(k, point)| {
             let nearest = self.nearest(t, point, u);
-            // a distance that is no number is taken along, to be found out
-            if nearest.distance > 0.0 {
+            if !self.switches.is_on(k, nearest.distance) {
                 return None;
             }
             let mut velocity = point.on.at(v, self.dimension);
@@ -181,11 +204,30 @@ impl Force for Contact {
     }
 
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
-        let energy = |point: &ContactPoint| {
-            let distance = self.nearest(t, point, u).distance.min(0.0);
-            0.5 * point.law.stiffness * distance * distance
+        let energy = |(k, point): (usize, &ContactPoint)| {
+            let distance = self.nearest(t, point, u).distance;
+            let is_on = self.switches.is_on(k, distance);
+            if is_on { 0.5 * point.law.stiffness * distance * distance } else { 0.0 }
         };
-        self.points.iter().map(energy).sum()
+        self.points.iter().enumerate().map(energy).sum()
+    }
+
+    fn switches(&self) -> usize {
+        self.points.len()
+    }
+
+    fn switch_values(&self, t: f64, u: &[f64], values: &mut [f64]) {
+        for (value, point) in values.iter_mut().zip(&self.points) {
+            *value = self.nearest(t, point, u).distance;
+        }
+    }
+
+    fn hold_switches(&self, on: Option<&[bool]>) {
+        let Switches { are_held, on: held } = &self.switches;
+        for (held, &on) in held.iter().zip(on.into_iter().flatten()) {
+            held.store(on, Ordering::Relaxed);
+        }
+        are_held.store(on.is_some(), Ordering::Relaxed);
     }
 
     fn reservoir(&self) -> Reservoir {

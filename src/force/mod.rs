@@ -150,6 +150,18 @@ pub trait Force: Send + Sync {
     /// Where that energy belongs.
     fn reservoir(&self) -> Reservoir;
 
+    /// Number of switches: functions whose change of sign is a kink or a jump of the force.
+    fn switches(&self) -> usize {
+        0
+    }
+
+    /// Writes the values of the switches: above 0 where a part of the force is off.
+    fn switch_values(&self, _t: f64, _u: &[f64], _values: &mut [f64]) {}
+
+    /// Keeps each switch on or off, whatever its value, so that the force is smooth; `None` lets all
+    /// of them act by their values again.
+    fn hold_switches(&self, _on: Option<&[bool]>) {}
+
     /// Pairs of nodes (counted from 0) that the tangents couple though they may share no cell.
     fn couplings(&self) -> Vec<[usize; 2]> {
         Vec::new()

@@ -5,7 +5,7 @@ use super::value::Value;
 use super::{Format, OutputRequest};
 use crate::error::{Error, positive};
 use crate::mesh::Mesh;
-use crate::simulate::{Method, Solver};
+use crate::simulate::{ContactEvents, Method, Solver};
 
 const SOLVER: &[&str] = &[
     "method",
@@ -28,9 +28,8 @@ pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
     let velocity = "the absolute tolerance of velocities (m/s)";
     let max_order = table.optional("max_order", "the highest order", Value::count)?;
     let max_steps = table.optional("max_steps", "the most steps of a phase", Value::count)?;
-    // both words are checked only, so far
-    table.optional("contact_events", "how contact events are met", |value| {
-        value.word(&[("step-over", ()), ("locate", ())])
+    let events = table.optional("contact_events", "how contact events are met", |value| {
+        value.word(&ContactEvents::ALL.map(|way| (way.name(), way)))
     })?;
     let solver = Solver {
         method: method.unwrap_or(default.method),
@@ -39,6 +38,7 @@ pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
         atol_velocity: table.optional("atol_velocity", velocity, Value::number)?,
         alpha: alpha.unwrap_or(default.alpha),
         max_order: max_order.map(|order| u32::try_from(order).unwrap_or(u32::MAX)),
+        contact_events: events.unwrap_or(default.contact_events),
         max_steps: max_steps.unwrap_or(default.max_steps),
     };
     solver.validate().map_err(|error| table.blame(error))?;

@@ -1,6 +1,7 @@
 //! Running a scene: phase by phase, with restarts in between and samples along the way.
 
 mod auto;
+mod events;
 mod failure;
 mod progress;
 mod run;
@@ -13,7 +14,7 @@ use std::time::Instant;
 pub use failure::{IntegrationFailure, Interrupted};
 pub use progress::Progress;
 use run::Run;
-pub use solver::{Method, Solver};
+pub use solver::{ContactEvents, Method, Solver};
 
 use crate::error::{Error, positive};
 use crate::scene::Scene;
@@ -99,6 +100,8 @@ pub struct Counts {
     pub error_test_failures: usize,
     /// Newton iterations that did not converge (`rk`: steps refused by the right-hand side).
     pub convergence_failures: usize,
+    /// Contact events that were located.
+    pub contact_events: usize,
     /// Size of the last step (s).
     pub last_step: f64,
     /// Order of the last step.
@@ -116,6 +119,7 @@ impl Counts {
         self.factorizations += further.factorizations;
         self.error_test_failures += further.error_test_failures;
         self.convergence_failures += further.convergence_failures;
+        self.contact_events += further.contact_events;
         (self.last_step, self.last_order) = (further.last_step, further.last_order);
         self.notice = self.notice.take().or(further.notice);
     }

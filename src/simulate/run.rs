@@ -3,13 +3,14 @@
 use std::time::Instant;
 
 use super::auto::Plan;
+use super::events::Events;
 use super::failure::{
     IntegrationFailure, Interrupted, STANDING, into_error, standing_still, too_many_steps,
 };
 use super::progress::{Observer, Progress};
 use super::solver::Tolerances;
 use super::stepper::{Failed, Stepper};
-use super::{Counts, Sampling, Solver};
+use super::{ContactEvents, Counts, Sampling, Solver};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
 use crate::scene::{Forces, Phase, Scene};
@@ -53,6 +54,8 @@ struct Checkpoint {
 enum Ending {
     /// At its end.
     Reached,
+    /// At a contact event.
+    Event,
     /// The energy balance tells that the method cannot be trusted.
     Doubtful(String),
 }
@@ -70,6 +73,7 @@ struct Leg<'a> {
     stop: f64,
     /// Steps that the phase may still take.
     steps: usize,
+    events: Events,
 }
 
 impl<'a> Run<'a> {
@@ -148,8 +152,10 @@ impl<'a> Run<'a> {
         }
         let times = sampling.within(self.time, phase.until);
         let mut plan = Plan::new(self.solver, &mut system, self.time, &self.state);
-        let mut leg =
-            Leg { number, times: &times, taken: 0, stop: 0.0, steps: self.solver.max_steps };
+        let located = plan.solver.contact_events == ContactEvents::Locate;
+        let events = Events::new(&system, self.time, &self.state[..system.dofs()], located);
+        let steps = self.solver.max_steps;
+        let mut leg = Leg { number, times: &times, taken: 0, stop: 0.0, steps, events };
         let (mut counts, mut states) = (Counts::default(), 0);
         let mut stops = self.scene.breaks(number).into_iter().chain([phase.until]);
         self.remember(&leg);
@@ -160,10 +166,12 @@ impl<'a> Run<'a> {
                     Some(stop) => leg.stop = stop,
                     None => break,
                 },
+                Ending::Event => {}
                 Ending::Doubtful(trouble) => match plan.instead(trouble) {
                     Some(other) => {
                         plan = other;
                         self.go_back(&mut leg);
+                        leg.events.set(&system, self.time, &self.state[..system.dofs()]);
                     }
                     None => break,
                 },
@@ -182,6 +190,7 @@ impl<'a> Run<'a> {
             let state = self.state.clone();
             let _ = self.sample(number, &mut system, self.time, &state);
         }
+        counts.contact_events = leg.events.count;
         let step = counts.last_step;
         let report = &mut self.trajectory.report;
         report.wall_seconds = self.clock.elapsed().as_secs_f64();
@@ -213,7 +222,7 @@ impl<'a> Run<'a> {
                 return Err(too_many_steps(self.solver.max_steps, &stepper.counts()));
             }
             leg.steps -= 1;
-            let step = self.step(leg, stepper, &mut sample)?;
+            let (step, is_event) = self.step(leg, stepper, &mut sample)?;
             if self.steps.is_multiple_of(WATCH) || self.time >= leg.stop {
                 self.watch(stepper.system_mut());
                 if plan.is_on_trial() {
@@ -224,6 +233,9 @@ impl<'a> Run<'a> {
                 }
             }
             self.tell(leg.number, step, stepper.last_order(), observer)?;
+            if is_event {
+                return Ok(Ending::Event);
+            }
         }
         Ok(Ending::Reached)
     }
@@ -255,35 +267,47 @@ impl<'a> Run<'a> {
         self.trajectory.watch(&energy);
     }
 
-    /// Takes one step, and the samples within it. Returns its size (s).
+    /// Takes one step, up to the first contact event within it, and the samples there are. Returns its
+    /// size (s), and whether it ended in an event.
     fn step(
         &mut self,
         leg: &mut Leg,
         stepper: &mut Stepper,
         sample: &mut [f64],
-    ) -> Result<f64, Failed> {
-        let time = stepper.step(leg.stop)?;
+    ) -> Result<(f64, bool), Failed> {
+        let (n, length) = (self.scene.body().dofs(), self.state.len());
+        let reached = stepper.step(leg.stop)?;
+        let event = leg.events.first(stepper, self.time, reached, sample)?;
+        let time = event.unwrap_or(reached);
         self.standing = if time > self.time { 0 } else { self.standing + 1 };
         if self.standing == STANDING {
             return Err(standing_still(stepper.system().refusal()));
         }
-        let n = self.scene.body().dofs();
-        let (before, after) = (&self.state[..n], &stepper.state()[..n]);
-        stepper.system().check_step(time, before, after).map_err(into_error)?;
         while let Some(&t) = leg.times.get(leg.taken).filter(|&&t| t <= time) {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
             self.sample(leg.number, stepper.system_mut(), t, sample)?;
         }
+        let arrived = match event {
+            None => stepper.state(),
+            Some(t) => {
+                stepper.interpolate(t, sample)?;
+                sample
+            }
+        };
+        let (system, before) = (stepper.system(), &self.state[..n]);
+        system.check_step(time, before, &arrived[..n]).map_err(into_error)?;
         let step = time - self.time;
         self.time = time;
         self.steps += 1;
-        let length = self.state.len();
-        self.state.copy_from_slice(&stepper.state()[..length]);
-        let drift = stepper.system().drift(time, &self.state[..n]);
+        self.state.copy_from_slice(&arrived[..length]);
+        if event.is_some() {
+            leg.events.pass(system, time, &self.state[..n], step);
+        }
+        let drift = system.drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
-        Ok(step)
+        Ok((step, event.is_some()))
     }
 
     /// Tells how far the run has come.

@@ -70,6 +70,46 @@ impl FromStr for Method {
     }
 }
 
+/// How contact events are met: nodes that touch an obstacle or leave it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ContactEvents {
+    /// Steps go over them; the error control makes those steps small.
+    #[default]
+    StepOver,
+    /// Each is located, a step ends there, and the integration starts anew.
+    Locate,
+}
+
+impl ContactEvents {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::StepOver, Self::Locate];
+
+    /// `step-over` or `locate`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StepOver => "step-over",
+            Self::Locate => "locate",
+        }
+    }
+}
+
+impl fmt::Display for ContactEvents {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for ContactEvents {
+    type Err = Error;
+
+    fn from_str(name: &str) -> Result<Self, Error> {
+        Self::ALL.into_iter().find(|way| way.name() == name).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(" or ");
+            Error::input("contact_events", format!("\"{name}\""), format!("it is {known}"))
+        })
+    }
+}
+
 /// How a scene is integrated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solver {
@@ -89,6 +129,8 @@ pub struct Solver {
     pub alpha: f64,
     /// Highest order of a multistep method. Default: the method's own, 5 (Adams: 12).
     pub max_order: Option<u32>,
+    /// Whether contact events are located. Default: stepped over.
+    pub contact_events: ContactEvents,
     /// Steps that one phase may take. Default: 10 million, a guard against waiting for ever.
     pub max_steps: usize,
 }
@@ -102,6 +144,7 @@ impl Default for Solver {
             atol_velocity: None,
             alpha: 1e3,
             max_order: None,
+            contact_events: ContactEvents::default(),
             max_steps: 10_000_000,
         }
     }

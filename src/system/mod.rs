@@ -198,6 +198,30 @@ impl System {
         self.forces.iter().try_for_each(|force| force.check_step(t, before, after))
     }
 
+    /// Number of switches of all forces.
+    pub(crate) fn switches(&self) -> usize {
+        self.forces.iter().map(|force| force.switches()).sum()
+    }
+
+    /// Writes their values.
+    pub(crate) fn switch_values(&self, t: f64, u: &[f64], mut values: &mut [f64]) {
+        for force in &self.forces {
+            let (own, rest) = values.split_at_mut(force.switches());
+            force.switch_values(t, u, own);
+            values = rest;
+        }
+    }
+
+    /// Keeps each of them on or off, or lets all of them act by their values again.
+    pub(crate) fn hold_switches(&self, on: Option<&[bool]>) {
+        let mut start = 0;
+        for force in &self.forces {
+            let end = start + force.switches();
+            force.hold_switches(on.map(|on| &on[start..end]));
+            start = end;
+        }
+    }
+
     /// Largest |A^T u - b| (m).
     pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
         let drift = |row: &Row| (row.apply(u) - row.prescribed(t).displacement).abs();
