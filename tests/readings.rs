@@ -1,5 +1,8 @@
 //! What is read from samples: forces of contacts and constraints, angular momentum.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use pliant::{
     Axis, Body, Cells, Error, Material, Mesh, Obstacle, Phase, Sample, Sampling, Scene, SolidCells,
     Solver, Statics, Trajectory,
@@ -197,5 +200,24 @@ fn samples_of_other_trajectories_are_refused() -> Outcome {
         assert_eq!(contact.is_err(), bad.multipliers.len() == last.multipliers.len());
     }
     assert!(trajectory.constraint_force(last, "nowhere").is_err());
+    Ok(())
+}
+
+/// An obstacle of one's own that does not say any more what it said during the run.
+#[test]
+fn an_obstacle_that_has_lost_its_meaning_is_named() -> Outcome {
+    let lost = Arc::new(AtomicBool::new(false));
+    let flag = lost.clone();
+    let floor = Obstacle::custom(move |x, gradient| {
+        gradient.copy_from_slice(&[0.0, 1.0]);
+        if flag.load(Ordering::Relaxed) { f64::NAN } else { x[1] }
+    });
+    let scene = Scene::new(square(4)?).phase(Phase::until(0.01));
+    let scene = scene.obstacle(floor.named("own").stiffness(100.0));
+    let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    assert!(trajectory.contact_forces(trajectory.last()).is_ok());
+    lost.store(true, Ordering::Relaxed);
+    let refused = trajectory.contact_forces(trajectory.last()).unwrap_err().to_string();
+    assert!(refused.contains("obstacle \"own\" gives the distance NaN"), "{refused}");
     Ok(())
 }
