@@ -178,7 +178,11 @@ impl<'a> Value<'a> {
         common: &[&str],
     ) -> Result<(K, Table<'a>), Error> {
         let mut all = [&["kind"], common].concat();
-        all.extend(kinds.iter().flat_map(|(_, _, keys)| keys.iter()));
+        for key in kinds.iter().flat_map(|(_, _, keys)| keys.iter()) {
+            if !all.contains(key) {
+                all.push(key);
+            }
+        }
         let words: Vec<(&str, usize)> = kinds.iter().map(|(word, ..)| *word).zip(0..).collect();
         let table = self.table(&all)?;
         let chosen = table.required("kind", "the kind", |value| value.word(&words))?;
