@@ -5,8 +5,8 @@ use std::path::Path;
 
 use pliant::scene_file::Format;
 use pliant::{
-    Axis, Body, CellSelection, Cells, Chamber, Material, Mesh, Method, Obstacle, OutputRequest,
-    Phase, Scene, SceneFile, Selection, Shape, SolidCells, Solver, Spring, Strain,
+    Axis, Body, CellSelection, Cells, Chamber, ContactEvents, Material, Mesh, Method, Obstacle,
+    OutputRequest, Phase, Scene, SceneFile, Selection, Shape, SolidCells, Solver, Spring, Strain,
 };
 
 fn read(name: &str) -> SceneFile {
@@ -95,6 +95,7 @@ fn in_space() {
         atol_velocity: Some(1e-5),
         alpha: 500.0,
         max_order: Some(4),
+        contact_events: ContactEvents::Locate,
         max_steps: 5000,
     };
     assert_eq!(file.solver, solver);

@@ -36,7 +36,7 @@ fn agree(file: &SceneFile, sample: Scene) -> (Trajectory, Option<String>) {
 }
 
 /// Steps per phase after which long motions have been compared enough.
-const MAX_STEPS: usize = 6000;
+const MAX_STEPS: usize = 4000;
 
 /// Tests of scenes by the name of their file. They run to their ends, or to the most steps of a phase.
 macro_rules! motions {
@@ -109,6 +109,21 @@ fn equilibria() {
             // the force has 5 digits
             assert!((found.displacements()[2 * 21 + 1] + 0.05).abs() < 1e-6, "{name}");
         }
+    }
+}
+
+/// Scenes written to the first description of the format.
+#[test]
+fn scenes_of_the_page() {
+    for (name, sample) in [
+        ("beam-jump", samples::beam_jump()),
+        ("square-jump", samples::square_jump(4)),
+        ("ring-roll", RingRoll::default().scene()),
+    ] {
+        let file = SceneFile::read(path(&format!("tests/data/page/{name}.toml"))).unwrap();
+        let (trajectory, error) = agree(&file, sample.unwrap());
+        assert_eq!(error, None, "{name}");
+        assert_eq!(trajectory.last().time, file.scene.end(), "{name}");
     }
 }
 

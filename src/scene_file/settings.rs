@@ -21,7 +21,9 @@ const SOLVER: &[&str] = &[
 pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
     let table = value.table(SOLVER)?;
     let default = Solver::default();
-    let method = table.optional("method", "the integration method", method)?;
+    let method = table.optional("method", "the integration method", |value| {
+        value.word(&Method::ALL.map(|method| (method.name(), method)))
+    })?;
     let rtol = table.optional("rtol", "the relative tolerance (no unit)", Value::number)?;
     let alpha = table.optional("alpha", "the rate of stabilization (1/s)", Value::number)?;
     let position = "the absolute tolerance of displacements (m)";
@@ -43,11 +45,6 @@ pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
     };
     solver.validate().map_err(|error| table.blame(error))?;
     Ok(solver)
-}
-
-fn method(value: &Value) -> Result<Method, Error> {
-    let name = value.string()?;
-    name.parse().map_err(|_| value.unknown(name, &Method::ALL.map(Method::name)))
 }
 
 pub(super) fn output(value: &Value, mesh: &Mesh) -> Result<OutputRequest, Error> {
