@@ -10,9 +10,10 @@ help: ## Show this list
 setup: ## Install the Debian packages of packages.txt that are missing
 	@scripts/setup.sh
 
-demo: setup ## The jumping square, 4 x 4 and 10 x 10 nodes: a table here, pictures in out/
+demo: setup ## The jumping square and a scene file by the command: tables here, pictures in out/
 	cargo run --release --example square_jump -- --nodes 4
 	cargo run --release --example square_jump -- --nodes 10
+	cargo run --release -- run scenes/ring-jump.toml --formats svg,html
 	@echo "The pictures are in $(CURDIR)/out:"
 	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
 

@@ -52,7 +52,7 @@ pub use error::Error;
 pub use force::{Chamber, Obstacle, Shape, Spring};
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
-pub use scene::{Phase, Scene};
+pub use scene::{Phase, PhaseSummary, Scene};
 pub use scene_file::{OutputRequest, SceneFile};
 pub use simulate::{ContactEvents, Method, Sampling, Solver};
 pub use statics::{Equilibrium, Stability, Statics};

@@ -163,10 +163,13 @@ impl fmt::Display for Report {
         let rejected = |c: &Counts| c.error_test_failures + c.convergence_failures;
         for PhaseReport { name, end, wall_seconds, counts, .. } in &self.phases {
             let Counts { steps, evaluations, factorizations, .. } = counts;
+            // of a run that ended early it has all digits
+            let end = Some(end.to_string()).filter(|end| end.len() <= 8);
+            let end = end.unwrap_or_else(|| format!("{end:.3e}"));
             let rejected = rejected(counts);
             writeln!(
                 f,
-                "{name:12} {end:8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} \
+                "{name:12} {end:>8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} \
                  {wall_seconds:9.4}"
             )?;
         }

@@ -49,7 +49,8 @@ fn a_finished_run() {
     assert_eq!(keys(&report), all.concat());
     let phases = report["phases"].as_array().unwrap();
     for (phase, (name, end)) in phases.iter().zip([("push", 0.5), ("hold", 1.0), ("free", 1.5)]) {
-        let all = [&["name", "end"][..], &COSTS, &["last_step", "last_order"]].concat();
+        let rest = ["contact_events", "last_step", "last_order"];
+        let all = [&["name", "end"][..], &["method", "reason"], &COSTS[1..], &rest].concat();
         assert_eq!(keys(phase), all);
         assert_eq!((&phase["name"], &phase["end"]), (&json!(name), &json!(end)));
         assert!((1..=5).contains(&phase["last_order"].as_u64().unwrap()));

@@ -24,7 +24,7 @@ use crate::trajectory::{PhaseReport, Report, Trajectory};
 /// | `factorizations` | factorizations of the Newton matrix |
 /// | `error_test_failures`, `convergence_failures` | steps repeated as their error was too large, Newton iterations that did not converge |
 /// | `wall_seconds` | wall-clock time of the whole run (s) |
-/// | `phases` | for each phase `name`, `end` (time reached, s), `reason` (why that method, or `null` if it was asked for), all of the above from `method` on, `last_step` (s) and `last_order` |
+/// | `phases` | for each phase `name`, `end` (time reached, s), `reason` (why that method, or `null` if it was asked for), all of the above from `method` on, `contact_events` (located), `last_step` (s) and `last_order` |
 /// | `energy_balance_error`, `energy_created`, `energy_scale` | largest change and largest rise of the energy balance, largest sum of the energies (J) |
 /// | `max_constraint_drift` | largest error of a constraint at the end of a step (m) |
 /// | `warnings` | what makes the result doubtful, in words |
@@ -108,6 +108,7 @@ fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
         "error_test_failures": counts.error_test_failures,
         "convergence_failures": counts.convergence_failures,
         "wall_seconds": wall_seconds,
+        "contact_events": counts.contact_events,
         "last_step": counts.last_step,
         "last_order": counts.last_order,
     })

@@ -2,12 +2,14 @@
 
 mod forces;
 mod phase;
+mod summary;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub(crate) use forces::Forces;
 pub use phase::Phase;
+pub use summary::PhaseSummary;
 
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
@@ -110,6 +112,18 @@ impl Scene {
         self
     }
 
+    /// The same scene, ended at time `end` (s) if it lasts longer.
+    pub fn ended_at(mut self, end: f64) -> Self {
+        let whole = self.phases.iter().filter(|phase| phase.until < end).count();
+        self.phases.truncate(whole + 1);
+        if let Some(last) = self.phases.last_mut()
+            && (last.until > end || end.is_nan())
+        {
+            last.until = end;
+        }
+        self
+    }
+
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body
@@ -130,6 +144,11 @@ impl Scene {
             nodes.extend(selected.into_iter().map(|node| (node, role)));
         }
         Ok(nodes)
+    }
+
+    /// Acceleration of gravity (m/s^2), if there is any.
+    pub fn acceleration(&self) -> Option<&[f64]> {
+        self.gravity.as_deref()
     }
 
     /// The springs.

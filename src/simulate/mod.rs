@@ -14,7 +14,7 @@ use std::time::Instant;
 pub use failure::{IntegrationFailure, Interrupted};
 pub use progress::Progress;
 use run::Run;
-pub use solver::{ContactEvents, Method, Solver};
+pub use solver::{ContactEvents, Method, Solver, Tolerances};
 
 use crate::error::{Error, positive};
 use crate::scene::Scene;

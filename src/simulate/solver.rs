@@ -45,6 +45,30 @@ impl Method {
         }
     }
 
+    /// What it is for.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Auto => {
+                "choosing one of the others for each phase, by what it asks for and how it goes"
+            }
+            Self::CvodeBdf => {
+                "stiff motion: damped bodies, hard contact, fine meshes (CVODE, BDF of order 1 to 5)"
+            }
+            Self::CvodeAdams => {
+                "motion that is hardly damped (CVODE, Adams-Moulton of order 1 to 12)"
+            }
+            Self::Ida => {
+                "a check of CVODE: constraint forces are unknowns, too (IDA on the index-1 form)"
+            }
+            Self::IdaKlu => {
+                "a check of the structured linear solver: IDA with KLU on the whole Jacobian"
+            }
+            Self::Rk => {
+                "motion that is not stiff: light damping, small alpha (Dormand-Prince 5(4))"
+            }
+        }
+    }
+
     fn highest_order(self) -> u32 {
         match self {
             Self::CvodeAdams => 12,
@@ -151,7 +175,11 @@ impl Default for Solver {
 }
 
 impl Solver {
-    pub(crate) fn validate(&self) -> Result<(), Error> {
+    /// Checks what can be known before anything is run.
+    ///
+    /// # Errors
+    /// The first number out of its range.
+    pub fn validate(&self) -> Result<(), Error> {
         if !(self.rtol > 0.0 && self.rtol < 1.0) {
             let mend = "it must lie above 0 and below 1 (1e-3 is rough, 1e-8 fine)";
             return Err(Error::input("rtol", self.rtol, mend));
@@ -177,7 +205,7 @@ impl Solver {
     }
 
     /// The absolute tolerances in force for `body`.
-    pub(crate) fn tolerances(&self, body: &Body) -> Tolerances {
+    pub fn tolerances(&self, body: &Body) -> Tolerances {
         const SMALL_STRAIN: f64 = 0.01;
         let (size, young) = (body.mesh().size(), body.material().young);
         let volume = body.volume();
@@ -197,11 +225,11 @@ impl Solver {
 /// Those of the energies that ride along and of the multipliers are loose (as if strain were 1):
 /// enough that the Newton iteration looks after them, too little for them to rule the steps.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Tolerances {
+pub struct Tolerances {
     /// Displacements (m).
-    pub(crate) position: f64,
+    pub position: f64,
     /// Velocities (m/s).
-    pub(crate) velocity: f64,
+    pub velocity: f64,
     /// Energies dissipated and supplied (J).
     pub(crate) energy: f64,
     /// Multipliers (N).

@@ -1,0 +1,126 @@
+//! `pliant check`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pliant::scene_file::Format;
+use pliant::{PhaseSummary, Scene, SceneFile, Solver};
+
+use crate::failure::{Failure, print};
+
+/// Check a scene file and print what the scene contains
+///
+/// For each phase: the number of constraints, the fastest rate (vibration or decay), the period of the
+/// slowest vibration and its damping ratio, and what acts besides. Rates and periods are estimates for
+/// the natural shape at rest; contacts and springs count as far as they act there.
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene file
+    #[arg(value_name = "FILE")]
+    scene: PathBuf,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let file = SceneFile::read(&arguments.scene)?;
+    let phases = file.scene.summary()?;
+    if !file.title.is_empty() {
+        print(&file.title)?;
+    }
+    body(&file.scene)?;
+    surroundings(&file.scene)?;
+    solver(&file)?;
+    timeline(&phases)
+}
+
+fn line(label: &str, text: &str) -> Result<(), Failure> {
+    print(format_args!("{label:10} {text}"))
+}
+
+fn body(scene: &Scene) -> Result<(), Failure> {
+    let body = scene.body();
+    let mesh = body.mesh();
+    let kind = format!("{:?}", mesh.kind()).to_lowercase();
+    let (nodes, cells, boundary) =
+        (mesh.node_count(), mesh.cell_count(), mesh.boundary_nodes().len());
+    line("mesh", &format!("{nodes} nodes ({boundary} on the boundary), {cells} cells ({kind})"))?;
+    let sets = mesh.sets().iter().map(|(name, nodes)| format!("{name} ({})", nodes.len()));
+    line("node sets", &sets.collect::<Vec<_>>().join(", "))?;
+    let (size, mass, dofs) = (mesh.size(), body.mass(), body.dofs());
+    let strain = format!("{:?}", body.strain()).to_lowercase();
+    let viscosity = format!("{:?}", body.viscosity()).to_lowercase();
+    line("body", &format!("{size:.4} m across, {mass:.4} kg, {dofs} displacements"))?;
+    line("", &format!("{strain} strain, {viscosity} viscosity"))
+}
+
+fn surroundings(scene: &Scene) -> Result<(), Failure> {
+    if let Some(gravity) = scene.acceleration() {
+        line("gravity", &format!("{gravity:?} m/s^2"))?;
+    }
+    let springs = scene.springs().iter().map(|spring| spring.name()).collect();
+    let chambers = scene.chambers().iter().map(|chamber| chamber.name()).collect();
+    let obstacles = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
+    for (label, names) in [("springs", springs), ("chambers", chambers), ("obstacles", obstacles)] {
+        let names: Vec<&str> = names;
+        if !names.is_empty() {
+            line(label, &names.join(", "))?;
+        }
+    }
+    Ok(())
+}
+
+fn solver(file: &SceneFile) -> Result<(), Failure> {
+    let SceneFile { scene, solver, output, .. } = file;
+    let Solver { method, rtol, alpha, max_order, contact_events, max_steps, .. } = solver;
+    let atol = solver.tolerances(scene.body());
+    line("solver", &format!("{method}, rtol {rtol:e}, alpha {alpha} 1/s"))?;
+    let (position, velocity) = (atol.position, atol.velocity);
+    line("", &format!("atol {position:.2e} m and {velocity:.2e} m/s"))?;
+    let order = max_order.map_or(String::new(), |order| format!("order up to {order}, "));
+    let events = format!("contact events: {contact_events}");
+    line("", &format!("{order}up to {max_steps} steps in a phase, {events}"))?;
+    let step = match output.step {
+        Some(step) => format!("every {step} s"),
+        None => "at the ends of the phases".into(),
+    };
+    let formats: Vec<&str> = output.formats.iter().map(|format| Format::name(*format)).collect();
+    line("output", &format!("{step}; {}", formats.join(", ")))
+}
+
+/// A table of the phases.
+fn timeline(phases: &[PhaseSummary]) -> Result<(), Failure> {
+    let width = phases.iter().map(|phase| phase.name.chars().count()).fold(5, usize::max);
+    print(format_args!(
+        "\n{:width$} {:>9} {:>9} {:>11} {:>13} {:>11} {:>9}  acting",
+        "phase", "from (s)", "to (s)", "constraints", "fastest (1/s)", "slowest (s)", "damping"
+    ))?;
+    phases.iter().try_for_each(|phase| {
+        let PhaseSummary { name, start, end, constraints, spectrum, .. } = phase;
+        let (period, damping) = match spectrum.slowest_period() {
+            Some(period) => (format!("{period:.3e}"), spectrum.lowest_damping_ratio),
+            None => ("none".into(), 0.0),
+        };
+        let (rate, acting) = (spectrum.stiffest_rate(), acting(phase));
+        print(format_args!(
+            "{name:width$} {start:9} {end:9} {constraints:11} {rate:13.3e} {period:>11} \
+             {damping:9.1e}  {acting}"
+        ))
+    })
+}
+
+/// What acts in a phase, in words.
+fn acting(phase: &PhaseSummary) -> String {
+    let mut words = Vec::new();
+    if phase.loaded_nodes > 0 {
+        words.push(format!("loads on {} node(s)", phase.loaded_nodes));
+    }
+    for (what, names) in [
+        ("actuators of", &phase.actuated),
+        ("pressure in", &phase.pressurized),
+        ("contact with", &phase.obstacles),
+    ] {
+        if !names.is_empty() {
+            words.push(format!("{what} {}", names.join(", ")));
+        }
+    }
+    words.join("; ")
+}

@@ -1,0 +1,149 @@
+//! What `run` and `static` write, and where.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use pliant::output::{Snapshots, write_csv, write_vtk};
+use pliant::scene_file::Format;
+use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
+
+use crate::failure::{Failure, print};
+
+/// Flags that say what is written.
+#[derive(Args)]
+pub struct OutputArguments {
+    /// Directory for the results [default: out/ and the name of the scene file]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Nodes whose displacements trajectory.csv lists: a set such as "top", or numbers such as 14,15
+    #[arg(long, value_name = "NODES", value_parser = selection)]
+    track: Option<Selection>,
+    /// What to write besides trajectory.csv and report.json: svg, html, vtk
+    #[arg(long, value_delimiter = ',', value_parser = format)]
+    formats: Option<Vec<Format>>,
+    /// Show no progress, and print nothing but the results
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+fn selection(text: &str) -> Result<Selection, String> {
+    let numbers: Result<Vec<usize>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    Ok(numbers.map_or_else(|_| Selection::from(text), Selection::from))
+}
+
+fn format(name: &str) -> Result<Format, String> {
+    let known = Format::ALL.map(Format::name).join(", ");
+    let found = Format::ALL.into_iter().find(|format| format.name() == name);
+    found.ok_or_else(|| format!("it is one of {known}"))
+}
+
+impl OutputArguments {
+    /// Has them override what the file says.
+    pub fn apply(&self, file: &mut SceneFile) -> Result<(), Failure> {
+        if let Some(nodes) = &self.track {
+            file.scene.body().mesh().select(nodes)?;
+            file.output.track = Some(nodes.clone());
+        }
+        if let Some(formats) = &self.formats {
+            file.output.formats.clone_from(formats);
+        }
+        Ok(())
+    }
+
+    /// The directory for the results of the scene file at `path`.
+    pub fn directory(&self, path: &Path, suffix: &str) -> Result<Directory, Failure> {
+        let directory = self.out.clone().unwrap_or_else(|| {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            Path::new("out").join(format!("{stem}{suffix}"))
+        });
+        Directory::new(directory)
+    }
+}
+
+/// A directory for results.
+pub struct Directory {
+    path: PathBuf,
+    /// Names of what was written.
+    written: Vec<&'static str>,
+}
+
+impl Directory {
+    /// Makes sure that `path` can be written to, so that no result is lost, without making it yet.
+    fn new(path: PathBuf) -> Result<Self, Failure> {
+        let here = Path::new(".");
+        let existing = path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(here);
+        match tempfile::tempfile_in(existing) {
+            Ok(_) => Ok(Self { path, written: Vec::new() }),
+            Err(error) => {
+                let path = path.display();
+                Err(Failure::bad_input(format!("cannot write to {path}: {error}")))
+            }
+        }
+    }
+
+    /// Writes `trajectory.csv`.
+    pub fn write_table(
+        &mut self,
+        trajectory: &Trajectory,
+        output: &OutputRequest,
+    ) -> Result<(), Failure> {
+        self.write("trajectory.csv", |path| write_csv(trajectory, path, output.track.as_ref()))
+    }
+
+    /// Has a file written.
+    pub fn write(
+        &mut self,
+        name: &'static str,
+        write: impl FnOnce(&Path) -> Result<(), Error>,
+    ) -> Result<(), Failure> {
+        write(&self.path.join(name))?;
+        self.written.push(name);
+        Ok(())
+    }
+
+    /// Has the pictures and files of a motion written that are asked for.
+    pub fn write_formats(
+        &mut self,
+        trajectory: &Trajectory,
+        title: &str,
+        output: &OutputRequest,
+    ) -> Result<(), Failure> {
+        for format in &output.formats {
+            match format {
+                Format::Svg => self.write("snapshots.svg", |path| {
+                    Snapshots::at(times(trajectory)).title(title).write(trajectory, path)
+                })?,
+                Format::Vtk => {
+                    write_vtk(trajectory, &self.path, "body")?;
+                    self.written.push("body.pvd");
+                }
+                // the table is written in any case
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Tells what was written.
+    pub fn tell(&self) -> Result<(), Failure> {
+        print(format_args!("written to {}: {}", self.path.display(), self.written.join(", ")))
+    }
+}
+
+/// Times of the snapshots (s): the ends of the phases, and some between them, ten or so in all.
+fn times(trajectory: &Trajectory) -> Vec<f64> {
+    let phases = trajectory.scene().phases();
+    let parts = (9 / phases.len()).max(1);
+    let (mut times, mut start) = (vec![0.0], 0.0);
+    for phase in phases {
+        let part = (phase.end() - start) / parts as f64;
+        times.extend((1..=parts).map(|k| start + k as f64 * part));
+        start = phase.end();
+    }
+    let reached = trajectory.last().time;
+    times.retain(|&time| time <= reached);
+    if times.last() != Some(&reached) {
+        times.push(reached);
+    }
+    times
+}

@@ -1,0 +1,52 @@
+//! The command `pliant`: soft bodies from scene files, without a line of Rust.
+
+mod check;
+mod failure;
+mod files;
+mod methods;
+mod progress;
+mod run;
+mod statics;
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use failure::Failure;
+
+/// Dynamics of soft elastic bodies, from scene files.
+///
+/// Ends with code 0; 1 if a computation failed or was interrupted (what was computed is kept, and
+/// report.json says where and why); 2 for bad input.
+#[derive(Parser)]
+#[command(version)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    #[command(allow_negative_numbers = true)]
+    Run(run::Arguments),
+    Static(statics::Arguments),
+    Check(check::Arguments),
+    Methods(methods::Arguments),
+}
+
+fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Static(arguments) => statics::run(&arguments),
+        Command::Check(arguments) => check::run(&arguments),
+        Command::Methods(arguments) => methods::run(&arguments),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(Failure { code, message }) => {
+            // who closed the standard error wants no message
+            let _ = writeln!(io::stderr(), "pliant: {message}");
+            ExitCode::from(code)
+        }
+    }
+}

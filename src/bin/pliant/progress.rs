@@ -1,0 +1,81 @@
+//! The progress bar of a run, and Ctrl-C.
+
+use std::io::{self, Write};
+use std::ops::ControlFlow;
+use std::process;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pliant::simulate::Progress;
+
+use crate::failure::Failure;
+
+/// Watches a run: shows how far it has come, and stops it when Ctrl-C was pressed.
+pub struct Watch {
+    bar: ProgressBar,
+    interrupted: Arc<AtomicBool>,
+    /// End of the scene (s).
+    end: f64,
+    /// When the bar was drawn last.
+    drawn: Instant,
+}
+
+/// Parts into which the bar divides the time of the scene.
+const PARTS: f64 = 1e4;
+/// Time between two pictures of the bar.
+const PERIOD: Duration = Duration::from_millis(100);
+/// Exit code after the second Ctrl-C, that of shells for programs that it ends.
+const KILLED: i32 = 130;
+
+impl Watch {
+    /// Watches a run up to time `end` (s). The bar is drawn on a terminal only, and not if `quiet`.
+    pub fn new(end: f64, quiet: bool) -> Result<Self, Failure> {
+        let target = match quiet {
+            true => ProgressDrawTarget::hidden(),
+            false => ProgressDrawTarget::stderr(),
+        };
+        let bar = ProgressBar::with_draw_target(Some(PARTS as u64), target);
+        let style = ProgressStyle::with_template("{bar:30} {percent:>3} %, {msg}, {eta} left");
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let (asked, shown) = (interrupted.clone(), bar.clone());
+        let stop = move || {
+            if asked.swap(true, Ordering::Relaxed) {
+                process::exit(KILLED);
+            }
+            shown.suspend(|| {
+                let note = "pliant: stopping after this step, then writing what was computed; \
+                            press again to end at once";
+                let _ = writeln!(io::stderr(), "{note}");
+            });
+        };
+        ctrlc::set_handler(stop)
+            .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
+        Ok(Self { bar, interrupted, end, drawn: Instant::now() })
+    }
+
+    /// To be told after each step; asks to stop after Ctrl-C.
+    pub fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
+        if self.drawn.elapsed() > PERIOD && !self.bar.is_hidden() {
+            let &Progress { time, name, step, order, .. } = progress;
+            self.bar.set_position((PARTS * time / self.end) as u64);
+            let end = self.end;
+            self.bar.set_message(format!(
+                "{name}: t = {time:.4} of {end} s, step {step:.1e} s, order {order}"
+            ));
+            self.drawn = Instant::now();
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Takes the bar away.
+    pub fn finish(self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,70 @@
+//! What a scene contains, phase by phase.
+
+use super::{Phase, Scene};
+use crate::constraint::Start;
+use crate::error::Error;
+use crate::force::Obstacle;
+use crate::system::Spectrum;
+
+/// What happens in a phase, and how fast the body can move then.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhaseSummary {
+    /// Name of the phase.
+    pub name: String,
+    /// When it begins (s).
+    pub start: f64,
+    /// When it ends (s).
+    pub end: f64,
+    /// Number of rows of its constraints: one for each component of a node that is held or moved.
+    pub constraints: usize,
+    /// Number of nodes under loads, counted once for each load.
+    pub loaded_nodes: usize,
+    /// Names of the springs that are actuated.
+    pub actuated: Vec<String>,
+    /// Names of the chambers that are under pressure.
+    pub pressurized: Vec<String>,
+    /// Names of the obstacles that it meets.
+    pub obstacles: Vec<String>,
+    /// How fast the body can move, in its natural shape and at rest.
+    pub spectrum: Spectrum,
+}
+
+impl Scene {
+    /// What happens in each phase.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn summary(&self) -> Result<Vec<PhaseSummary>, Error> {
+        let spectra = self.spectrum()?;
+        let starts = [0.0].into_iter().chain(self.phases.iter().map(Phase::end));
+        let phases = self.phases.iter().zip(starts).zip(spectra);
+        phases.map(|((phase, start), spectrum)| self.summary_of(phase, start, spectrum)).collect()
+    }
+
+    fn summary_of(
+        &self,
+        phase: &Phase,
+        start: f64,
+        spectrum: Spectrum,
+    ) -> Result<PhaseSummary, Error> {
+        let rows = self.rows(phase, &Start { time: start, u: self.start()[0] })?;
+        let mut loaded_nodes = 0;
+        for (selection, _) in &phase.loads {
+            loaded_nodes += self.body.mesh().select(selection)?.len();
+        }
+        let actuated = phase.actuations.iter().flat_map(|(springs, _)| springs);
+        let pressurized = phase.pressures.iter().map(|(chamber, _)| chamber);
+        let obstacles = phase.contacts(&self.obstacles)?.into_iter().map(Obstacle::name);
+        Ok(PhaseSummary {
+            name: phase.name.clone(),
+            start,
+            end: phase.until,
+            constraints: rows.len(),
+            loaded_nodes,
+            actuated: actuated.cloned().collect(),
+            pressurized: pressurized.cloned().collect(),
+            obstacles: obstacles.map(str::to_owned).collect(),
+            spectrum,
+        })
+    }
+}

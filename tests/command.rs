@@ -1,0 +1,456 @@
+//! The command `pliant` as a whole: what it writes, what it says, how it ends.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use pliant::output::write_csv;
+use pliant::{Method, SceneFile, sundials};
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+/// A directory to run the command in, and what is done there.
+struct Place(TempDir);
+
+impl Place {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_pliant"));
+        command.args(arguments).current_dir(self.0.path());
+        command
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        self.command(arguments).output().unwrap()
+    }
+
+    /// Writes a scene file and returns its name.
+    fn scene(&self, text: &str) -> &'static str {
+        fs::write(self.0.path().join("scene.toml"), text).unwrap();
+        "scene.toml"
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Names of the files in a directory, in alphabetical order.
+    fn files(&self, directory: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path(directory)).unwrap();
+        let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<String> = names.collect();
+        names.sort();
+        names
+    }
+
+    fn report(&self, directory: &str) -> Value {
+        let text = fs::read_to_string(self.path(directory).join("report.json")).unwrap();
+        serde_json::from_str(&text).unwrap()
+    }
+
+    /// Header and rows of trajectory.csv.
+    fn table(&self, directory: &str) -> (Vec<String>, Vec<Vec<f64>>) {
+        let path = self.path(directory).join("trajectory.csv");
+        let mut reader = csv::Reader::from_path(path).unwrap();
+        let header = reader.headers().unwrap().iter().map(String::from).collect();
+        (header, reader.deserialize().collect::<Result<_, _>>().unwrap())
+    }
+}
+
+/// A scene file of the project.
+fn shipped(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name);
+    path.to_str().unwrap().into()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[track_caller]
+fn says(text: &str, parts: &[&str]) {
+    parts
+        .iter()
+        .for_each(|part| assert!(text.contains(part), "\"{part}\" is missing from: {text}"));
+}
+
+/// The bar of the jumping beam, held at its lower end: a motion of a second or of days.
+fn bar(until: f64) -> String {
+    format!(
+        r#"
+        dimension = 1
+        [body]
+        mesh = {{ kind = "bar", length = 0.10, nodes = 6 }}
+        area = 2.0e-4
+        material = {{ density = 1000.0, young = 5.0e4, poisson = 0.0, viscosity = 200.0 }}
+        [[phase]]
+        name = "pull"
+        until = {until}
+        hold = [{{ nodes = "left" }}]
+        load = [{{ nodes = "right", force = [0.1] }}]
+        [output]
+        step = 0.1
+        "#
+    )
+}
+
+#[test]
+fn run_writes_the_motion_and_how_it_was_computed() {
+    let place = Place::new();
+    let output = place.run(&["run", &shipped("square-jump.toml"), "--formats", "csv"]);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    says(&stdout(&output), &["Jumping", "push", "hold", "free", "energy balance", "report.json"]);
+    assert_eq!(place.files("."), ["out"]);
+    assert_eq!(place.files("out/square-jump"), ["report.json", "trajectory.csv"]);
+
+    let (header, rows) = place.table("out/square-jump");
+    let names = "t com_x com_y momentum_x momentum_y angular_momentum kinetic strain gravity contact \
+                 springs constraint_drift u14_x u14_y u15_x u15_y";
+    assert_eq!(header, names.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(rows.len(), 151);
+    // the very numbers of the same run in Rust
+    let file = SceneFile::read(shipped("square-jump.toml")).unwrap();
+    let motion = file.scene.simulate(&file.solver, &file.output.sampling()).unwrap();
+    let expected = place.path("expected.csv");
+    write_csv(&motion, &expected, file.output.track.as_ref()).unwrap();
+    let written = fs::read(place.path("out/square-jump/trajectory.csv")).unwrap();
+    assert!(written == fs::read(expected).unwrap(), "trajectory.csv differs");
+
+    let report = place.report("out/square-jump");
+    let keys: Vec<&String> = report.as_object().unwrap().keys().collect();
+    let required = "method rtol alpha states steps rhs_evaluations jacobian_evaluations \
+                    factorizations error_test_failures wall_seconds phases energy_balance_error \
+                    max_constraint_drift versions";
+    for key in required.split_whitespace() {
+        assert!(keys.iter().any(|known| *known == key), "{key} is missing");
+    }
+    assert_eq!((&report["status"], &report["failure"]), (&json!("finished"), &Value::Null));
+    assert_eq!(report["steps"], motion.report().steps());
+    assert_eq!(report["phases"].as_array().unwrap().len(), 3);
+    assert_eq!(report["versions"]["sundials"], sundials::version());
+}
+
+#[test]
+fn flags_override_the_file() {
+    let place = Place::new();
+    let scene = shipped("square-jump.toml");
+    let flags = "--method rk --rtol 1e-4 --alpha 50 --atol-position 1e-6 --atol-velocity 1e-5 \
+                 --step 0.05 --until 0.72 --track bottom --formats svg,vtk --out some/where";
+    let mut arguments = vec!["run", &scene];
+    arguments.extend(flags.split_whitespace());
+    let output = place.run(&arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let report = place.report("some/where");
+    assert_eq!((&report["method"], &report["rtol"]), (&json!("rk"), &json!(1e-4)));
+    assert_eq!((&report["alpha"], &report["status"]), (&json!(50.0), &json!("finished")));
+    let phases = report["phases"].as_array().unwrap();
+    let ends: Vec<_> = phases.iter().map(|phase| (&phase["name"], &phase["end"])).collect();
+    assert_eq!(ends, [(&json!("push"), &json!(0.5)), (&json!("hold"), &json!(0.72))]);
+
+    let (header, rows) = place.table("some/where");
+    let tracked: Vec<&str> = header[12..].iter().map(String::as_str).collect();
+    assert_eq!(tracked, ["u1_x", "u1_y", "u2_x", "u2_y", "u3_x", "u3_y", "u4_x", "u4_y"]);
+    // every 0.05 s to 0.7 s, and the end at 0.72 s
+    assert_eq!((rows.len(), rows[15][0]), (16, 0.72));
+    let files = place.files("some/where");
+    assert_eq!(files.iter().filter(|name| name.ends_with(".vtu")).count(), 16);
+    for name in ["body.pvd", "body_0000.vtu", "snapshots.svg", "report.json", "trajectory.csv"] {
+        assert!(files.iter().any(|file| file == name), "{name} is missing");
+    }
+    says(&fs::read_to_string(place.path("some/where/snapshots.svg")).unwrap(), &["Jumping"]);
+}
+
+#[test]
+fn solver_flags_reach_the_solver() {
+    let place = Place::new();
+    let scene = place.scene(&bar(1.0));
+    let steps = |flags: &[&str]| {
+        let output = place.run(&[&["run", scene, "--out", "out"], flags].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        place.report("out")["steps"].as_u64().unwrap()
+    };
+    let plain = steps(&[]);
+    assert!(steps(&["--rtol", "1e-9"]) > 2 * plain);
+    // tolerances a million times those in force
+    assert!(steps(&["--atol-position", "1", "--atol-velocity", "1"]) < plain);
+    assert!(steps(&["--max-order", "1", "--rtol", "1e-7"]) > 5 * steps(&["--rtol", "1e-7"]));
+}
+
+#[test]
+fn a_failing_run_keeps_what_it_has() {
+    let place = Place::new();
+    let output = place.run(&["run", &shipped("ring-springs-5N.toml"), "--step", "0.01"]);
+    assert_eq!(output.status.code(), Some(1));
+    let message = stderr(&output);
+    assert!(message.starts_with("pliant: phase \""), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    says(&message, &["stopped at t = 0.2", "spring \"A"]);
+    says(&stdout(&output), &["written to out/ring-springs-5N"]);
+
+    let report = place.report("out/ring-springs-5N");
+    assert_eq!(report["status"], "failed");
+    let failure = &report["failure"];
+    // the springs collapse 10 ms after they are told to shrink, at 0.2 s
+    let time = failure["time"].as_f64().unwrap();
+    assert!((time - 0.21).abs() < 0.003, "{time}");
+    assert!(failure["step"].as_f64().unwrap() > 0.0);
+    says(failure["cause"].as_str().unwrap(), &["spring \"A"]);
+    assert_eq!(failure["phase"], report["phases"][1]["name"]);
+    let (_, rows) = place.table("out/ring-springs-5N");
+    assert!(rows.len() > 20);
+    assert!((rows.last().unwrap()[0] - time).abs() <= f64::EPSILON * time);
+
+    let output = place.run(&["run", place.scene(&bar(1.0)), "--max-steps", "7"]);
+    assert_eq!(output.status.code(), Some(1));
+    says(&stderr(&output), &["pliant: phase \"pull\"", "max_steps"]);
+    assert_eq!(place.report("out/scene")["steps"], 7);
+}
+
+#[test]
+fn bad_input_writes_nothing() {
+    let place = Place::new();
+    let good = place.scene(&bar(1.0));
+    fs::write(place.path("bad.toml"), bar(1.0).replace("area", "aera")).unwrap();
+    fs::write(place.path("phase.toml"), bar(-1.0)).unwrap();
+    fs::write(place.path("file"), "").unwrap();
+    let before = place.files(".");
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["run", "nowhere.toml"], &["pliant: cannot read nowhere.toml"]),
+        (&["run", "bad.toml"], &["pliant: bad.toml:", "aera", "area"]),
+        (&["check", "bad.toml"], &["pliant: bad.toml:", "aera"]),
+        (&["static", "bad.toml"], &["pliant: bad.toml:", "aera"]),
+        (&["run", "phase.toml"], &["pliant: phase.toml:", "-1"]),
+        (&["run", good, "--rtol", "2"], &["pliant: rtol = 2 cannot be used"]),
+        (&["run", good, "--rtol", "-1"], &["pliant: rtol = -1 cannot be used"]),
+        (&["run", good, "--alpha", "nan"], &["pliant: alpha = NaN cannot be used"]),
+        (&["run", good, "--max-order", "9"], &["pliant: max_order = 9", "1 to 5"]),
+        (&["run", good, "--max-steps", "0"], &["pliant: max_steps = 0"]),
+        (&["run", good, "--step", "0"], &["pliant: sampling step = 0"]),
+        (&["run", good, "--until", "-1"], &["pliant: end of phase \"pull\" = -1 s"]),
+        (&["run", good, "--until", "nan"], &["pliant: end of phase \"pull\" = NaN"]),
+        (&["run", good, "--track", "7"], &["pliant: node = 7", "1 to 6"]),
+        (&["run", good, "--track", "lid"], &["pliant: node set = \"lid\"", "right"]),
+        (&["static", good, "--track", "lid"], &["pliant: node set = \"lid\"", "right"]),
+        (&["run", good, "--out", "file"], &["pliant: cannot write to file"]),
+        (&["run", good, "--out", "file/below"], &["pliant: cannot write to file/below"]),
+        (&["run", good, "--method", "euler"], &["euler", "cvode-bdf, cvode-adams"]),
+        (&["run", good, "--formats", "pdf"], &["pdf", "csv, vtk, svg, html"]),
+        (&["run", good, "--rtoll", "1"], &["--rtoll", "--rtol"]),
+        (&["rum", good], &["rum", "run"]),
+        (&["run"], &["FILE"]),
+        (&[], &["Usage"]),
+    ];
+    for (arguments, parts) in cases {
+        let output = place.run(arguments);
+        let message = stderr(&output);
+        println!("{arguments:?}: {message}");
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {message}");
+        says(&message, parts);
+        assert!(!message.contains("panicked"), "{message}");
+        assert_eq!(stdout(&output), "", "{arguments:?}");
+        assert_eq!(place.files("."), before, "{arguments:?}");
+    }
+}
+
+/// The slides' square, whose equilibrium is also that of a slow motion.
+#[test]
+fn static_finds_the_equilibrium() {
+    let place = Place::new();
+    let scene = shipped("static-square.toml");
+    let output = place.run(&["static", &scene, "--track", "all", "--formats", "csv"]);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    says(&stdout(&output), &["Static square", "stable, lowest natural frequency", "-static"]);
+    assert_eq!(place.files("out/static-square-static"), ["report.json", "trajectory.csv"]);
+    let report = place.report("out/static-square-static");
+    assert_eq!((&report["status"], &report["method"]), (&json!("finished"), &json!("static")));
+    assert_eq!(report["stability"]["kind"], "stable");
+    let (header, rows) = place.table("out/static-square-static");
+    assert_eq!((rows.len(), rows[0][0]), (1, 1.0));
+    let value =
+        |row: &[f64], name: &str| row[header.iter().position(|other| other == name).unwrap()];
+    assert!((value(&rows[0], "u14_y") + 0.3).abs() < 1e-15);
+    assert_eq!((value(&rows[0], "kinetic"), value(&rows[0], "momentum_x")), (0.0, 0.0));
+
+    let text = fs::read_to_string(&scene).unwrap();
+    let slow = text.replace("until = 1.0", "until = 100.0").replace("-0.3]", "-0.003]");
+    let slow = slow.replace("viscosity = 0.0", "viscosity = 1e4");
+    let output = place.run(&["run", place.scene(&slow), "--track", "all", "--out", "slow"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let (_, moved) = place.table("slow");
+    for node in 1..=16 {
+        for axis in ["x", "y"] {
+            let name = format!("u{node}_{axis}");
+            let (still, slow) = (value(&rows[0], &name), value(moved.last().unwrap(), &name));
+            // viscosity holds it back by its rate times c/E, 0.003 x 0.01 m
+            assert!((still - slow).abs() < 5e-5, "{name}: {still} {slow}");
+        }
+    }
+}
+
+#[test]
+fn static_tells_what_it_cannot_hold() {
+    let place = Place::new();
+    let loose = bar(1.0).replace("hold = [{ nodes = \"left\" }]", "");
+    let output = place.run(&["static", place.scene(&loose)]);
+    assert_eq!(output.status.code(), Some(2));
+    says(&stderr(&output), &["pliant: phase `pull`", "hold more of its nodes"]);
+    assert_eq!(place.files("."), ["scene.toml"]);
+
+    // pressed together by far more than it can bear
+    let green = bar(1.0).replace("area", "strain = \"green\"\narea").replace("0.1]", "-50.0]");
+    let output = place.run(&["static", place.scene(&green), "--out", "lost"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+    says(&stderr(&output), &["pliant: phase \"pull\": no equilibrium at"]);
+    assert_eq!(place.report("lost")["status"], "failed");
+    assert_eq!(place.table("lost").1.len(), 1);
+}
+
+#[test]
+fn check_prints_what_a_scene_contains() {
+    let place = Place::new();
+    let output = place.run(&["check", &shipped("ring-springs.toml")]);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    let text = stdout(&output);
+    // 32 x 3 nodes and the mass in the middle, two triangles in each of 32 x 2 quadrangles
+    says(&text, &["97 nodes (64 on the boundary)", "128 cells (triangle)", "194 displacements"]);
+    says(&text, &["gravity", "-9.8", "springs", "A1, A2", "A8", "obstacles", "floor", "mass (1)"]);
+    says(&text, &["green strain, natural viscosity", "rtol", "atol", "alpha", "fastest (1/s)"]);
+    says(&text, &["phase ", "A3 and A7 ", "actuators of A2, A6; contact with floor"]);
+    assert_eq!(place.files("."), Vec::<String>::new());
+
+    let text = stdout(&place.run(&["check", &shipped("square-jump.toml")]));
+    let row = |name: &str| -> Vec<&str> {
+        text.lines().find(|line| line.starts_with(name)).unwrap().split_whitespace().collect()
+    };
+    // bottom and two nodes of the top are held in the first two phases
+    assert_eq!(row("push")[1..4], ["0", "0.5", "12"]);
+    assert_eq!(row("hold")[1..4], ["0.5", "1", "12"]);
+    assert_eq!(row("free")[1..4], ["1", "1.5", "0"]);
+    assert_eq!(row("free")[7..], ["contact", "with", "floor"]);
+    // its greatest eigenvalue, by an independent program; the estimate is some per cent below
+    let fastest: f64 = row("push")[4].parse().unwrap();
+    assert!((0.95 * 4.6e3..4.6e3).contains(&fastest), "{fastest}");
+    says(&text, &["every 0.01 s"]);
+    // a bar that swings along itself, a quarter wave in its length: 4 L sqrt(rho/E) = 56.6 ms, and
+    // 0.4 % less on five cells, (k h)^2/24
+    let text = stdout(&place.run(&["check", place.scene(&bar(1.0))]));
+    says(&text, &["5.63", "loads on 1 node(s)", "6 displacements"]);
+}
+
+#[test]
+fn methods_are_listed() {
+    let output = Place::new().run(&["methods"]);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    let text = stdout(&output);
+    assert_eq!(text.lines().count(), Method::ALL.len());
+    for (line, method) in text.lines().zip(Method::ALL) {
+        assert!(line.starts_with(method.name()) && line.contains(method.purpose()), "{line}");
+    }
+    assert_eq!(text.matches("[default]").count(), 1);
+}
+
+#[test]
+fn quiet_prints_results_only() {
+    let place = Place::new();
+    let scene = shipped("beam-jump.toml");
+    let output = place.run(&["run", &scene, "--quiet"]);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    let text = stdout(&output);
+    assert!(text.starts_with("cvode-bdf, rtol"), "{text}");
+    assert!(!text.contains("written to"), "{text}");
+    let output = place.run(&["static", &scene, "--quiet"]);
+    assert_eq!((stdout(&output).lines().count(), stderr(&output)), (1, String::new()));
+}
+
+/// Whoever reads may stop reading; what cannot be written is said.
+#[test]
+fn standard_output_may_break() {
+    let place = Place::new();
+    for arguments in [vec!["methods"], vec!["check", place.scene(&bar(1.0))]] {
+        let mut command = place.command(&arguments);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    }
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = place.command(&["methods"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    says(&stderr(&output), &["pliant: cannot write to the standard output"]);
+}
+
+/// Interrupts a child once it is ready to be interrupted.
+fn interrupt(child: &mut Child) {
+    let status = format!("/proc/{}/status", child.id());
+    let patience = Instant::now();
+    let catches = || {
+        let text = fs::read_to_string(&status).unwrap();
+        let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+        u64::from_str_radix(mask.trim(), 16).unwrap() & 0b10 != 0 // SIGINT is number 2
+    };
+    while !catches() {
+        assert!(patience.elapsed() < Duration::from_secs(120), "it does not watch for SIGINT");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let kill = format!("kill -INT {}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+}
+
+#[test]
+fn ctrl_c_keeps_what_was_computed() {
+    let place = Place::new();
+    // days of motion that never comes to rest: it cannot be over before it is stopped
+    let text = bar(1e6).replace("viscosity = 200.0", "viscosity = 0.0");
+    let scene = place.scene(&text);
+    let mut command =
+        place.command(&["run", scene, "--step", "0.001", "--max-steps", "1000000000"]);
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    interrupt(&mut child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    let message = stderr(&output);
+    says(&message, &["pliant: stopping after this step", "pliant: phase \"pull\"", "interrupted"]);
+    let report = place.report("out/scene");
+    assert_eq!(report["status"], "interrupted");
+    assert_eq!(report["failure"]["cause"], "interrupted");
+    let (_, rows) = place.table("out/scene");
+    assert!(report["steps"].as_u64().unwrap() >= 1 && rows.len() >= 2);
+    let (last, time) = (rows.last().unwrap()[0], report["failure"]["time"].as_f64().unwrap());
+    assert!((last - time).abs() <= f64::EPSILON * time, "{last} {time}");
+    assert_eq!(place.files("out/scene"), ["report.json", "trajectory.csv"]);
+}
+
+/// Who presses Ctrl-C once more does not wait: here for the first step of a mesh so fine that it
+/// takes seconds.
+#[test]
+fn a_second_ctrl_c_ends_at_once() {
+    let place = Place::new();
+    let text = r#"
+        dimension = 3
+        [body]
+        mesh = { kind = "cuboid", size = [0.3, 0.3, 0.3], nodes = [22, 22, 22], cells = "hexahedra" }
+        material = { density = 1000.0, young = 1.0e6, poisson = 0.4, viscosity = 40.0 }
+        [[phase]]
+        until = 10.0
+        load = [{ nodes = "top", force = [1.0, 0.0, 0.0] }]
+    "#;
+    let mut command = place.command(&["run", place.scene(text)]);
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    interrupt(&mut child);
+    // it has heard
+    let mut byte = [0];
+    child.stderr.as_mut().unwrap().read_exact(&mut byte).unwrap();
+    interrupt(&mut child);
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(130));
+    assert_eq!(place.files("."), ["scene.toml"]);
+}
