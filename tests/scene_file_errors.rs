@@ -77,6 +77,27 @@ fn no_value_is_trusted() {
     }
 }
 
+/// What a default could not supply is asked for by its key.
+#[test]
+fn a_chamber_beside_a_string_needs_a_thickness() {
+    let text = include_str!("data/string.toml").replace("thickness = 0.01\n", "");
+    let expected = "rich.toml:9: chamber.thickness: missing; the body has no thickness of its own: \
+                    give that of the chamber (m)";
+    assert_eq!(message(&text), expected);
+}
+
+/// All ways to write numbers in TOML.
+#[test]
+fn numbers() {
+    let with = |young: &str| {
+        let text = RICH.replacen("1.0e6", young, 1);
+        SceneFile::parse(&text, Path::new("rich.toml")).unwrap().scene.body().material().young
+    };
+    for young in ["1000000", "1e6", "1E+6", "+1_000_000.0", "0xF4240", "1_0_00e3"] {
+        assert_eq!(with(young), 1e6, "{young}");
+    }
+}
+
 #[test]
 fn files_that_cannot_be_read() {
     let error = SceneFile::read("nowhere/scene.toml").unwrap_err();

@@ -82,7 +82,7 @@ fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let (nodes, axes) = (nodes(table, scene)?, axes(table, scene)?);
     table.required("velocity", "the velocity (m/s)", |value| {
         let Some(axes) = axes else {
-            return Ok(phase.move_nodes(nodes, value.vector(scene.body().dimension())?));
+            return Ok(phase.move_nodes(nodes, along(value, all_axes(scene), scene)?));
         };
         let along = along(value, &axes, scene)?;
         Ok(axes
@@ -94,10 +94,7 @@ fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 
 fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
-    let axes = match axes(table, scene)? {
-        Some(axes) => axes,
-        None => Axis::all(scene.body().dimension()).into(),
-    };
+    let axes = axes(table, scene)?.unwrap_or_else(|| all_axes(scene).into());
     let times = table.required("times", "times, ascending (s)", Value::numbers)?;
     let points = table.required("displacements", "displacements at these times (m)", |value| {
         value.list_of("points, one per time", |point| along(point, &axes, scene))
@@ -198,6 +195,10 @@ fn axes(table: &Table, scene: &Scene) -> Result<Option<Vec<Axis>>, Error> {
     })
 }
 
+fn all_axes(scene: &Scene) -> &'static [Axis] {
+    Axis::all(scene.body().dimension())
+}
+
 /// The components along `axes`: one number per named axis (for one axis, a number alone), or one
 /// per dimension, 0 along the axes that are not named.
 fn along(value: &Value, axes: &[Axis], scene: &Scene) -> Result<Vec<f64>, Error> {
@@ -211,7 +212,8 @@ fn along(value: &Value, axes: &[Axis], scene: &Scene) -> Result<Vec<f64>, Error>
     if numbers.len() == dimension && (0..dimension).all(|i| numbers[i] == 0.0 || !is_free(i)) {
         return Ok(axes.iter().map(|axis| numbers[axis.index()]).collect());
     }
-    Err(value.unexpected(format!("{}, one per named axis", number_of(axes.len(), "number"))))
+    let per = if axes.len() == dimension { "dimension" } else { "named axis" };
+    Err(value.unexpected(format!("{}, one per {per}", number_of(axes.len(), "number"))))
 }
 
 fn named(value: &Value, known: &[&str]) -> Result<String, Error> {

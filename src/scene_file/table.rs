@@ -108,7 +108,7 @@ impl<'a> Table<'a> {
             _ => return self.error(error),
         };
         if value == "(missing)" {
-            return self.missing(input, mend);
+            return self.missing(input.rsplit(' ').next().unwrap_or(input), mend);
         }
         match self.culprit(input) {
             None => self.error(&error),
@@ -134,5 +134,5 @@ impl<'a> Table<'a> {
 fn is_name_of(input: &str, key: &str) -> bool {
     let key = key.rsplit('.').next().unwrap_or(key);
     let owner = input.strip_suffix(key);
-    owner.is_some_and(|owner| owner.is_empty() || owner.ends_with(['.']) || owner.ends_with("\" "))
+    owner.is_some_and(|owner| owner.is_empty() || owner.ends_with('.') || owner.ends_with("\" "))
 }
