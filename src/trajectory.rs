@@ -164,8 +164,8 @@ impl fmt::Display for Report {
         for PhaseReport { name, end, wall_seconds, counts, .. } in &self.phases {
             let Counts { steps, evaluations, factorizations, .. } = counts;
             // of a run that ended early it has all digits
-            let end = Some(end.to_string()).filter(|end| end.len() <= 8);
-            let end = end.unwrap_or_else(|| format!("{end:.3e}"));
+            let digits = Some(end.to_string()).filter(|end| end.len() <= 8);
+            let end = digits.unwrap_or_else(|| format!("{end:.3e}"));
             let rejected = rejected(counts);
             writeln!(
                 f,
