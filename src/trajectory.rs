@@ -164,12 +164,14 @@ impl fmt::Display for Report {
         for PhaseReport { name, end, wall_seconds, counts, .. } in &self.phases {
             let Counts { steps, evaluations, factorizations, .. } = counts;
             // of a run that ended early it has all digits
-            let digits = Some(end.to_string()).filter(|end| end.len() <= 8);
-            let end = digits.unwrap_or_else(|| format!("{end:.3e}"));
+            let mut end_text = end.to_string();
+            if end_text.len() > 8 {
+                end_text = format!("{end:.3e}");
+            }
             let rejected = rejected(counts);
             writeln!(
                 f,
-                "{name:12} {end:>8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} \
+                "{name:12} {end_text:>8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} \
                  {wall_seconds:9.4}"
             )?;
         }

@@ -65,22 +65,57 @@ impl Sampling {
     }
 
     /// The sampling times after `start` up to `end`, ending with `end`.
-    fn within(&self, start: f64, end: f64) -> Vec<f64> {
-        // multiples that round-off alone keeps apart from the ends of the phase are those ends
+    fn within(&self, start: f64, end: f64) -> Schedule {
+        // times that round-off alone keeps apart from the ends of the phase are those ends
         let apart = 1e-9 * (end - start);
-        let mut times: Vec<f64> = match &self.0 {
-            Times::PhaseEnds => Vec::new(),
+        let (after, before) = (start + apart, end - apart);
+        let (inner, count) = match &self.0 {
+            Times::PhaseEnds => (Inner::Listed(Vec::new()), 0),
             Times::Every(step) => {
-                let (first, last) = ((start / step).floor() as u64, (end / step).ceil() as u64);
-                (first..=last).map(|k| k as f64 * step).collect()
+                let first = (after / step).floor() + 1.0;
+                let count = ((before / step).ceil() - first).max(0.0) as usize;
+                (Inner::Multiples { step: *step, first }, count)
             }
-            Times::At(times) => times.clone(),
+            Times::At(times) => {
+                let inside = times.iter().copied().filter(|&t| t > after && t < before);
+                let mut times: Vec<f64> = inside.collect();
+                times.sort_by(f64::total_cmp);
+                times.dedup();
+                let count = times.len();
+                (Inner::Listed(times), count)
+            }
         };
-        times.retain(|&t| t > start + apart && t < end - apart);
-        times.push(end);
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        times
+        Schedule { inner, count, end }
+    }
+}
+
+/// The sampling times of a phase, of which there may be more than fit in memory.
+struct Schedule {
+    /// Those before the end, and their number.
+    inner: Inner,
+    count: usize,
+    end: f64,
+}
+
+enum Inner {
+    /// Multiples of `step`, from `first` times it on.
+    Multiples {
+        step: f64,
+        first: f64,
+    },
+    Listed(Vec<f64>),
+}
+
+impl Schedule {
+    /// One of the times, counted from 0.
+    fn get(&self, number: usize) -> Option<f64> {
+        if number >= self.count {
+            return (number == self.count).then_some(self.end);
+        }
+        match &self.inner {
+            Inner::Multiples { step, first } => Some((first + number as f64) * step),
+            Inner::Listed(times) => times.get(number).copied(),
+        }
     }
 }
 
@@ -197,10 +232,17 @@ mod tests {
 
     #[test]
     fn samples_lie_within_the_phase_and_end_with_it() {
+        let within = |sampling: Sampling, start, end| -> Vec<f64> {
+            let schedule = sampling.within(start, end);
+            (0..9).map_while(|number| schedule.get(number)).collect()
+        };
         // 3 x 0.1 is a little more than 0.3
-        assert_eq!(Sampling::every(0.1).within(0.0, 0.3), [0.1, 0.2, 0.3]);
-        assert_eq!(Sampling::every(0.1).within(0.3, 0.45), [0.4, 0.45]);
-        assert_eq!(Sampling::at([0.4, 0.1, 0.3, 0.1]).within(0.0, 0.35), [0.1, 0.3, 0.35]);
-        assert_eq!(Sampling::phase_ends().within(0.3, 0.45), [0.45]);
+        assert_eq!(within(Sampling::every(0.1), 0.0, 0.3), [0.1, 0.2, 0.3]);
+        assert_eq!(within(Sampling::every(0.1), 0.3, 0.45), [0.4, 0.45]);
+        assert_eq!(within(Sampling::every(0.1), 0.31, 0.35), [0.35]);
+        assert_eq!(within(Sampling::at([0.4, 0.1, 0.3, 0.1]), 0.0, 0.35), [0.1, 0.3, 0.35]);
+        assert_eq!(within(Sampling::phase_ends(), 0.3, 0.45), [0.45]);
+        // more than fit in memory
+        assert_eq!(within(Sampling::every(1e-9), 0.0, 1e6)[..2], [1e-9, 2e-9]);
     }
 }

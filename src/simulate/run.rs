@@ -10,7 +10,7 @@ use super::failure::{
 use super::progress::{Observer, Progress};
 use super::solver::Tolerances;
 use super::stepper::{Failed, Stepper};
-use super::{ContactEvents, Counts, Sampling, Solver};
+use super::{ContactEvents, Counts, Sampling, Schedule, Solver};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
 use crate::scene::{Forces, Phase, Scene};
@@ -67,7 +67,7 @@ const WATCH: usize = 32;
 struct Leg<'a> {
     number: usize,
     /// Sampling times of the phase, and the number of those that have been taken.
-    times: &'a [f64],
+    times: &'a Schedule,
     taken: usize,
     /// End of the leg (s): of the phase, or where a force breaks off.
     stop: f64,
@@ -283,7 +283,7 @@ impl<'a> Run<'a> {
         if self.standing == STANDING {
             return Err(standing_still(stepper.system().refusal()));
         }
-        while let Some(&t) = leg.times.get(leg.taken).filter(|&&t| t <= time) {
+        while let Some(t) = leg.times.get(leg.taken).filter(|&t| t <= time) {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
             self.sample(leg.number, stepper.system_mut(), t, sample)?;
