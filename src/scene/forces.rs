@@ -7,11 +7,12 @@ use super::{Phase, Scene};
 use crate::error::{Error, finite};
 use crate::force::{Chamber, Contact, Force, Gravity, Load, Signal, Spring, VaryingLoad};
 
-type Forces = Vec<Arc<dyn Force>>;
+/// The forces that act in one phase.
+pub(crate) type Forces = Vec<Arc<dyn Force>>;
 
 impl Scene {
-    /// All forces but those of constant matrices.
-    pub(super) fn forces(&self, phase: &Phase) -> Result<Forces, Error> {
+    /// The forces in one phase, all but those of constant matrices.
+    pub(super) fn forces_in(&self, phase: &Phase) -> Result<Forces, Error> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
         if let Some(elastic) = self.body.elastic() {

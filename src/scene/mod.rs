@@ -6,6 +6,7 @@ mod phase;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+pub(crate) use forces::Forces;
 pub use phase::Phase;
 
 use crate::body::Body;
@@ -162,6 +163,12 @@ impl Scene {
     /// The first input that cannot be used: no phases, phases out of order, unknown nodes, springs,
     /// chambers or obstacles, numbers out of range, constraints that contradict each other.
     pub fn validate(&self) -> Result<(), Error> {
+        self.forces().map(|_| ())
+    }
+
+    /// The forces of each phase, all but those of constant matrices, after the checks of
+    /// [`validate`](Self::validate).
+    pub(crate) fn forces(&self) -> Result<Vec<Forces>, Error> {
         if self.phases.is_empty() {
             return Err(Error::input("number of phases", 0, "a scene needs one phase at least"));
         }
@@ -197,13 +204,13 @@ impl Scene {
             Contact::new(&self.body, obstacle)?;
         }
         let (mut time, mut u) = (0.0, self.start[0].clone());
-        for phase in &self.phases {
+        let forces = self.phases.iter().map(|phase| {
             let rows = self.rows(phase, &Start { time, u: &u })?;
-            self.forces(phase)?;
             time = phase.until;
             tell(&rows, time, &mut u);
-        }
-        Ok(())
+            self.forces_in(phase)
+        });
+        forces.collect()
     }
 
     /// How fast the body can move in each phase, in its natural shape and at rest: what makes a scene
@@ -219,18 +226,18 @@ impl Scene {
     /// # Errors
     /// As [`validate`](Self::validate).
     pub fn spectrum(&self) -> Result<Vec<Spectrum>, Error> {
-        self.validate()?;
-        let model = self.model()?;
+        let forces = self.forces()?;
+        let model = self.model(&forces);
         let rest = vec![0.0; self.body.dofs()];
         let mut time = 0.0;
-        let mut spectrum = |phase: &Phase| {
+        let spectra = self.phases.iter().zip(forces).map(|(phase, forces)| {
             let start = Start { time, u: &rest };
-            let mut system = self.system(&model, phase, &start, 0.0)?;
+            let mut system = self.system(&model, phase, forces, &start, 0.0)?;
             let spectrum = system.spectrum(time, &rest, &rest);
             time = phase.until;
             Ok(spectrum)
-        };
-        self.phases.iter().map(&mut spectrum).collect()
+        });
+        spectra.collect()
     }
 
     /// Displacements and velocities at t = 0.
@@ -238,24 +245,22 @@ impl Scene {
         [&self.start[0], &self.start[1]]
     }
 
-    /// The constant numbers of the scene.
-    pub(crate) fn model(&self) -> Result<Arc<Model>, Error> {
-        let forces: Vec<_> =
-            self.phases.iter().map(|phase| self.forces(phase)).collect::<Result<_, Error>>()?;
+    /// The constant numbers of the scene under the forces of its phases.
+    pub(crate) fn model(&self, forces: &[Forces]) -> Arc<Model> {
         let all = forces.iter().flatten().map(|force| &**force);
-        Ok(Arc::new(Model::new(&self.body, all)))
+        Arc::new(Model::new(&self.body, all))
     }
 
-    /// The equations of one phase.
+    /// The equations of one phase under its forces.
     pub(crate) fn system(
         &self,
         model: &Arc<Model>,
         phase: &Phase,
+        forces: Forces,
         start: &Start,
         alpha: f64,
     ) -> Result<System, Error> {
-        let (rows, forces) = (self.rows(phase, start)?, self.forces(phase)?);
-        System::new(model.clone(), forces, rows, alpha, &phase.name)
+        System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
     }
 
     fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {

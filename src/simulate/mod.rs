@@ -13,7 +13,7 @@ use stepper::{Failed, Stepper};
 use crate::constraint::{Start, tell};
 use crate::error::{Error, positive};
 use crate::ode::Failure;
-use crate::scene::{Phase, Scene};
+use crate::scene::{Forces, Phase, Scene};
 use crate::system::{ENERGIES, System};
 use crate::trajectory::{PhaseReport, Report, Sample, Trajectory};
 
@@ -158,9 +158,9 @@ impl Scene {
     /// when the integrator gives up.
     pub fn simulate(&self, solver: &Solver, sampling: &Sampling) -> Result<Trajectory, Error> {
         solver.validate()?;
-        self.validate()?;
+        let forces = self.forces()?;
         sampling.validate(self.end())?;
-        Run::new(self, solver).all(sampling)
+        Run::new(self, solver).all(forces, sampling)
     }
 }
 
@@ -196,15 +196,15 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn all(mut self, sampling: &Sampling) -> Result<Trajectory, Error> {
+    fn all(mut self, forces: Vec<Forces>, sampling: &Sampling) -> Result<Trajectory, Error> {
         let n = self.scene.body().dofs();
-        let model = self.scene.model()?;
+        let model = self.scene.model(&forces);
         let mut rows = Vec::new();
-        for (number, phase) in self.scene.phases().iter().enumerate() {
+        for (number, (phase, forces)) in self.scene.phases().iter().zip(forces).enumerate() {
             let mut u = self.state[..n].to_vec();
             tell(&rows, self.time, &mut u);
             let start = Start { time: self.time, u: &u };
-            let mut system = self.scene.system(&model, phase, &start, self.solver.alpha)?;
+            let mut system = self.scene.system(&model, phase, forces, &start, self.solver.alpha)?;
             rows = system.rows().to_vec();
             if phase.projects_velocity {
                 system.project(self.time, &mut self.state[n..2 * n]);

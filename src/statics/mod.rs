@@ -196,10 +196,11 @@ impl Scene {
     /// whole; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
     pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
         statics.validate()?;
-        self.validate()?;
+        let mut forces = self.forces()?;
+        let model = self.model(&forces);
         let phase = &self.phases()[0];
-        let u = vec![0.0; self.body().dofs()];
-        let system = self.system(&self.model()?, phase, &Start { time: 0.0, u: &u }, 0.0)?;
+        let start = Start { time: 0.0, u: &vec![0.0; self.body().dofs()] };
+        let system = self.system(&model, phase, forces.swap_remove(0), &start, 0.0)?;
         let free =
             rigid::free_motions(self.body().mesh(), self.body().inertia().pattern(), system.rows());
         let rest = AtRest::new(system, phase.end(), phase.name())?;

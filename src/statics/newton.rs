@@ -251,7 +251,9 @@ mod tests {
         let phase = Phase::until(1.0).hold("left").load("right", [1.0]);
         let scene = Scene::new(body.unwrap()).phase(phase.clone());
         let start = Start { time: 0.0, u: &[0.0; 3] };
-        let system = scene.system(&scene.model().unwrap(), &phase, &start, 0.0).unwrap();
+        let mut forces = scene.forces().unwrap();
+        let model = scene.model(&forces);
+        let system = scene.system(&model, &phase, forces.remove(0), &start, 0.0).unwrap();
         let rest = AtRest::new(system, 1.0, "test").unwrap();
         let statics = Statics::default();
         let mut search = Search::new(rest, &statics, 0.1, false);
