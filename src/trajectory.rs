@@ -52,6 +52,8 @@ pub struct Report {
     pub energy_error: f64,
     /// Largest sum of the energies (J), as the scale of `energy_error`.
     pub energy_scale: f64,
+    /// Wall-clock time of the whole run (s).
+    pub wall_seconds: f64,
     /// Phase by phase.
     pub phases: Vec<PhaseReport>,
 }
@@ -84,11 +86,6 @@ impl Report {
     pub fn factorizations(&self) -> usize {
         self.phases.iter().map(|phase| phase.counts.factorizations).sum()
     }
-
-    /// Wall-clock time of all phases (s).
-    pub fn wall_seconds(&self) -> f64 {
-        self.phases.iter().map(|phase| phase.wall_seconds).sum()
-    }
 }
 
 impl fmt::Display for Report {
@@ -112,7 +109,7 @@ impl fmt::Display for Report {
             )?;
         }
         let rejected: usize = self.phases.iter().map(|phase| rejected(&phase.counts)).sum();
-        let (steps, seconds) = (self.steps(), self.wall_seconds());
+        let (steps, seconds) = (self.steps(), self.wall_seconds);
         let (evaluations, factorizations) = (self.evaluations(), self.factorizations());
         writeln!(
             f,

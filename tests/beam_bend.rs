@@ -43,7 +43,7 @@ fn green_beam_meets_the_reference() {
                 error(&trajectory, &reference),
                 report.energy_error / report.energy_scale,
                 report.steps(),
-                report.wall_seconds()
+                report.wall_seconds
             );
             error(&trajectory, &reference)
         });

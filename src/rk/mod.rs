@@ -36,6 +36,9 @@ pub use error::Error;
 pub use options::{Options, Tolerance};
 pub use solver::DormandPrince;
 
+/// Order of the method.
+pub const ORDER: u32 = 5;
+
 /// What an integration has done since it started, or since the last
 /// [`reinit`](DormandPrince::reinit).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,18 +1,24 @@
 //! Running a scene: phase by phase, with restarts in between and samples along the way.
 
+mod failure;
+mod progress;
 mod solver;
 mod stepper;
 
-use std::fmt;
+use std::iter::Peekable;
+use std::ops::ControlFlow;
 use std::time::Instant;
 
+pub use failure::{IntegrationFailure, Interrupted};
+use failure::{STANDING, into_error, standing_still, too_many_steps};
+use progress::Observer;
+pub use progress::Progress;
 use solver::Tolerances;
 pub use solver::{Method, Solver};
 use stepper::{Failed, Stepper};
 
 use crate::constraint::{Start, tell};
 use crate::error::{Error, positive};
-use crate::ode::Failure;
 use crate::scene::{Forces, Phase, Scene};
 use crate::system::{ENERGIES, System};
 use crate::trajectory::{PhaseReport, Report, Sample, Trajectory};
@@ -88,6 +94,9 @@ pub struct Counts {
     pub steps: usize,
     /// Evaluations of the right-hand side or residual.
     pub evaluations: usize,
+    /// Evaluations of the tangents of the forces, of which the Newton matrix is made; none where
+    /// they are constant.
+    pub jacobian_evaluations: usize,
     /// Factorizations of the Newton matrix.
     pub factorizations: usize,
     /// Steps repeated because their error was too large.
@@ -101,41 +110,6 @@ pub struct Counts {
     /// What the integrator noticed: that stability, not accuracy, bounds its steps.
     pub notice: Option<String>,
 }
-
-/// An integration that gave up: where, why, and what was computed until then.
-#[derive(Debug)]
-pub struct IntegrationFailure {
-    /// Name of the phase.
-    pub phase: String,
-    /// The method.
-    pub method: Method,
-    /// Time reached (s).
-    pub time: f64,
-    /// Last step size (s).
-    pub step: f64,
-    /// What the integrator said, with the likely cause and what to try.
-    pub source: Failed,
-    /// The motion until then.
-    pub trajectory: Trajectory,
-}
-
-impl fmt::Display for IntegrationFailure {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { phase, method, time, step, source, .. } = self;
-        write!(
-            f,
-            "phase \"{phase}\" ({method}) stopped at t = {time} s, step {step:.3e} s: {source}"
-        )?;
-        let mut cause = source.source();
-        while let Some(inner) = cause {
-            write!(f, ": {inner}")?;
-            cause = inner.source();
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for IntegrationFailure {}
 
 impl Scene {
     /// Runs the scene, from rest in its natural shape if nothing else was said.
@@ -157,10 +131,49 @@ impl Scene {
     /// Bad input before anything is computed; [`Error::Integration`] with the motion until then
     /// when the integrator gives up.
     pub fn simulate(&self, solver: &Solver, sampling: &Sampling) -> Result<Trajectory, Error> {
+        self.simulate_with(solver, sampling, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`simulate`](Self::simulate), telling `observer` after each step how far the run has
+    /// come, until it asks to stop by [`ControlFlow::Break`].
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// # use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sampling, Scene, Solver};
+    /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    /// # let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// # let scene = Scene::new(body)
+    /// #     .phase(Phase::until(0.1).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
+    ///
+    /// let patience = |progress: &pliant::simulate::Progress| match progress.steps {
+    ///     50 => ControlFlow::Break(()),
+    ///     _ => ControlFlow::Continue(()),
+    /// };
+    /// match scene.simulate_with(&Solver::default(), &Sampling::every(0.01), patience) {
+    ///     Err(Error::Integration(end)) if end.is_interruption() => {
+    ///         assert_eq!(end.trajectory.report().steps(), 50);
+    ///         assert_eq!(end.trajectory.last().time, end.time);
+    ///     }
+    ///     other => panic!("{other:?}"),
+    /// }
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`simulate`](Self::simulate); a run that was stopped ends with [`Error::Integration`],
+    /// too, which says so: [`IntegrationFailure::is_interruption`].
+    pub fn simulate_with(
+        &self,
+        solver: &Solver,
+        sampling: &Sampling,
+        mut observer: impl FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Trajectory, Error> {
+        let clock = Instant::now();
         solver.validate()?;
         let forces = self.forces()?;
         sampling.validate(self.end())?;
-        Run::new(self, solver).all(forces, sampling)
+        Run::new(self, solver, clock).all(forces, sampling, &mut observer)
     }
 }
 
@@ -169,16 +182,20 @@ struct Run<'a> {
     scene: &'a Scene,
     solver: &'a Solver,
     atol: Tolerances,
+    /// Started with the run.
+    clock: Instant,
     time: f64,
     /// (u, v, energies)
     state: Vec<f64>,
+    /// Steps taken since t = 0.
+    steps: usize,
     /// Steps in a row that did not move time ahead.
     standing: usize,
     trajectory: Trajectory,
 }
 
 impl<'a> Run<'a> {
-    fn new(scene: &'a Scene, solver: &'a Solver) -> Self {
+    fn new(scene: &'a Scene, solver: &'a Solver, clock: Instant) -> Self {
         let report = Report {
             method: solver.method,
             rtol: solver.rtol,
@@ -189,14 +206,21 @@ impl<'a> Run<'a> {
             scene,
             solver,
             atol: solver.tolerances(scene.body()),
+            clock,
             time: 0.0,
             state: [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat(),
+            steps: 0,
             standing: 0,
             trajectory: Trajectory::new(scene, report),
         }
     }
 
-    fn all(mut self, forces: Vec<Forces>, sampling: &Sampling) -> Result<Trajectory, Error> {
+    fn all(
+        mut self,
+        forces: Vec<Forces>,
+        sampling: &Sampling,
+        observer: Observer,
+    ) -> Result<Trajectory, Error> {
         let n = self.scene.body().dofs();
         let model = self.scene.model(&forces);
         let mut rows = Vec::new();
@@ -209,7 +233,7 @@ impl<'a> Run<'a> {
             if phase.projects_velocity {
                 system.project(self.time, &mut self.state[n..2 * n]);
             }
-            if let Err((source, step)) = self.phase(number, phase, system, sampling) {
+            if let Err((source, step)) = self.phase(number, phase, system, sampling, observer) {
                 return Err(self.failure(phase, source, step));
             }
         }
@@ -223,12 +247,13 @@ impl<'a> Run<'a> {
         phase: &Phase,
         mut system: System,
         sampling: &Sampling,
+        observer: Observer,
     ) -> Result<(), (Failed, f64)> {
         let clock = Instant::now();
         let end = phase.until;
         if number == 0 {
             let state = self.state.clone();
-            self.sample(number, &mut system, &state).map_err(|source| (source, 0.0))?;
+            self.sample(number, &mut system, 0.0, &state).map_err(|source| (source, 0.0))?;
         }
         let mut times = sampling.within(self.time, end).into_iter().peekable();
         let mut stepper =
@@ -236,18 +261,27 @@ impl<'a> Run<'a> {
                 .map_err(|source| (source, 0.0))?;
         let mut sample = vec![0.0; stepper.size()];
         let mut result = Ok(());
-        let mut steps = 0;
+        let before = self.steps;
         while result.is_ok() && self.time < end {
+            let steps = self.steps - before;
             result = match steps == self.solver.max_steps {
-                false => self.step(number, end, &mut stepper, &mut times, &mut sample),
+                false => self
+                    .step(number, end, &mut stepper, &mut times, &mut sample)
+                    .and_then(|step| self.tell(number, step, stepper.last_order(), observer)),
                 true => Err(too_many_steps(steps, &stepper.counts())),
             };
-            steps += 1;
+        }
+        if result.is_err() && self.time > self.trajectory.last().time {
+            // the state that the last step led to, unless the equations have no meaning there
+            let state = self.state.clone();
+            let _ = self.sample(number, stepper.system_mut(), self.time, &state);
         }
         let counts = stepper.counts();
         let step = counts.last_step;
-        self.trajectory.report.states = stepper.size();
-        self.trajectory.report.phases.push(PhaseReport {
+        let report = &mut self.trajectory.report;
+        report.wall_seconds = self.clock.elapsed().as_secs_f64();
+        report.states = stepper.size();
+        report.phases.push(PhaseReport {
             name: phase.name.clone(),
             end: self.time,
             wall_seconds: clock.elapsed().as_secs_f64(),
@@ -256,15 +290,15 @@ impl<'a> Run<'a> {
         result.map_err(|source| (source, step))
     }
 
-    /// Takes one step, and the samples within it.
+    /// Takes one step, and the samples within it. Returns its size (s).
     fn step(
         &mut self,
         number: usize,
         end: f64,
         stepper: &mut Stepper,
-        times: &mut std::iter::Peekable<impl Iterator<Item = f64>>,
+        times: &mut Peekable<impl Iterator<Item = f64>>,
         sample: &mut [f64],
-    ) -> Result<(), Failed> {
+    ) -> Result<f64, Failed> {
         let time = stepper.step(end)?;
         self.standing = if time > self.time { 0 } else { self.standing + 1 };
         if self.standing == STANDING {
@@ -275,34 +309,50 @@ impl<'a> Run<'a> {
         stepper.system().check_step(time, before, after).map_err(into_error)?;
         while let Some(t) = times.next_if(|&t| t <= time) {
             stepper.interpolate(t, sample)?;
-            self.time = t;
-            self.sample(number, stepper.system_mut(), sample)?;
+            self.sample(number, stepper.system_mut(), t, sample)?;
         }
+        let step = time - self.time;
         self.time = time;
+        self.steps += 1;
         let length = self.state.len();
         self.state.copy_from_slice(&stepper.state()[..length]);
         let drift = stepper.system().drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
-        Ok(())
+        Ok(step)
     }
 
-    /// Records `state` = (u, v, energies, ...) at the present time.
-    fn sample(&mut self, phase: usize, system: &mut System, state: &[f64]) -> Result<(), Failed> {
+    /// Tells how far the run has come.
+    fn tell(&self, phase: usize, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
+        let Self { time, steps, .. } = *self;
+        let name = &self.scene.phases()[phase].name;
+        let answer = observer(&Progress { time, phase, name, steps, step, order });
+        // the last step leaves nothing to be stopped
+        if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
+    }
+
+    /// Records `state` = (u, v, energies, ...) at `time`.
+    fn sample(
+        &mut self,
+        phase: usize,
+        system: &mut System,
+        time: f64,
+        state: &[f64],
+    ) -> Result<(), Failed> {
         let n = system.dofs();
         let (u, v) = (&state[..n], &state[n..2 * n]);
-        let multipliers = system.multipliers(self.time, u, v).map_err(into_error)?.to_vec();
-        let mut energy = system.energy(self.time, u, v);
+        let multipliers = system.multipliers(time, u, v).map_err(into_error)?.to_vec();
+        let mut energy = system.energy(time, u, v);
         energy.dissipated = state[2 * n];
         energy.supplied = state[2 * n + 1];
         self.trajectory.push(Sample {
-            time: self.time,
+            time,
             phase,
             u: u.to_vec(),
             v: v.to_vec(),
             multipliers,
             energy,
-            constraint_drift: system.drift(self.time, u),
+            constraint_drift: system.drift(time, u),
         });
         Ok(())
     }
@@ -317,30 +367,6 @@ impl<'a> Run<'a> {
             trajectory: self.trajectory,
         })
         .into()
-    }
-}
-
-/// Steps in a row that may be too small to move time ahead in double precision.
-const STANDING: usize = 100;
-
-fn standing_still(refusal: &str) -> Failed {
-    let reason = match refusal {
-        "" => "the motion changes without end in no time: check the model near this time",
-        reason => reason,
-    };
-    format!("{STANDING} steps, too small to move time ahead, have not led past this: {reason}")
-        .into()
-}
-
-fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
-    let reason = counts.notice.as_deref().unwrap_or("loosen rtol, or choose another method");
-    format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
-}
-
-fn into_error(failure: Failure) -> Failed {
-    match failure {
-        Failure::Recoverable(message) => message.into(),
-        Failure::Fatal(error) => error,
     }
 }
 

@@ -71,6 +71,15 @@ impl Stepper {
         }
     }
 
+    /// Order of the last step.
+    pub(super) fn last_order(&self) -> u32 {
+        match self {
+            Self::Cvode(cvode) => cvode.last_order(),
+            Self::Ida(ida) => ida.last_order(),
+            Self::Rk(_) => rk::ORDER,
+        }
+    }
+
     /// Number of unknowns, all together.
     pub(super) fn size(&self) -> usize {
         self.state().len()
@@ -106,6 +115,7 @@ impl Stepper {
         let sundials = |s: crate::sundials::Statistics, factorizations: usize| Counts {
             steps: s.steps as usize,
             evaluations: s.evaluations as usize,
+            jacobian_evaluations: self.system().tangent_evaluations(),
             factorizations,
             error_test_failures: s.error_test_failures as usize,
             convergence_failures: s.nonlinear_failures as usize,
@@ -125,11 +135,12 @@ impl Stepper {
                 Counts {
                     steps: s.steps,
                     evaluations: s.rhs_evaluations,
+                    jacobian_evaluations: 0,
                     factorizations: 0,
                     error_test_failures: s.rejected_steps,
                     convergence_failures: s.refused_steps,
                     last_step: s.last_step,
-                    last_order: 5,
+                    last_order: rk::ORDER,
                     notice: s.stability_limited.map(|limit| limit.to_string()),
                 }
             }

@@ -291,6 +291,10 @@ impl<S> Session<S> {
         (statistics.current_time - statistics.last_step, statistics.current_time)
     }
 
+    pub(super) fn last_order(&self) -> u32 {
+        self.step_statistics().last_order
+    }
+
     pub(super) fn interpolate(
         &mut self,
         t: f64,

@@ -153,6 +153,11 @@ impl System {
         self.newton.factorizations()
     }
 
+    /// Number of evaluations of the tangents so far; 0 where they are constant.
+    pub(crate) fn tangent_evaluations(&self) -> usize {
+        self.newton.tangent_evaluations()
+    }
+
     /// The constraint forces lambda (N) at (t, u, v), row by row.
     pub(crate) fn multipliers(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<&[f64], Failure> {
         self.evaluate(t, u, v)?;

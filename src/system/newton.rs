@@ -29,6 +29,7 @@ pub(super) struct Newton {
     follows: bool,
     is_set: bool,
     gamma: f64,
+    tangent_evaluations: usize,
     factorizations: usize,
     /// f of the linear system, and its solution xv.
     right: Vec<f64>,
@@ -85,6 +86,7 @@ impl Newton {
             follows,
             is_set: false,
             gamma: f64::NAN,
+            tangent_evaluations: 0,
             factorizations: 0,
             right: vec![0.0; dofs],
             xv: vec![0.0; dofs],
@@ -95,6 +97,10 @@ impl Newton {
 
     pub(super) fn factorizations(&self) -> usize {
         self.factorizations
+    }
+
+    pub(super) fn tangent_evaluations(&self) -> usize {
+        self.tangent_evaluations
     }
 }
 
@@ -112,7 +118,8 @@ impl System {
     /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
     /// current.
     pub(super) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
-        let Newton { stiffness, damping, follows, is_set, .. } = &mut self.newton;
+        let Newton { stiffness, damping, follows, is_set, tangent_evaluations, .. } =
+            &mut self.newton;
         if !*follows {
             return true;
         }
@@ -126,6 +133,7 @@ impl System {
             }
         }
         *is_set = true;
+        *tangent_evaluations += 1;
         true
     }
 

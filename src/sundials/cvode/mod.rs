@@ -91,6 +91,12 @@ impl<S: Ode> Cvode<S> {
         self.0.last_step()
     }
 
+    /// Order of the last step; 0 before the first.
+    #[must_use]
+    pub fn last_order(&self) -> u32 {
+        self.0.last_order()
+    }
+
     /// Writes the `derivative`-th time derivative of the solution at time `t`, within the
     /// [last step](Self::last_step), into `out`: 0 for the state itself. (`CVodeGetDky`)
     ///

@@ -173,6 +173,12 @@ impl<S: Dae> Ida<S> {
         self.session.last_step()
     }
 
+    /// Order of the last step; 0 before the first.
+    #[must_use]
+    pub fn last_order(&self) -> u32 {
+        self.session.last_order()
+    }
+
     /// Writes the `derivative`-th time derivative of the solution at time `t`, within the
     /// [last step](Self::last_step), into `out`: 0 for the state itself. (`IDAGetDky`)
     ///

@@ -1,0 +1,24 @@
+//! How far a run has come, for those who watch it.
+
+use std::ops::ControlFlow;
+
+/// How far a run has come: told after each step to the observer of
+/// [`Scene::simulate_with`](crate::Scene::simulate_with).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress<'a> {
+    /// Time reached (s).
+    pub time: f64,
+    /// Number of the phase, counted from 0.
+    pub phase: usize,
+    /// Its name.
+    pub name: &'a str,
+    /// Steps taken since t = 0.
+    pub steps: usize,
+    /// Size of the last step (s).
+    pub step: f64,
+    /// Order of the last step.
+    pub order: u32,
+}
+
+/// What watches a run, and may stop it.
+pub(super) type Observer<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
