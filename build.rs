@@ -1,5 +1,5 @@
 //! Finds SUNDIALS and SuiteSparse KLU, checks that they are what the crate was written for, and
-//! generates the bindings that `sundials-sys` lacks: ARKODE and the KLU linear solver.
+//! generates the bindings that `sundials-sys` lacks: ARKODE, the KLU linear solver, versions.
 //!
 //! `SUNDIALS_INCLUDE_DIR` and `SUNDIALS_LIBRARY_DIR` (the names that `sundials-sys` reads too)
 //! point to an installation in an unusual place, `SUITESPARSE_INCLUDE_DIR` to KLU's headers.
@@ -23,7 +23,9 @@ const HEADERS: &str = "\
 #include <arkode/arkode_ls.h>
 #include <arkode/arkode_arkstep.h>
 #include <arkode/arkode_erkstep.h>
+#include <sundials/sundials_version.h>
 #include <sunlinsol/sunlinsol_klu.h>
+#include <SuiteSparse_config.h>
 ";
 
 fn main() {
@@ -44,7 +46,7 @@ fn main() {
     if let Some(directory) = env::var_os("SUNDIALS_LIBRARY_DIR") {
         println!("cargo::rustc-link-search=native={}", Path::new(&directory).display());
     }
-    for library in ["sundials_arkode", "sundials_sunlinsolklu", "klu"] {
+    for library in ["sundials_arkode", "sundials_sunlinsolklu", "klu", "suitesparseconfig"] {
         println!("cargo::rustc-link-lib={library}");
     }
 }
@@ -110,9 +112,11 @@ fn generate_bindings(include_directories: &[&Path]) {
         .allowlist_recursively(false)
         .allowlist_function("(ARKStep|ERKStep|ARKode)\\w+")
         .allowlist_function("SUNLinSol_KLU|SUNLinSol_KLUSetOrdering")
+        .allowlist_function("SUNDIALSGetVersion|SuiteSparse_version")
         .blocklist_function("ARKStepCreateMRIStepInnerStepper")
         .allowlist_type("ARK\\w+|_?ARKodeButcherTable\\w*")
         .allowlist_var("ARK_\\w+|ARKSTEP_\\w+|ERKSTEP_\\w+|ARKODE_\\w+")
+        .allowlist_var("SUITESPARSE_(MAIN|SUB)_VERSION")
         .layout_tests(false)
         .generate_comments(false);
     // bindgen panics when it does not find libclang.

@@ -1,4 +1,4 @@
-//! The C interface: what `sundials-sys` binds, and what `build.rs` adds (ARKODE, KLU).
+//! The C interface: what `sundials-sys` binds, and what `build.rs` adds (ARKODE, KLU, versions).
 
 #![allow(
     non_upper_case_globals,

@@ -48,6 +48,7 @@ mod pattern;
 mod session;
 mod statistics;
 mod vector;
+mod version;
 
 #[cfg(test)]
 mod arkode_bindings;
@@ -59,3 +60,4 @@ pub use linear::{Jacobian, LinearSolver};
 pub use options::{AbsoluteTolerance, Reached};
 pub use pattern::Pattern;
 pub use statistics::Statistics;
+pub use version::{suitesparse_version, version};
