@@ -1,124 +1,106 @@
 //! Speed against accuracy: every method on a scene of the documents, tolerance by tolerance.
 //!
 //! `cargo run --release --example work_precision -- square-jump`
-use clap::Parser;
-use pliant::{Error, Method, Sampling, Scene, Solver, samples};
-use std::time::Instant;
+//!
+//! What to look for: a table of the fastest method for each accuracy, and a chart. No method is
+//! the fastest everywhere: explicit Runge-Kutta wins where nothing is stiff, backward
+//! differentiation where damping is strong; its orders above 2 are of no use where there is none.
 
+mod common;
+
+use std::path::PathBuf;
+
+use clap::{Parser, ValueEnum};
+use common::finish;
+use pliant::samples::{self, RingRoll};
+use pliant::study::{Scenes, Study};
+use pliant::{Error, Scene, Strain};
+
+/// Speed against accuracy of all methods on one scene: table, chart, CSV.
 #[derive(Parser)]
 struct Arguments {
-    #[arg(default_value = "beam-jump")]
-    scene: String,
+    /// The scene
+    #[arg(value_enum, default_value = "beam-jump")]
+    scene: Sample,
+    /// Relative tolerances
+    #[arg(long, value_delimiter = ',', default_value = "1e-2,1e-3,1e-4,1e-5,1e-6,1e-7,1e-8")]
+    rtol: Vec<f64>,
+    /// Times that each run is repeated
     #[arg(long, default_value_t = 3)]
-    repeats: usize,
-    /// most steps of a run
-    #[arg(long, default_value_t = 300_000)]
-    max_steps: usize,
-    /// tightest tolerance 10^-N
-    #[arg(long, default_value_t = 8)]
-    tightest: i32,
-    /// tolerance of the references
-    #[arg(long, default_value_t = 1e-10)]
-    reference: f64,
+    repetitions: usize,
+    /// Longest time that a run may take (s)
+    #[arg(long, default_value_t = 120.0)]
+    limit: f64,
+    /// Tell processor times, for a busy machine
+    #[arg(long)]
+    processor: bool,
+    /// Directory for table, chart and kept rows
+    #[arg(long, default_value = "out/work_precision")]
+    out: PathBuf,
 }
 
-fn scene(name: &str) -> Result<Scene, Error> {
-    use samples::*;
-    match name {
-        "beam-jump" => beam_jump(),
-        "square-press" => square_press(4),
-        "square-jump" => square_jump(4),
-        "square-jump-10" => square_jump(10),
-        "membrane" => membrane(),
-        "membrane-arch" => membrane_arch(),
-        "beam-bend" => beam_bend(pliant::Strain::Green, false),
-        "beam-bend-cauchy" => beam_bend(pliant::Strain::Cauchy, false),
-        "ring-roll" => RingRoll::default().scene(),
-        "ring-springs" => ring_springs(1.0),
-        "ring-jump" => ring_jump(),
-        "report-8" => report_8(),
-        "clamped-beam" => clamped_beam([36, 3], 0.0),
-        "clamped-beam-damped" => clamped_beam([36, 3], 4000.0),
-        _ => panic!("unknown scene {name}"),
+#[derive(Clone, Copy, ValueEnum)]
+enum Sample {
+    BeamJump,
+    SquarePress,
+    SquareJump,
+    SquareJump10,
+    Membrane,
+    MembraneArch,
+    BeamBend,
+    BeamBendCauchy,
+    RingRoll,
+    RingSprings,
+    RingJump,
+    Report8,
+    ClampedBeam,
+    ClampedBeamDamped,
+}
+
+impl Sample {
+    fn scene(self) -> Result<Scene, Error> {
+        match self {
+            Self::BeamJump => samples::beam_jump(),
+            Self::SquarePress => samples::square_press(4),
+            Self::SquareJump => samples::square_jump(4),
+            Self::SquareJump10 => samples::square_jump(10),
+            Self::Membrane => samples::membrane(),
+            Self::MembraneArch => samples::membrane_arch(),
+            Self::BeamBend => samples::beam_bend(Strain::Green, false),
+            Self::BeamBendCauchy => samples::beam_bend(Strain::Cauchy, false),
+            Self::RingRoll => RingRoll::default().scene(),
+            Self::RingSprings => samples::ring_springs(1.0),
+            Self::RingJump => samples::ring_jump(),
+            Self::Report8 => samples::report_8(),
+            Self::ClampedBeam => samples::clamped_beam([36, 3], 0.0),
+            Self::ClampedBeamDamped => samples::clamped_beam([36, 3], 4000.0),
+        }
     }
 }
 
-fn rms(x: impl Iterator<Item = f64>) -> f64 {
-    let (s, n) = x.fold((0.0, 0), |(s, n), x| (s + x * x, n + 1));
-    (s / n as f64).sqrt()
+fn main() {
+    finish(run(&Arguments::parse()));
 }
 
-fn main() -> Result<(), Error> {
-    let a = Arguments::parse();
-    let scene = scene(&a.scene)?;
-    let sampling = Sampling::every(scene.end() / 100.0);
-    let run = |solver: &Solver| {
-        scene
-            .simulate(solver, &sampling)
-            .map(|t| t.samples().iter().flat_map(|s| s.u.clone()).collect::<Vec<f64>>())
-    };
-    let mut references = Vec::new();
-    for method in [Method::CvodeAdams, Method::Rk, Method::CvodeBdf] {
-        if references.len() == 2 {
-            break;
-        }
-        let clock = Instant::now();
-        let solver =
-            Solver { method, rtol: a.reference, max_steps: 2_000_000, ..Solver::default() };
-        match run(&solver) {
-            Ok(u) => {
-                println!("reference {method}: {:.1} s", clock.elapsed().as_secs_f64());
-                references.push(u)
-            }
-            Err(error) => println!("reference {method}: {error}"),
-        }
+fn run(arguments: &Arguments) -> Result<(), Error> {
+    let name = arguments.scene.to_possible_value().map_or(String::new(), |v| v.get_name().into());
+    let file = |ending: &str| arguments.out.join(format!("{name}.{ending}"));
+    let mut scenes = Scenes::new(name.replace('-', " "), arguments.scene.scene()?)
+        .tolerances(arguments.rtol.clone())
+        .all_methods();
+    let findings = Study::new(&mut scenes)
+        .repetitions(arguments.repetitions)
+        .limit(arguments.limit)
+        .keep(file("csv"))
+        .run(&mut |stage| eprintln!("{stage}"))?;
+    let findings = if arguments.processor { findings.by_processor_time() } else { findings };
+    println!("{}\n", findings.fastest());
+    for note in findings.notes() {
+        println!("{note}");
     }
-    let reference = &references[0];
-    let scale = rms(reference.iter().copied());
-    let error = |u: &[f64]| rms(u.iter().zip(reference).map(|(a, b)| a - b)) / scale;
-    println!("references agree to {:.1e} of {scale:.3e} m", error(&references[1]));
-    println!(
-        "{:14} {:>5} {:>6} {:>9} {:>9} {:>8} {:>9} {:>8} {:>9}",
-        "method", "order", "rtol", "error", "time (s)", "steps", "evals", "facts", "energy"
-    );
-    for exponent in 2..=a.tightest {
-        let rtol = 10f64.powi(-exponent);
-        for method in Method::ALL {
-            let caps: &[Option<u32>] =
-                if method == Method::CvodeBdf { &[Some(2), None] } else { &[None] };
-            for &max_order in caps {
-                let solver =
-                    Solver { method, rtol, max_order, max_steps: a.max_steps, ..Solver::default() };
-                let order = max_order.map_or("-".to_owned(), |o| o.to_string());
-                print!("{:14} {order:>5} {rtol:6.0e} ", method);
-                match scene.simulate(&solver, &sampling) {
-                    Err(e) => println!("{}", e.to_string().chars().take(150).collect::<String>()),
-                    Ok(t) => {
-                        let u: Vec<f64> = t.samples().iter().flat_map(|s| s.u.clone()).collect();
-                        let mut times: Vec<f64> = (0..a.repeats)
-                            .map(|_| {
-                                scene
-                                    .simulate(&solver, &Sampling::phase_ends())
-                                    .unwrap()
-                                    .report()
-                                    .wall_seconds()
-                            })
-                            .collect();
-                        times.sort_by(f64::total_cmp);
-                        let r = t.report();
-                        println!(
-                            "{:9.1e} {:9.4} {:8} {:9} {:8} {:9.1e}",
-                            error(&u),
-                            times[times.len() / 2],
-                            r.steps(),
-                            r.evaluations(),
-                            r.factorizations(),
-                            r.energy_error / r.energy_scale
-                        );
-                    }
-                }
-            }
-        }
+    for ending in ["svg", "png"] {
+        findings.write_chart(file(ending))?;
     }
+    println!("\nwritten to {}: {name}.csv, .svg, .png", arguments.out.display());
     Ok(())
 }

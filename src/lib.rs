@@ -42,6 +42,7 @@ pub mod scene_file;
 pub mod simulate;
 pub mod sparse;
 pub mod statics;
+pub mod study;
 pub mod sundials;
 mod system;
 pub mod trajectory;

@@ -12,6 +12,7 @@
 
 mod chart;
 mod csv;
+mod png;
 mod svg;
 mod vtk;
 
@@ -22,21 +23,22 @@ use std::path::Path;
 
 pub use self::chart::Chart;
 pub use self::csv::write_csv;
+pub(crate) use self::png::png;
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;
 
 use crate::error::Error;
 
 /// Font of all pictures: what a reader's machine has of these, in this order.
-const FONT: &str = "Helvetica Neue, Helvetica, Arial, sans-serif";
+pub(crate) const FONT: &str = "Helvetica Neue, Helvetica, Arial, sans-serif";
 /// Colour of titles and labels.
-const INK: &str = "#222222";
+pub(crate) const INK: &str = "#222222";
 
 /// Has `content` written to a file beside `path`, which takes its place when it is complete.
 ///
 /// # Errors
 /// [`Error::Output`] with `path`.
-fn write_file(
+pub(crate) fn write_file(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Error> {
