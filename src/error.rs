@@ -66,6 +66,19 @@ pub enum Error {
         message: String,
     },
 
+    /// A study found no reference to compare with.
+    #[error(
+        "no two methods solve the scene at rtol {rtol:.0e}, so there is no reference: {mend} ({failures})"
+    )]
+    Reference {
+        /// Relative tolerance.
+        rtol: f64,
+        /// Why the methods failed.
+        failures: String,
+        /// What to do about it.
+        mend: String,
+    },
+
     /// A file could not be read.
     #[error("cannot read {}: {source}", path.display())]
     Read {

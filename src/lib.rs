@@ -42,6 +42,8 @@ pub mod scene_file;
 pub mod simulate;
 pub mod sparse;
 pub mod statics;
+#[cfg(feature = "study")]
+pub mod study;
 pub mod sundials;
 mod system;
 pub mod trajectory;

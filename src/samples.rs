@@ -8,8 +8,9 @@ mod statics;
 
 pub use actuated::{MEMBRANE_MATERIAL, membrane, membrane_arch, report_8, ring_jump, ring_springs};
 pub use scenes::{
-    BEAM_MATERIAL, BENT_BEAM_MATERIAL, BeamJump, RingRoll, SQUARE_MATERIAL, SquareJump, beam_bend,
-    beam_jump, pushed_nodes, square_jump, square_press,
+    BEAM_MATERIAL, BENT_BEAM_MATERIAL, BeamJump, ClampedBeam, FLAG_MATERIAL, RingRoll,
+    SQUARE_MATERIAL, SquareJump, beam_bend, beam_jump, clamped_beam, pushed_nodes, square_jump,
+    square_press,
 };
 pub use statics::{beam_static, static_square};
 

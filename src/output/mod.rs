@@ -15,6 +15,8 @@
 mod chart;
 mod csv;
 mod report;
+#[cfg(feature = "study")]
+mod png;
 mod svg;
 mod vtk;
 
@@ -26,21 +28,23 @@ use std::path::Path;
 pub use self::chart::Chart;
 pub use self::csv::{write_csv, write_energies};
 pub use self::report::{write_report, write_static_report};
+#[cfg(feature = "study")]
+pub(crate) use self::png::png;
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;
 
 use crate::error::Error;
 
 /// Font of all pictures: what a reader's machine has of these, in this order.
-const FONT: &str = "Helvetica Neue, Helvetica, Arial, sans-serif";
+pub(crate) const FONT: &str = "Helvetica Neue, Helvetica, Arial, sans-serif";
 /// Colour of titles and labels.
-const INK: &str = "#222222";
+pub(crate) const INK: &str = "#222222";
 
 /// Has `content` written to a file beside `path`, which takes its place when it is complete.
 ///
 /// # Errors
 /// [`Error::Output`] with `path`.
-fn write_file(
+pub(crate) fn write_file(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Error> {

@@ -1,0 +1,353 @@
+//! The work-precision chart: error over time, both logarithmic.
+
+use std::collections::BTreeMap;
+use std::io;
+use std::path::Path;
+
+use svg::Document;
+use svg::node::element::{Circle, Group, Line, Path as Outline, Polyline, Rectangle, Text};
+
+use super::fastest::time_text;
+use super::{Findings, LineFindings};
+use crate::error::Error;
+use crate::output::{FONT, INK, png, write_file};
+
+/// Left, top, right and bottom of the field in which lines are drawn (px).
+const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
+/// Width and height of the page (px).
+const PAGE: [f64; 2] = [980.0, 560.0];
+/// Colours that stay apart for colour-blind eyes (Okabe and Ito), in the order in which families
+/// are given them.
+const COLOURS: [&str; 8] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222", "#999999"];
+/// Strokes of the lines of a family.
+const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
+const GRID: &str = "#dddddd";
+const FAINT_GRID: &str = "#f1f1f1";
+const SUPERSCRIPTS: [&str; 10] = ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"];
+/// Larger relative errors are drawn as large as this: wrong is wrong.
+const WORST: f64 = 10.0;
+
+type Point = [f64; 2];
+
+/// Findings on a page.
+pub(super) struct Chart<'a> {
+    findings: &'a Findings,
+    /// Decades of time (s) from left to right.
+    times: [f64; 2],
+    /// Decades of error from bottom to top.
+    errors: [f64; 2],
+}
+
+/// What a line is drawn with.
+struct Style {
+    colour: &'static str,
+    dashes: &'static str,
+    marker: usize,
+}
+
+impl<'a> Chart<'a> {
+    /// # Errors
+    /// [`Error::Input`] if no run succeeded.
+    pub(super) fn of(findings: &'a Findings) -> Result<Self, Error> {
+        let points: Vec<_> =
+            findings.lines().iter().flat_map(LineFindings::points).flatten().collect();
+        if points.is_empty() {
+            let mend = "a chart needs one at least: its notes say why they failed";
+            return Err(Error::input("number of successful runs", 0, mend));
+        }
+        let range = |values: &mut dyn Iterator<Item = f64>| {
+            let [low, high] = values
+                .fold([f64::INFINITY, -f64::INFINITY], |[l, h], x| [x.min(l), x.max(h)])
+                .map(f64::log10);
+            // a decade at least, and room for the markers
+            let more = 0.06 * (high - low) + 0.5 * (1.0 - (high - low)).max(0.0);
+            [low - more, high + more]
+        };
+        Ok(Self {
+            findings,
+            times: range(&mut points.iter().map(|point| point.1)),
+            errors: range(&mut points.iter().map(|point| point.0.min(WORST))),
+        })
+    }
+
+    /// # Errors
+    /// [`Error::Input`] for a path that ends neither in svg nor in png; [`Error::Output`].
+    pub(super) fn write(&self, path: &Path) -> Result<(), Error> {
+        let document = self.draw();
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("svg") => write_file(path, |file| svg::write(file, &document)),
+            Some("png") => write_file(path, |file| {
+                file.write_all(&png(&document.to_string()).map_err(io::Error::other)?)
+            }),
+            _ => {
+                let mend = "its name must end in .svg or .png";
+                Err(Error::input("file of a chart", path.display(), mend))
+            }
+        }
+    }
+
+    fn draw(&self) -> Document {
+        let [width, height] = PAGE;
+        let styles = styles(self.findings.lines());
+        let lines = || self.findings.lines().iter().zip(&styles);
+        let mut document = Document::new()
+            .set("width", width)
+            .set("height", height)
+            .set("viewBox", (0, 0, width, height))
+            .set("font-family", FONT)
+            .set("font-size", 12)
+            .set("fill", INK)
+            .add(Rectangle::new().set("width", width).set("height", height).set("fill", "white"))
+            .add(
+                text(self.findings.title(), [20.0, 30.0])
+                    .set("font-size", 17)
+                    .set("font-weight", "bold"),
+            )
+            .add(self.unresolved())
+            .add(self.axes());
+        for (line, style) in lines() {
+            document = document.add(self.line(line, style));
+        }
+        lines().enumerate().fold(document, |document, (number, (line, style))| {
+            document.add(key(line, style, 76.0 + 34.0 * number as f64))
+        })
+    }
+
+    fn place(&self, error: f64, time: f64) -> Point {
+        let [left, top, right, bottom] = FIELD;
+        let part = |value: f64, [low, high]: [f64; 2]| (value.log10() - low) / (high - low);
+        let x = left + part(time, self.times) * (right - left);
+        let y = bottom - part(error.min(WORST), self.errors) * (bottom - top);
+        [x, y]
+    }
+
+    /// A band over the errors that the reference itself may have.
+    fn unresolved(&self) -> Group {
+        let [left, top, right, bottom] = FIELD;
+        let [_, level] = self.place(10.0 * self.findings.resolution(), 1.0);
+        if level >= bottom - 1.0 {
+            return Group::new();
+        }
+        let level = level.max(top);
+        let band = Rectangle::new()
+            .set("x", left)
+            .set("y", round(level))
+            .set("width", right - left)
+            .set("height", round(bottom - level))
+            .set("fill", "#eeeeee");
+        let label = "not sure: near what the reference resolves";
+        Group::new().add(band).add(
+            text(label, [right - 6.0, bottom - 6.0])
+                .set("text-anchor", "end")
+                .set("fill", "#777777")
+                .set("font-size", 11),
+        )
+    }
+
+    fn axes(&self) -> Group {
+        let [left, top, right, bottom] = FIELD;
+        let mut group = Group::new();
+        let (times, errors) = (ticks(self.times), ticks(self.errors));
+        for (value, is_labelled) in &times {
+            let [x, _] = self.place(1.0, *value);
+            let colour = if *is_labelled { GRID } else { FAINT_GRID };
+            group = group.add(stroke([x, top], [x, bottom], colour));
+            if *is_labelled {
+                let label = text(round_time_text(*value), [x, bottom + 18.0]);
+                group = group.add(label.set("text-anchor", "middle"));
+            }
+        }
+        for (value, is_labelled) in &errors {
+            let [_, y] = self.place(*value, 1.0);
+            let colour = if *is_labelled { GRID } else { FAINT_GRID };
+            group = group.add(stroke([left, y], [right, y], colour));
+            if *is_labelled {
+                let label = text(power_text(*value), [left - 8.0, y + 4.0]);
+                group = group.add(label.set("text-anchor", "end"));
+            }
+        }
+        let time = match self.findings.is_processor_time() {
+            true => "processor time of the solution",
+            false => "time of the solution",
+        };
+        let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
+        group
+            .add(stroke([left, bottom], [right, bottom], INK))
+            .add(stroke([left, top], [left, bottom], INK))
+            .add(
+                text(time, [middle[0], bottom + 42.0])
+                    .set("text-anchor", "middle")
+                    .set("font-size", 13),
+            )
+            .add(
+                text("error relative to the motion", [24.0, middle[1]])
+                    .set("text-anchor", "middle")
+                    .set("font-size", 13)
+                    .set("transform", format!("rotate(-90 24 {})", middle[1])),
+            )
+    }
+
+    fn line(&self, line: &LineFindings, style: &Style) -> Group {
+        let mut group = Group::new();
+        let points: Vec<_> =
+            line.points().map(|point| point.map(|(error, time)| self.place(error, time))).collect();
+        // a run that failed interrupts the line
+        for stretch in points.split(Option::is_none) {
+            let stretch: Vec<Point> = stretch.iter().copied().flatten().collect();
+            group = group.add(style.polyline(&stretch));
+        }
+        for (row, point) in line.rows.iter().zip(points) {
+            if let Some(point) = point {
+                group = group.add(style.marker(point, row.is_resolved()));
+            }
+        }
+        group
+    }
+}
+
+impl Style {
+    fn polyline(&self, points: &[Point]) -> Polyline {
+        let points: Vec<_> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
+        Polyline::new()
+            .set("points", points.join(" "))
+            .set("fill", "none")
+            .set("stroke", self.colour)
+            .set("stroke-width", 1.8)
+            .set("stroke-linejoin", "round")
+            .set("stroke-dasharray", self.dashes)
+    }
+
+    /// A marker, hollow for an error that is not sure.
+    fn marker(&self, [x, y]: Point, is_sure: bool) -> Group {
+        let group = Group::new()
+            .set("fill", if is_sure { self.colour } else { "white" })
+            .set("stroke", self.colour)
+            .set("stroke-width", 1.5);
+        let shape = match self.marker {
+            0 => {
+                let circle = Circle::new().set("cx", round(x)).set("cy", round(y));
+                return group.add(circle.set("r", 3.6));
+            }
+            1 => "m-3.3 -3.3 h6.6 v6.6 h-6.6 z",
+            2 => "m0 -4.8 l4.8 4.8 l-4.8 4.8 l-4.8 -4.8 z",
+            3 => "m0 -4.6 l4.6 7.6 h-9.2 z",
+            _ => "m0 4.6 l4.6 -7.6 h-9.2 z",
+        };
+        group.add(Outline::new().set("d", format!("M{x:.2} {y:.2} {shape}")))
+    }
+}
+
+/// Colours by family; strokes within a family; markers by line, for eyes that see no colours.
+fn styles(lines: &[LineFindings]) -> Vec<Style> {
+    // number of the family, number of its lines so far
+    let mut families = BTreeMap::<&str, (usize, usize)>::new();
+    let mut styles = Vec::new();
+    for (number, line) in lines.iter().enumerate() {
+        let next = families.len();
+        let (family, member) = families.entry(&line.family).or_insert((next, 0));
+        styles.push(Style {
+            colour: COLOURS[*family % COLOURS.len()],
+            dashes: DASHES[*member % DASHES.len()],
+            marker: number % 5,
+        });
+        *member += 1;
+    }
+    styles
+}
+
+/// Name of a line, with its stroke, beside the field.
+fn key(line: &LineFindings, style: &Style, y: f64) -> Group {
+    let left = FIELD[2] + 20.0;
+    let group = Group::new()
+        .add(style.polyline(&[[left, y], [left + 34.0, y]]))
+        .add(style.marker([left + 17.0, y], true))
+        .add(text(&line.name, [left + 42.0, y + 4.0]));
+    let failed = line.rows.iter().filter(|row| row.failure.is_some()).count();
+    match failed {
+        0 => group,
+        _ => group.add(
+            text(format!("{failed} of {} runs failed", line.rows.len()), [left + 42.0, y + 18.0])
+                .set("fill", "#777777")
+                .set("font-size", 11),
+        ),
+    }
+}
+
+/// Values within `decades` at which an axis has lines, and whether they are labelled: powers of
+/// ten, and in a short range others, too.
+fn ticks([low, high]: [f64; 2]) -> Vec<(f64, bool)> {
+    let is_short = high - low < 2.5;
+    let mut ticks = Vec::new();
+    for decade in low.floor() as i32..=high.floor() as i32 {
+        for digit in 1..=9 {
+            let value = format!("{digit}e{decade}").parse::<f64>().expect("a number");
+            if (low..=high).contains(&value.log10()) {
+                ticks.push((value, digit == 1 || is_short && (digit == 2 || digit == 5)));
+            }
+        }
+    }
+    ticks
+}
+
+/// 10⁻³, 2·10⁻³
+fn power_text(value: f64) -> String {
+    let text = format!("{value:e}");
+    let (digit, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let raised: String = exponent
+        .chars()
+        .map(|c| c.to_digit(10).map_or("⁻", |digit| SUPERSCRIPTS[digit as usize]))
+        .collect();
+    match (digit, exponent) {
+        (digit, "0") => digit.into(),
+        ("1", _) => format!("10{raised}"),
+        _ => format!("{digit}·10{raised}"),
+    }
+}
+
+/// 10 ms
+fn round_time_text(seconds: f64) -> String {
+    let text = time_text(seconds);
+    match text.split_once('.') {
+        Some((whole, rest)) => format!("{whole}{}", rest.trim_start_matches('0')),
+        None => text,
+    }
+}
+
+fn text(content: impl Into<String>, [x, y]: Point) -> Text {
+    Text::new(content.into()).set("x", round(x)).set("y", round(y))
+}
+
+fn stroke([x1, y1]: Point, [x2, y2]: Point, colour: &str) -> Line {
+    Line::new()
+        .set("x1", round(x1))
+        .set("y1", round(y1))
+        .set("x2", round(x2))
+        .set("y2", round(y2))
+        .set("stroke", colour)
+}
+
+fn round(x: f64) -> f64 {
+    (100.0 * x).round() / 100.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{power_text, round_time_text, ticks};
+
+    #[test]
+    fn ticks_are_powers_of_ten_and_more_in_a_short_range() {
+        let labelled = |range| -> Vec<f64> {
+            ticks(range).into_iter().filter(|tick| tick.1).map(|tick| tick.0).collect()
+        };
+        assert_eq!(labelled([-3.2, 0.1]), [1e-3, 1e-2, 1e-1, 1.0]);
+        assert_eq!(labelled([-1.8, -0.9]), [2e-2, 5e-2, 0.1]);
+    }
+
+    #[test]
+    fn labels_are_short() {
+        assert_eq!([1e-3, 2e-10, 1.0, 10.0].map(power_text), ["10⁻³", "2·10⁻¹⁰", "1", "10¹"]);
+        let times = [1e-5, 2e-3, 0.1, 1.0, 100.0].map(round_time_text);
+        assert_eq!(times, ["10 \u{b5}s", "2 ms", "100 ms", "1 s", "100 s"]);
+    }
+}

@@ -1,0 +1,229 @@
+//! A scene and its variants as a problem.
+
+use std::time::Duration;
+
+use super::truth::{Probe, Truth, reason, shared_nodes};
+use super::{Failed, Line, Measured, Point, Problem, fingerprint};
+use crate::error::Error;
+use crate::scene::Scene;
+use crate::simulate::{Method, Sampling, Solver};
+
+/// A scene that is solved in several ways: by several solvers at several tolerances, with another
+/// strain model or other cells, on finer and finer meshes.
+///
+/// All ways are compared with the exact motion of the scene given to [`new`](Self::new). Where a line
+/// solves another scene, its error thus counts what the other scene does differently, too.
+#[derive(Debug)]
+pub struct Scenes {
+    title: String,
+    finest: f64,
+    tolerances: Vec<f64>,
+    lines: Vec<Line>,
+    /// As `lines`, point by point.
+    runs: Vec<Vec<Run>>,
+    /// The scene of the reference first.
+    scenes: Vec<Scene>,
+    fingerprints: Vec<u64>,
+    /// Position of the scene that checks the reference.
+    check: Option<usize>,
+    reference: Option<Reference>,
+}
+
+/// What is run at a point.
+#[derive(Debug)]
+struct Run {
+    /// Position among the scenes.
+    scene: usize,
+    solver: Solver,
+}
+
+#[derive(Debug)]
+struct Reference {
+    truth: Truth,
+    /// As the scenes.
+    probes: Vec<Probe>,
+}
+
+impl Scenes {
+    /// A scene whose exact motion is the reference, and no lines yet.
+    pub fn new(title: impl Into<String>, scene: Scene) -> Self {
+        Self {
+            title: title.into(),
+            finest: 1e-7,
+            tolerances: (2..=8).map(|digits| 10_f64.powi(-digits)).collect(),
+            lines: Vec::new(),
+            runs: Vec::new(),
+            fingerprints: vec![fingerprint::of_scene(&scene)],
+            scenes: vec![scene],
+            check: None,
+            reference: None,
+        }
+    }
+
+    /// The least error that is to be measured: the reference is made thirty times better, if that
+    /// is possible. Default: 1e-7.
+    #[must_use]
+    pub fn finest(mut self, error: f64) -> Self {
+        self.finest = error;
+        self
+    }
+
+    /// Relative tolerances of the lines added from now on, from rough to fine. Default: 1e-2, 1e-3,
+    /// ..., 1e-8.
+    #[must_use]
+    pub fn tolerances(mut self, tolerances: impl Into<Vec<f64>>) -> Self {
+        self.tolerances = tolerances.into();
+        self
+    }
+
+    /// Adds a line: the scene by `solver`, tolerance by tolerance. The method is its family.
+    #[must_use]
+    pub fn solver(self, name: impl Into<String>, solver: Solver) -> Self {
+        self.by_tolerance(name.into(), solver.method.name(), 0, solver)
+    }
+
+    /// Adds a line for each of [`Method::ALL`], and one for CVODE's BDF with orders up to 2 only,
+    /// which can do with motion that is hardly damped.
+    #[must_use]
+    pub fn all_methods(self) -> Self {
+        let low = Solver { max_order: Some(2), ..Solver::default() };
+        let scenes = self.solver("cvode-bdf, order 2", low);
+        Method::ALL.into_iter().fold(scenes, |scenes, method| {
+            scenes.solver(method.name(), Solver { method, ..Solver::default() })
+        })
+    }
+
+    /// Adds a line: another scene by `solver`, tolerance by tolerance. The name is its family.
+    #[must_use]
+    pub fn variant(mut self, name: impl Into<String>, scene: Scene, solver: Solver) -> Self {
+        let name = name.into();
+        let scene = self.add(scene);
+        self.by_tolerance(name.clone(), &name, scene, solver)
+    }
+
+    /// Adds a line: the scene on finer and finer meshes, each with the name of the mesh, by
+    /// `solver`. Its name is its family.
+    #[must_use]
+    pub fn meshes<N: Into<String>>(
+        mut self,
+        name: impl Into<String>,
+        meshes: impl IntoIterator<Item = (N, Scene)>,
+        solver: &Solver,
+    ) -> Self {
+        let name = name.into();
+        let (mut points, mut runs) = (Vec::new(), Vec::new());
+        for (mesh, scene) in meshes {
+            points.push(Point { name: mesh.into(), rtol: solver.rtol });
+            runs.push(Run { scene: self.add(scene), solver: solver.clone() });
+        }
+        self.lines.push(Line { family: name.clone(), name, points });
+        self.runs.push(runs);
+        self
+    }
+
+    /// Has the reference checked by another scene that should move alike, the same on a mesh half
+    /// as fine, say: its distance from the reference counts as resolution.
+    #[must_use]
+    pub fn checked_by(mut self, scene: Scene) -> Self {
+        self.check = Some(self.add(scene));
+        self
+    }
+
+    fn add(&mut self, scene: Scene) -> usize {
+        self.fingerprints.push(fingerprint::of_scene(&scene));
+        self.scenes.push(scene);
+        self.scenes.len() - 1
+    }
+
+    fn by_tolerance(mut self, name: String, family: &str, scene: usize, solver: Solver) -> Self {
+        let point = |&rtol: &f64| Point { name: format!("{rtol:e}"), rtol };
+        let points = self.tolerances.iter().map(point).collect();
+        let run = |&rtol: &f64| Run { scene, solver: Solver { rtol, ..solver.clone() } };
+        self.runs.push(self.tolerances.iter().map(run).collect());
+        self.lines.push(Line { name, family: family.into(), points });
+        self
+    }
+
+    fn validate(&self) -> Result<(), Error> {
+        if !(self.finest > 0.0 && self.finest < 1.0) {
+            let mend = "a relative error lies above 0 and below 1 (1e-7 is usual)";
+            return Err(Error::input("finest", self.finest, mend));
+        }
+        let end = self.scenes[0].end();
+        for scene in &self.scenes {
+            scene.validate()?;
+            if scene.end() != end {
+                let mend = format!("all scenes that are compared end together, at {end} s here");
+                return Err(Error::input("end of a scene", format!("{} s", scene.end()), mend));
+            }
+        }
+        self.runs.iter().flatten().try_for_each(|run| run.solver.validate())
+    }
+
+    fn find_reference(
+        &self,
+        limit: Duration,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Reference, Error> {
+        self.validate()?;
+        let scenes: Vec<&Scene> = self.scenes.iter().collect();
+        let probes: Vec<Probe> = shared_nodes(&scenes)?
+            .into_iter()
+            .map(|nodes| Probe::new(&self.scenes[0], nodes))
+            .collect();
+        let check = self.check.map(|k| (&self.scenes[k], &probes[k]));
+        let target = self.finest / 30.0;
+        let truth = Truth::find(&self.scenes[0], &probes[0], check, target, limit, tell)?;
+        Ok(Reference { truth, probes })
+    }
+}
+
+impl Problem for Scenes {
+    fn title(&self) -> &str {
+        &self.title
+    }
+
+    fn lines(&self) -> &[Line] {
+        &self.lines
+    }
+
+    fn fingerprint(&self, line: usize) -> u64 {
+        let runs = &self.runs[line];
+        let scenes = runs.iter().map(|run| run.scene).chain([0]).chain(self.check);
+        let fingerprints: Vec<u64> = scenes.map(|scene| self.fingerprints[scene]).collect();
+        let solver = runs.first().map(|run| Solver { rtol: 1.0, ..run.solver.clone() });
+        fingerprint::of_text(format_args!("{solver:?}"), &fingerprints)
+    }
+
+    fn prepare(&mut self, limit: Duration, tell: &mut dyn FnMut(&str)) -> Result<f64, Error> {
+        let reference = self.find_reference(limit, tell)?;
+        Ok(self.reference.insert(reference).truth.resolution)
+    }
+
+    fn measure(&mut self, line: usize, point: usize, limit: Duration) -> Result<Measured, Failed> {
+        let Run { scene, solver } = &self.runs[line][point];
+        let Reference { truth, probes } =
+            self.reference.as_ref().ok_or("the study was not prepared")?;
+        let (motion, trajectory) =
+            probes[*scene].run(&self.scenes[*scene], solver, limit).map_err(reason)?;
+        let distance = truth.error(&motion);
+        let report = trajectory.report();
+        Ok(Measured {
+            error: distance.mean,
+            largest_error: distance.largest,
+            seconds: report.wall_seconds,
+            states: report.states,
+            steps: report.steps(),
+            evaluations: report.evaluations(),
+            factorizations: report.factorizations(),
+            energy_error: Some(report.energy_error / report.energy_scale.max(f64::MIN_POSITIVE)),
+        })
+    }
+
+    fn time(&mut self, line: usize, point: usize) -> Result<f64, Failed> {
+        let Run { scene, solver } = &self.runs[line][point];
+        let trajectory =
+            self.scenes[*scene].simulate(solver, &Sampling::phase_ends()).map_err(reason)?;
+        Ok(trajectory.report().wall_seconds)
+    }
+}

@@ -1,0 +1,145 @@
+//! Times that can be trusted, or that say that they cannot.
+
+use std::hint::black_box;
+use std::iter;
+use std::time::Instant;
+
+use rustix::time::{ClockId, clock_gettime};
+
+use super::Failed;
+
+/// A run that takes longer than this (s) is not repeated.
+const LONG: f64 = 2.0;
+
+/// A fixed piece of arithmetic, timed again and again to see how fast the machine is.
+#[derive(Debug)]
+pub(super) struct Yardstick {
+    least: f64,
+}
+
+impl Yardstick {
+    pub(super) fn new() -> Self {
+        Self { least: (0..5).map(|_| arithmetic()).fold(f64::INFINITY, f64::min) }
+    }
+
+    /// How many times slower than at its best the machine is now.
+    pub(super) fn slowdown(&mut self) -> f64 {
+        let seconds = arithmetic();
+        self.least = self.least.min(seconds);
+        seconds / self.least
+    }
+}
+
+/// Time (s) of a million multiplications that wait for each other, some milliseconds.
+fn arithmetic() -> f64 {
+    let clock = Instant::now();
+    let mut x = 0.3;
+    for _ in 0..1_000_000 {
+        x *= 3.9 * (1.0 - x);
+    }
+    black_box(x);
+    clock.elapsed().as_secs_f64()
+}
+
+/// How long a run took (s).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Time {
+    /// By the clock on the wall.
+    pub(super) wall: f64,
+    /// Of the processor, which other programs do not count in.
+    pub(super) processor: f64,
+}
+
+impl Time {
+    /// What `run` returns, and its times; `wall` tells the time by the wall from that.
+    pub(super) fn of<T>(
+        run: impl FnOnce() -> Result<T, Failed>,
+        wall: impl FnOnce(&T) -> f64,
+    ) -> Result<(T, Self), Failed> {
+        let start = processor_time();
+        let result = run()?;
+        let time = Self { wall: wall(&result), processor: processor_time() - start };
+        Ok((result, time))
+    }
+}
+
+/// Processor time (s) that this thread has used.
+fn processor_time() -> f64 {
+    let time = clock_gettime(ClockId::ThreadCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// Repetitions of one run.
+#[derive(Debug)]
+pub(super) struct Repetitions {
+    /// Times by the wall (s), ascending.
+    wall: Vec<f64>,
+    /// Processor times (s), ascending.
+    processor: Vec<f64>,
+}
+
+impl Repetitions {
+    /// `count` times of a run, by `time`; of a run whose first time was long, that one alone.
+    pub(super) fn of(
+        first: Time,
+        count: usize,
+        time: impl FnMut() -> Result<Time, Failed>,
+    ) -> Result<Self, Failed> {
+        let times = match first.wall > LONG {
+            true => vec![first],
+            false => iter::repeat_with(time).take(count).collect::<Result<_, _>>()?,
+        };
+        let sorted = |of: fn(&Time) -> f64| {
+            let mut times: Vec<f64> = times.iter().map(of).collect();
+            times.sort_by(f64::total_cmp);
+            times
+        };
+        Ok(Self { wall: sorted(|time| time.wall), processor: sorted(|time| time.processor) })
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.wall.len()
+    }
+
+    /// Medians.
+    pub(super) fn median(&self) -> Time {
+        Time { wall: median(&self.wall), processor: median(&self.processor) }
+    }
+
+    /// Slowest less fastest by the wall, relative to the median.
+    pub(super) fn spread(&self) -> f64 {
+        (self.wall[self.wall.len() - 1] - self.wall[0]) / median(&self.wall)
+    }
+}
+
+fn median(sorted: &[f64]) -> f64 {
+    let n = sorted.len();
+    0.5 * (sorted[(n - 1) / 2] + sorted[n / 2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Repetitions, Time};
+
+    fn repetitions(first: f64, times: &[f64]) -> Repetitions {
+        let time = |wall: f64| Time { wall, processor: 0.5 * wall };
+        let mut times = times.iter();
+        let count = times.len();
+        Repetitions::of(time(first), count, || Ok(time(*times.next().unwrap()))).unwrap()
+    }
+
+    #[test]
+    fn the_median_stands_for_all_and_the_spread_is_relative_to_it() {
+        let three = repetitions(0.1, &[5.0, 1.0, 2.0]);
+        assert_eq!((three.count(), three.spread()), (3, 2.0));
+        assert_eq!(three.median(), Time { wall: 2.0, processor: 1.0 });
+        let four = repetitions(0.1, &[4.0, 1.0, 2.0, 3.0]);
+        assert_eq!((four.median().wall, four.spread()), (2.5, 1.2));
+    }
+
+    #[test]
+    fn a_long_run_is_not_repeated() {
+        let long = repetitions(9.0, &[1.0, 1.0]);
+        assert_eq!((long.count(), long.median().wall, long.spread()), (1, 9.0, 0.0));
+    }
+}

@@ -1,0 +1,292 @@
+//! The reference motion of a scene, and distances from it.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use super::Failed;
+use crate::error::Error;
+use crate::scene::Scene;
+use crate::simulate::{Method, Sampling, Solver};
+use crate::trajectory::Trajectory;
+
+/// Times at which motions are compared: this many, evenly from the start (without it) to the end.
+const TIMES: usize = 101;
+/// Motion below this fraction of the body's size counts as that large.
+const LEAST_MOTION: f64 = 1e-6;
+/// Methods of different families: what two of them agree on is right.
+const METHODS: [Method; 3] = [Method::CvodeAdams, Method::CvodeBdf, Method::Rk];
+/// No tolerance below: rounding errors rule there.
+const LEAST_RTOL: f64 = 1e-13;
+
+/// Displacements of some nodes at some times.
+#[derive(Debug, Clone)]
+pub(super) struct Motion {
+    dimension: usize,
+    u: Vec<f64>,
+}
+
+/// The nodes and times at which motions are compared.
+#[derive(Debug, Clone)]
+pub(super) struct Probe {
+    /// Counted from 0.
+    nodes: Vec<usize>,
+    times: Vec<f64>,
+}
+
+impl Probe {
+    pub(super) fn new(scene: &Scene, nodes: Vec<usize>) -> Self {
+        let times = (1..=TIMES).map(|k| scene.end() * (k as f64 / TIMES as f64)).collect();
+        Self { nodes, times }
+    }
+
+    /// Runs `scene` until its end, or until `limit`.
+    pub(super) fn run(
+        &self,
+        scene: &Scene,
+        solver: &Solver,
+        limit: Duration,
+    ) -> Result<(Motion, Trajectory), Error> {
+        let clock = Instant::now();
+        let sampling = Sampling::at(self.times.clone());
+        let trajectory =
+            scene.simulate_with(solver, &sampling, |_| match clock.elapsed() > limit {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })?;
+        Ok((self.motion(&trajectory), trajectory))
+    }
+
+    fn motion(&self, trajectory: &Trajectory) -> Motion {
+        let dimension = trajectory.body().dimension();
+        let mut u = Vec::with_capacity(self.times.len() * self.nodes.len() * dimension);
+        // phase ends within round-off of a time stand for it
+        let apart = 2e-9 * trajectory.last().time;
+        let mut samples = trajectory.samples().iter().peekable();
+        for time in &self.times {
+            while samples.next_if(|sample| sample.time < time - apart).is_some() {}
+            let sample = samples.peek().expect("every time up to the end is sampled");
+            for node in &self.nodes {
+                u.extend_from_slice(&sample.u[node * dimension..][..dimension]);
+            }
+        }
+        Motion { dimension, u }
+    }
+}
+
+/// Distances between two motions (m).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Distance {
+    /// Root mean square over nodes and times.
+    pub(super) mean: f64,
+    /// Largest.
+    pub(super) largest: f64,
+}
+
+impl Motion {
+    fn distance(&self, other: &Self) -> Distance {
+        self.size(|i| self.u[i] - other.u[i])
+    }
+
+    /// Root mean square displacement (m).
+    fn mean(&self) -> f64 {
+        self.size(|i| self.u[i]).mean
+    }
+
+    fn size(&self, component: impl Fn(usize) -> f64) -> Distance {
+        let (mut sum, mut largest) = (0.0, 0.0_f64);
+        let count = self.u.len() / self.dimension;
+        for point in 0..count {
+            let first = point * self.dimension;
+            let square: f64 = (first..first + self.dimension).map(|i| component(i).powi(2)).sum();
+            sum += square;
+            largest = largest.max(square);
+        }
+        Distance { mean: (sum / count as f64).sqrt(), largest: largest.sqrt() }
+    }
+}
+
+/// A motion that stands for the exact one, and how far it can be trusted.
+#[derive(Debug)]
+pub(super) struct Truth {
+    motion: Motion,
+    /// What distances are relative to (m).
+    scale: f64,
+    /// Relative error that the motion itself may have.
+    pub(super) resolution: f64,
+}
+
+impl Truth {
+    /// Solves `scene` in two ways, more and more precisely until they agree to `target`. A
+    /// `check` is the same scene on a mesh half as fine, say: the distance to it counts, too.
+    pub(super) fn find(
+        scene: &Scene,
+        probe: &Probe,
+        check: Option<(&Scene, &Probe)>,
+        target: f64,
+        limit: Duration,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, Error> {
+        let mut rtol = target.max(LEAST_RTOL);
+        let mut pair = fastest_two(scene, probe, rtol, limit, tell)?;
+        let mut truth = Self::of(scene, &pair[0], &pair[1]);
+        while truth.resolution > target && rtol > 2.0 * LEAST_RTOL {
+            rtol = (0.1 * rtol).max(LEAST_RTOL);
+            let mut finer = Vec::new();
+            for way in &pair {
+                match way.again(scene, probe, rtol, limit, tell) {
+                    Ok(way) => finer.push(way),
+                    Err(error) => tell(&format!("no better reference: {}", reason(error))),
+                }
+            }
+            let Ok([first, second]) = <[Way; 2]>::try_from(finer) else { break };
+            // The one that changed less was nearer to the truth already.
+            let change = |old: &Way, new: &Way| old.motion.distance(&new.motion).mean;
+            let better = match change(&pair[0], &first) <= change(&pair[1], &second) {
+                true => Self::of(scene, &first, &second),
+                false => Self::of(scene, &second, &first),
+            };
+            // Where rounding errors rule, the methods agree no better.
+            let gains = better.resolution < 0.5 * truth.resolution;
+            if better.resolution < truth.resolution {
+                truth = better;
+            }
+            if !gains {
+                break;
+            }
+            pair = [first, second];
+        }
+        if let Some((scene, probe)) = check {
+            tell(&format!("reference: the check, {} at rtol {rtol:.0e}", pair[0].solver.method));
+            let (motion, _) =
+                probe.run(scene, &Solver { rtol, ..pair[0].solver.clone() }, limit)?;
+            let distance = truth.error(&motion).mean;
+            truth.resolution = truth.resolution.max(distance);
+        }
+        Ok(truth)
+    }
+
+    fn of(scene: &Scene, best: &Way, other: &Way) -> Self {
+        let motion = best.motion.clone();
+        let scale = motion.mean().max(LEAST_MOTION * scene.body().mesh().size());
+        let resolution = motion.distance(&other.motion).mean / scale;
+        Self { motion, scale, resolution: resolution.max(f64::EPSILON) }
+    }
+
+    /// Distances from the true motion, relative to it.
+    pub(super) fn error(&self, motion: &Motion) -> Distance {
+        let Distance { mean, largest } = self.motion.distance(motion);
+        Distance { mean: mean / self.scale, largest: largest / self.scale }
+    }
+}
+
+/// A solution of the scene by one method.
+#[derive(Debug)]
+struct Way {
+    solver: Solver,
+    motion: Motion,
+    time: Duration,
+}
+
+impl Way {
+    fn find(
+        scene: &Scene,
+        probe: &Probe,
+        solver: Solver,
+        limit: Duration,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, Error> {
+        tell(&format!("reference: {} at rtol {:.0e}", solver.method, solver.rtol));
+        let clock = Instant::now();
+        let (motion, _) = probe.run(scene, &solver, limit)?;
+        Ok(Self { solver, motion, time: clock.elapsed() })
+    }
+
+    fn again(
+        &self,
+        scene: &Scene,
+        probe: &Probe,
+        rtol: f64,
+        limit: Duration,
+        tell: &mut dyn FnMut(&str),
+    ) -> Result<Self, Error> {
+        Self::find(scene, probe, Solver { rtol, ..self.solver.clone() }, limit, tell)
+    }
+}
+
+/// The solutions by the two fastest methods.
+fn fastest_two(
+    scene: &Scene,
+    probe: &Probe,
+    rtol: f64,
+    limit: Duration,
+    tell: &mut dyn FnMut(&str),
+) -> Result<[Way; 2], Error> {
+    let (mut found, mut failures) = (Vec::<Way>::new(), Vec::new());
+    for method in METHODS {
+        // nobody waits for the third of three
+        let limit = found.get(1).map_or(limit, |second| second.time);
+        let solver = Solver { method, rtol, ..Solver::default() };
+        match Way::find(scene, probe, solver, limit, tell) {
+            Ok(way) => found.push(way),
+            Err(error @ Error::Integration(_)) => failures.push(reason(error).to_string()),
+            Err(error) => return Err(error),
+        }
+        found.sort_by_key(|way| way.time);
+        found.truncate(2);
+    }
+    <[Way; 2]>::try_from(found).map_err(|_| Error::Reference {
+        rtol,
+        failures: failures.join("; "),
+        mend: "allow more time, or ask for less accuracy".into(),
+    })
+}
+
+/// The nodes that all meshes of `scenes` share, as they number them (from 0), in the same order.
+///
+/// # Errors
+/// Scenes whose meshes share none.
+pub(super) fn shared_nodes(scenes: &[&Scene]) -> Result<Vec<Vec<usize>>, Error> {
+    let meshes: Vec<_> = scenes.iter().map(|scene| scene.body().mesh()).collect();
+    let Some(first) = meshes.first() else { return Ok(Vec::new()) };
+    let mut shared = vec![Vec::new(); meshes.len()];
+    let near = 1e-9 * first.size();
+    'nodes: for node in 0..first.node_count() {
+        let place = first.position(node);
+        let mut numbers = Vec::with_capacity(meshes.len());
+        for mesh in &meshes {
+            let here = |&other: &usize| {
+                let position = mesh.position(other);
+                position.len() == place.len()
+                    && position.iter().zip(place).all(|(a, b)| (a - b).abs() <= near)
+            };
+            // most often it has the same number
+            let same = Some(node).filter(|node| *node < mesh.node_count()).filter(here);
+            match same.or_else(|| (0..mesh.node_count()).find(here)) {
+                Some(number) => numbers.push(number),
+                None => continue 'nodes,
+            }
+        }
+        shared.iter_mut().zip(numbers).for_each(|(list, number)| list.push(number));
+    }
+    if shared[0].is_empty() {
+        let mend = "errors are measured at nodes that all meshes share: let them have some";
+        return Err(Error::input("number of nodes that all meshes share", 0, mend));
+    }
+    Ok(shared)
+}
+
+/// An error of a run as the reason of its failure.
+pub(super) fn reason(error: Error) -> Failed {
+    match error {
+        Error::Integration(failure) if failure.is_interruption() => {
+            let report = failure.trajectory.report();
+            let notice = report.phases.last().and_then(|phase| phase.counts.notice.as_deref());
+            let notice = notice.map(|notice| format!(": {notice}")).unwrap_or_default();
+            let (spent, time, end) =
+                (report.wall_seconds, failure.time, failure.trajectory.scene().end());
+            format!("given up after {spent:.2} s at t = {time:.3e} s of {end} s{notice}").into()
+        }
+        Error::Integration(failure) => failure,
+        other => Box::new(other),
+    }
+}
