@@ -14,9 +14,9 @@
 
 mod chart;
 mod csv;
-mod report;
 #[cfg(feature = "study")]
 mod png;
+mod report;
 mod svg;
 mod vtk;
 
@@ -27,9 +27,9 @@ use std::path::Path;
 
 pub use self::chart::Chart;
 pub use self::csv::{write_csv, write_energies};
-pub use self::report::{write_report, write_static_report};
 #[cfg(feature = "study")]
 pub(crate) use self::png::png;
+pub use self::report::{write_report, write_static_report};
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;
 

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::auto::Plan;
+use super::auto::{Plan, TRIAL};
 use super::events::Events;
 use super::failure::{
     IntegrationFailure, Interrupted, STANDING, into_error, standing_still, too_many_steps,
@@ -57,7 +57,9 @@ enum Ending {
     /// At a contact event.
     Event,
     /// The energy balance tells that the method cannot be trusted.
-    Doubtful(String),
+    Doubtful { instead: Plan },
+    /// Another method is better.
+    Better(Plan),
 }
 
 /// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
@@ -159,32 +161,31 @@ impl<'a> Run<'a> {
         let (mut counts, mut states) = (Counts::default(), 0);
         let mut stops = self.scene.breaks(number).into_iter().chain([phase.until]);
         self.remember(&leg);
-        let mut result = Ok(Ending::Reached);
-        while let Ok(ending) = &result {
-            match ending {
-                Ending::Reached => match stops.next() {
+        let mut ended = Ok(Ending::Reached);
+        let result = loop {
+            match ended {
+                Err(source) => break Err(source),
+                Ok(Ending::Reached) => match stops.next() {
                     Some(stop) => leg.stop = stop,
-                    None => break,
+                    None => break Ok(()),
                 },
-                Ending::Event => {}
-                Ending::Doubtful(trouble) => match plan.instead(trouble) {
-                    Some(other) => {
-                        plan = other;
-                        self.go_back(&mut leg);
-                        leg.events.set(&system, self.time, &self.state[..system.dofs()]);
-                    }
-                    None => break,
-                },
+                Ok(Ending::Event) => {}
+                Ok(Ending::Better(other)) => plan = other,
+                Ok(Ending::Doubtful { instead }) => {
+                    plan = instead;
+                    self.go_back(&mut leg);
+                    leg.events.set(&system, self.time, &self.state[..system.dofs()]);
+                }
             }
             system.forget_counts();
             let stepper =
                 Stepper::new(system, &plan.solver, &self.atol, self.time, leg.stop, &self.state);
             let mut stepper = stepper.map_err(|source| (source, 0.0))?;
-            result = self.leg(&mut leg, &plan, &mut stepper, observer);
+            ended = self.leg(&mut leg, &plan, &mut stepper, observer);
             counts.add(stepper.counts());
             states = stepper.size();
             system = stepper.into_system();
-        }
+        };
         if result.is_err() && self.time > self.trajectory.last().time {
             // the state that the last step led to, unless the equations have no meaning there
             let state = self.state.clone();
@@ -201,10 +202,10 @@ impl<'a> Run<'a> {
             states,
             wall_seconds: clock.elapsed().as_secs_f64(),
             method: plan.solver.method,
-            reason: plan.reason,
+            reason: plan.reason(),
             counts,
         });
-        result.map(|_| ()).map_err(|source| (source, step))
+        result.map_err(|source| (source, step))
     }
 
     /// Integrates to the end of a leg, unless the energy balance casts doubt on a method that can be
@@ -217,6 +218,7 @@ impl<'a> Run<'a> {
         observer: Observer,
     ) -> Result<Ending, Failed> {
         let mut sample = vec![0.0; stepper.size()];
+        let (mut steps, mut trial_began) = (0_usize, self.time);
         while self.time < leg.stop {
             if leg.steps == 0 {
                 return Err(too_many_steps(self.solver.max_steps, &stepper.counts()));
@@ -226,8 +228,9 @@ impl<'a> Run<'a> {
             if self.steps.is_multiple_of(WATCH) || self.time >= leg.stop {
                 self.watch(stepper.system_mut());
                 if plan.is_on_trial() {
-                    match self.trajectory.report.creation(self.least_energy) {
-                        Some(trouble) => return Ok(Ending::Doubtful(trouble)),
+                    let created = self.trajectory.report.creation(self.least_energy);
+                    match created.and_then(|trouble| plan.instead(&trouble)) {
+                        Some(instead) => return Ok(Ending::Doubtful { instead }),
                         None => self.remember(leg),
                     }
                 }
@@ -235,6 +238,14 @@ impl<'a> Run<'a> {
             self.tell(leg.number, step, stepper.last_order(), observer)?;
             if is_event {
                 return Ok(Ending::Event);
+            }
+            steps += 1;
+            if steps.is_multiple_of(TRIAL) {
+                let mean = (self.time - trial_began) / TRIAL as f64;
+                if let Some(other) = plan.reconsidered(mean, steps) {
+                    return Ok(Ending::Better(other));
+                }
+                trial_began = self.time;
             }
         }
         Ok(Ending::Reached)

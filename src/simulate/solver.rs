@@ -23,6 +23,9 @@ pub enum Method {
     Ida,
     /// IDA on the index-1 form, with KLU on the sparse Jacobian of the whole system.
     IdaKlu,
+    /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that
+    /// steps may go over. `max_order` is their order; default: 4.
+    Arkode,
     /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
     /// and as a check of the others.
     Rk,
@@ -30,10 +33,18 @@ pub enum Method {
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 6] =
-        [Self::Auto, Self::CvodeBdf, Self::CvodeAdams, Self::Ida, Self::IdaKlu, Self::Rk];
+    pub const ALL: [Self; 7] = [
+        Self::Auto,
+        Self::CvodeBdf,
+        Self::CvodeAdams,
+        Self::Ida,
+        Self::IdaKlu,
+        Self::Arkode,
+        Self::Rk,
+    ];
 
-    /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`, `rk`.
+    /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`, `arkode`,
+    /// `rk`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -41,6 +52,7 @@ impl Method {
             Self::CvodeAdams => "cvode-adams",
             Self::Ida => "ida",
             Self::IdaKlu => "ida-klu",
+            Self::Arkode => "arkode",
             Self::Rk => "rk",
         }
     }
@@ -62,6 +74,9 @@ impl Method {
             }
             Self::IdaKlu => {
                 "a check of the structured linear solver: IDA with KLU on the whole Jacobian"
+            }
+            Self::Arkode => {
+                "bodies that vibrate with little damping (ARKODE, diagonally implicit, order 2 to 5)"
             }
             Self::Rk => {
                 "motion that is not stiff: light damping, small alpha (Dormand-Prince 5(4))"

@@ -5,7 +5,8 @@ use crate::rk::{self, DormandPrince};
 use crate::simulate::solver::Tolerances;
 use crate::simulate::{Counts, Method, Solver};
 use crate::sundials::{
-    Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern, Statistics,
+    Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern,
+    Statistics, Table,
 };
 use crate::system::{ENERGIES, IndexOne, System};
 
@@ -13,6 +14,7 @@ pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// An integrator at work on the equations of one phase.
 pub(super) enum Stepper {
+    Arkode(Arkode<System>),
     Cvode(Cvode<System>),
     Ida(Ida<IndexOne>),
     Rk(Box<DormandPrince<System>>),
@@ -40,6 +42,7 @@ impl Stepper {
             Method::CvodeAdams => {
                 cvode(system, solver, Multistep::Adams, tolerances, t, end, state)
             }
+            Method::Arkode => arkode(system, solver, tolerances, t, end, state),
             Method::Ida | Method::IdaKlu => {
                 tolerances.resize(2 * n + ENERGIES + system.rows().len(), atol.force);
                 ida(system, solver, tolerances, t, end, state)
@@ -55,6 +58,10 @@ impl Stepper {
     /// Takes one step towards `end` and returns the time reached.
     pub(super) fn step(&mut self, end: f64) -> Result<f64, Failed> {
         match self {
+            Self::Arkode(arkode) => {
+                let _ = arkode.step(end)?;
+                Ok(arkode.t())
+            }
             Self::Cvode(cvode) => {
                 let _ = cvode.step(end)?;
                 Ok(cvode.t())
@@ -70,6 +77,7 @@ impl Stepper {
     /// The state at a time within the last step.
     pub(super) fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
         match self {
+            Self::Arkode(arkode) => Ok(arkode.interpolate(t, 0, state)?),
             Self::Cvode(cvode) => Ok(cvode.interpolate(t, 0, state)?),
             Self::Ida(ida) => Ok(ida.interpolate(t, 0, state)?),
             Self::Rk(rk) => Ok(rk.interpolate(t, state)?),
@@ -79,6 +87,7 @@ impl Stepper {
     /// Order of the last step.
     pub(super) fn last_order(&self) -> u32 {
         match self {
+            Self::Arkode(arkode) => arkode.last_order(),
             Self::Cvode(cvode) => cvode.last_order(),
             Self::Ida(ida) => ida.last_order(),
             Self::Rk(_) => rk::ORDER,
@@ -93,6 +102,7 @@ impl Stepper {
     /// The state at the end of the last step.
     pub(super) fn state(&self) -> &[f64] {
         match self {
+            Self::Arkode(arkode) => arkode.y(),
             Self::Cvode(cvode) => cvode.y(),
             Self::Ida(ida) => ida.y(),
             Self::Rk(rk) => rk.y(),
@@ -101,6 +111,7 @@ impl Stepper {
 
     pub(super) fn system(&self) -> &System {
         match self {
+            Self::Arkode(arkode) => arkode.system(),
             Self::Cvode(cvode) => cvode.system(),
             Self::Ida(ida) => &ida.system().system,
             Self::Rk(rk) => rk.system(),
@@ -109,6 +120,7 @@ impl Stepper {
 
     pub(super) fn system_mut(&mut self) -> &mut System {
         match self {
+            Self::Arkode(arkode) => arkode.system_mut(),
             Self::Cvode(cvode) => cvode.system_mut(),
             Self::Ida(ida) => &mut ida.system_mut().system,
             Self::Rk(rk) => rk.system_mut(),
@@ -118,6 +130,7 @@ impl Stepper {
     /// The equations, back from the integrator.
     pub(super) fn into_system(self) -> System {
         match self {
+            Self::Arkode(arkode) => arkode.into_system(),
             Self::Cvode(cvode) => cvode.into_system(),
             Self::Ida(ida) => ida.into_system().system,
             Self::Rk(rk) => rk.into_system(),
@@ -139,6 +152,9 @@ impl Stepper {
             notice: compression(system.indefinite()),
         };
         match self {
+            Self::Arkode(arkode) => {
+                sundials(arkode.statistics(), arkode.system().factorizations(), self.system())
+            }
             Self::Cvode(cvode) => {
                 sundials(cvode.statistics(), cvode.system().factorizations(), self.system())
             }
@@ -193,6 +209,32 @@ fn cvode(
     let mut cvode = Cvode::new(system, t, state, &options)?;
     cvode.set_stop_time(Some(end))?;
     Ok(Stepper::Cvode(cvode))
+}
+
+/// Steps after which ARKODE has a new Newton matrix, with new tangents, in any case: few enough that
+/// iterations converge in one or two, which pays on all the documents' scenes.
+const STEPS_BETWEEN_SETUPS: u32 = 2;
+
+fn arkode(
+    system: System,
+    solver: &Solver,
+    tolerances: Vec<f64>,
+    t: f64,
+    end: f64,
+    state: &[f64],
+) -> Result<Stepper, Failed> {
+    let table = solver.max_order.map_or(Ok(Table::default()), Table::implicit)?;
+    let mut options =
+        ArkodeOptions::new(solver.rtol, tolerances).table(table).newton(LinearSolver::Custom);
+    options = match system.is_linear() {
+        true => options.linear(),
+        false => options
+            .max_steps_between_setups(STEPS_BETWEEN_SETUPS)
+            .max_steps_between_jacobians(STEPS_BETWEEN_SETUPS),
+    };
+    let mut arkode = Arkode::new(system, t, state, &options)?;
+    arkode.set_stop_time(Some(end))?;
+    Ok(Stepper::Arkode(arkode))
 }
 
 fn ida(

@@ -61,7 +61,8 @@ pub(super) struct Functions {
     pub(super) set_initial_step: Set<f64>,
     pub(super) set_max_step: Set<f64>,
     pub(super) set_min_step: Set<f64>,
-    pub(super) set_max_order: Set<i32>,
+    /// The order of a Runge-Kutta method is that of its table.
+    pub(super) set_max_order: Option<Set<i32>>,
     pub(super) set_convergence_coefficient: Set<f64>,
     pub(super) set_stop_time: Set<f64>,
 
@@ -83,15 +84,24 @@ pub(super) struct Functions {
 }
 
 // Tasks and codes that all integrators number alike: the shared code has CVODE's names for them.
-const _: () = assert!(
-    ffi::CV_NORMAL == ffi::IDA_NORMAL
-        && ffi::CV_ONE_STEP == ffi::IDA_ONE_STEP
-        && ffi::CV_ROOT_RETURN == ffi::IDA_ROOT_RETURN
-        && ffi::CV_TOO_MUCH_WORK == ffi::IDA_TOO_MUCH_WORK
-        && ffi::CV_TOO_MUCH_ACC == ffi::IDA_TOO_MUCH_ACC
-        && ffi::CV_ERR_FAILURE == ffi::IDA_ERR_FAIL
-        && ffi::CV_CONV_FAILURE == ffi::IDA_CONV_FAIL
-        && ffi::CV_LINIT_FAIL == ffi::IDA_LINIT_FAIL
-        && ffi::CV_LSETUP_FAIL == ffi::IDA_LSETUP_FAIL
-        && ffi::CV_LSOLVE_FAIL == ffi::IDA_LSOLVE_FAIL
-);
+const _: () = {
+    let alike = [
+        [ffi::CV_NORMAL, ffi::IDA_NORMAL, ffi::ARK_NORMAL],
+        [ffi::CV_ONE_STEP, ffi::IDA_ONE_STEP, ffi::ARK_ONE_STEP],
+        [ffi::CV_ROOT_RETURN, ffi::IDA_ROOT_RETURN, ffi::ARK_ROOT_RETURN],
+        [ffi::CV_TOO_MUCH_WORK, ffi::IDA_TOO_MUCH_WORK, ffi::ARK_TOO_MUCH_WORK],
+        [ffi::CV_TOO_MUCH_ACC, ffi::IDA_TOO_MUCH_ACC, ffi::ARK_TOO_MUCH_ACC],
+        [ffi::CV_ERR_FAILURE, ffi::IDA_ERR_FAIL, ffi::ARK_ERR_FAILURE],
+        [ffi::CV_CONV_FAILURE, ffi::IDA_CONV_FAIL, ffi::ARK_CONV_FAILURE],
+        [ffi::CV_LINIT_FAIL, ffi::IDA_LINIT_FAIL, ffi::ARK_LINIT_FAIL],
+        [ffi::CV_LSETUP_FAIL, ffi::IDA_LSETUP_FAIL, ffi::ARK_LSETUP_FAIL],
+        [ffi::CV_LSOLVE_FAIL, ffi::IDA_LSOLVE_FAIL, ffi::ARK_LSOLVE_FAIL],
+        [ffi::CV_RHSFUNC_FAIL, ffi::IDA_RES_FAIL, ffi::ARK_RHSFUNC_FAIL],
+    ];
+    let mut i = 0;
+    while i < alike.len() {
+        let [cvode, ida, arkode] = alike[i];
+        assert!(cvode == ida && cvode == arkode);
+        i += 1;
+    }
+};

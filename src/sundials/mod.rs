@@ -30,18 +30,19 @@
 //! The functions of the C library that stand behind the methods are named in their
 //! documentation; the SUNDIALS user guide describes them in depth.
 
+mod arkode;
 mod context;
 mod cvode;
 mod dae_callbacks;
 mod error;
 mod ffi;
-mod fixed_point;
 mod functions;
 mod host;
 mod ida;
 mod kernels;
 mod linear;
 mod matrix;
+mod nonlinear;
 mod ode_callbacks;
 mod options;
 mod pattern;
@@ -50,9 +51,7 @@ mod statistics;
 mod vector;
 mod version;
 
-#[cfg(test)]
-mod arkode_bindings;
-
+pub use arkode::{Arkode, ArkodeOptions, Predictor, Table};
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub use error::{Callback, Cause, Error, IntegrationError};
 pub use ida::{Ida, IdaOptions, InitialCondition};

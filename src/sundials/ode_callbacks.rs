@@ -82,6 +82,26 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode>(
     host.check_finite(Callback::Jacobian, t, values)
 }
 
+/// `ARKLsLinSysFn`: as [`newton_setup`], but for the mass matrix, of which there is none.
+#[allow(clippy::too_many_arguments)] // as C has it
+pub(super) unsafe extern "C" fn newton_setup_with_mass<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    ydot: ffi::N_Vector,
+    matrix: ffi::SUNMatrix,
+    _mass: ffi::SUNMatrix,
+    reuse: i32,
+    current: *mut i32,
+    gamma: f64,
+    data: *mut c_void,
+    a: ffi::N_Vector,
+    b: ffi::N_Vector,
+    c: ffi::N_Vector,
+) -> i32 {
+    // SAFETY: both have the same contract.
+    unsafe { newton_setup::<S>(t, y, ydot, matrix, reuse, current, gamma, data, a, b, c) }
+}
+
 /// `CVLsLinSysFn`: for a user-supplied solver, which keeps I - gamma J to itself.
 #[allow(clippy::too_many_arguments)] // as C has it
 pub(super) unsafe extern "C" fn newton_setup<S: Ode>(

@@ -84,6 +84,7 @@ pub(super) struct StepOptions {
     pub(super) initial_step: Option<f64>,
     pub(super) min_step: Option<f64>,
     pub(super) max_step: Option<f64>,
+    /// Of multistep methods.
     pub(super) max_order: Option<u32>,
     pub(super) max_steps: u32,
     pub(super) convergence_coefficient: Option<f64>,
@@ -103,7 +104,7 @@ impl Default for StepOptions {
 }
 
 impl StepOptions {
-    pub(super) fn check(&self, highest_order: u32) -> Result<(), Error> {
+    pub(super) fn check(&self) -> Result<(), Error> {
         for (input, value) in [("min_step", self.min_step), ("max_step", self.max_step)] {
             if let Some(h) = value
                 && !(h > 0.0 && h.is_finite())
@@ -125,15 +126,6 @@ impl StepOptions {
         {
             return Err(Error::input("min_step", min, format!("it is at most max_step, {max}")));
         }
-        if let Some(order) = self.max_order
-            && !(1..=highest_order).contains(&order)
-        {
-            return Err(Error::input(
-                "max_order",
-                order,
-                format!("this method has orders 1 to {highest_order}"),
-            ));
-        }
         if self.max_steps == 0 || self.max_steps > i32::MAX as u32 {
             return Err(Error::input(
                 "max_steps",
@@ -148,11 +140,22 @@ impl StepOptions {
         }
         Ok(())
     }
+
+    /// Checks the order of a multistep method.
+    pub(super) fn check_order(&self, highest: u32) -> Result<(), Error> {
+        match self.max_order {
+            Some(order) if !(1..=highest).contains(&order) => {
+                let mend = format!("this method has orders 1 to {highest}");
+                Err(Error::input("max_order", order, mend))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
-/// The builder methods that all integrators share.
-macro_rules! shared_builder_methods {
-    () => {
+/// Builder methods that integrators share.
+macro_rules! builder_methods {
+    (steps) => {
         /// Size of the first step; negative when integrating backwards. Default: estimated.
         pub fn initial_step(mut self, h: f64) -> Self {
             self.steps.initial_step = Some(h);
@@ -171,12 +174,6 @@ macro_rules! shared_builder_methods {
             self
         }
 
-        /// Highest order that may be used. Default: 5 for BDF, 12 for Adams.
-        pub fn max_order(mut self, order: u32) -> Self {
-            self.steps.max_order = Some(order);
-            self
-        }
-
         /// Steps allowed in one call of `solve_to`. Default: 100,000.
         pub fn max_steps(mut self, steps: u32) -> Self {
             self.steps.max_steps = steps;
@@ -184,14 +181,42 @@ macro_rules! shared_builder_methods {
         }
 
         /// How much smaller than the local error the error of the nonlinear iteration has to be.
-        /// Default: 0.1 in CVODE, 0.33 in IDA.
+        /// Default: 0.1 in CVODE and ARKODE, 0.33 in IDA.
         pub fn convergence_coefficient(mut self, coefficient: f64) -> Self {
             self.steps.convergence_coefficient = Some(coefficient);
             self
         }
     };
+    (order) => {
+        /// Highest order that may be used. Default: 5 for BDF, 12 for Adams.
+        pub fn max_order(mut self, order: u32) -> Self {
+            self.steps.max_order = Some(order);
+            self
+        }
+    };
+    (nonlinear) => {
+        /// Newton iteration with this linear solver (the default, dense with difference quotients).
+        pub fn newton(mut self, solver: LinearSolver) -> Self {
+            self.nonlinear.solver = NonlinearSolver::Newton(solver);
+            self
+        }
+
+        /// Fixed-point iteration, accelerated by Anderson's method over the last `acceleration`
+        /// iterates (0: plain): needs no Jacobian; for non-stiff systems.
+        pub fn fixed_point(mut self, acceleration: u32) -> Self {
+            self.nonlinear.solver = NonlinearSolver::FixedPoint { acceleration };
+            self
+        }
+
+        /// Steps after which the Newton matrix is set up anew in any case
+        /// (`CVodeSetLSetupFrequency`, `ARKStepSetLSetupFrequency`). Default: 20.
+        pub fn max_steps_between_setups(mut self, steps: u32) -> Self {
+            self.nonlinear.max_steps_between_setups = Some(steps);
+            self
+        }
+    };
 }
-pub(super) use shared_builder_methods;
+pub(super) use builder_methods;
 
 /// Where an integration call came to an end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

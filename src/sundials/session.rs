@@ -1,4 +1,4 @@
-//! A running integrator: what CVODE and IDA have in common behind their public faces.
+//! A running integrator: what CVODE, IDA and ARKODE have in common behind their public faces.
 
 use std::{ffi::c_void, ptr};
 
@@ -6,10 +6,10 @@ use super::{
     context::Context,
     error::{Cause, Error, IntegrationError},
     ffi,
-    fixed_point::FixedPoint,
     functions::{Functions, Set},
     host::{Host, HostBox, NewtonSolve, keep_message},
     linear::{Linear, LinearSolver},
+    nonlinear::FixedPoint,
     options::{
         AbsoluteTolerance, Reached, StepOptions, StopTime, Tolerances, check_finite, check_length,
         check_time,
@@ -22,7 +22,7 @@ use super::{
 pub(super) struct Session<S> {
     // Fields are dropped in this order: first what uses the others.
     pub(super) memory: Memory,
-    pub(super) fixed_point: Option<FixedPoint>,
+    fixed_point: Option<FixedPoint>,
     linear: Option<Linear>,
     pub(super) y: Vector,
     /// The time derivative of `y`, of a DAE only.
@@ -64,13 +64,17 @@ pub(super) struct Start<'a> {
 }
 
 impl<S> Session<S> {
-    /// Makes an integrator by the C function `create`; it is not yet initialised.
+    /// Makes an integrator by the C function `create`, which gets a vector with the start; it is
+    /// not yet initialised.
     ///
     /// # Safety
     /// `create` makes the memory block of the integrator that `functions` belong to, or null.
     pub(super) unsafe fn new(
         functions: &'static Functions,
-        (function, create): (&'static str, impl FnOnce(ffi::SUNContext) -> *mut c_void),
+        (function, create): (
+            &'static str,
+            impl FnOnce(ffi::N_Vector, ffi::SUNContext) -> *mut c_void,
+        ),
         system: S,
         start: &Start<'_>,
         solver: Option<LinearSolver>,
@@ -82,7 +86,7 @@ impl<S> Session<S> {
         let (n, root_count) = (start.y.len(), start.root_count);
         let mut host = HostBox::new(Host::new(system, n, root_count, solver));
         // Locals are dropped in reverse order, so on an error below the memory goes first.
-        let memory = Memory { raw: create(context.raw()), functions };
+        let memory = Memory { raw: create(y.raw(), context.raw()), functions };
         if memory.raw.is_null() {
             return Err(Error::out_of_memory(function));
         }
@@ -162,8 +166,8 @@ impl<S> Session<S> {
                     self.set(function, value)?;
                 }
             }
-            if let Some(order) = steps.max_order {
-                self.set(functions.set_max_order, order as i32)?;
+            if let (Some(set), Some(order)) = (functions.set_max_order, steps.max_order) {
+                self.set(set, order as i32)?;
             }
         }
         Ok(())
@@ -206,6 +210,21 @@ impl<S> Session<S> {
         // SAFETY: memory, solver and matrix are alive, and the memory is dropped first.
         let code = unsafe { set(self.memory.raw, linear.solver(), linear.matrix()) };
         self.host.accept(name, code)
+    }
+
+    /// Replaces the Newton iteration by a fixed-point iteration, by the function `set`.
+    ///
+    /// # Safety
+    /// The function belongs to this integrator and attaches a nonlinear solver.
+    pub(super) unsafe fn use_fixed_point(
+        &mut self,
+        set: Set<ffi::SUNNonlinearSolver>,
+        acceleration: u32,
+    ) -> Result<(), Error> {
+        let made = FixedPoint::new(&self.y, acceleration, &self.context)?;
+        let solver = self.fixed_point.insert(made).raw();
+        // SAFETY: the caller vouches for the function; the solver is dropped after the memory.
+        unsafe { self.set(set, solver) }
     }
 
     /// Starts again; `yp` is of a DAE only.
@@ -306,8 +325,12 @@ impl<S> Session<S> {
         let order = derivative.min(i32::MAX as u32) as i32;
         let functions = self.memory.functions;
         let (name, get_dky) = functions.get_dky;
-        // SAFETY: memory and vector are alive.
-        let code = unsafe { get_dky(self.memory.raw, t, order, self.scratch.raw()) };
+        let (memory, scratch) = (self.memory.raw, self.scratch.raw());
+        self.host.get_mut().troubles.clear();
+        // SAFETY: memory and vector are alive; `&mut self` keeps others away while ARKODE evaluates
+        // the right-hand side.
+        let code = unsafe { get_dky(memory, t, order, scratch) };
+        self.host.get_mut().troubles.resume_panic();
         if code == functions.bad_time {
             let (start, end) = self.last_step();
             return Err(Error::input("t", t, format!("the last step is [{start}, {end}]")));
@@ -316,6 +339,9 @@ impl<S> Session<S> {
             let order = self.step_statistics().last_order;
             let mend = format!("the last step was of order {order}");
             return Err(Error::input("derivative", derivative, mend));
+        }
+        if code == ffi::CV_RHSFUNC_FAIL {
+            return Err(self.stopped(code));
         }
         self.host.accept(name, code)?;
         out.copy_from_slice(self.scratch.as_slice());

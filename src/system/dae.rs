@@ -161,7 +161,7 @@ impl Dae for IndexOne {
         let (energies, r3) = rest.split_at_mut(ENERGIES);
         let (r1, r2) = motion.split_at_mut(n);
         self.system.solve_newton_dae(r1, r2, r3);
-        let (dissipated, supplied) = self.system.power_changes(&self.system.at.multipliers);
+        let (dissipated, supplied) = self.system.power_changes();
         let gamma = self.system.gamma();
         energies[0] = gamma * (energies[0] + dissipated);
         energies[1] = gamma * (energies[1] + supplied);

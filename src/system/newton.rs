@@ -17,6 +17,7 @@ use std::sync::Arc;
 use super::reduced::{Coupling, Reduced, Source};
 use super::{System, nodal_multipliers};
 use crate::constraint::Row;
+use crate::force::dot;
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -117,6 +118,11 @@ impl Newton {
 }
 
 impl System {
+    /// Whether all forces are linear in u and v, so that Kt and D never change.
+    pub(crate) fn is_linear(&self) -> bool {
+        !self.newton.follows
+    }
+
     /// Step parameter of the last factorization.
     pub(super) fn gamma(&self) -> f64 {
         self.newton.gamma
@@ -218,14 +224,20 @@ impl System {
     }
 
     /// How the powers dissipated and supplied change along the last solution of the Newton
-    /// system, the forces themselves taken as they are.
-    pub(super) fn power_changes(&self, multipliers: &[f64]) -> (f64, f64) {
-        let Newton { xv, mu, gamma, .. } = &self.newton;
+    /// system: where forces are linear, exactly, for powers are quadratic then. So one iteration
+    /// settles the energies, too.
+    pub(super) fn power_changes(&mut self) -> (f64, f64) {
+        let Newton { damping, right, xv, mu, gamma, .. } = &mut self.newton;
+        right.fill(0.0);
+        damping.get().add_product(1.0, xv, right);
         let (dissipated, mut supplied) = self.at.nodal.work(xv);
-        for (k, row) in self.rows.iter().enumerate() {
-            supplied += multipliers[k] * row.apply(xv) + mu[k] / gamma * self.at.rates[k];
+        for ((row, mu), (multiplier, rate)) in
+            self.rows.iter().zip(mu).zip(self.at.multipliers.iter().zip(&self.at.rates))
+        {
+            let change = row.apply(xv);
+            supplied += multiplier * change + *mu / *gamma * (rate + change);
         }
-        // damping forces are proportional to velocity, so their power is quadratic in it
-        (2.0 * dissipated, supplied)
+        // damping forces are proportional to velocity
+        (2.0 * dissipated + dot(right, xv), supplied)
     }
 }

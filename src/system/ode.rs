@@ -35,7 +35,7 @@ impl Ode for System {
         let (motion, energies) = r.split_at_mut(2 * self.dofs());
         let (ru, rv) = motion.split_at_mut(self.dofs());
         self.solve_newton_ode(ru, rv);
-        let (dissipated, supplied) = self.power_changes(&self.at.multipliers);
+        let (dissipated, supplied) = self.power_changes();
         energies[0] += self.gamma() * dissipated;
         energies[1] += self.gamma() * supplied;
         Ok(())

@@ -2,16 +2,16 @@
 
 use super::{
     Cvode,
-    options::{CvodeOptions, Multistep, NonlinearSolver},
+    options::{CvodeOptions, Multistep},
 };
 use crate::{
     ode::Ode,
     sundials::{
         error::Error,
         ffi,
-        fixed_point::FixedPoint,
         functions::Functions,
         linear::LinearSolver,
+        nonlinear::NonlinearSolver,
         ode_callbacks::{jacobian, newton_setup, rhs, roots},
         options::check_start,
         session::{Session, Start},
@@ -40,7 +40,7 @@ static FUNCTIONS: Functions = Functions {
     set_initial_step: ("CVodeSetInitStep", ffi::CVodeSetInitStep),
     set_max_step: ("CVodeSetMaxStep", ffi::CVodeSetMaxStep),
     set_min_step: ("CVodeSetMinStep", ffi::CVodeSetMinStep),
-    set_max_order: ("CVodeSetMaxOrd", ffi::CVodeSetMaxOrd),
+    set_max_order: Some(("CVodeSetMaxOrd", ffi::CVodeSetMaxOrd)),
     set_convergence_coefficient: ("CVodeSetNonlinConvCoef", ffi::CVodeSetNonlinConvCoef),
     set_stop_time: ("CVodeSetStopTime", ffi::CVodeSetStopTime),
     get_root_info: ("CVodeGetRootInfo", ffi::CVodeGetRootInfo),
@@ -74,8 +74,9 @@ pub(super) fn new<S: Ode>(
     };
     // SAFETY: the session passes a live context, and the table is that of CVODE.
     let mut session = unsafe {
-        let create = ("CVodeCreate", |context| ffi::CVodeCreate(method, context));
-        Session::new(&FUNCTIONS, create, system, &start, options.linear_solver().cloned())?
+        let create = ("CVodeCreate", |_, context| ffi::CVodeCreate(method, context));
+        let solver = options.nonlinear.linear_solver().cloned();
+        Session::new(&FUNCTIONS, create, system, &start, solver)?
     };
     // SAFETY: the memory is alive, the vector has the right length, and the callbacks fit the
     // host that is registered as their data.
@@ -90,14 +91,14 @@ pub(super) fn new<S: Ode>(
         if options.stability_limit_detection {
             session.set(("CVodeSetStabLimDet", ffi::CVodeSetStabLimDet), 1)?;
         }
-        if let Some(steps) = options.max_steps_between_setups {
+        if let Some(steps) = options.nonlinear.max_steps_between_setups {
             let function = ("CVodeSetLSetupFrequency", ffi::CVodeSetLSetupFrequency as _);
             session.set(function, i64::from(steps))?;
         }
     }
     // SAFETY: the callbacks fit the registered host, and the solvers live as long as the memory.
     unsafe {
-        match &options.nonlinear_solver {
+        match &options.nonlinear.solver {
             NonlinearSolver::Newton(solver) => {
                 session.use_newton(solver, S::newton_solve)?;
                 if matches!(solver, LinearSolver::Custom) {
@@ -109,10 +110,8 @@ pub(super) fn new<S: Ode>(
                 }
             }
             NonlinearSolver::FixedPoint { acceleration } => {
-                // The session drops the solver after the memory.
-                let made = FixedPoint::new(&session.y, *acceleration, &session.context)?;
-                let solver = session.fixed_point.insert(made).raw();
-                session.set(("CVodeSetNonlinearSolver", ffi::CVodeSetNonlinearSolver), solver)?;
+                let set = ("CVodeSetNonlinearSolver", ffi::CVodeSetNonlinearSolver as _);
+                session.use_fixed_point(set, *acceleration)?;
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::sundials::{
     error::Error,
     linear::{Jacobian, LinearSolver},
-    options::{AbsoluteTolerance, StepOptions, Tolerances, check_length, shared_builder_methods},
+    options::{AbsoluteTolerance, StepOptions, Tolerances, builder_methods, check_length},
 };
 
 /// Tolerances and limits of an [`Ida`](super::Ida).
@@ -53,11 +53,13 @@ impl IdaOptions {
         self
     }
 
-    shared_builder_methods!();
+    builder_methods!(order);
+    builder_methods!(steps);
 
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), Error> {
         self.tolerances.check(y0)?;
-        self.steps.check(5)?;
+        self.steps.check()?;
+        self.steps.check_order(5)?;
         if let Some(differential) = &self.differential {
             check_length("length of differential", differential.len(), y0.len())?;
         } else if self.suppress_algebraic {

@@ -36,7 +36,7 @@ static FUNCTIONS: Functions = Functions {
     set_initial_step: ("IDASetInitStep", ffi::IDASetInitStep),
     set_max_step: ("IDASetMaxStep", ffi::IDASetMaxStep),
     set_min_step: ("IDASetMinStep", ffi::IDASetMinStep),
-    set_max_order: ("IDASetMaxOrd", ffi::IDASetMaxOrd),
+    set_max_order: Some(("IDASetMaxOrd", ffi::IDASetMaxOrd)),
     set_convergence_coefficient: ("IDASetNonlinConvCoef", ffi::IDASetNonlinConvCoef),
     set_stop_time: ("IDASetStopTime", ffi::IDASetStopTime),
     get_root_info: ("IDAGetRootInfo", ffi::IDAGetRootInfo),
@@ -70,7 +70,7 @@ pub(super) fn new<S: Dae>(
     let solver = &options.linear_solver;
     // SAFETY: the session passes a live context, and the table is that of IDA.
     let mut session = unsafe {
-        let create = ("IDACreate", |context| ffi::IDACreate(context));
+        let create = ("IDACreate", |_, context| ffi::IDACreate(context));
         Session::new(&FUNCTIONS, create, system, &start, Some(solver.clone()))?
     };
     let (ida, y, yp) = (session.memory.raw, session.y.raw(), session.raw_yp());

@@ -1,0 +1,173 @@
+//! The Runge-Kutta methods that come with ARKODE.
+
+use std::{ffi::CStr, fmt, str::FromStr};
+
+use crate::sundials::error::Error;
+
+/// A Runge-Kutta method, by its table of coefficients: one of those that SUNDIALS comes with.
+///
+/// The name ends in three numbers: stages, order of the error estimate, order of the method.
+/// `SDIRK` methods are singly diagonally implicit; `ESDIRK` and `KVAERNO` ones have a first stage
+/// that costs nothing; `L2SA` ones are L-stable, with a second stage as accurate as it can be, and
+/// end with their last stage.
+///
+/// ```
+/// use pliant::sundials::Table;
+///
+/// let table: Table = "ESDIRK436L2SA_6_3_4".parse()?;
+/// assert_eq!((table.order(), table.is_implicit()), (4, true));
+/// assert_eq!(Table::explicit(5)?.name(), "DORMAND_PRINCE_7_4_5");
+/// # Ok::<(), pliant::sundials::Error>(())
+/// ```
+///
+/// User guide: "Using ARKODE", appendix "Butcher tables".
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct Table {
+    id: &'static CStr,
+    order: u32,
+    implicit: bool,
+}
+
+const fn dirk(id: &'static CStr, order: u32) -> Table {
+    Table { id, order, implicit: true }
+}
+
+const fn erk(id: &'static CStr, order: u32) -> Table {
+    Table { id, order, implicit: false }
+}
+
+impl Table {
+    /// All tables: diagonally implicit ones, then explicit ones.
+    ///
+    /// Left out is the one without an error estimate.
+    pub const ALL: [Self; 37] = [
+        dirk(c"ARKODE_SDIRK_2_1_2", 2),
+        dirk(c"ARKODE_BILLINGTON_3_3_2", 2),
+        dirk(c"ARKODE_TRBDF2_3_3_2", 2),
+        dirk(c"ARKODE_KVAERNO_4_2_3", 3),
+        dirk(c"ARKODE_ARK324L2SA_DIRK_4_2_3", 3),
+        dirk(c"ARKODE_ESDIRK324L2SA_4_2_3", 3),
+        dirk(c"ARKODE_ESDIRK325L2SA_5_2_3", 3),
+        dirk(c"ARKODE_ESDIRK32I5L2SA_5_2_3", 3),
+        dirk(c"ARKODE_CASH_5_2_4", 4),
+        dirk(c"ARKODE_CASH_5_3_4", 4),
+        dirk(c"ARKODE_SDIRK_5_3_4", 4),
+        dirk(c"ARKODE_KVAERNO_5_3_4", 4),
+        dirk(c"ARKODE_ARK436L2SA_DIRK_6_3_4", 4),
+        dirk(c"ARKODE_ARK437L2SA_DIRK_7_3_4", 4),
+        dirk(c"ARKODE_ESDIRK436L2SA_6_3_4", 4),
+        dirk(c"ARKODE_ESDIRK43I6L2SA_6_3_4", 4),
+        dirk(c"ARKODE_QESDIRK436L2SA_6_3_4", 4),
+        dirk(c"ARKODE_ESDIRK437L2SA_7_3_4", 4),
+        dirk(c"ARKODE_KVAERNO_7_4_5", 5),
+        dirk(c"ARKODE_ARK548L2SA_DIRK_8_4_5", 5),
+        dirk(c"ARKODE_ARK548L2SAb_DIRK_8_4_5", 5),
+        dirk(c"ARKODE_ESDIRK547L2SA_7_4_5", 5),
+        dirk(c"ARKODE_ESDIRK547L2SA2_7_4_5", 5),
+        erk(c"ARKODE_HEUN_EULER_2_1_2", 2),
+        erk(c"ARKODE_BOGACKI_SHAMPINE_4_2_3", 3),
+        erk(c"ARKODE_ARK324L2SA_ERK_4_2_3", 3),
+        erk(c"ARKODE_ZONNEVELD_5_3_4", 4),
+        erk(c"ARKODE_ARK436L2SA_ERK_6_3_4", 4),
+        erk(c"ARKODE_ARK437L2SA_ERK_7_3_4", 4),
+        erk(c"ARKODE_SAYFY_ABURUB_6_3_4", 4),
+        erk(c"ARKODE_CASH_KARP_6_4_5", 5),
+        erk(c"ARKODE_FEHLBERG_6_4_5", 5),
+        erk(c"ARKODE_DORMAND_PRINCE_7_4_5", 5),
+        erk(c"ARKODE_ARK548L2SA_ERK_8_4_5", 5),
+        erk(c"ARKODE_ARK548L2SAb_ERK_8_4_5", 5),
+        erk(c"ARKODE_VERNER_8_5_6", 6),
+        erk(c"ARKODE_FEHLBERG_13_7_8", 8),
+    ];
+
+    /// The diagonally implicit method to take for an order, 2 to 5.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for another order.
+    pub fn implicit(order: u32) -> Result<Self, Error> {
+        match order {
+            2 => "TRBDF2_3_3_2".parse(),
+            3 => "ESDIRK325L2SA_5_2_3".parse(),
+            4 => Ok(Self::default()),
+            5 => "ESDIRK547L2SA2_7_4_5".parse(),
+            _ => Err(Error::input("order", order, "implicit methods have orders 2 to 5")),
+        }
+    }
+
+    /// The explicit method to take for an order: 2 to 6, or 8.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for another order.
+    pub fn explicit(order: u32) -> Result<Self, Error> {
+        match order {
+            2 => "HEUN_EULER_2_1_2".parse(),
+            3 => "BOGACKI_SHAMPINE_4_2_3".parse(),
+            4 => "ZONNEVELD_5_3_4".parse(),
+            5 => "DORMAND_PRINCE_7_4_5".parse(),
+            6 => "VERNER_8_5_6".parse(),
+            8 => "FEHLBERG_13_7_8".parse(),
+            _ => Err(Error::input("order", order, "explicit methods have orders 2 to 6, and 8")),
+        }
+    }
+
+    /// The name in the user guide, without the prefix `ARKODE_`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        let id = self.id.to_str().unwrap_or_default();
+        id.strip_prefix(PREFIX).unwrap_or(id)
+    }
+
+    /// Order of the method.
+    #[must_use]
+    pub fn order(self) -> u32 {
+        self.order
+    }
+
+    /// Whether its stages are equations to be solved.
+    #[must_use]
+    pub fn is_implicit(self) -> bool {
+        self.implicit
+    }
+
+    /// The names of the implicit and the explicit table for ARKODE, one of which is that of none.
+    pub(super) fn ids(self) -> (&'static CStr, &'static CStr) {
+        match self.implicit {
+            true => (self.id, c"ARKODE_ERK_NONE"),
+            false => (c"ARKODE_DIRK_NONE", self.id),
+        }
+    }
+}
+
+const PREFIX: &str = "ARKODE_";
+
+impl Default for Table {
+    /// The implicit method of order 4.
+    fn default() -> Self {
+        dirk(c"ARKODE_ARK437L2SA_DIRK_7_3_4", 4)
+    }
+}
+
+impl FromStr for Table {
+    type Err = Error;
+
+    /// Reads a name, with or without the prefix `ARKODE_`.
+    fn from_str(name: &str) -> Result<Self, Error> {
+        let short = name.strip_prefix(PREFIX).unwrap_or(name);
+        Self::ALL.into_iter().find(|table| table.name() == short).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            Error::input("table", format!("\"{name}\""), format!("it is one of {known}"))
+        })
+    }
+}
+
+impl fmt::Display for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl fmt::Debug for Table {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Table({self})")
+    }
+}
