@@ -189,9 +189,9 @@ impl fmt::Display for Report {
             "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
              {energy_error:.1e} of {energy_scale:.1e} J"
         )?;
-        for PhaseReport { name, method, reason, .. } in &self.phases {
+        for PhaseReport { name, reason, .. } in &self.phases {
             if let Some(reason) = reason {
-                write!(f, "\nphase \"{name}\": {method}, as {reason}")?;
+                write!(f, "\nphase \"{name}\": {reason}")?;
             }
         }
         self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))

@@ -54,7 +54,7 @@ impl Plan {
             first: Some(reason),
             then: None,
             explicit_step: explicit_step(&spectrum, alpha),
-            patience: 16 * TRIAL,
+            patience: 4 * TRIAL,
         }
     }
 
@@ -85,13 +85,14 @@ impl Plan {
         Some(self.followed_by(method, trouble))
     }
 
-    /// What to go on with when the last [`TRIAL`] of the `steps` taken with this plan have shown, by
-    /// their mean size `step` (s), what the motion asks for.
-    pub(super) fn reconsidered(&self, step: f64, steps: usize) -> Option<Self> {
+    /// What to go on with when the last two times [`TRIAL`] of the `steps` taken with this plan have
+    /// shown, by their mean sizes `means` (s), what the motion asks for. (One would not do: motion
+    /// begins with small steps.)
+    pub(super) fn reconsidered(&self, means: [f64; 2], steps: usize) -> Option<Self> {
         self.first.as_ref()?;
-        let bound = self.explicit_step;
+        let (bound, [step, _]) = (self.explicit_step, means);
         match self.solver.method {
-            Method::Arkode if step < WORTH_EXPLICIT * bound => {
+            Method::Arkode if means.iter().all(|step| *step < WORTH_EXPLICIT * bound) => {
                 let reason = format!("accuracy asks for steps of {step:.1e} s");
                 Some(self.followed_by((Method::Rk, None), &reason))
             }

@@ -170,7 +170,10 @@ impl<'a> Run<'a> {
                     None => break Ok(()),
                 },
                 Ok(Ending::Event) => {}
-                Ok(Ending::Better(other)) => plan = other,
+                Ok(Ending::Better(other)) => {
+                    plan = other;
+                    counts.notice = None;
+                }
                 Ok(Ending::Doubtful { instead }) => {
                     plan = instead;
                     self.go_back(&mut leg);
@@ -218,7 +221,8 @@ impl<'a> Run<'a> {
         observer: Observer,
     ) -> Result<Ending, Failed> {
         let mut sample = vec![0.0; stepper.size()];
-        let (mut steps, mut trial_began) = (0_usize, self.time);
+        // mean step sizes (s) of the last two trials
+        let (mut steps, mut trial_began, mut means) = (0_usize, self.time, [f64::INFINITY; 2]);
         while self.time < leg.stop {
             if leg.steps == 0 {
                 return Err(too_many_steps(self.solver.max_steps, &stepper.counts()));
@@ -241,11 +245,11 @@ impl<'a> Run<'a> {
             }
             steps += 1;
             if steps.is_multiple_of(TRIAL) {
-                let mean = (self.time - trial_began) / TRIAL as f64;
-                if let Some(other) = plan.reconsidered(mean, steps) {
+                means = [(self.time - trial_began) / TRIAL as f64, means[0]];
+                trial_began = self.time;
+                if let Some(other) = plan.reconsidered(means, steps) {
                     return Ok(Ending::Better(other));
                 }
-                trial_began = self.time;
             }
         }
         Ok(Ending::Reached)

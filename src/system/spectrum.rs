@@ -47,7 +47,7 @@ impl Spectrum {
 
 /// Bounds on iterations. Power iteration is within some per cent by then; subspace iteration ends
 /// when the lowest vibration is known to three digits.
-const POWER_ITERATIONS: usize = 24;
+const POWER_ITERATIONS: usize = 40;
 const SUBSPACE_ITERATIONS: usize = 12;
 
 /// Parts of the highest eigenvalue: those below the first are of rigid motions; the second is the
