@@ -17,7 +17,8 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 	@echo "The pictures are in $(CURDIR)/out:"
 	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
 
-test: setup ## Every check: format, lints, tests, documentation and its examples
+test: ## Every check: format, lints, tests, documentation and its examples
+	@scripts/setup.sh chromium
 	cargo fmt --check
 	cargo clippy --all-targets -- -D warnings
 	cargo test

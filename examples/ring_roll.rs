@@ -11,7 +11,7 @@ mod common;
 
 use clap::{Parser, ValueEnum};
 use common::{Common, finish};
-use pliant::output::{Chart, Snapshots, write_csv, write_vtk};
+use pliant::output::{Chart, Snapshots, write_animation, write_csv, write_vtk};
 use pliant::samples::RingRoll;
 use pliant::{Error, Sample, Sampling, Viscosity};
 
@@ -58,9 +58,11 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     }
 
     let directory = common.out.join(format!("ring_roll_{name}"));
+    let title = format!("Rolling of an elastic ring, {name} viscosity");
+    write_animation(&trajectory, directory.join("animation.html"), &title)?;
     let times: Vec<f64> = [0.0, 0.1, 0.2, 0.5, 1.0, until].into();
     Snapshots::at(times)
-        .title(format!("Rolling of an elastic ring, {name} viscosity"))
+        .title(title)
         .columns(6)
         .mark([1])
         .write(&trajectory, directory.join("snapshots.svg"))?;
@@ -74,7 +76,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     write_csv(&trajectory, directory.join("trajectory.csv"), None)?;
     write_vtk(&trajectory, directory.join("vtk"), "ring")?;
     println!(
-        "written to {}: snapshots.svg, rotation.svg, trajectory.csv, vtk/",
+        "written to {}: animation.html, snapshots.svg, rotation.svg, trajectory.csv, vtk/",
         directory.display()
     );
     Ok(())

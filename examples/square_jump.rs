@@ -14,7 +14,7 @@ mod common;
 
 use clap::Parser;
 use common::{Common, finish};
-use pliant::output::{Chart, Snapshots, write_csv, write_vtk};
+use pliant::output::{Chart, Snapshots, write_animation, write_csv, write_vtk};
 use pliant::samples::{SquareJump, pushed_nodes};
 use pliant::{Cells, Error, Sample, Sampling, Trajectory};
 
@@ -56,6 +56,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let title = format!("Jumping of an elastic square body, {nodes} x {nodes} nodes");
     let times = [0.0, 0.25, 0.5, 1.0, 1.02, 1.04, 1.06, 1.1, 1.2, 1.3, 1.4, 1.5];
     Snapshots::at(times).title(&title).write(&trajectory, directory.join("snapshots.svg"))?;
+    write_animation(&trajectory, directory.join("animation.html"), &title)?;
     let series = |value: &dyn Fn(&Sample) -> f64| -> Vec<(f64, f64)> {
         trajectory.samples().iter().map(|sample| (sample.time, value(sample))).collect()
     };
@@ -70,7 +71,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     write_csv(&trajectory, directory.join("trajectory.csv"), Some(&pushed_nodes(nodes).into()))?;
     write_vtk(&trajectory, directory.join("vtk"), "square")?;
     println!(
-        "written to {}: snapshots.svg, height.svg, rotation.svg, trajectory.csv, vtk/",
+        "written to {}: animation.html, snapshots.svg, height.svg, rotation.svg, trajectory.csv, vtk/",
         directory.display()
     );
     Ok(())

@@ -79,7 +79,7 @@ impl Signal {
         Self::Function(Arc::new(f))
     }
 
-    pub(super) fn at(&self, t: f64) -> f64 {
+    pub(crate) fn at(&self, t: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
             Self::Function(function) => function(t),

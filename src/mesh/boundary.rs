@@ -16,8 +16,13 @@ impl Mesh {
     /// A body of lower dimension than space (string, membrane) is all boundary: its faces are its
     /// cells.
     pub fn boundary_faces(&self) -> Vec<Face> {
+        self.boundary_faces_of_cells().into_iter().map(|(_, face)| face).collect()
+    }
+
+    /// The same faces, each with the cell that it belongs to.
+    pub(crate) fn boundary_faces_of_cells(&self) -> Vec<(usize, Face)> {
         if self.dimension > self.kind.dimension() {
-            return self.cells().map(<[usize]>::to_vec).collect();
+            return self.cells().map(<[usize]>::to_vec).enumerate().collect();
         }
         let mut once: Vec<usize> = Vec::new();
         let mut keys: Vec<(Key, usize)> = Vec::new();
@@ -30,7 +35,8 @@ impl Mesh {
             once.extend(same.filter(|faces| faces.len() == 1).map(|faces| faces[0].1));
         }
         once.sort_unstable();
-        once.into_iter().map(|face| self.face(face).collect()).collect()
+        let cell = |face| face / self.kind.faces().len();
+        once.into_iter().map(|face| (cell(face), self.face(face).collect())).collect()
     }
 
     pub(super) fn find_boundary_nodes(&self) -> Vec<usize> {

@@ -7,11 +7,13 @@
 //! | JSON | how a result was obtained: method, steps, errors, versions | [`write_report`] |
 //! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
 //! | SVG | quantities over time | [`Chart`] |
+//! | HTML | the motion, to be played by a web browser | [`write_animation`] |
 //! | VTK | ParaView and other viewers of meshes: motion, forces, strain and stress | [`write_vtk`] |
 //!
 //! Directories are created as needed. A file is written under another name first and renamed when
 //! it is complete: what stands under its own name is never half a file.
 
+mod animation;
 mod chart;
 mod csv;
 #[cfg(feature = "study")]
@@ -25,6 +27,7 @@ use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
+pub use self::animation::write_animation;
 pub use self::chart::Chart;
 pub use self::csv::{write_csv, write_energies};
 #[cfg(feature = "study")]

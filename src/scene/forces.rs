@@ -66,6 +66,20 @@ impl Scene {
     }
 
     fn add_springs(&self, phase: &Phase, forces: &mut Forces) -> Result<(), Error> {
+        for (spring, actuation) in self.springs.iter().zip(self.actuation_signals(phase)?) {
+            forces.push(Arc::new(spring.force(self.body.mesh(), actuation)?));
+        }
+        Ok(())
+    }
+
+    /// Forces (N) of the actuators of all springs at time `t` (s) in `phase`.
+    pub(crate) fn actuations(&self, phase: &Phase, t: f64) -> Result<Vec<f64>, Error> {
+        let signals = self.actuation_signals(phase)?.into_iter();
+        Ok(signals.map(|signals| signals.iter().map(|signal| signal.at(t)).sum()).collect())
+    }
+
+    /// What actuates each spring in `phase`.
+    fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, Error> {
         let known: Vec<&str> = self.springs.iter().map(Spring::name).collect();
         let input = format!("actuation of phase \"{}\"", phase.name);
         let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); known.len()];
@@ -75,10 +89,7 @@ impl Scene {
                 actuations[find(name, &known, &input, "springs")?].push(force.clone());
             }
         }
-        for (spring, actuation) in self.springs.iter().zip(actuations) {
-            forces.push(Arc::new(spring.force(self.body.mesh(), actuation)?));
-        }
-        Ok(())
+        Ok(actuations)
     }
 
     fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), Error> {

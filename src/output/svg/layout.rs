@@ -15,13 +15,13 @@ const KEY: f64 = 34.0;
 /// Mean width of a character of the captions (px).
 const CHARACTER: f64 = 6.8;
 /// Width of a one-dimensional body as drawn, as a fraction of its length.
-pub(super) const BAR_WIDTH: f64 = 0.12;
+pub(in crate::output) const BAR_WIDTH: f64 = 0.12;
 
 /// A point in the plane of the drawing: (m) or (px).
-pub(super) type Point = [f64; 2];
+pub(in crate::output) type Point = [f64; 2];
 
 /// The part of space that each panel shows (m), its second axis upward.
-pub(super) struct View {
+pub(in crate::output) struct View {
     low: Point,
     high: Point,
     /// Upper edge of each panel by itself, which a row of panels that stays low ends at.
@@ -32,7 +32,7 @@ pub(super) struct View {
 
 impl View {
     /// All that `samples` show of the body, and the obstacles that are near.
-    pub(super) fn of(trajectory: &Trajectory, samples: &[&Sample]) -> Self {
+    pub(in crate::output) fn of(trajectory: &Trajectory, samples: &[&Sample]) -> Self {
         let mut view = Self {
             low: [f64::INFINITY; 2],
             high: [f64::NEG_INFINITY; 2],
@@ -69,6 +69,11 @@ impl View {
             self.low[i] = self.low[i].min(x);
             self.high[i] = self.high[i].max(x);
         }
+    }
+
+    /// Lower left and upper right corner.
+    pub(in crate::output) fn corners(&self) -> [Point; 2] {
+        [self.low, self.high]
     }
 
     pub(super) fn width(&self) -> f64 {
@@ -122,7 +127,7 @@ const UPWARD: [f64; 3] = [-0.171_010, 0.296_198, 0.939_693];
 const AWAY: [f64; 3] = [-0.469_846, 0.813_798, -0.342_020];
 
 /// Positions of all nodes as drawn: a one-dimensional body stands upright, space is seen obliquely.
-pub(super) fn positions(trajectory: &Trajectory, sample: &Sample) -> Vec<Point> {
+pub(in crate::output) fn positions(trajectory: &Trajectory, sample: &Sample) -> Vec<Point> {
     let dimension = trajectory.body().dimension();
     displaced(trajectory, sample).chunks_exact(dimension).map(drawn).collect()
 }
@@ -132,7 +137,8 @@ pub(super) fn depths(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
     displaced(trajectory, sample).chunks_exact(3).map(|x| along(x, AWAY)).collect()
 }
 
-fn displaced(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
+/// Positions of all nodes (m), dimension coordinates each.
+pub(in crate::output) fn displaced(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
     let natural = trajectory.body().mesh().positions().iter();
     natural.zip(&sample.u).map(|(x, u)| x + u).collect()
 }
@@ -141,7 +147,7 @@ fn along(x: &[f64], direction: [f64; 3]) -> f64 {
     x.iter().zip(direction).map(|(x, d)| x * d).sum()
 }
 
-pub(super) fn drawn(x: &[f64]) -> Point {
+pub(in crate::output) fn drawn(x: &[f64]) -> Point {
     match *x {
         [x] => [0.0, x],
         [x, y] => [x, y],

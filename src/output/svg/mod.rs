@@ -7,8 +7,10 @@ mod panel;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use layout::{Layout, View, scale_bar};
+pub(super) use layout::{BAR_WIDTH, View, displaced, drawn, positions};
+use layout::{Layout, scale_bar};
 use panel::{Mark, Panel};
+pub(super) use panel::{around, around_face, through_middle};
 use svg::Document;
 use svg::node::element::{Circle, Definitions, Group, Line, Path as Outline, Pattern, Text};
 

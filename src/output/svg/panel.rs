@@ -122,12 +122,7 @@ fn surface(mesh: &Mesh, points: &[Point], depths: &[f64]) -> Group {
     let solid = mesh.kind().dimension() == 3;
     let mut faces: Vec<(f64, Vec<Point>)> = Vec::new();
     for face in mesh.boundary_faces() {
-        let kind = match face.len() {
-            3 => CellKind::Triangle,
-            4 => CellKind::Quadrilateral,
-            _ => CellKind::Triangle6,
-        };
-        let around: Vec<Point> = around(kind).map(|local| points[face[local]]).collect();
+        let around: Vec<Point> = around_face(&face).map(|node| points[node]).collect();
         if !solid || looks_at_viewer(&around) {
             let depth: f64 = face.iter().map(|&node| depths[node]).sum();
             faces.push((depth / face.len() as f64, around));
@@ -154,13 +149,23 @@ fn looks_at_viewer(polygon: &[Point]) -> bool {
     polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>() < 0.0
 }
 
+/// The nodes of a face of a solid in the order in which they stand around it.
+pub(in crate::output) fn around_face(face: &[usize]) -> impl Iterator<Item = usize> {
+    let kind = match face.len() {
+        3 => CellKind::Triangle,
+        4 => CellKind::Quadrilateral,
+        _ => CellKind::Triangle6,
+    };
+    around(kind).map(|local| face[local])
+}
+
 /// The nodes of a two-dimensional cell in the order in which they stand around it.
-fn around(kind: CellKind) -> impl Iterator<Item = usize> {
+pub(in crate::output) fn around(kind: CellKind) -> impl Iterator<Item = usize> {
     kind.edges().iter().flat_map(|edge| through_middle(edge).take(edge.len() - 1))
 }
 
 /// The nodes of an edge from end to end: through the mid node, where there is one.
-fn through_middle(edge: &[usize]) -> impl Iterator<Item = usize> {
+pub(in crate::output) fn through_middle(edge: &[usize]) -> impl Iterator<Item = usize> {
     edge.first().into_iter().chain(edge.get(2)).chain(edge.get(1)).copied()
 }
 

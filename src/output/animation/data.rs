@@ -1,0 +1,279 @@
+//! What the page is told: the data of a motion as JSON.
+
+use std::collections::BTreeMap;
+
+use serde_json::{Value, json};
+
+use super::geometry::Geometry;
+use super::pack;
+use crate::body::{Body, CellField};
+use crate::error::Error;
+use crate::force::{Shape, ShapeKind, Spring};
+use crate::mesh::{CellKind, Mesh};
+use crate::output::svg::{View, displaced, drawn, positions};
+use crate::scene::{Phase, Role, Scene};
+use crate::system::Energy;
+use crate::trajectory::{Sample, Trajectory};
+
+/// Samples that a page holds at most, and the bytes that they may take together before encoding;
+/// but so many are always kept.
+const MOST_FRAMES: usize = 800;
+const MOST_BYTES: usize = 1_400_000;
+const FEW_FRAMES: usize = 60;
+/// Part of the values of cells that the scale of colours covers.
+const PERCENTILE: f64 = 0.99;
+
+/// A quantity of cells: its name, unit, and how it is found.
+type Quantity = (&'static str, &'static str, fn(&CellField) -> f64);
+
+const QUANTITIES: [Quantity; 2] = [
+    ("Von Mises stress", "Pa", CellField::von_mises),
+    ("Strain energy density", "J/m\u{b3}", |field| field.energy_density),
+];
+
+/// Everything that the page shows.
+pub(super) fn gather(trajectory: &Trajectory, title: &str) -> Result<Value, Error> {
+    let scene = trajectory.scene();
+    let (body, mesh) = (scene.body(), scene.body().mesh());
+    let points = point_masses(mesh);
+    let ends = spring_ends(scene)?;
+    let geometry = Geometry::new(mesh, ends.iter().flatten().chain(&points).copied());
+    let frames = thinned(trajectory.samples(), bytes_per_frame(&geometry, mesh.dimension()));
+    let view = (mesh.dimension() < 3).then(|| View::of(trajectory, &frames).corners());
+    Ok(json!({
+        "title": title,
+        "run": run(trajectory),
+        "report": trajectory.report().to_string(),
+        "warnings": trajectory.report().warnings(),
+        "view": view,
+        "times": frames.iter().map(|sample| sample.time).collect::<Vec<_>>(),
+        "phases": phases(scene, &geometry)?,
+        "body": geometry.to_json(),
+        "motion": motion(trajectory, &frames, &geometry),
+        "quantities": quantities(body, &frames, &geometry),
+        "energies": energies(&frames),
+        "obstacles": obstacles(scene),
+        "springs": springs(scene, &frames, &geometry, &ends)?,
+        "points": geometry.places(&points),
+    }))
+}
+
+/// As many of the samples as a page can hold, evenly spread over their order.
+fn thinned(samples: &[Sample], bytes_per_frame: usize) -> Vec<&Sample> {
+    let most = (MOST_BYTES / bytes_per_frame).clamp(FEW_FRAMES, MOST_FRAMES);
+    let frames = most.min(samples.len());
+    let last = samples.len().saturating_sub(1);
+    (0..frames).map(|k| &samples[k * last / (frames - 1).max(1)]).collect()
+}
+
+fn bytes_per_frame(geometry: &Geometry, dimension: usize) -> usize {
+    2 * dimension.max(2) * geometry.nodes.len() + QUANTITIES.len() * geometry.cells.len()
+}
+
+/// Positions of the drawn nodes, sample by sample.
+fn motion(trajectory: &Trajectory, frames: &[&Sample], geometry: &Geometry) -> Value {
+    let axes = trajectory.body().dimension().max(2);
+    let mut points = Vec::with_capacity(frames.len() * geometry.nodes.len() * axes);
+    for sample in frames {
+        let all = match axes {
+            2 => positions(trajectory, sample).concat(),
+            _ => displaced(trajectory, sample),
+        };
+        points.extend(geometry.nodes.iter().flat_map(|node| &all[node * axes..][..axes]));
+    }
+    pack::points(&points, axes)
+}
+
+/// The values of each quantity in the cell of each face, sample by sample.
+fn quantities(body: &Body, frames: &[&Sample], geometry: &Geometry) -> Value {
+    let mut values = QUANTITIES.map(|_| Vec::with_capacity(frames.len() * geometry.cells.len()));
+    for sample in frames {
+        let fields = body.cell_fields(&sample.u);
+        for ((_, _, value), values) in QUANTITIES.iter().zip(&mut values) {
+            values.extend(geometry.cells.iter().map(|&cell| value(&fields[cell]) as f32));
+        }
+    }
+    let packed = QUANTITIES.iter().zip(values).map(|((name, unit, _), values)| {
+        let (scale, peak) = scale(&values);
+        let values = pack::values(&values, scale);
+        json!({ "name": name, "unit": unit, "scale": scale, "peak": peak, "values": values })
+    });
+    packed.collect()
+}
+
+/// The end of the scale for `values`, a round number, and the largest of them.
+fn scale(values: &[f32]) -> (f64, f64) {
+    let mut values = values.to_vec();
+    let peak: f64 = values.iter().copied().fold(0.0, f32::max).into();
+    let rank = (PERCENTILE * values.len() as f64) as usize;
+    let robust = match values.get(rank) {
+        Some(_) => f64::from(*values.select_nth_unstable_by(rank, f32::total_cmp).1),
+        None => 0.0,
+    };
+    (round_up(if robust > 0.0 { robust } else { peak }), peak)
+}
+
+/// The next number with one digit, or two where one is too coarse.
+fn round_up(x: f64) -> f64 {
+    if x <= 0.0 {
+        return 0.0;
+    }
+    let unit = 10_f64.powf(x.log10().floor());
+    let steps = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+    // a number of the list times the unit, but for rounding
+    let enough = |step: &f64| step * unit >= x * (1.0 - 1e-9);
+    unit * steps.into_iter().find(enough).unwrap_or(10.0)
+}
+
+/// Names and ends of the phases, and the drawn nodes that they hold and move.
+fn phases(scene: &Scene, geometry: &Geometry) -> Result<Value, Error> {
+    let phase = |phase: &Phase| {
+        // a node that is held along one axis and moved along another counts as moved
+        let roles: BTreeMap<usize, Role> = {
+            let mut roles = scene.constrained_nodes(phase)?;
+            roles.sort_by_key(|&(_, role)| role);
+            roles.into_iter().collect()
+        };
+        let with = |wanted: Role| {
+            let nodes = roles.iter().filter(|&(_, &role)| role == wanted).map(|(&node, _)| node);
+            geometry.places(&nodes.collect::<Vec<_>>())
+        };
+        Ok(json!({
+            "name": phase.name(),
+            "end": phase.end(),
+            "held": with(Role::Held),
+            "moved": with(Role::Moved),
+        }))
+    };
+    scene.phases().iter().map(phase).collect()
+}
+
+fn energies(frames: &[&Sample]) -> Value {
+    let names =
+        ["kinetic", "strain", "gravity", "contact", "springs", "dissipated", "supplied", "balance"];
+    let values = |sample: &&Sample| {
+        let energy = &sample.energy;
+        let &Energy { kinetic, strain, gravity, contact, springs, dissipated, supplied } = energy;
+        let balance = energy.balance();
+        [kinetic, strain, gravity, contact, springs, dissipated, supplied, balance]
+    };
+    let values: Vec<_> = frames.iter().map(values).collect();
+    let packed = names.iter().enumerate().map(|(number, name)| {
+        let values = pack::singles(values.iter().map(|values| values[number]));
+        json!({ "name": name, "values": values })
+    });
+    packed.collect()
+}
+
+/// Shapes of the obstacles at t = 0 and their velocities, unions part by part.
+fn obstacles(scene: &Scene) -> Value {
+    let mut shapes = Vec::new();
+    let dimension = scene.body().dimension();
+    for obstacle in scene.obstacles() {
+        let drift = obstacle.drift();
+        add_shape(obstacle.shape(), &in_view(&drift[..dimension]), &mut shapes);
+    }
+    shapes.into()
+}
+
+fn add_shape(shape: &Shape, velocity: &[f64], shapes: &mut Vec<Value>) {
+    let mut add = |kind: &str, mut shape: Value| {
+        shape["kind"] = kind.into();
+        shape["velocity"] = velocity.into();
+        shapes.push(shape);
+    };
+    match shape.kind() {
+        ShapeKind::HalfPlane { point, normal } => {
+            let shape = json!({ "point": in_view(point), "normal": in_view(normal) });
+            add("half-plane", shape);
+        }
+        ShapeKind::Ball { centre, radius, cavity } => {
+            let kind = if *cavity { "cavity" } else { "disc" };
+            add(kind, json!({ "centre": in_view(centre), "radius": radius }));
+        }
+        ShapeKind::Box { min, max } => {
+            add("box", json!({ "min": in_view(min), "max": in_view(max) }));
+        }
+        ShapeKind::Capsule { from, to, radius } => {
+            let (from, to) = (in_view(from), in_view(to));
+            add("capsule", json!({ "from": from, "to": to, "radius": radius }));
+        }
+        ShapeKind::Union(parts) => {
+            parts.iter().for_each(|part| add_shape(part, velocity, shapes));
+        }
+        // a function of one's own has no outline
+        ShapeKind::Custom(_) => {}
+    }
+}
+
+/// A vector as the page draws it: upright in one dimension.
+fn in_view(x: &[f64]) -> Vec<f64> {
+    if x.len() < 3 { drawn(x).to_vec() } else { x.to_vec() }
+}
+
+/// The nodes that each spring joins.
+fn spring_ends(scene: &Scene) -> Result<Vec<[usize; 2]>, Error> {
+    let mesh = scene.body().mesh();
+    let ends = |spring: &Spring| {
+        let [first, second] = spring.ends();
+        Ok([mesh.select(first)?[0], mesh.select(second)?[0]])
+    };
+    scene.springs().iter().map(ends).collect()
+}
+
+/// Names and ends of the springs, and the forces of their actuators at each sample.
+fn springs(
+    scene: &Scene,
+    frames: &[&Sample],
+    geometry: &Geometry,
+    ends: &[[usize; 2]],
+) -> Result<Value, Error> {
+    let forces =
+        frames.iter().map(|sample| scene.actuations(&scene.phases()[sample.phase], sample.time));
+    let forces: Vec<Vec<f64>> = forces.collect::<Result<_, Error>>()?;
+    let packed = scene.springs().iter().zip(ends).enumerate().map(|(number, (spring, ends))| {
+        json!({
+            "name": spring.name(),
+            "ends": geometry.places(ends),
+            "forces": pack::singles(forces.iter().map(|forces| forces[number])),
+        })
+    });
+    Ok(packed.collect())
+}
+
+/// The nodes that belong to no cell.
+fn point_masses(mesh: &Mesh) -> Vec<usize> {
+    let mut in_cell = vec![false; mesh.node_count()];
+    mesh.cells().flatten().for_each(|&node| in_cell[node] = true);
+    (0..mesh.node_count()).filter(|&node| !in_cell[node]).collect()
+}
+
+/// What the computation was.
+fn run(trajectory: &Trajectory) -> Value {
+    let (report, mesh) = (trajectory.report(), trajectory.body().mesh());
+    json!({
+        "nodes": mesh.node_count(),
+        "cells": mesh.cell_count(),
+        "cellName": cell_name(mesh.kind()),
+        "method": report.method.to_string(),
+        "rtol": format!("{:e}", report.rtol),
+        "steps": report.steps(),
+        "factorizations": report.factorizations(),
+        "seconds": report.wall_seconds,
+        "energyError": report.energy_error,
+        "energyScale": report.energy_scale,
+        "samples": trajectory.samples().len(),
+    })
+}
+
+fn cell_name(kind: CellKind) -> &'static str {
+    match kind {
+        CellKind::Segment => "segments",
+        CellKind::Triangle => "triangles",
+        CellKind::Triangle6 => "triangles of 6 nodes",
+        CellKind::Quadrilateral => "quadrilaterals",
+        CellKind::Tetrahedron => "tetrahedra",
+        CellKind::Tetrahedron10 => "tetrahedra of 10 nodes",
+        CellKind::Hexahedron => "hexahedra",
+    }
+}

@@ -1,0 +1,169 @@
+// Time: playing, seeking, speed, keys.
+
+const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
+/** A motion is played, at first, in about this time (s). */
+const COMFORTABLE = 8;
+const SIGNS = { Play: "M8 5v14l11-7z", Pause: "M7 5h4v14H7zM13 5h4v14h-4z" };
+
+const playButton = document.getElementById("play");
+const slider = document.getElementById("time");
+const clock = document.getElementById("clock");
+const phaseLine = document.getElementById("phase");
+const speedChoice = document.getElementById("speed");
+
+let now = first;
+/** Time stamp of the last frame (ms) while the motion is played; null otherwise. */
+let played = null;
+
+/** Decimals that tell a thousandth of the motion. */
+const decimals = Math.min(6, Math.max(0, Math.round(3 - Math.log10(last - first || 1))));
+
+function show() {
+  const moment = momentAt(now);
+  drawStage(moment);
+  showEnergies(moment);
+  const time = `${fixed(now, decimals)} s`;
+  const { name } = phaseAt(now);
+  slider.value = now;
+  slider.setAttribute("aria-valuetext", `${time}, phase ${name}`);
+  clock.textContent = time;
+  phaseLine.textContent = `phase: ${name}`;
+}
+
+function redraw() {
+  fitStage();
+  drawChart();
+  show();
+}
+
+function seek(time) {
+  now = Math.min(Math.max(time, first), last);
+  show();
+}
+
+function pause() {
+  played = null;
+  showSign("Play");
+}
+
+function play() {
+  if (played !== null || last === first) return;
+  if (now >= last) now = first;
+  played = performance.now();
+  showSign("Pause");
+  requestAnimationFrame(advance);
+}
+
+function showSign(action) {
+  playButton.setAttribute("aria-label", action);
+  document.getElementById("sign").setAttribute("d", SIGNS[action]);
+}
+
+function advance(stamp) {
+  if (played === null) return;
+  const passed = Math.max(0, stamp - played) / 1000;
+  played = stamp;
+  seek(now + passed * SPEEDS[speedChoice.selectedIndex]);
+  if (now >= last) pause();
+  else requestAnimationFrame(advance);
+}
+
+function toggle() {
+  if (played === null) play();
+  else pause();
+}
+
+/** Goes `count` samples on, or back, and stays there. */
+function step(count) {
+  pause();
+  const { before, share } = momentAt(now);
+  // between two samples, the one before is one step back
+  const from = count < 0 && share > 0 && share < 1 ? before + 1 : before + (share === 1 ? 1 : 0);
+  seek(times[Math.min(Math.max(from + count, 0), times.length - 1)]);
+}
+
+function offerSpeeds() {
+  for (const speed of SPEEDS) {
+    const label = speed < 1 ? `1/${Math.round(1 / speed)}` : String(speed);
+    speedChoice.append(new Option(speed === 1 ? "real time" : `${label} \u00d7`));
+  }
+  const distance = (speed) => Math.abs(Math.log((last - first) / speed / COMFORTABLE));
+  const nearest = SPEEDS.reduce((a, b) => (distance(b) < distance(a) ? b : a));
+  speedChoice.selectedIndex = last > first ? SPEEDS.indexOf(nearest) : SPEEDS.indexOf(1);
+}
+
+function changeSpeed(steps) {
+  const index = speedChoice.selectedIndex + steps;
+  speedChoice.selectedIndex = Math.min(Math.max(index, 0), SPEEDS.length - 1);
+}
+
+const KEYS = {
+  " ": toggle,
+  ArrowLeft: (event) => step(event.shiftKey ? -10 : -1),
+  ArrowRight: (event) => step(event.shiftKey ? 10 : 1),
+  Home: () => seek(first),
+  End: () => seek(last),
+  "+": () => changeSpeed(1),
+  "-": () => changeSpeed(-1),
+};
+
+document.addEventListener("keydown", (event) => {
+  if (event.ctrlKey || event.altKey || event.metaKey) return;
+  const at = event.target.tagName;
+  if (at === "SELECT" || (event.key === " " && ["BUTTON", "SUMMARY"].includes(at))) return;
+  const act = KEYS[event.key];
+  if (!act) return;
+  event.preventDefault();
+  act(event);
+});
+
+function tellFacts() {
+  const title = data.title || "Motion of a soft body";
+  document.title = document.getElementById("title").textContent = title;
+  document.getElementById("report").textContent = data.report;
+  document.getElementById("end").textContent = `of ${fixed(last, decimals)} s`;
+  const { run } = data;
+  const count = (number) => number.toLocaleString("en");
+  const energy = (value) => {
+    const { factor, unit } = prefixed(value, "J");
+    return `${number(value / factor, 2)} ${unit}`;
+  };
+  const shown = times.length === run.samples
+    ? `all ${count(run.samples)}`
+    : `${count(times.length)} of ${count(run.samples)}, evenly thinned for this page`;
+  const facts = {
+    Mesh: `${count(run.nodes)} nodes, ${count(run.cells)} ${run.cellName}`,
+    Method: `${run.method}, relative tolerance ${signed(run.rtol)}`,
+    Effort: `${count(run.steps)} steps, ${count(run.factorizations)} factorizations, ${number(run.seconds)} s`,
+    "Energy balance": `off by at most ${energy(run.energyError)}, of ${energy(run.energyScale)}`,
+    Samples: `${shown}; straight lines between them`,
+  };
+  const warnings = document.getElementById("warnings");
+  warnings.hidden = data.warnings.length === 0;
+  for (const warning of data.warnings) {
+    warnings.append(Object.assign(document.createElement("li"), { textContent: warning }));
+  }
+  const list = document.getElementById("facts");
+  for (const [name, content] of Object.entries(facts)) {
+    const [term, description] = [document.createElement("dt"), document.createElement("dd")];
+    term.textContent = name;
+    description.textContent = content;
+    list.append(term, description);
+  }
+}
+
+tellFacts();
+describeStage();
+showKey();
+offerQuantities(show);
+offerSeries(redraw);
+offerSpeeds();
+letSeek(seek);
+letTurn(show);
+showSign("Play");
+Object.assign(slider, { min: first, max: last, step: "any" });
+slider.addEventListener("input", () => seek(Number(slider.value)));
+playButton.addEventListener("click", toggle);
+window.addEventListener("resize", redraw);
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+redraw();

@@ -1,0 +1,116 @@
+// The picture of the body, the scale of its colours and the key of its marks.
+
+const stage = document.getElementById("stage");
+const inSpace = axes === 3;
+
+/** Chosen quantity; none: one colour. */
+let quantity = quantities[0];
+
+function drawStage(moment) {
+  const drawing = sheet(stage);
+  (inSpace ? drawSpace : drawPlane)(drawing, moment, quantity);
+}
+
+/** As high as the motion asks for, as far as the window has room. */
+function fitStage() {
+  const width = stage.clientWidth;
+  const most = Math.max(240, Math.min(0.46 * window.innerHeight, 1.1 * width));
+  let wanted = 0.6 * width;
+  if (!inSpace) {
+    const [low, high] = data.view;
+    const shape = (high[1] - low[1]) / (high[0] - low[0]);
+    wanted = (width - MARGIN.left - MARGIN.right) * shape + MARGIN.top + MARGIN.bottom;
+  }
+  stage.style.height = `${Math.round(Math.min(Math.max(wanted, 200), most))}px`;
+}
+
+function describeStage() {
+  const motion = `Motion of the body from ${number(first)} to ${number(last)} seconds`;
+  const turning = inSpace ? ". Arrow keys turn it" : "";
+  stage.setAttribute("aria-label", motion + turning);
+  document.getElementById("turning").hidden = !inSpace;
+  if (inSpace) {
+    stage.tabIndex = 0;
+    stage.classList.add("turns");
+  }
+}
+
+/** The choice of quantities; `redraw` is called after a choice. */
+function offerQuantities(redraw) {
+  const choice = document.getElementById("quantity");
+  for (const { name } of [...quantities, { name: "None" }]) choice.append(new Option(name));
+  const choose = () => {
+    quantity = quantities[choice.selectedIndex];
+    showScale();
+    redraw();
+  };
+  choice.addEventListener("change", choose);
+  document.getElementById("ramp").style.background =
+    `linear-gradient(to right, ${VIRIDIS.map((colour) => rgb(colour)).join()})`;
+  showScale();
+}
+
+function showScale() {
+  document.getElementById("scale").hidden = !quantity;
+  const peak = document.getElementById("peak");
+  const ends = document.getElementById("ends");
+  peak.textContent = "";
+  if (!quantity) return;
+  const { factor, unit } = prefixed(quantity.scale, quantity.unit);
+  const most = quantity.scale / factor;
+  const beyond = quantity.peak > 1.001 * quantity.scale;
+  const labels = ["0", number(most / 2), `${beyond ? "\u2265 " : ""}${number(most)} ${unit}`];
+  ends.replaceChildren(...(most > 0 ? labels : ["0 everywhere"]).map((label) => {
+    const end = document.createElement("span");
+    end.textContent = label;
+    return end;
+  }));
+  if (beyond) {
+    peak.textContent = `99 % of all cells and times are below; largest ${number(quantity.peak / factor)} ${unit}`;
+  }
+}
+
+/** What the marks mean, as far as the motion has them. */
+function showKey() {
+  const dot = (colour, radius) => `<circle cx="11" cy="6" r="${radius}" fill="var(--${colour})"/>`;
+  const zigzag = (colour) =>
+    `<path d="M0 6h4l2-4 3 8 4-8 3 8 2-4h4" fill="none" stroke="var(--${colour})" stroke-width="1.6"/>`;
+  const forces = springs.flatMap((spring) => [...spring.forces]);
+  const entries = [
+    [phases.some((phase) => phase.held.length), dot("ink", 4), "held"],
+    [phases.some((phase) => phase.moved.length), dot("moved", 4.5), "moved"],
+    [data.points.length, dot("ink", 6), "point mass"],
+    [springs.length, zigzag("spring"), "spring"],
+    [forces.some((force) => force < 0), zigzag("pull"), "actuator pulls"],
+    [forces.some((force) => force > 0), zigzag("push"), "actuator pushes"],
+  ];
+  const key = document.getElementById("key");
+  for (const [, sign, meaning] of entries.filter(([exists]) => exists)) {
+    const entry = document.createElement("li");
+    entry.innerHTML = `<svg viewBox="0 0 22 12" aria-hidden="true">${sign}</svg>`;
+    entry.append(meaning);
+    key.append(entry);
+  }
+}
+
+/** Turns a body in space by dragging, or by the arrow keys while the picture has the focus. */
+function letTurn(redraw) {
+  if (!inSpace) return;
+  const turn = (right, up) => {
+    view.azimuth -= right;
+    view.elevation = Math.min(Math.max(view.elevation + up, -Math.PI / 2), Math.PI / 2);
+    redraw();
+  };
+  stage.addEventListener("pointerdown", (event) => stage.setPointerCapture(event.pointerId));
+  stage.addEventListener("pointermove", (event) => {
+    if (stage.hasPointerCapture(event.pointerId)) turn(event.movementX / 150, event.movementY / 150);
+  });
+  const steps = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+  stage.addEventListener("keydown", (event) => {
+    const step = steps[event.key];
+    if (!step) return;
+    event.preventDefault();
+    event.stopPropagation();
+    turn(...step.map((x) => 0.1 * x));
+  });
+}

@@ -1,0 +1,59 @@
+//! `animation.html` in a real browser, used by mouse and keyboard; compared with the trajectory.
+//!
+//! Needs Debian's package `chromium`. The start of a browser takes as long as many of the cases: they
+//! share two, one after the other.
+
+mod browser;
+mod data;
+mod page;
+mod showing;
+mod using;
+
+use std::error::Error;
+
+use browser::Browser;
+
+type Outcome = Result<(), Box<dyn Error>>;
+/// Its name, and what is tried.
+type Case = (&'static str, fn(&mut Browser) -> Outcome);
+
+/// Size of the window (px).
+const DESKTOP: [u32; 2] = [1100, 900];
+
+/// Has each case tried in a browser, in which nothing must complain, and no page may ask for anything but
+/// itself.
+fn in_browser(cases: &[Case]) -> Outcome {
+    let mut browser = Browser::start()?;
+    for (name, case) in cases {
+        println!("{name}");
+        browser.resize(DESKTOP, false)?;
+        browser.prefer("light")?;
+        case(&mut browser).map_err(|error| format!("{name}: {error}"))?;
+        let complaints = browser.complaints();
+        assert!(complaints.is_empty(), "{name}: {complaints:?}");
+        assert_eq!(browser.requests(), browser.opened(), "{name}");
+    }
+    Ok(())
+}
+
+#[test]
+fn it_is_used() -> Outcome {
+    in_browser(&[
+        ("it plays and pauses", using::it_plays_and_pauses),
+        ("picture and energies follow", using::picture_and_energies_follow_the_slider),
+        ("colours", using::the_colours_are_those_of_the_chosen_quantity),
+        ("keyboard", using::all_of_it_works_by_keyboard),
+    ])
+}
+
+#[test]
+fn it_is_looked_at() -> Outcome {
+    in_browser(&[
+        ("phone and dark", showing::it_fits_a_phone_and_the_dark),
+        ("names", showing::names_are_text),
+        ("warnings", showing::warnings_are_shown),
+        ("bodies", showing::bodies_of_all_dimensions),
+        ("near side", showing::the_near_side_of_a_solid_is_seen),
+        ("long runs", showing::long_runs_are_thinned),
+    ])
+}
