@@ -1,4 +1,5 @@
-//! Speed against accuracy: every method on a scene of the documents, tolerance by tolerance.
+//! Speed against accuracy: every method on a scene of the documents or a standard stiff problem,
+//! tolerance by tolerance; or, with `clamped-beam-meshes`, every kind of cell, mesh by mesh.
 //!
 //! `cargo run --release --example work_precision -- square-jump`
 //!
@@ -12,19 +13,16 @@ use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use common::finish;
-use pliant::samples::{self, RingRoll};
-use pliant::study::{Scenes, Study};
-use pliant::{Error, Scene, Strain};
+use pliant::samples::{self, ClampedBeam, RingRoll};
+use pliant::study::{General, Problem, Scenes, Study};
+use pliant::{Cells, Error, Scene, Solver, Strain};
 
-/// Speed against accuracy of all methods on one scene: table, chart, CSV.
+/// Speed against accuracy on one problem: table, chart, CSV.
 #[derive(Parser)]
 struct Arguments {
-    /// The scene
+    /// The problem
     #[arg(value_enum, default_value = "beam-jump")]
-    scene: Sample,
-    /// Relative tolerances
-    #[arg(long, value_delimiter = ',', default_value = "1e-2,1e-3,1e-4,1e-5,1e-6,1e-7,1e-8")]
-    rtol: Vec<f64>,
+    problem: Sample,
     /// Times that each run is repeated
     #[arg(long, default_value_t = 3)]
     repetitions: usize,
@@ -55,11 +53,18 @@ enum Sample {
     Report8,
     ClampedBeam,
     ClampedBeamDamped,
+    ClampedBeamMeshes,
+    Hires,
+    Robertson,
+    VanDerPol,
 }
 
+/// Viscosity of the damped clamped beam (Pa s): 1 % of critical damping in its lowest mode.
+const LIGHT: f64 = 4000.0;
+
 impl Sample {
-    fn scene(self) -> Result<Scene, Error> {
-        match self {
+    fn problem(self, name: &str) -> Result<Box<dyn Problem>, Error> {
+        let scene = match self {
             Self::BeamJump => samples::beam_jump(),
             Self::SquarePress => samples::square_press(4),
             Self::SquareJump => samples::square_jump(4),
@@ -73,9 +78,39 @@ impl Sample {
             Self::RingJump => samples::ring_jump(),
             Self::Report8 => samples::report_8(),
             Self::ClampedBeam => samples::clamped_beam([36, 3], 0.0),
-            Self::ClampedBeamDamped => samples::clamped_beam([36, 3], 4000.0),
-        }
+            Self::ClampedBeamDamped => samples::clamped_beam([36, 3], LIGHT),
+            Self::ClampedBeamMeshes => return Ok(Box::new(meshes(name)?)),
+            Self::Hires => return Ok(Box::new(General::hires())),
+            Self::Robertson => return Ok(Box::new(General::robertson())),
+            Self::VanDerPol => return Ok(Box::new(General::van_der_pol())),
+        };
+        Ok(Box::new(Scenes::new(name, scene?).all_methods()))
     }
+}
+
+/// The damped clamped beam on meshes of all kinds, against a fine one of quadratic triangles.
+fn meshes(name: &str) -> Result<Scenes, Error> {
+    let beam = |cells, [along, across]: [usize; 2]| -> Result<Scene, Error> {
+        let nodes = [along + 1, across + 1];
+        ClampedBeam { nodes, cells, viscosity: LIGHT, ..ClampedBeam::default() }.scene()
+    };
+    // The integration is much more precise than any of these meshes.
+    let solver = Solver { rtol: 1e-5, ..Solver::default() };
+    let mut scenes = Scenes::new(name, beam(Cells::Triangles6, [280, 16])?)
+        .checked_by(beam(Cells::Triangles6, [140, 8])?)
+        .finest(1e-3);
+    for cells in Cells::ALL {
+        let grids = match cells {
+            Cells::Triangles6 => vec![[35, 2], [70, 4]],
+            _ => vec![[35, 2], [70, 4], [140, 8], [280, 16]],
+        };
+        let mesh = |[along, across]: [usize; 2]| {
+            Ok((format!("{along} x {across}"), beam(cells, [along, across])?))
+        };
+        let meshes = grids.into_iter().map(mesh).collect::<Result<Vec<_>, Error>>()?;
+        scenes = scenes.meshes(cells.name(), meshes, &solver);
+    }
+    Ok(scenes)
 }
 
 fn main() {
@@ -83,12 +118,11 @@ fn main() {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
-    let name = arguments.scene.to_possible_value().map_or(String::new(), |v| v.get_name().into());
+    let value = arguments.problem.to_possible_value();
+    let name = value.as_ref().map_or("", |value| value.get_name());
     let file = |ending: &str| arguments.out.join(format!("{name}.{ending}"));
-    let mut scenes = Scenes::new(name.replace('-', " "), arguments.scene.scene()?)
-        .tolerances(arguments.rtol.clone())
-        .all_methods();
-    let findings = Study::new(&mut scenes)
+    let mut problem = arguments.problem.problem(&name.replace('-', " "))?;
+    let findings = Study::new(&mut *problem)
         .repetitions(arguments.repetitions)
         .limit(arguments.limit)
         .keep(file("csv"))

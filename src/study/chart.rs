@@ -16,10 +16,12 @@ use crate::output::{FONT, INK, png, write_file};
 const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
 /// Width and height of the page (px).
 const PAGE: [f64; 2] = [980.0, 560.0];
-/// Colours that stay apart for colour-blind eyes (Okabe and Ito), in the order in which families
-/// are given them.
+/// Colours that stay apart for colour-blind eyes (Okabe and Ito).
 const COLOURS: [&str; 8] =
     ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222", "#999999"];
+/// Families that have the colour of the same place in all charts; others have them as they come.
+const FAMILIES: [&str; 7] =
+    ["cvode-bdf", "cvode-adams", "rk", "ida", "arkode", "central-difference", "auto"];
 /// Strokes of the lines of a family.
 const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
 const GRID: &str = "#dddddd";
@@ -105,7 +107,8 @@ impl<'a> Chart<'a> {
                     .set("font-weight", "bold"),
             )
             .add(self.unresolved())
-            .add(self.axes());
+            .add(self.axes())
+            .add(self.unresolved_label());
         for (line, style) in lines() {
             document = document.add(self.line(line, style));
         }
@@ -136,12 +139,25 @@ impl<'a> Chart<'a> {
             .set("width", right - left)
             .set("height", round(bottom - level))
             .set("fill", "#eeeeee");
+        Group::new().add(band)
+    }
+
+    /// What the band says, where there is room for it.
+    fn unresolved_label(&self) -> Group {
+        let [_, _, right, bottom] = FIELD;
+        let [_, level] = self.place(10.0 * self.findings.resolution(), 1.0);
+        if level > bottom - 18.0 {
+            return Group::new();
+        }
         let label = "not sure: near what the reference resolves";
-        Group::new().add(band).add(
+        Group::new().add(
             text(label, [right - 6.0, bottom - 6.0])
                 .set("text-anchor", "end")
-                .set("fill", "#777777")
-                .set("font-size", 11),
+                .set("fill", "#666666")
+                .set("font-size", 11)
+                .set("stroke", "#eeeeee")
+                .set("stroke-width", 4)
+                .set("paint-order", "stroke"),
         )
     }
 
@@ -181,7 +197,7 @@ impl<'a> Chart<'a> {
                     .set("font-size", 13),
             )
             .add(
-                text("error relative to the motion", [24.0, middle[1]])
+                text("relative error", [24.0, middle[1]])
                     .set("text-anchor", "middle")
                     .set("font-size", 13)
                     .set("transform", format!("rotate(-90 24 {})", middle[1])),
@@ -193,7 +209,7 @@ impl<'a> Chart<'a> {
         let points: Vec<_> =
             line.points().map(|point| point.map(|(error, time)| self.place(error, time))).collect();
         // a run that failed interrupts the line
-        for stretch in points.split(Option::is_none) {
+        for stretch in points.split(Option::is_none).filter(|stretch| !stretch.is_empty()) {
             let stretch: Vec<Point> = stretch.iter().copied().flatten().collect();
             group = group.add(style.polyline(&stretch));
         }
@@ -240,12 +256,13 @@ impl Style {
 
 /// Colours by family; strokes within a family; markers by line, for eyes that see no colours.
 fn styles(lines: &[LineFindings]) -> Vec<Style> {
-    // number of the family, number of its lines so far
+    // number of the colour, number of lines so far
     let mut families = BTreeMap::<&str, (usize, usize)>::new();
     let mut styles = Vec::new();
     for (number, line) in lines.iter().enumerate() {
-        let next = families.len();
-        let (family, member) = families.entry(&line.family).or_insert((next, 0));
+        let known = FAMILIES.iter().position(|family| *family == line.family);
+        let colour = known.unwrap_or(families.len());
+        let (family, member) = families.entry(&line.family).or_insert((colour, 0));
         styles.push(Style {
             colour: COLOURS[*family % COLOURS.len()],
             dashes: DASHES[*member % DASHES.len()],

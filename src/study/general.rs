@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use faer::MatMut;
 use faer::reborrow::ReborrowMut;
 
+use super::timing::Budget;
 use super::{Failed, Line, Measured, Point, Problem, fingerprint};
 use crate::error::Error;
 use crate::ode::{Dae, Failure, Ode};
@@ -167,36 +168,42 @@ impl<S: Ode> Run<'_, S> {
     }
 
     fn cvode(self, options: &CvodeOptions) -> Result<Solved, Failed> {
-        let (clock, end) = (Clock::new(self.limit), self.reference.t);
+        let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
         let mut cvode = Cvode::new(self.system, 0.0, self.y0, options)?;
         cvode.set_stop_time(Some(end))?;
         while cvode.t() < end {
-            clock.check(cvode.t(), end)?;
             let _ = cvode.step(end)?;
+            if budget.is_spent() {
+                return Err(too_long(cvode.statistics().steps as usize, cvode.t(), end));
+            }
         }
         Ok(solved(cvode.y(), cvode.statistics()))
     }
 
     fn ida(mut self, options: &IdaOptions) -> Result<Solved, Failed> {
-        let (clock, end) = (Clock::new(self.limit), self.reference.t);
+        let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
         let mut slope = vec![0.0; self.y0.len()];
         self.system.rhs(0.0, self.y0, &mut slope).map_err(into_error)?;
         let mut ida = Ida::new(Implicit(self.system), 0.0, self.y0, &slope, options)?;
         ida.set_stop_time(Some(end))?;
         while ida.t() < end {
-            clock.check(ida.t(), end)?;
             let _ = ida.step(end)?;
+            if budget.is_spent() {
+                return Err(too_long(ida.statistics().steps as usize, ida.t(), end));
+            }
         }
         Ok(solved(ida.y(), ida.statistics()))
     }
 
     fn rk(self, options: &rk::Options) -> Result<Solved, Failed> {
-        let (clock, end) = (Clock::new(self.limit), self.reference.t);
+        let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
         let mut rk =
             DormandPrince::new(self.system, 0.0, self.y0, &options.clone().stop_time(end))?;
         while rk.t() < end {
-            clock.check(rk.t(), end)?;
             rk.step()?;
+            if budget.is_spent() {
+                return Err(too_long(rk.statistics().steps, rk.t(), end));
+            }
         }
         let statistics = rk.statistics();
         let cost = Measured {
@@ -209,6 +216,10 @@ impl<S: Ode> Run<'_, S> {
     }
 }
 
+fn too_long(steps: usize, t: f64, end: f64) -> Failed {
+    format!("given up after {steps} steps at t = {t:.3e} of {end:e}").into()
+}
+
 fn solved(y: &[f64], statistics: Statistics) -> Solved {
     let cost = Measured {
         states: y.len(),
@@ -218,30 +229,6 @@ fn solved(y: &[f64], statistics: Statistics) -> Solved {
         ..Measured::default()
     };
     Solved { y: y.to_vec(), cost }
-}
-
-/// Gives up a run that takes too long.
-struct Clock {
-    start: Instant,
-    limit: Duration,
-}
-
-impl Clock {
-    fn new(limit: Duration) -> Self {
-        Self { start: Instant::now(), limit }
-    }
-
-    fn check(&self, t: f64, end: f64) -> Result<(), Failed> {
-        let spent = self.start.elapsed();
-        match spent > self.limit {
-            true => Err(format!(
-                "given up after {:.2} s at t = {t:.3e} of {end:e}",
-                spent.as_secs_f64()
-            )
-            .into()),
-            false => Ok(()),
-        }
-    }
 }
 
 /// y' = f(t, y) as the residual f(t, y) - y'.

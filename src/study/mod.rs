@@ -39,8 +39,8 @@
 //! the yardstick: where it takes longer than it did at its best, the machine was busy with other
 //! things, and the row says by how much. Rows have processor times, too, which suffer less.
 //!
-//! **Failures** are results. A run that gives up, or that takes more than twenty times as long as the
-//! fastest at the same tolerance, is a row with its reason. Each row has the error of the energy
+//! **Failures** are results. A run that gives up, or that is given up because it takes more than
+//! twenty times as long as the fastest at the same tolerance, is a row with its reason. Each row has the error of the energy
 //! balance, which shows most answers that are wrong and do not say so.
 
 mod chart;
@@ -81,7 +81,7 @@ pub trait Problem {
     fn fingerprint(&self, line: usize) -> u64;
 
     /// Gets the reference ready and returns its resolution, a relative error. Called once, before
-    /// anything is measured; no single run may take longer than `limit`.
+    /// anything is measured; no single run may take more processor time than `limit`.
     ///
     /// # Errors
     /// Bad input; [`Error::Reference`].
@@ -90,7 +90,7 @@ pub trait Problem {
     /// Solves the problem and compares with the reference.
     ///
     /// # Errors
-    /// Why there is no solution; after `limit` that is that it took longer.
+    /// Why there is no solution; that it took more processor time than `limit`, for one.
     fn measure(&mut self, line: usize, point: usize, limit: Duration) -> Result<Measured, Failed>;
 
     /// Solves the problem again and returns the time (s) that it took.

@@ -69,7 +69,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Time (s) that any run may take, those of the reference included. Default: 120.
+    /// Processor time (s) that any run may take, those of the reference included. Default: 120.
     #[must_use]
     pub fn limit(mut self, seconds: f64) -> Self {
         self.limit = seconds;

@@ -76,20 +76,30 @@ impl Scenes {
         self
     }
 
-    /// Adds a line: the scene by `solver`, tolerance by tolerance. The method is its family.
+    /// Adds a line: the scene by `solver`, tolerance by tolerance. Its method is its family.
     #[must_use]
     pub fn solver(self, name: impl Into<String>, solver: Solver) -> Self {
-        self.by_tolerance(name.into(), solver.method.name(), 0, solver)
+        let family = match solver.method {
+            Method::IdaKlu => Method::Ida,
+            method => method,
+        };
+        self.by_tolerance(name.into(), family.name(), 0, solver)
     }
 
     /// Adds a line for each of [`Method::ALL`], and one for CVODE's BDF with orders up to 2 only,
     /// which can do with motion that is hardly damped.
     #[must_use]
     pub fn all_methods(self) -> Self {
-        let low = Solver { max_order: Some(2), ..Solver::default() };
-        let scenes = self.solver("cvode-bdf, order 2", low);
-        Method::ALL.into_iter().fold(scenes, |scenes, method| {
-            scenes.solver(method.name(), Solver { method, ..Solver::default() })
+        Method::ALL.into_iter().fold(self, |scenes, method| {
+            let solver = Solver { method, ..Solver::default() };
+            let scenes = scenes.solver(method.name(), solver.clone());
+            match method {
+                Method::CvodeBdf => {
+                    let low = Solver { max_order: Some(2), ..solver };
+                    scenes.solver("cvode-bdf, order 2", low)
+                }
+                _ => scenes,
+            }
         })
     }
 

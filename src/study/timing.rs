@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 use std::iter;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use rustix::time::{ClockId, clock_gettime};
 
@@ -67,6 +67,32 @@ impl Time {
 fn processor_time() -> f64 {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+/// The processor time that a run may take: others that use the machine do not use it up.
+#[derive(Debug)]
+pub(super) struct Budget {
+    start: f64,
+    limit: f64,
+    asked: u64,
+}
+
+impl Budget {
+    pub(super) fn new(limit: Duration) -> Self {
+        Self { start: processor_time(), limit: limit.as_secs_f64(), asked: 0 }
+    }
+
+    /// Processor time (s) so far.
+    pub(super) fn spent(&self) -> f64 {
+        processor_time() - self.start
+    }
+
+    /// Whether too much was spent. To be asked after each step; looks at the clock now and then
+    /// only, as steps may be shorter than a look.
+    pub(super) fn is_spent(&mut self) -> bool {
+        self.asked += 1;
+        self.asked.is_multiple_of(16) && self.spent() > self.limit
+    }
 }
 
 /// Repetitions of one run.

@@ -1,9 +1,10 @@
 //! The reference motion of a scene, and distances from it.
 
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use super::Failed;
+use super::timing::Budget;
 use crate::error::Error;
 use crate::scene::Scene;
 use crate::simulate::{Method, Sampling, Solver};
@@ -39,20 +40,19 @@ impl Probe {
         Self { nodes, times }
     }
 
-    /// Runs `scene` until its end, or until `limit`.
+    /// Runs `scene` to its end, for a processor time of `limit` at most.
     pub(super) fn run(
         &self,
         scene: &Scene,
         solver: &Solver,
         limit: Duration,
     ) -> Result<(Motion, Trajectory), Error> {
-        let clock = Instant::now();
+        let mut budget = Budget::new(limit);
         let sampling = Sampling::at(self.times.clone());
-        let trajectory =
-            scene.simulate_with(solver, &sampling, |_| match clock.elapsed() > limit {
-                true => ControlFlow::Break(()),
-                false => ControlFlow::Continue(()),
-            })?;
+        let trajectory = scene.simulate_with(solver, &sampling, |_| match budget.is_spent() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        })?;
         Ok((self.motion(&trajectory), trajectory))
     }
 
@@ -184,6 +184,7 @@ impl Truth {
 struct Way {
     solver: Solver,
     motion: Motion,
+    /// Processor time.
     time: Duration,
 }
 
@@ -196,9 +197,9 @@ impl Way {
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, Error> {
         tell(&format!("reference: {} at rtol {:.0e}", solver.method, solver.rtol));
-        let clock = Instant::now();
+        let budget = Budget::new(limit);
         let (motion, _) = probe.run(scene, &solver, limit)?;
-        Ok(Self { solver, motion, time: clock.elapsed() })
+        Ok(Self { solver, motion, time: Duration::from_secs_f64(budget.spent()) })
     }
 
     fn again(
@@ -282,9 +283,9 @@ pub(super) fn reason(error: Error) -> Failed {
             let report = failure.trajectory.report();
             let notice = report.phases.last().and_then(|phase| phase.counts.notice.as_deref());
             let notice = notice.map(|notice| format!(": {notice}")).unwrap_or_default();
-            let (spent, time, end) =
-                (report.wall_seconds, failure.time, failure.trajectory.scene().end());
-            format!("given up after {spent:.2} s at t = {time:.3e} s of {end} s{notice}").into()
+            let (time, end) = (failure.time, failure.trajectory.scene().end());
+            let steps = report.steps();
+            format!("given up after {steps} steps at t = {time:.3e} s of {end} s{notice}").into()
         }
         Error::Integration(failure) => failure,
         other => Box::new(other),
