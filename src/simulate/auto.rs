@@ -12,10 +12,8 @@ use crate::system::{Spectrum, System};
 pub(super) struct Plan {
     /// As asked for, with a method of its own in place of [`Method::Auto`].
     pub(super) solver: Solver,
-    /// Why the phase began with its first method, if that was chosen.
-    first: Option<String>,
-    /// Why it was left for the present one, if it was.
-    then: Option<String>,
+    /// Why this method, and those before it in the phase, if they were chosen.
+    pub(super) reason: Option<String>,
     /// Longest stable step of the explicit method (s).
     explicit_step: f64,
     /// Steps of the explicit method after which the implicit one is tried again.
@@ -42,7 +40,7 @@ impl Plan {
     pub(super) fn new(asked: &Solver, system: &mut System, t: f64, state: &[f64]) -> Self {
         if asked.method != Method::Auto {
             let solver = asked.clone();
-            return Self { solver, first: None, then: None, explicit_step: 0.0, patience: 0 };
+            return Self { solver, reason: None, explicit_step: 0.0, patience: 0 };
         }
         let n = system.dofs();
         let spectrum = system.spectrum(t, &state[..n], &state[n..2 * n]);
@@ -50,25 +48,15 @@ impl Plan {
         let alpha = if system.rows().is_empty() { 0.0 } else { asked.alpha };
         Self {
             solver: Solver { method, max_order: None, ..asked.clone() },
-            first: Some(reason),
-            then: None,
+            reason: Some(reason),
             explicit_step: explicit_step(&spectrum, alpha),
             patience: 4 * TRIAL,
         }
     }
 
-    /// Why this method, if it was chosen.
-    pub(super) fn reason(&self) -> Option<String> {
-        let first = self.first.as_ref()?;
-        Some(match &self.then {
-            Some(then) => format!("{first}; then {then}"),
-            None => first.clone(),
-        })
-    }
-
     /// Whether there is another method to go on with if this one creates energy.
     pub(super) fn is_on_trial(&self) -> bool {
-        self.first.is_some() && !self.is_last_resort()
+        self.reason.is_some() && !self.is_last_resort()
     }
 
     /// What to go on with when this plan has gone wrong by `trouble`: nothing if the method was
@@ -88,7 +76,7 @@ impl Plan {
     /// shown, by their mean sizes `means` (s), what the motion asks for. (One would not do: motion
     /// begins with small steps.)
     pub(super) fn reconsidered(&self, means: [f64; 2], steps: usize) -> Option<Self> {
-        self.first.as_ref()?;
+        self.reason.as_ref()?;
         let (bound, [step, _]) = (self.explicit_step, means);
         match self.solver.method {
             Method::Arkode if means.iter().all(|step| *step < WORTH_EXPLICIT * bound) => {
@@ -106,10 +94,10 @@ impl Plan {
     }
 
     fn followed_by(&self, (method, max_order): (Method, Option<u32>), reason: &str) -> Self {
+        let before = self.reason.as_deref().unwrap_or_default();
         Self {
             solver: Solver { method, max_order, ..self.solver.clone() },
-            first: self.first.clone(),
-            then: Some(format!("{method}, as {reason}")),
+            reason: Some(format!("{before}; then {method}, as {reason}")),
             ..*self
         }
     }

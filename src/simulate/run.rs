@@ -205,7 +205,7 @@ impl<'a> Run<'a> {
             states,
             wall_seconds: clock.elapsed().as_secs_f64(),
             method: plan.solver.method,
-            reason: plan.reason(),
+            reason: plan.reason,
             counts,
         });
         result.map_err(|source| (source, step))

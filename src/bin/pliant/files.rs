@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pliant::output::{Snapshots, write_csv, write_vtk};
+use pliant::output::{Snapshots, write_animation, write_csv, write_vtk};
 use pliant::scene_file::Format;
 use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
 
@@ -113,6 +113,9 @@ impl Directory {
                 Format::Svg => self.write("snapshots.svg", |path| {
                     Snapshots::at(times(trajectory)).title(title).write(trajectory, path)
                 })?,
+                Format::Html => {
+                    self.write("animation.html", |path| write_animation(trajectory, path, title))?
+                }
                 Format::Vtk => {
                     write_vtk(trajectory, &self.path, "body")?;
                     self.written.push("body.pvd");

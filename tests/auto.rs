@@ -1,0 +1,105 @@
+//! The automatic choice: what it picks, that it changes where it must, and that no method creates
+//! energy unnoticed.
+
+use pliant::samples::{self, RingRoll};
+use pliant::{
+    Body, CellSelection, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Solver, Strain,
+    Trajectory,
+};
+
+fn run(scene: &Scene, solver: &Solver) -> Trajectory {
+    scene.simulate(solver, &Sampling::every(0.05)).unwrap()
+}
+
+fn auto(rtol: f64) -> Solver {
+    Solver { method: Method::Auto, rtol, ..Solver::default() }
+}
+
+/// Root mean square distance between the last positions of two runs (m).
+fn distance(a: &Trajectory, b: &Trajectory) -> f64 {
+    let squares = a.last().u.iter().zip(&b.last().u).map(|(a, b)| (a - b).powi(2));
+    (squares.sum::<f64>() / a.body().mesh().node_count() as f64).sqrt()
+}
+
+#[test]
+fn the_choice_follows_the_damping() {
+    let methods = |scene: &Scene| -> Vec<Method> {
+        run(scene, &auto(1e-3)).report().phases.iter().map(|phase| phase.method).collect()
+    };
+    let square = samples::square_jump(4).unwrap();
+    assert_eq!(methods(&square)[..2], [Method::Arkode; 2]);
+    let ring = RingRoll { until: 0.2, ..RingRoll::default() }.scene().unwrap();
+    assert_eq!(methods(&ring), [Method::CvodeBdf]);
+    let report = run(&ring, &auto(1e-3)).report().clone();
+    let reason = report.phases[0].reason.as_deref().unwrap();
+    assert!(reason.contains("strongly damped"), "{reason}");
+    assert!(report.to_string().contains(reason));
+}
+
+/// Tight tolerances ask for steps that the explicit method takes as well.
+#[test]
+fn it_changes_to_the_explicit_method_in_mid_phase() {
+    let scene = samples::square_press(4).unwrap();
+    let (loose, tight) = (run(&scene, &auto(1e-3)), run(&scene, &auto(1e-9)));
+    let last = |run: &Trajectory| run.report().phases.last().unwrap().method;
+    assert_eq!((last(&loose), last(&tight)), (Method::Arkode, Method::Rk));
+    let reference = Solver { method: Method::CvodeAdams, rtol: 1e-10, ..Solver::default() };
+    // 8 cm of motion: a thousand rtol of it
+    assert!(distance(&tight, &run(&scene, &reference)) < 1e3 * 1e-9 * 0.08);
+}
+
+#[test]
+fn errors_shrink_with_rtol() {
+    let scene = samples::square_press(4).unwrap();
+    let reference = Solver { method: Method::Rk, rtol: 1e-11, ..Solver::default() };
+    let reference = run(&scene, &reference);
+    let errors = [1e-3, 1e-5, 1e-7].map(|rtol| distance(&run(&scene, &auto(rtol)), &reference));
+    // 8 cm of motion; a factor 100 in rtol gains a factor 10 at least
+    assert!(errors[0] < 0.02, "{errors:?}");
+    assert!(errors[1] < 0.1 * errors[0] && errors[2] < 0.1 * errors[1], "{errors:?}");
+}
+
+/// An undamped beam under sudden gravity: orders 3 to 5 of BDF are unstable for its vibrations.
+fn undamped() -> Scene {
+    let mesh = Mesh::rectangle([0.35, 0.02], [36, 3], Cells::Triangles).unwrap();
+    let rubber = Material { density: 1000.0, young: 1.4e6, poisson: 0.4, viscosity: 0.0 };
+    let body = Body::new(mesh, rubber).thickness(1.0).strain(Strain::Green).build().unwrap();
+    Scene::new(body).gravity([0.0, -2.0]).phase(Phase::until(1.0).hold("left"))
+}
+
+/// A soft damped bar with a stiff undamped end: the lowest vibration calls for BDF, which is unstable
+/// for those of the end. The run goes back, and on with another method.
+#[test]
+fn a_choice_that_creates_energy_is_revoked() {
+    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.0, viscosity: 400.0 };
+    let stiff = Material { young: 1e7, viscosity: 0.0, ..soft };
+    let mesh = Mesh::bar(0.2, 41).unwrap();
+    let end = CellSelection::Box { min: vec![0.1], max: vec![0.2] };
+    let body = Body::new(mesh, soft).region(end, stiff).area(1e-4).build().unwrap();
+    let scene = Scene::new(body)
+        .initial_velocity(|x| vec![if x[0] > 0.15 { 1.0 } else { 0.0 }])
+        .phase(Phase::until(0.5).hold("left"));
+    let motion = run(&scene, &auto(1e-3));
+    let reason = motion.report().phases[0].reason.as_deref().unwrap();
+    assert!(reason.contains("created"), "{reason}");
+    assert_eq!(motion.report().warnings(), Vec::<String>::new());
+    let reference = Solver { method: Method::Rk, rtol: 1e-9, ..Solver::default() };
+    let apart = distance(&motion, &run(&scene, &reference));
+    assert!(apart < 1e-3, "{apart}");
+}
+
+/// With the order capped at 3, BDF runs away, and the run says so; the automatic choice does not.
+#[test]
+fn energy_out_of_nothing_is_told() {
+    let scene = undamped();
+    let bdf = Solver { max_order: Some(3), rtol: 1e-3, max_steps: 20_000, ..Solver::default() };
+    let bdf = Solver { method: Method::CvodeBdf, ..bdf };
+    let warnings = match scene.simulate(&bdf, &Sampling::every(0.05)) {
+        Ok(motion) => motion.report().warnings(),
+        Err(pliant::Error::Integration(end)) => end.trajectory.report().warnings(),
+        Err(other) => panic!("{other}"),
+    };
+    assert!(warnings.iter().any(|warning| warning.contains("created")), "{warnings:?}");
+    let motion = run(&scene, &auto(1e-4));
+    assert_eq!(motion.report().warnings(), Vec::<String>::new());
+}
