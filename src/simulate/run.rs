@@ -195,6 +195,10 @@ impl<'a> Run<'a> {
             let _ = self.sample(number, &mut system, self.time, &state);
         }
         counts.contact_events = leg.events.count;
+        if plan.reason.is_some() && plan.solver.method == Method::Rk {
+            // what it notices of stability, the choice of methods looks after
+            counts.notice = None;
+        }
         let step = counts.last_step;
         let report = &mut self.trajectory.report;
         report.wall_seconds = self.clock.elapsed().as_secs_f64();
