@@ -10,7 +10,7 @@ use super::failure::{
 use super::progress::{Observer, Progress};
 use super::solver::Tolerances;
 use super::stepper::{Failed, Stepper};
-use super::{ContactEvents, Counts, Sampling, Schedule, Solver};
+use super::{ContactEvents, Counts, Method, Sampling, Schedule, Solver};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
 use crate::scene::{Forces, Phase, Scene};

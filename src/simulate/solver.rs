@@ -13,9 +13,9 @@ pub enum Method {
     /// Chooses one of the others for each phase, by what the phase asks for; looks at the energy
     /// balance while it runs, and goes on with another method if need be. The report tells what
     /// was chosen and why.
+    #[default]
     Auto,
     /// CVODE, backward differentiation formulas of order 1 to 5: for stiff motion.
-    #[default]
     CvodeBdf,
     /// CVODE, Adams-Moulton formulas of order 1 to 12: for motion that is hardly damped.
     CvodeAdams,
@@ -152,7 +152,7 @@ impl FromStr for ContactEvents {
 /// How a scene is integrated.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solver {
-    /// Integration method. Default: [`Method::CvodeBdf`].
+    /// Integration method. Default: [`Method::Auto`].
     pub method: Method,
     /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
     /// `rtol |y| + atol` in the root mean square over displacements and velocities. Default: 1e-5.
