@@ -365,7 +365,7 @@ fn quiet_prints_results_only() {
     let output = place.run(&["run", &scene, "--quiet"]);
     assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
     let text = stdout(&output);
-    assert!(text.starts_with("cvode-bdf, rtol"), "{text}");
+    assert!(text.starts_with("auto, rtol"), "{text}");
     assert!(!text.contains("written to"), "{text}");
     let output = place.run(&["static", &scene, "--quiet"]);
     assert_eq!((stdout(&output).lines().count(), stderr(&output)), (1, String::new()));

@@ -66,9 +66,11 @@ fn friction_slows_a_sliding_square() {
 fn an_obstacle_out_of_reach_changes_nothing() {
     let phase = || Phase::until(0.2).hold("bottom").load([15], [3.0, 1.0]);
     let far = Obstacle::half_plane([0.0, -1.0], [0.0, 1.0]).stiffness(1e5);
-    let alone = square().phase(phase()).simulate(&Solver::default(), &Sampling::every(0.05));
+    // (not with ARKODE, which is told that a phase without contact is linear)
+    let solver = Solver { method: Method::CvodeBdf, ..Solver::default() };
+    let alone = square().phase(phase()).simulate(&solver, &Sampling::every(0.05));
     let near = square().obstacle(far).phase(phase());
-    let near = near.simulate(&Solver::default(), &Sampling::every(0.05));
+    let near = near.simulate(&solver, &Sampling::every(0.05));
     let u = |trajectory: Result<pliant::Trajectory, pliant::Error>| {
         trajectory.unwrap().samples().iter().map(|s| s.u.clone()).collect::<Vec<_>>()
     };

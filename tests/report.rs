@@ -111,7 +111,7 @@ fn warnings_are_told() {
     let scene = Scene::new(body)
         .initial_velocity(|x| vec![20.0 * x[0]])
         .phase(Phase::until(0.5).hold("left"));
-    let rough = Solver { rtol: 0.5, ..Solver::default() };
+    let rough = Solver { method: Method::CvodeBdf, rtol: 0.5, ..Solver::default() };
     let run = scene.simulate(&rough, &Sampling::every(0.01)).unwrap();
     let report = written(Ok(&run));
     let warning = report["warnings"][0].as_str().unwrap();

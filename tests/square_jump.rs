@@ -29,7 +29,10 @@ fn methods_agree() {
         let judge = if too_stiff_for(Method::Rk) { Method::Ida } else { Method::Rk };
         let truth = jump(&scene, judge, 1e-11, alpha);
         let [coarse, fine] = [1e-7, 1e-9].map(|rtol| {
-            let methods = Method::ALL.into_iter().filter(|&method| !too_stiff_for(method));
+            // between its steps ARKODE has polynomials of degree 3, good to about 5e-7 here
+            let is_beyond = |method| method == Method::Arkode && rtol < 1e-7;
+            let methods = Method::ALL.into_iter();
+            let methods = methods.filter(|&method| !too_stiff_for(method) && !is_beyond(method));
             let errors = methods.map(|method| {
                 let error = difference(&jump(&scene, method, rtol, alpha), &truth);
                 println!("{method} alpha {alpha:e}: {error:.1e} at rtol {rtol:e}");

@@ -17,9 +17,14 @@ pub(super) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
 }
 
-/// The known word with the fewest slips of the pen between it and `word`, if more of the longer one
-/// is right than wrong.
+/// The known word that begins with `word`, or the one with the fewest slips of the pen between both,
+/// if more of the longer one is right than wrong.
 fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
+    if word.len() > 2
+        && let Some(whole) = known.iter().find(|known| known.starts_with(word))
+    {
+        return Some(whole);
+    }
     let slips = |known: &str| damerau_levenshtein(&word.to_lowercase(), &known.to_lowercase());
     let best = known.iter().copied().min_by_key(|known| slips(known))?;
     let length = word.chars().count().max(best.chars().count());

@@ -12,6 +12,8 @@ use crate::system::{Spectrum, System};
 pub(super) struct Plan {
     /// As asked for, with a method of its own in place of [`Method::Auto`].
     pub(super) solver: Solver,
+    /// Highest order that was asked for.
+    max_order: Option<u32>,
     /// Why this method, and those before it in the phase, if they were chosen.
     pub(super) reason: Option<String>,
     /// Longest stable step of the explicit method (s).
@@ -40,14 +42,21 @@ impl Plan {
     pub(super) fn new(asked: &Solver, system: &mut System, t: f64, state: &[f64]) -> Self {
         if asked.method != Method::Auto {
             let solver = asked.clone();
-            return Self { solver, reason: None, explicit_step: 0.0, patience: 0 };
+            return Self {
+                max_order: solver.max_order,
+                solver,
+                reason: None,
+                explicit_step: 0.0,
+                patience: 0,
+            };
         }
         let n = system.dofs();
         let spectrum = system.spectrum(t, &state[..n], &state[n..2 * n]);
         let (method, reason) = choose(&spectrum);
         let alpha = if system.rows().is_empty() { 0.0 } else { asked.alpha };
         Self {
-            solver: Solver { method, max_order: None, ..asked.clone() },
+            solver: Solver { method, max_order: cap(method, asked.max_order), ..asked.clone() },
+            max_order: asked.max_order,
             reason: Some(reason),
             explicit_step: explicit_step(&spectrum, alpha),
             patience: 4 * TRIAL,
@@ -65,11 +74,10 @@ impl Plan {
         if !self.is_on_trial() {
             return None;
         }
-        let method = match self.solver.method {
-            Method::Arkode => (Method::CvodeBdf, Some(2)),
-            _ => (Method::Arkode, None),
-        };
-        Some(self.followed_by(method, trouble))
+        Some(match self.solver.method {
+            Method::Arkode => self.followed_by(Method::CvodeBdf, Some(2), trouble),
+            _ => self.followed_by(Method::Arkode, self.max_order, trouble),
+        })
     }
 
     /// What to go on with when the last two times [`TRIAL`] of the `steps` taken with this plan have
@@ -81,19 +89,20 @@ impl Plan {
         match self.solver.method {
             Method::Arkode if means.iter().all(|step| *step < WORTH_EXPLICIT * bound) => {
                 let reason = format!("accuracy asks for steps of {step:.1e} s");
-                Some(self.followed_by((Method::Rk, None), &reason))
+                Some(self.followed_by(Method::Rk, None, &reason))
             }
             // does stability bound the steps, or accuracy? Only the implicit method can tell
             Method::Rk if steps >= self.patience && step > 0.3 * bound => {
                 let reason = format!("stability may bound steps of {step:.1e} s");
-                let plan = self.followed_by((Method::Arkode, None), &reason);
+                let plan = self.followed_by(Method::Arkode, self.max_order, &reason);
                 Some(Self { patience: 4 * self.patience, ..plan })
             }
             _ => None,
         }
     }
 
-    fn followed_by(&self, (method, max_order): (Method, Option<u32>), reason: &str) -> Self {
+    fn followed_by(&self, method: Method, max_order: Option<u32>, reason: &str) -> Self {
+        let max_order = cap(method, max_order);
         let before = self.reason.as_deref().unwrap_or_default();
         Self {
             solver: Solver { method, max_order, ..self.solver.clone() },
@@ -105,6 +114,15 @@ impl Plan {
     /// Whether this is what other plans end in: order 2 of BDF, which damps all vibrations.
     fn is_last_resort(&self) -> bool {
         self.solver.method == Method::CvodeBdf && self.solver.max_order == Some(2)
+    }
+}
+
+/// The highest order that was asked for, as far as the method has a choice of orders.
+fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
+    match method {
+        Method::Arkode => max_order.map(|order| order.clamp(2, 5)),
+        Method::CvodeBdf => max_order.map(|order| order.min(5)),
+        _ => None,
     }
 }
 

@@ -1,6 +1,7 @@
 //! How a scene is integrated: method, tolerances, limits.
 
 use std::fmt;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use crate::body::Body;
@@ -84,10 +85,11 @@ impl Method {
         }
     }
 
-    fn highest_order(self) -> u32 {
+    fn orders(self) -> RangeInclusive<u32> {
         match self {
-            Self::CvodeAdams => 12,
-            _ => 5,
+            Self::CvodeAdams => 1..=12,
+            Self::Arkode => 2..=5,
+            _ => 1..=5,
         }
     }
 }
@@ -166,7 +168,7 @@ pub struct Solver {
     /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger
     /// means less drift; it costs the implicit methods nothing, an explicit one a step of 3.3/alpha.
     pub alpha: f64,
-    /// Highest order of a multistep method. Default: the method's own, 5 (Adams: 12).
+    /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's (default: 4).
     pub max_order: Option<u32>,
     /// Whether contact events are located. Default: stepped over.
     pub contact_events: ContactEvents,
@@ -202,14 +204,15 @@ impl Solver {
         positive("alpha", self.alpha, "1/s")?;
         self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
         self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
-        let highest = self.method.highest_order();
+        let orders = self.method.orders();
         match self.max_order {
             Some(_) if self.method == Method::Rk => {
                 let mend = "the Runge-Kutta method has one order only: leave it out";
                 Err(Error::input("max_order", format!("{:?}", self.max_order), mend))
             }
-            Some(order) if !(1..=highest).contains(&order) => {
-                let mend = format!("{} has the orders 1 to {highest}", self.method);
+            Some(order) if !orders.contains(&order) => {
+                let (lowest, highest) = (orders.start(), orders.end());
+                let mend = format!("{} has the orders {lowest} to {highest}", self.method);
                 Err(Error::input("max_order", order, mend))
             }
             _ if self.max_steps == 0 => {
