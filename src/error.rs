@@ -36,6 +36,15 @@ pub enum Error {
         mend: String,
     },
 
+    /// A file that no mesh can be read from.
+    #[error("cannot read the mesh {}: {problem}", path.display())]
+    MeshFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it, and how to mend it.
+        problem: String,
+    },
+
     /// Constraints that contradict or repeat each other.
     #[error("phase `{phase}`: constraints on {nodes} {problem}")]
     Constraint {

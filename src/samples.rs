@@ -6,7 +6,9 @@ mod actuated;
 mod scenes;
 mod statics;
 
-pub use actuated::{MEMBRANE_MATERIAL, membrane, membrane_arch, report_8, ring_jump, ring_springs};
+pub use actuated::{
+    MEMBRANE_MATERIAL, bending_actuator, membrane, membrane_arch, report_8, ring_jump, ring_springs,
+};
 pub use scenes::{
     BEAM_MATERIAL, BENT_BEAM_MATERIAL, BeamJump, ClampedBeam, FLAG_MATERIAL, RingRoll,
     SQUARE_MATERIAL, SquareJump, beam_bend, beam_jump, clamped_beam, pushed_nodes, square_jump,

@@ -230,7 +230,7 @@ fn springs() {
 fn chambers() {
     let phase = || Phase::until(0.1).named("inflate").hold("bottom");
     let with = |chamber: Chamber| simulate(&scene().chamber(chamber).phase(phase()));
-    let polygon = |nodes: Selection| with(Chamber::polygon("cell", nodes));
+    let polygon = |nodes: Selection| with(Chamber::within("cell", nodes));
     assert!(polygon([6, 7, 11, 10].into()).is_ok());
     says(polygon([6, 7].into()), &["chamber \"cell\" number of nodes = 2", "3 nodes"]);
     says(polygon([6, 7, 17].into()), &["node = 17", "1 to 16"]);
@@ -238,12 +238,15 @@ fn chambers() {
     says(polygon([5, 6, 7, 8].into()), &["chamber \"cell\" area (m^2)", "enclose nothing"]);
     let corners = Selection::Box { min: vec![0.0, 0.0], max: vec![0.31, 0.0] };
     assert!(polygon(corners).is_ok());
-    says(polygon("all".into()), &["chamber \"cell\" nodes", "along the boundary"]);
+    says(
+        polygon("all".into()),
+        &["chamber \"cell\" nodes", "boundary of the body", "node(s) 6, 7, 10, 11 are on none"],
+    );
     says(
         with(Chamber::surface("bag", [[1, 2, 3]])),
         &["chamber \"bag\" in dimension = 2", "3 dimensions"],
     );
-    let cell = || Chamber::polygon("cell", [6, 7, 11, 10]);
+    let cell = || Chamber::within("cell", [6, 7, 11, 10]);
     says(with(cell().thickness(-1.0)), &["chamber \"cell\" thickness = -1"]);
     let run = |phase| simulate(&scene().chamber(cell()).phase(phase));
     says(
@@ -269,9 +272,9 @@ fn closed_surfaces() {
     };
     let closed = [[1, 2, 3], [1, 3, 5], [2, 1, 5], [2, 5, 3]];
     assert!(with(&closed).is_ok());
-    says(with(&closed[..3]), &["chamber \"bag\" edge", "must be closed"]);
+    says(with(&closed[..3]), &["chamber \"bag\"", "must be closed", "node(s) 2, 3, 5"]);
     let turned = [[1, 2, 3], [1, 3, 5], [1, 2, 5], [2, 5, 3]];
-    says(with(&turned), &["triangle 3 = [1, 2, 5]", "edge [1, 2]", "running the same way"]);
+    says(with(&turned), &["chamber \"bag\"", "edge of node(s) 1, 2", "the same way"]);
     says(with(&[[1, 2, 9]]), &["node = 9", "1 to 8"]);
     says(with(&[]), &["volume (m^3)", "enclose nothing"]);
 }

@@ -141,14 +141,14 @@ fn a_chamber_bulges_a_strip() {
         // in any order and by name the same chamber
         let forward: Vec<usize> = (1..=11).collect();
         for nodes in [Selection::from(bottom.clone()), forward.into(), "bottom".into()] {
-            let chamber = Chamber::polygon("below", nodes);
+            let chamber = Chamber::within("below", nodes);
             let pressed = phase(0.01).pressure("below", 500.0);
             let scene = Scene::new(body.clone()).chamber(chamber).phase(pressed);
             let trajectory = scene.simulate(&fine(Method::CvodeBdf), &Sampling::phase_ends());
             assert!(trajectory.unwrap().last().u[2 * 5 + 1] > 0.0);
         }
         let scene = Scene::new(body)
-            .chamber(Chamber::polygon("below", bottom))
+            .chamber(Chamber::within("below", bottom))
             .phase(phase(0.1).pressure("below", 500.0))
             .phase(phase(0.2).pressure_with("below", |t| 500.0 * (0.2 - t) / 0.1))
             .phase(phase(0.6));

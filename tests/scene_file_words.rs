@@ -44,7 +44,7 @@ fn in_the_plane() {
     let scene = Scene::new(body.unwrap())
         .gravity([0.0, -9.8])
         .spring(Spring::between([14], "mass").named("A1").stiffness(20.0))
-        .chamber(Chamber::polygon("cell", [6, 7, 11, 10]))
+        .chamber(Chamber::within("cell", [6, 7, 11, 10]))
         .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0))
         .phase(push.named("push"))
         .phase(Phase::until(1.0).contact_with(["floor"]));
@@ -110,7 +110,7 @@ fn a_string_in_the_plane() {
     let mesh = Mesh::bar(0.2, 9).unwrap().mapped(|x| [x[0], 0.0]).unwrap();
     let mesh = mesh.translated(&[-0.1, 0.05]).unwrap();
     let body = Body::new(mesh, rubber).area(1e-5).point_mass("weight", [0.0, -0.05], 0.01).build();
-    let bag = Chamber::polygon("bag", [9, 8, 7, 6, 5, 4, 3, 2, 1, 10]).thickness(0.01);
+    let bag = Chamber::within("bag", [9, 8, 7, 6, 5, 4, 3, 2, 1, 10]).thickness(0.01);
     let phase = Phase::until(0.1)
         .hold("weight")
         .path([1], Axis::X, [0.0, 0.05, 0.1], [0.0, -0.01, -0.01])

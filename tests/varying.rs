@@ -66,7 +66,7 @@ fn pressures() {
     let membrane = || {
         let mesh = Mesh::rectangle([0.10, 0.01], [11, 2], Cells::Triangles).unwrap();
         let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).build().unwrap();
-        Scene::new(body).chamber(Chamber::polygon("chamber", (1..=11).rev().collect::<Vec<_>>()))
+        Scene::new(body).chamber(Chamber::within("chamber", (1..=11).rev().collect::<Vec<_>>()))
     };
     let hold = || Phase::until(0.2).hold([1, 11, 12, 22]);
     let values = VALUES.map(|share| 1000.0 * share);

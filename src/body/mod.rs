@@ -128,8 +128,8 @@ impl BodyBuilder {
     }
 
     /// A region with a material of its own. Where regions overlap, the last one counts.
-    pub fn region(mut self, cells: CellSelection, material: Material) -> Self {
-        self.regions.push((cells, material));
+    pub fn region(mut self, cells: impl Into<CellSelection>, material: Material) -> Self {
+        self.regions.push((cells.into(), material));
         self
     }
 

@@ -6,9 +6,13 @@ use crate::error::Error;
 use crate::material::{Lame, Material, Plane};
 use crate::mesh::Mesh;
 
-/// Cells, by number or by a box around their centroids.
+/// Cells, by the name of a group, by number or by a box around their centroids.
+///
+/// Strings convert into it: `body.region("skin", stiff)`.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CellSelection {
+    /// A named group of cells of the mesh ([`Mesh::cell_groups`]).
+    Group(String),
     /// Cell numbers, counted from 1 in the order of the mesh.
     Numbers(Vec<usize>),
     /// All cells whose centroid lies in the closed box between `min` and `max` (m).
@@ -23,9 +27,16 @@ pub enum CellSelection {
 impl fmt::Display for CellSelection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Group(name) => write!(f, "\"{name}\""),
             Self::Numbers(numbers) => write!(f, "cells {numbers:?}"),
             Self::Box { min, max } => write!(f, "box [{min:?}, {max:?}]"),
         }
+    }
+}
+
+impl From<&str> for CellSelection {
+    fn from(name: &str) -> Self {
+        Self::Group(name.into())
     }
 }
 
@@ -38,6 +49,14 @@ impl CellSelection {
     /// The cells, counted from 0.
     pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, Error> {
         let cells = match self {
+            Self::Group(name) => mesh.cell_groups().get(name).cloned().ok_or_else(|| {
+                let known: Vec<&str> = mesh.cell_groups().keys().map(String::as_str).collect();
+                let mend = match known.is_empty() {
+                    true => "the mesh has no groups of cells".into(),
+                    false => format!("the mesh has the groups {}", known.join(", ")),
+                };
+                Error::input("group of cells", format!("\"{name}\""), mend)
+            })?,
             Self::Numbers(numbers) => {
                 let count = mesh.cell_count();
                 if let Some(number) = numbers.iter().find(|n| !(1..=count).contains(*n)) {

@@ -1,12 +1,14 @@
-//! Chambers: pressure in a closed polygon of nodes, or in a closed surface of triangles.
+//! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
 
+#[cfg(test)]
+mod tests;
 mod walls;
 
 use super::signal::{self, Signal, finite_at};
 use super::{Force, NodalForces, Reservoir, cross, dot};
 use crate::body::Body;
 use crate::error::{Error, positive};
-use crate::mesh::Selection;
+use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
@@ -23,18 +25,27 @@ pub struct Chamber {
 
 #[derive(Debug, Clone)]
 enum Walls {
-    Polygon(Selection),
-    Surface(Vec<[usize; 3]>),
+    Nodes(Selection),
+    Triangles(Vec<[usize; 3]>),
 }
 
 impl Chamber {
-    /// A chamber in the plane, enclosed by the closed polygon of `nodes`. Numbers are taken in
-    /// their order around, either way; the nodes of a named set or a box in their order along the
-    /// boundary of the body. The polygon closes along the straight line from the last node to the
-    /// first. If all of them lie on a line (a flat membrane), the chamber is on the other side of
-    /// the boundary than the body.
-    pub fn polygon(name: impl Into<String>, nodes: impl Into<Selection>) -> Self {
-        Self { name: name.into(), walls: Walls::Polygon(nodes.into()), thickness: None }
+    /// A chamber within walls of `nodes`.
+    ///
+    /// A named set or a box stands for part of the boundary of the body: the faces all of whose
+    /// nodes belong to it. The chamber lies on their other side than the body.
+    /// - In the plane they make closed loops, rooms with the same pressure; or one chain, which the
+    ///   straight line between its ends closes (ends that are held feel nothing of that).
+    /// - In space they make closed surfaces. Quadratic faces count as four triangles,
+    ///   quadrilaterals as the mean of both their divisions into two.
+    ///
+    /// Numbers in the plane are a closed polygon, given in its order around, either way; it need not
+    /// lie on the boundary. Pressure enlarges its area; if that is 0 (a flat membrane), the chamber
+    /// is on the other side of the boundary than the body. In space they are as a named set.
+    ///
+    /// Edges with mid nodes count as two straight ones.
+    pub fn within(name: impl Into<String>, nodes: impl Into<Selection>) -> Self {
+        Self { name: name.into(), walls: Walls::Nodes(nodes.into()), thickness: None }
     }
 
     /// A chamber in space, enclosed by `triangles` of nodes (numbers from 1): a closed surface, all
@@ -43,7 +54,7 @@ impl Chamber {
         name: impl Into<String>,
         triangles: impl IntoIterator<Item = [usize; 3]>,
     ) -> Self {
-        let walls = Walls::Surface(triangles.into_iter().collect());
+        let walls = Walls::Triangles(triangles.into_iter().collect());
         Self { name: name.into(), walls, thickness: None }
     }
 
@@ -61,43 +72,63 @@ impl Chamber {
     /// The force of the chamber in a phase with `pressure` (Pa) in it.
     ///
     /// # Errors
-    /// A polygon outside the plane, a surface outside space; nodes that do not exist or enclose
+    /// Walls on a line, triangles outside space; nodes that do not exist, make no chain or enclose
     /// nothing, a surface with holes, a missing thickness.
     pub(crate) fn force(&self, body: &Body, pressure: Vec<Signal>) -> Result<ChamberForce, Error> {
-        let geometry = match &self.walls {
-            Walls::Polygon(nodes) => {
-                self.check_dimension(body, 2, "a polygon")?;
-                let (nodes, corners) = self.polygon_nodes(body.mesh(), nodes)?;
-                let polygon = Polygon { nodes, corners };
-                let area = polygon.area(&vec![0.0; body.dofs()]);
-                let sign = orientation(area, body)
-                    .or_else(|| walls::against_boundary(body.mesh(), polygon.pairs()))
-                    .ok_or_else(|| self.encloses_nothing("area (m^2)", area))?;
-                Geometry::Polygon(polygon, sign * self.height(body)?)
+        let geometry = match (&self.walls, body.dimension()) {
+            (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
+            (Walls::Nodes(nodes), 3) => {
+                let (triangles, weight) = self.faces(body.mesh(), nodes)?;
+                let surface = Surface::new(body.mesh(), triangles);
+                // seen from outside the body, and so from inside the chamber
+                let sign = match body.mesh().kind().dimension() {
+                    3 => 1.0,
+                    _ => self.surface_sign(body, &surface)?,
+                };
+                Geometry::Surface(surface, sign * weight)
             }
-            Walls::Surface(triangles) => {
-                self.check_dimension(body, 3, "a surface")?;
-                let (triangles, corners) = self.surface_nodes(body.mesh(), triangles)?;
-                let surface = Surface { triangles, corners };
-                let volume = surface.volume(&vec![0.0; body.dofs()]);
-                let sign = orientation(volume, body)
-                    .ok_or_else(|| self.encloses_nothing("volume (m^3)", volume))?;
+            (Walls::Triangles(triangles), 3) => {
+                let surface = Surface::new(body.mesh(), self.triangles(body.mesh(), triangles)?);
+                let sign = self.surface_sign(body, &surface)?;
                 Geometry::Surface(surface, sign)
+            }
+            (walls, dimension) => {
+                let mend = match walls {
+                    Walls::Nodes(_) => "nodes enclose a chamber in 2 or 3 dimensions only",
+                    Walls::Triangles(_) => "a surface encloses a chamber in 3 dimensions only",
+                };
+                return Err(Error::input(self.input("in dimension"), dimension, mend));
             }
         };
         Ok(ChamberForce { name: self.name.clone(), geometry, pressure })
     }
 
-    fn input(&self, key: &str) -> String {
-        format!("chamber \"{}\" {key}", self.name)
+    fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, Error> {
+        let mesh = body.mesh();
+        let polygon = Polygon::new(mesh, self.edges(mesh, selection)?);
+        let area = polygon.area(&vec![0.0; body.dofs()]);
+        let by_area = orientation(area, body);
+        let by_boundary = || walls::against_boundary(mesh, &polygon.edges);
+        let sign = match selection {
+            // the cells of a string have no sides
+            Selection::Set(_) | Selection::Box { .. } if mesh.kind().dimension() == 2 => {
+                by_boundary()
+            }
+            _ => by_area.or_else(by_boundary),
+        };
+        let sign = sign.ok_or_else(|| self.encloses_nothing("area (m^2)", area))?;
+        let height = self.height(body)?;
+        Ok(Geometry::Polygon(polygon, sign * height))
     }
 
-    fn check_dimension(&self, body: &Body, needed: usize, what: &str) -> Result<(), Error> {
-        if body.dimension() == needed {
-            return Ok(());
-        }
-        let mend = format!("{what} encloses a chamber in {needed} dimensions only");
-        Err(Error::input(self.input("in dimension"), body.dimension(), mend))
+    /// 1 or -1, so that pressure enlarges the volume.
+    fn surface_sign(&self, body: &Body, surface: &Surface) -> Result<f64, Error> {
+        let volume = surface.volume(&vec![0.0; body.dofs()]);
+        orientation(volume, body).ok_or_else(|| self.encloses_nothing("volume (m^3)", volume))
+    }
+
+    fn input(&self, key: &str) -> String {
+        format!("chamber \"{}\" {key}", self.name)
     }
 
     fn height(&self, body: &Body) -> Result<f64, Error> {
@@ -131,50 +162,65 @@ pub(crate) struct ChamberForce {
     pressure: Vec<Signal>,
 }
 
+fn position<const D: usize>(mesh: &Mesh, node: usize) -> [f64; D] {
+    std::array::from_fn(|i| mesh.position(node)[i])
+}
+
+/// Where `nodes` with the natural positions `from` are under the displacements `u`.
+fn present<const N: usize, const D: usize>(
+    nodes: &[usize; N],
+    from: &[[f64; D]; N],
+    u: &[f64],
+) -> [[f64; D]; N] {
+    std::array::from_fn(|k| std::array::from_fn(|i| from[k][i] + u[D * nodes[k] + i]))
+}
+
 /// What encloses a chamber, with the factor from p times the gradient of its area or volume to
-/// the force: +-h, or +-1.
+/// the force: +-h, or +- the weight of a triangle.
 enum Geometry {
     Polygon(Polygon, f64),
     Surface(Surface, f64),
 }
 
+/// Closed polygons.
 struct Polygon {
-    nodes: Vec<usize>,
-    /// Natural positions.
-    corners: Vec<[f64; 2]>,
+    edges: Vec<[usize; 2]>,
+    /// Natural positions of their ends.
+    ends: Vec<[[f64; 2]; 2]>,
 }
 
 impl Polygon {
-    fn at(&self, u: &[f64], k: usize) -> [f64; 2] {
-        let first = 2 * self.nodes[k];
-        [self.corners[k][0] + u[first], self.corners[k][1] + u[first + 1]]
+    fn new(mesh: &Mesh, edges: Vec<[usize; 2]>) -> Self {
+        let ends = edges.iter().map(|nodes| nodes.map(|node| position(mesh, node))).collect();
+        Self { edges, ends }
     }
 
-    /// Signed area S = (1/2) sum (x_k y_{k+1} - x_{k+1} y_k).
+    /// Edges with the present positions of their ends.
+    fn iter<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (&'a [usize; 2], [[f64; 2]; 2])> {
+        self.edges.iter().zip(&self.ends).map(|(nodes, ends)| (nodes, present(nodes, ends, u)))
+    }
+
+    /// Signed area S = (1/2) sum (x_a y_b - x_b y_a) over the edges ab.
     fn area(&self, u: &[f64]) -> f64 {
-        let count = self.nodes.len();
-        let pair = |k: usize| {
-            let ([x, y], [next_x, next_y]) = (self.at(u, k), self.at(u, (k + 1) % count));
-            0.5 * (x * next_y - next_x * y)
-        };
-        (0..count).map(pair).sum()
+        self.iter(u).map(|(_, [a, b])| 0.5 * (a[0] * b[1] - b[0] * a[1])).sum()
     }
 
     /// Adds `factor` dS/du.
     fn add_gradient(&self, factor: f64, u: &[f64], forces: &mut [f64]) {
-        let count = self.nodes.len();
-        for (k, node) in self.nodes.iter().enumerate() {
-            let (before, after) =
-                (self.at(u, (k + count - 1) % count), self.at(u, (k + 1) % count));
-            forces[2 * node] += 0.5 * factor * (after[1] - before[1]);
-            forces[2 * node + 1] += 0.5 * factor * (before[0] - after[0]);
+        let half = 0.5 * factor;
+        for ([node, next], [a, b]) in self.iter(u) {
+            // both ends take half of the normal: edges that share a node make up the shoelace formula
+            for node in [node, next] {
+                forces[2 * node] += half * (b[1] - a[1]);
+                forces[2 * node + 1] += half * (a[0] - b[0]);
+            }
         }
     }
 
     /// Adds `factor` d^2S/du^2, which does not depend on u.
     fn add_hessian(&self, factor: f64, matrix: &mut BlockMatrix) {
         let half = 0.5 * factor;
-        for [node, next] in self.pairs() {
+        for &[node, next] in &self.edges {
             for (row, column, sign) in [(node, next, 1.0), (next, node, -1.0)] {
                 if let Some(block) = matrix.block_mut(row, column) {
                     block[1] += sign * half;
@@ -182,11 +228,6 @@ impl Polygon {
                 }
             }
         }
-    }
-
-    fn pairs(&self) -> impl Iterator<Item = [usize; 2]> {
-        let count = self.nodes.len();
-        (0..count).map(move |k| [self.nodes[k], self.nodes[(k + 1) % count]])
     }
 }
 
@@ -197,12 +238,16 @@ struct Surface {
 }
 
 impl Surface {
+    fn new(mesh: &Mesh, triangles: Vec<[usize; 3]>) -> Self {
+        let corners = triangles.iter().map(|nodes| nodes.map(|node| position(mesh, node)));
+        let corners = corners.collect();
+        Self { triangles, corners }
+    }
+
     /// Triangles with the present positions of their corners.
     fn iter<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (&'a [usize; 3], [[f64; 3]; 3])> {
-        self.triangles.iter().zip(&self.corners).map(|(nodes, corners)| {
-            let at = |k: usize| std::array::from_fn(|i| corners[k][i] + u[3 * nodes[k] + i]);
-            (nodes, std::array::from_fn(at))
-        })
+        let triangles = self.triangles.iter().zip(&self.corners);
+        triangles.map(|(nodes, corners)| (nodes, present(nodes, corners, u)))
     }
 
     /// Signed volume V = (1/6) sum a . (b x c) over the triangles abc.
@@ -294,7 +339,7 @@ impl Force for ChamberForce {
 
     fn couplings(&self) -> Vec<[usize; 2]> {
         match &self.geometry {
-            Geometry::Polygon(polygon, _) => polygon.pairs().collect(),
+            Geometry::Polygon(polygon, _) => polygon.edges.clone(),
             Geometry::Surface(surface, _) => {
                 let edges = |&[a, b, c]: &[usize; 3]| [[a, b], [b, c], [c, a]];
                 surface.triangles.iter().flat_map(edges).collect()

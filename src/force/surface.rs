@@ -84,7 +84,7 @@ fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
 
 /// A face with `nodes` nodes, corners first, cut into segments or triangles, and the weight of each:
 /// a quadrilateral is cut along both diagonals.
-fn pieces(dimension: usize, nodes: usize) -> (&'static [&'static [usize]], f64) {
+pub(super) fn pieces(dimension: usize, nodes: usize) -> (&'static [&'static [usize]], f64) {
     match (dimension, nodes) {
         (0, _) => (&[&[0]], 1.0),
         (1, 2) => (&[&[0, 1]], 1.0),

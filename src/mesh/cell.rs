@@ -100,4 +100,17 @@ impl CellKind {
             ],
         }
     }
+
+    /// The nodes of the cell in the order of one that is turned over: local numbers (from 0).
+    pub(super) fn turned_over(self) -> &'static [usize] {
+        match self {
+            Self::Segment => &[1, 0],
+            Self::Triangle => &[0, 2, 1],
+            Self::Triangle6 => &[0, 2, 1, 5, 4, 3],
+            Self::Quadrilateral => &[0, 3, 2, 1],
+            Self::Tetrahedron => &[0, 2, 1, 3],
+            Self::Tetrahedron10 => &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
+            Self::Hexahedron => &[0, 3, 2, 1, 4, 7, 6, 5],
+        }
+    }
 }

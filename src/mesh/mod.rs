@@ -6,6 +6,7 @@
 mod boundary;
 mod cell;
 mod generate;
+mod gmsh;
 mod select;
 
 use std::collections::BTreeMap;
@@ -30,6 +31,7 @@ pub struct Mesh {
     kind: CellKind,
     connectivity: Vec<usize>,
     sets: BTreeMap<String, Vec<usize>>,
+    cell_groups: BTreeMap<String, Vec<usize>>,
 }
 
 impl Mesh {
@@ -69,7 +71,8 @@ impl Mesh {
                 format!("the mesh has the nodes 1 to {nodes}"),
             ));
         }
-        let mut mesh = Self { dimension, positions, kind, connectivity, sets: BTreeMap::new() };
+        let (sets, cell_groups) = (BTreeMap::new(), BTreeMap::new());
+        let mut mesh = Self { dimension, positions, kind, connectivity, sets, cell_groups };
         mesh.sets.insert("all".into(), (0..nodes).collect());
         mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
         Ok(mesh)
@@ -203,6 +206,12 @@ impl Mesh {
     /// the generators run along their side, `all` and `boundary` ascend).
     pub fn sets(&self) -> &BTreeMap<String, Vec<usize>> {
         &self.sets
+    }
+
+    /// The named groups of cells (counted from 0, ascending) that the mesh was read with: see
+    /// [`Mesh::read_gmsh`].
+    pub fn cell_groups(&self) -> &BTreeMap<String, Vec<usize>> {
+        &self.cell_groups
     }
 
     /// Nodes on the boundary, counted from 0, ascending. In a space of higher dimension than the

@@ -4,7 +4,7 @@ use super::BENT_BEAM_MATERIAL;
 use crate::body::{Body, Strain, Viscosity};
 use crate::error::Error;
 use crate::force::{Chamber, Obstacle, Spring};
-use crate::material::Material;
+use crate::material::{Material, Plane};
 use crate::mesh::{Cells, Mesh};
 use crate::scene::{Phase, Scene};
 
@@ -22,7 +22,7 @@ pub fn membrane() -> Result<Scene, Error> {
     let bottom: Vec<usize> = (1..=11).rev().collect();
     let hold = |until: f64| Phase::until(until).hold([1, 11, 12, 22]);
     Ok(Scene::new(body)
-        .chamber(Chamber::polygon("chamber", bottom))
+        .chamber(Chamber::within("chamber", bottom))
         .phase(hold(1.5).named("inflated").pressure("chamber", 2000.0))
         .phase(hold(3.0).named("left alone")))
 }
@@ -38,7 +38,7 @@ pub fn membrane_arch() -> Result<Scene, Error> {
     let inner: Vec<usize> = (0..21).map(|station| 3 * station + 1).collect();
     let hold = |until: f64| Phase::until(until).hold("left").hold("right");
     Ok(Scene::new(body)
-        .chamber(Chamber::polygon("chamber", inner))
+        .chamber(Chamber::within("chamber", inner))
         .phase(hold(1.5).named("inflated").pressure("chamber", 2000.0))
         .phase(hold(3.0).named("left alone")))
 }
@@ -105,4 +105,26 @@ pub fn report_8() -> Result<Scene, Error> {
     Ok(Scene::new(body)
         .phase(press.load([43], [1.0, 0.0]).load([28], [-1.0, 0.0]))
         .phase(Phase::until(1.0).named("left alone").hold("bottom")))
+}
+
+/// A bending actuator: bellows over a stiff layer, clamped at one end (15 mm wide, plane stress, Green
+/// strain), whose rooms are blown up by 5 kPa at once; after 1 s the air is let out, until 2 s. `mesh`
+/// has the regions, nodes and walls of `scenes/meshes/bending-actuator.geo`.
+///
+/// # Errors
+/// Another mesh.
+pub fn bending_actuator(mesh: Mesh) -> Result<Scene, Error> {
+    let rubber = Material { density: 1100.0, young: 5e5, poisson: 0.45, viscosity: 1e4 };
+    let layer = Material { young: 1e7, viscosity: 2e5, ..rubber };
+    let body = Body::new(mesh, rubber)
+        .region("strain limiting layer", layer)
+        .thickness(0.015)
+        .plane(Plane::Stress)
+        .strain(Strain::Green)
+        .build()?;
+    let scene = Scene::new(body)
+        .chamber(Chamber::within("air", "chamber"))
+        .phase(Phase::until(1.0).named("blown up").hold("clamp").pressure("air", 5000.0))
+        .phase(Phase::until(2.0).named("let go").hold("clamp"));
+    scene.validate().map(|()| scene)
 }

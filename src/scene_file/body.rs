@@ -79,12 +79,22 @@ fn add_regions(
 ) -> Result<BodyBuilder, Error> {
     for table in regions.tables(&["name", "box", "group", "material"])? {
         table.optional("name", "the name of the region", Value::string)?;
-        let cells = table.required("box", BOX, |value| {
-            let [min, max] = corners(value, mesh)?;
-            let cells = CellSelection::Box { min, max };
-            cells.cells(mesh).map_err(|error| value.error(error))?;
-            Ok(cells)
+        let checked = |value: &Value, cells: CellSelection| match cells.cells(mesh) {
+            Ok(_) => Ok(cells),
+            Err(error) => Err(value.error(error)),
+        };
+        let group = table.optional("group", "a group of cells of the mesh", |value| {
+            checked(value, value.string()?.into())
         })?;
+        let inside = table.optional("box", BOX, |value| {
+            let [min, max] = corners(value, mesh)?;
+            checked(value, CellSelection::Box { min, max })
+        })?;
+        let cells = match (group, inside) {
+            (Some(cells), None) | (None, Some(cells)) => cells,
+            (None, None) => return Err(table.missing("box", format!("expected {BOX}; or `group`"))),
+            (Some(_), Some(_)) => return Err(table.error("expected `box` or `group`, not both")),
+        };
         let meaning = "the keys of the material that differ";
         let material = table.required("material", meaning, |value| material(value, Some(base)))?;
         body = body.region(cells, material);

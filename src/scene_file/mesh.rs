@@ -73,7 +73,7 @@ fn generate(kind: Kind, table: &Table) -> Result<Mesh, Error> {
         ),
         Kind::Gmsh => table.required("file", "the path of a Gmsh mesh", |value| {
             let file = value.source.beside(value.string()?);
-            Err(value.error(format!("{}: Gmsh meshes cannot be read yet", file.display())))
+            Mesh::read_gmsh(file).map_err(|error| value.error(error))
         }),
     }
 }

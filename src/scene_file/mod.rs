@@ -36,12 +36,12 @@
 //! | --- | --- |
 //! | top | `title`; `dimension`: 1, 2 or 3 (default: that of the mesh; in a higher one, bars are strings and surfaces membranes); `gravity` (m/s^2) |
 //! | `[body]` | `mesh`; `thickness` (m) in 2D, `area` (m^2) in 1D; `strain`: `"cauchy"` (default), `"green"` or `"auto"`; `viscous`: `"natural"` or `"objective"` (defaults: with Cauchy, with Green strain); `plane`: `"strain"` (default) or `"stress"`; `material` = { `density` (kg/m^3), `young` (Pa), `poisson`, `viscosity` (Pa s) } |
-//! | `mesh` | `kind`, and for `"bar"` `length`, `nodes`; for `"rectangle"` and `"cuboid"` `size`, `nodes`, `cells`; for `"ring"` and `"half-ring"` `inner`, `outer`, `nodes` = [around, radial], `cells`; for `"gmsh"` `file`. For all: `origin` (m), the lower corner, or the centre of a ring |
+//! | `mesh` | `kind`, and for `"bar"` `length`, `nodes`; for `"rectangle"` and `"cuboid"` `size`, `nodes`, `cells`; for `"ring"` and `"half-ring"` `inner`, `outer`, `nodes` = [around, radial], `cells`; for `"gmsh"` `file`, relative to the scene file ([`Mesh::read_gmsh`](crate::Mesh::read_gmsh)). For all: `origin` (m), the lower corner, or the centre of a ring |
 //! | `cells` | `"triangles"`, `"crossed"`, `"rectangles"`, `"triangles6"` ([`Cells`](crate::Cells)); `"tetrahedra"`, `"hexahedra"`, `"tetrahedra10"` ([`SolidCells`](crate::SolidCells)) |
-//! | `[[body.region]]` | `name`; `box` (cells whose centroid lies in it); `material`: the keys that differ |
+//! | `[[body.region]]` | `name`; `box` (cells whose centroid lies in it) or `group` (a physical group of Gmsh); `material`: the keys that differ |
 //! | `[[point]]` | `name`, `position` (m), `mass` (kg): a point mass, whose name is a node set |
 //! | `[[spring]]` | `name`; `ends`: two selections of one node each; `stiffness` (N/m), `length` (m), `damping` (N s/m) |
-//! | `[[chamber]]` | `name`; `nodes`; `thickness` (m; default: that of the body) |
+//! | `[[chamber]]` | `name`; `nodes` of its walls: a set, or a closed polygon of numbers ([`Chamber::within`](crate::Chamber::within)); `thickness` (m; default: that of the body) |
 //! | `[[obstacle]]` | `name`; `kind`: `"half-plane"` with `point`, `normal`, `"disc"` with `centre`, `radius`, `cavity`, `"box"` with `min`, `max`, or `"capsule"` with `from`, `to`, `radius`; `stiffness` (N/m per node) or `stiffness_density` (N/m^3); `damping`, `friction`; `adhesion` (default true); `velocity` (m/s) |
 //! | `[[phase]]` | `name`; `until` (s); `contact`: `true` (default), `false` or names of obstacles; `project_velocity` (default false); and the lists below |
 //! | `hold` | { `nodes`, `axes` } |

@@ -40,9 +40,9 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&["name", "nodes", "thickness"])?;
     let body = scene.body();
     let name = table.required("name", "the name of the chamber", Value::string)?;
-    let meaning = "its nodes: a closed polygon of numbers in order, or a named set";
+    let meaning = "the nodes of its walls: part of the boundary, or a closed polygon of numbers";
     let nodes = table.required("nodes", meaning, |value| selection(value, body.mesh()))?;
-    let mut chamber = Chamber::polygon(name, nodes);
+    let mut chamber = Chamber::within(name, nodes);
     if let Some(h) = table.optional("thickness", "the thickness (m)", Value::number)? {
         chamber = chamber.thickness(h);
     }

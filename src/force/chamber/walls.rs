@@ -4,113 +4,169 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Chamber;
 use crate::error::Error;
+use crate::force::surface::pieces;
 use crate::mesh::{Mesh, Selection};
 
 impl Chamber {
-    /// The nodes of a polygon in their order around, and their natural positions.
-    pub(super) fn polygon_nodes(
+    /// The edges of closed polygons.
+    pub(super) fn edges(
         &self,
         mesh: &Mesh,
         selection: &Selection,
-    ) -> Result<(Vec<usize>, Vec<[f64; 2]>), Error> {
-        let selected = mesh.select(selection)?;
-        if selected.len() < 3 {
+    ) -> Result<Vec<[usize; 2]>, Error> {
+        let nodes = mesh.select(selection)?;
+        if nodes.len() < 3 {
             let mend = "a polygon needs 3 nodes at least";
-            return Err(Error::input(self.input("number of nodes"), selected.len(), mend));
+            return Err(Error::input(self.input("number of nodes"), nodes.len(), mend));
         }
-        let nodes = match selection {
-            Selection::Numbers(_) => selected,
-            Selection::Set(_) | Selection::Box { .. } => along_boundary(mesh, &selected)
-                .ok_or_else(|| {
-                    let mend = "they do not follow each other along the boundary of the body: name \
-                                them by number, in their order around";
-                    Error::input(self.input("nodes"), format!("{selection:?}"), mend)
-                })?,
-        };
-        let corner = |&node: &usize| [mesh.position(node)[0], mesh.position(node)[1]];
-        let corners = nodes.iter().map(corner).collect();
-        Ok((nodes, corners))
+        match selection {
+            Selection::Numbers(_) => {
+                let next = nodes.iter().cycle().skip(1);
+                Ok(nodes.iter().zip(next).map(|(&node, &next)| [node, next]).collect())
+            }
+            Selection::Set(_) | Selection::Box { .. } => {
+                let nodes = nodes.into_iter().collect();
+                let edges = between(boundary_edges(mesh), &nodes).and_then(closed);
+                edges.map_err(|problem| self.bad_walls(selection, &problem))
+            }
+        }
     }
 
-    /// The nodes of the triangles of a surface, and their natural positions.
-    #[allow(clippy::type_complexity)]
-    pub(super) fn surface_nodes(
+    /// The triangles (nodes from 0) of the boundary of the body between the selected nodes, and the
+    /// weight of each.
+    pub(super) fn faces(
+        &self,
+        mesh: &Mesh,
+        selection: &Selection,
+    ) -> Result<(Vec<[usize; 3]>, f64), Error> {
+        let nodes = mesh.select(selection)?.into_iter().collect();
+        let mut faces = mesh.boundary_faces();
+        // the cells of a string are no walls
+        faces.retain(|face| face.len() > 2);
+        let faces =
+            between(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
+        let corners = faces.iter().map(|face| match face.len() {
+            6 => &face[..3],
+            _ => &face[..],
+        });
+        check_closed(corners).map_err(|problem| self.bad_walls(selection, &problem))?;
+        let (parts, weight) = pieces(2, faces.first().map_or(3, Vec::len));
+        let triangles = faces
+            .iter()
+            .flat_map(|face| parts.iter().map(|part| [0, 1, 2].map(|corner| face[part[corner]])));
+        Ok((triangles.collect(), weight))
+    }
+
+    /// The triangles of a surface, nodes from 0.
+    pub(super) fn triangles(
         &self,
         mesh: &Mesh,
         triangles: &[[usize; 3]],
-    ) -> Result<(Vec<[usize; 3]>, Vec<[[f64; 3]; 3]>), Error> {
-        let mut edges = BTreeSet::new();
-        for (k, triangle) in triangles.iter().enumerate() {
+    ) -> Result<Vec<[usize; 3]>, Error> {
+        for triangle in triangles {
             mesh.select(&(*triangle).into())?;
-            for i in 0..3 {
-                let edge = [triangle[i], triangle[(i + 1) % 3]];
-                if !edges.insert(edge) {
-                    let mend = format!(
-                        "another triangle has the edge {edge:?}, too, running the same way: turn \
-                         one of them round, or leave it out"
-                    );
-                    let input = self.input(&format!("triangle {}", k + 1));
-                    return Err(Error::input(input, format!("{triangle:?}"), mend));
-                }
-            }
-        }
-        if let Some([a, b]) = edges.iter().find(|[a, b]| !edges.contains(&[*b, *a])) {
-            let mend = "no triangle has it the other way round: the surface must be closed";
-            return Err(Error::input(self.input("edge"), format!("{:?}", [a, b]), mend));
         }
         let triangles: Vec<[usize; 3]> =
             triangles.iter().map(|triangle| triangle.map(|number| number - 1)).collect();
-        let corner = |node: usize| std::array::from_fn(|i| mesh.position(node)[i]);
-        let corners = triangles.iter().map(|nodes| nodes.map(corner)).collect();
-        Ok((triangles, corners))
+        check_closed(triangles.iter().map(<[usize; 3]>::as_slice)).map_err(|problem| {
+            Error::input(self.input("number of triangles"), triangles.len(), problem)
+        })?;
+        Ok(triangles)
+    }
+
+    fn bad_walls(&self, selection: &Selection, problem: &str) -> Error {
+        Error::input(self.input("nodes"), format!("{selection:?}"), problem)
     }
 }
 
 /// The edges of the boundary of a body in the plane, two nodes each, the body to their left.
 fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
-    let mut edges = Vec::new();
-    for face in mesh.boundary_faces() {
-        match face[..] {
-            [first, last] => edges.push([first, last]),
-            // corners first, then the node in the middle
-            [first, last, middle] => edges.extend([[first, middle], [middle, last]]),
-            _ => {}
-        }
-    }
-    edges
+    let faces = mesh.boundary_faces();
+    let edges = faces.iter().flat_map(|face| {
+        let (parts, _) = pieces(1, face.len());
+        parts.iter().map(|part| [face[part[0]], face[part[1]]])
+    });
+    edges.collect()
 }
 
 /// 1 if the edges of a polygon run against the boundary of the body, -1 if along it.
-pub(super) fn against_boundary(
-    mesh: &Mesh,
-    mut polygon: impl Iterator<Item = [usize; 2]>,
-) -> Option<f64> {
+pub(super) fn against_boundary(mesh: &Mesh, polygon: &[[usize; 2]]) -> Option<f64> {
     let edges: BTreeSet<[usize; 2]> = boundary_edges(mesh).into_iter().collect();
-    let sense = |[a, b]: [usize; 2]| match [[b, a], [a, b]].map(|edge| edges.contains(&edge)) {
+    let sense = |&[a, b]: &[usize; 2]| match [[b, a], [a, b]].map(|edge| edges.contains(&edge)) {
         [true, false] => Some(1.0),
         [false, true] => Some(-1.0),
         _ => None,
     };
-    polygon.find_map(sense)
+    polygon.iter().find_map(sense)
 }
 
-/// `selected` in their order along the boundary of the body, if its edges make one chain or one
-/// loop of them.
-fn along_boundary(mesh: &Mesh, selected: &[usize]) -> Option<Vec<usize>> {
-    let chosen: BTreeSet<usize> = selected.iter().copied().collect();
-    let edges = boundary_edges(mesh).into_iter();
-    let after: BTreeMap<usize, usize> = edges
-        .filter(|edge| edge.iter().all(|node| chosen.contains(node)))
-        .map(|[a, b]| (a, b))
-        .collect();
-    let reached: BTreeSet<usize> = after.values().copied().collect();
-    let mut starts = selected.iter().filter(|node| !reached.contains(node));
-    let first = *starts.next().unwrap_or(&selected[0]);
-    let rest = std::iter::successors(after.get(&first), |node| after.get(node));
-    let order: Vec<usize> = std::iter::once(&first)
-        .chain(rest.take_while(|&&node| node != first))
-        .take(selected.len())
-        .copied()
-        .collect();
-    (order.len() == selected.len()).then_some(order)
+/// The faces between `nodes`, if they touch all of them.
+fn between<F: AsRef<[usize]>>(
+    mut faces: Vec<F>,
+    nodes: &BTreeSet<usize>,
+) -> Result<Vec<F>, String> {
+    faces.retain(|face| face.as_ref().iter().all(|node| nodes.contains(node)));
+    let touched: BTreeSet<usize> = faces.iter().flat_map(|face| face.as_ref()).copied().collect();
+    let loose: Vec<usize> = nodes.difference(&touched).copied().collect();
+    if loose.is_empty() {
+        return Ok(faces);
+    }
+    let walls = "walls are faces of the boundary of the body with all their nodes given";
+    Err(format!("{walls}, and {} are on none", list(&loose)))
+}
+
+/// Loops of edges as they are; one open chain with the edge that closes it.
+fn closed(mut edges: Vec<[usize; 2]>) -> Result<Vec<[usize; 2]>, String> {
+    // how many more edges begin at a node than end there
+    let mut surplus: BTreeMap<usize, i32> = BTreeMap::new();
+    for &[first, last] in &edges {
+        *surplus.entry(first).or_default() += 1;
+        *surplus.entry(last).or_default() -= 1;
+    }
+    surplus.retain(|_, surplus| *surplus != 0);
+    match *surplus.iter().collect::<Vec<_>>() {
+        [] => Ok(edges),
+        [(&first, 1), (&last, -1)] | [(&last, -1), (&first, 1)] => {
+            edges.push([last, first]);
+            Ok(edges)
+        }
+        _ => {
+            let ends: Vec<usize> = surplus.into_keys().collect();
+            let mend = "they must be closed, but for one; and the cells of a string must all run \
+                        the same way";
+            Err(format!("they make open chains with ends at {}: {mend}", list(&ends)))
+        }
+    }
+}
+
+/// Checks that each edge of the faces is met by another face, running the other way.
+fn check_closed<'a>(faces: impl Iterator<Item = &'a [usize]>) -> Result<(), String> {
+    let mut edges = BTreeSet::new();
+    for face in faces {
+        for (k, &a) in face.iter().enumerate() {
+            let b = face[(k + 1) % face.len()];
+            if !edges.insert([a, b]) {
+                let mend = "turn the cells on one side of it round";
+                return Err(format!(
+                    "two faces run along the edge of {} the same way: {mend}",
+                    list(&[a, b])
+                ));
+            }
+        }
+    }
+    let open = edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]));
+    let rim: BTreeSet<usize> = open.flatten().copied().collect();
+    if rim.is_empty() {
+        return Ok(());
+    }
+    let rim: Vec<usize> = rim.into_iter().collect();
+    Err(format!("the surface must be closed, but has a rim at {}", list(&rim)))
+}
+
+/// Some node numbers in words.
+fn list(nodes: &[usize]) -> String {
+    let numbers: Vec<String> = nodes.iter().take(8).map(|node| (node + 1).to_string()).collect();
+    let more =
+        if nodes.len() > 8 { format!(" and {} more", nodes.len() - 8) } else { String::new() };
+    format!("node(s) {}{more}", numbers.join(", "))
 }
