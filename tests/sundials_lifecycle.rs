@@ -1,7 +1,7 @@
 //! Creates, uses and drops solvers of every kind, in every way a solver can end.
 //!
 //! Meant to be run under valgrind (`make valgrind`), where `PLIANT_LIFECYCLES` sets the number of
-//! rounds; each round makes 16 solvers.
+//! rounds; each round makes 21 solvers.
 
 mod sundials_support;
 
@@ -14,8 +14,8 @@ use pliant::{
     ode::Failure,
     samples::Robertson,
     sundials::{
-        Cvode, CvodeOptions, Ida, IdaOptions, InitialCondition, Jacobian, LinearSolver, Multistep,
-        Pattern,
+        Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, InitialCondition, Jacobian,
+        LinearSolver, Multistep, Pattern, Table,
     },
 };
 use sundials_support::OwnSolver;
@@ -50,6 +50,23 @@ fn cvode_solvers() {
 
     let options = CvodeOptions::new(1e-4, 1e-6).method(Multistep::Adams).fixed_point(3);
     let mut solver = Cvode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
+    solver.solve_to(1e-3).unwrap();
+}
+
+fn arkode_solvers() {
+    for solver in linear_solvers() {
+        let options = ArkodeOptions::new(1e-4, ATOL).newton(solver);
+        let mut solver = Arkode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
+        solver.solve_to(0.4).unwrap();
+        solver.reinit(0.0, &Robertson::Y0).unwrap();
+        solver.set_stop_time(Some(0.05)).unwrap();
+        solver.solve_to(0.1).unwrap();
+        let (start, _) = solver.last_step();
+        solver.interpolate(start, 0, &mut [0.0; 3]).unwrap();
+        drop(black_box(solver.into_system()));
+    }
+    let options = ArkodeOptions::new(1e-4, 1e-6).table(Table::explicit(5).unwrap());
+    let mut solver = Arkode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
     solver.solve_to(1e-3).unwrap();
 }
 
@@ -102,6 +119,7 @@ fn solvers_come_and_go() {
     panic::set_hook(Box::new(|_| ()));
     for _ in 0..rounds {
         cvode_solvers();
+        arkode_solvers();
         ida_solvers();
         solvers_that_fail();
     }

@@ -82,7 +82,7 @@ impl Chamber {
                 let surface = Surface::new(body.mesh(), triangles);
                 // seen from outside the body, and so from inside the chamber
                 let sign = match body.mesh().kind().dimension() {
-                    3 => 1.0,
+                    3 => -1.0,
                     _ => self.surface_sign(body, &surface)?,
                 };
                 Geometry::Surface(surface, sign * weight)

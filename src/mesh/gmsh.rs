@@ -78,7 +78,8 @@ fn build(contents: &Contents) -> Result<Mesh, String> {
             cells.iter_mut().for_each(|cell| cell.swap(8, 9));
         }
         let turned = |cell: &Vec<usize>| signed_measure(kind, cell, &positions) < 0.0;
-        if dimension == kind.dimension() && cells.iter().all(turned) && kind != CellKind::Triangle6 {
+        if dimension == kind.dimension() && cells.iter().all(turned) && kind != CellKind::Triangle6
+        {
             cells
                 .iter_mut()
                 .for_each(|cell| *cell = kind.turned_over().iter().map(|&k| cell[k]).collect());
