@@ -74,12 +74,11 @@ fn build(contents: &Contents) -> Result<Mesh, String> {
         let number =
             |element: &Vec<usize>| element.iter().filter_map(|&place| numbers[place]).collect();
         let mut cells: Vec<Vec<usize>> = block.elements.iter().map(number).collect();
-        if false && kind == CellKind::Tetrahedron10 {
+        if kind == CellKind::Tetrahedron10 {
             cells.iter_mut().for_each(|cell| cell.swap(8, 9));
         }
         let turned = |cell: &Vec<usize>| signed_measure(kind, cell, &positions) < 0.0;
-        if dimension == kind.dimension() && cells.iter().all(turned) && kind != CellKind::Triangle6
-        {
+        if dimension == kind.dimension() && cells.iter().all(turned) {
             cells
                 .iter_mut()
                 .for_each(|cell| *cell = kind.turned_over().iter().map(|&k| cell[k]).collect());

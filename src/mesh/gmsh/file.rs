@@ -126,7 +126,7 @@ fn prepare_section(file: &mut Vec<u8>, name: &str, binary: bool) -> Result<(), S
         let [blocks, count, least, _] = *line.split_whitespace().collect::<Vec<_>>() else {
             return Err(broken());
         };
-        let largest = format!("{blocks} {count} {least} {count}\n");
+        let largest = format!("{blocks} {count} {least} {}\n", u64::MAX);
         file.splice(header..end, largest.into_bytes());
         count.parse().map_err(|_| broken())?
     };
