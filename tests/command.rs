@@ -347,6 +347,43 @@ fn check_prints_what_a_scene_contains() {
 }
 
 #[test]
+fn chart_compares_methods_and_goes_on_where_it_stopped() {
+    let place = Place::new();
+    let scene = place.scene(&bar(0.2));
+    fs::write(place.path("softer.toml"), bar(0.2).replace("5.0e4", "4.0e4")).unwrap();
+    let flags = ["--methods", "rk,cvode-bdf", "--repetitions", "1", "--alpha", "1e2,1e3"];
+    let chart = |rtol: &str| {
+        let arguments =
+            [&["chart", scene, "--rtol", rtol, "--variants", "softer.toml"], &flags[..]];
+        place.run(&arguments.concat())
+    };
+    let output = chart("1e-3");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let written = ["chart.csv", "chart.md", "chart.png", "chart.svg"];
+    assert_eq!(place.files("out/scene-chart"), written);
+    let table = || fs::read_to_string(place.path("out/scene-chart/chart.csv")).unwrap();
+    let first = table();
+    assert_eq!(first.lines().count(), 1 + 8);
+    says(&first, &["\"rk, alpha 1e2\"", "\"softer: cvode-bdf, alpha 1e3\""]);
+    says(&stdout(&output), &["error", "fastest", "reference", "written to out/scene-chart"]);
+    // what was measured stays to the digit
+    assert_eq!(chart("1e-3,1e-4").status.code(), Some(0));
+    let both = table();
+    assert!(both.starts_with(&first) && both.lines().count() == 1 + 16, "{both}");
+
+    let output = place.run(&["chart", scene, "--rtol", "2", "--out", "bad"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let output =
+        place.run(&["chart", scene, "--methods", "rk", "--max-order", "2", "--out", "bad"]);
+    says(&stderr(&output), &["max_order", "one order only"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let output = place.run(&["chart", scene, "--limit", "1e-9", "--out", "bad"]);
+    says(&stderr(&output), &["no two methods solve the scene"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(!place.path("bad").exists());
+}
+
+#[test]
 fn methods_are_listed() {
     let output = Place::new().run(&["methods"]);
     assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));

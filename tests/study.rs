@@ -358,6 +358,8 @@ fn bad_input_is_named() {
     assert!(said.starts_with("finest = 0"), "{said}");
     let said = message(study(&mut scenes().tolerances([2.0]).solver("rough", Solver::default())));
     assert!(said.starts_with("rtol = 2"), "{said}");
+    let said = message(study(&mut scenes().solver("bdf", Solver::default())));
+    assert!(said.starts_with("name of a line = \"bdf\""), "{said}");
     let longer = bar(3).phase(Phase::until(21.0));
     let said = message(study(&mut scenes().variant("longer", longer, Solver::default())));
     assert!(said.starts_with("end of a scene = 21 s"), "{said}");

@@ -6,6 +6,7 @@ use super::chart::Chart;
 use super::row::write_rows;
 use super::{Fastest, Line, Problem, Row};
 use crate::error::Error;
+use crate::output::write_file;
 
 /// All rows of a study, line by line.
 #[derive(Debug, Clone, PartialEq)]
@@ -138,6 +139,17 @@ impl Findings {
     /// [`Error::Output`] if it cannot be written.
     pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         write_rows(self.rows(), path.as_ref())
+    }
+
+    /// Writes who is the fastest, and the notes, to a Markdown file.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written.
+    pub fn write_table(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        write_file(path.as_ref(), |file| {
+            writeln!(file, "# {}\n\n{}", self.title, self.fastest().markdown())?;
+            self.notes().iter().try_for_each(|note| writeln!(file, "- {note}"))
+        })
     }
 
     /// Draws error over time, both logarithmic, one line per line of the study, to an SVG or PNG

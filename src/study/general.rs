@@ -12,7 +12,8 @@ use crate::ode::{Dae, Failure, Ode};
 use crate::rk::{self, DormandPrince};
 use crate::samples::{Hires, Reference, Robertson, VanDerPol};
 use crate::sundials::{
-    Cvode, CvodeOptions, Ida, IdaOptions, Jacobian, LinearSolver, Multistep, Statistics,
+    Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian, LinearSolver, Multistep,
+    Statistics, Table,
 };
 
 /// A system of ordinary differential equations with a trusted end state, solved by the integrators
@@ -32,11 +33,12 @@ enum Way {
     Bdf { max_order: u32, detects_stability_limit: bool },
     Adams,
     Ida,
+    Arkode { order: u32 },
     Rk,
 }
 
 /// Name, family and way of all lines.
-const WAYS: [(&str, &str, Way); 6] = [
+const WAYS: [(&str, &str, Way); 9] = [
     ("cvode-bdf", "cvode-bdf", Way::Bdf { max_order: 5, detects_stability_limit: false }),
     ("cvode-bdf, order 2", "cvode-bdf", Way::Bdf { max_order: 2, detects_stability_limit: false }),
     (
@@ -46,6 +48,9 @@ const WAYS: [(&str, &str, Way); 6] = [
     ),
     ("cvode-adams", "cvode-adams", Way::Adams),
     ("ida", "ida", Way::Ida),
+    ("arkode", "arkode", Way::Arkode { order: 4 }),
+    ("arkode, order 3", "arkode", Way::Arkode { order: 3 }),
+    ("arkode, order 5", "arkode", Way::Arkode { order: 5 }),
     ("rk", "rk", Way::Rk),
 ];
 
@@ -163,6 +168,10 @@ impl<S: Ode> Run<'_, S> {
             ),
             Way::Adams => self.cvode(&options.method(Multistep::Adams).newton(newton)),
             Way::Ida => self.ida(&IdaOptions::new(rtol, atol).newton(newton)),
+            Way::Arkode { order } => {
+                let options = ArkodeOptions::new(rtol, atol).table(Table::implicit(order)?);
+                self.arkode(&options.newton(newton))
+            }
             Way::Rk => self.rk(&rk::Options::default().rtol(rtol).atol(atol)),
         }
     }
@@ -178,6 +187,19 @@ impl<S: Ode> Run<'_, S> {
             }
         }
         Ok(solved(cvode.y(), cvode.statistics()))
+    }
+
+    fn arkode(self, options: &ArkodeOptions) -> Result<Solved, Failed> {
+        let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
+        let mut arkode = Arkode::new(self.system, 0.0, self.y0, options)?;
+        arkode.set_stop_time(Some(end))?;
+        while arkode.t() < end {
+            let _ = arkode.step(end)?;
+            if budget.is_spent() {
+                return Err(too_long(arkode.statistics().steps as usize, arkode.t(), end));
+            }
+        }
+        Ok(solved(arkode.y(), arkode.statistics()))
     }
 
     fn ida(mut self, options: &IdaOptions) -> Result<Solved, Failed> {

@@ -27,8 +27,8 @@
 //! those that all of them share. The error of a general problem is relative, component by component,
 //! at its end. Beside the mean the table has the largest value.
 //!
-//! **Reference.** It is computed by the two fastest of three methods (Adams, BDF, explicit
-//! Runge-Kutta), at tolerances that are tightened until both agree to a thirtieth of the least error
+//! **Reference.** It is computed by the two fastest of four methods (Adams, BDF, implicit
+//! and explicit Runge-Kutta), at tolerances that are tightened until both agree to a thirtieth of the least error
 //! to be measured, or agree no better. The distance between them is the *resolution* of the
 //! reference: errors below ten times that are marked as not sure, and nothing is said about who
 //! reaches accuracies below it.
@@ -59,7 +59,7 @@ pub use findings::{Findings, LineFindings};
 pub use general::General;
 pub use row::Row;
 pub use runner::{Stage, Study};
-pub use scenes::Scenes;
+pub use scenes::{Scenes, all_solvers};
 
 use std::time::Duration;
 

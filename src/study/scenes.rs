@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::truth::{Probe, Truth, reason, shared_nodes};
 use super::{Failed, Line, Measured, Point, Problem, fingerprint};
-use crate::error::Error;
+use crate::error::{Error, positive};
 use crate::scene::Scene;
 use crate::simulate::{Method, Sampling, Solver};
 
@@ -16,6 +16,7 @@ use crate::simulate::{Method, Sampling, Solver};
 #[derive(Debug)]
 pub struct Scenes {
     title: String,
+    alpha: f64,
     finest: f64,
     tolerances: Vec<f64>,
     lines: Vec<Line>,
@@ -49,6 +50,7 @@ impl Scenes {
     pub fn new(title: impl Into<String>, scene: Scene) -> Self {
         Self {
             title: title.into(),
+            alpha: Solver::default().alpha,
             finest: 1e-7,
             tolerances: (2..=8).map(|digits| 10_f64.powi(-digits)).collect(),
             lines: Vec::new(),
@@ -58,6 +60,15 @@ impl Scenes {
             check: None,
             reference: None,
         }
+    }
+
+    /// Rate of the constraint stabilization (1/s) in the reference, and in the lines that
+    /// [`all_methods`](Self::all_methods) adds from now on. It is a part of the model: lines with
+    /// another one move differently. Default: 1e3.
+    #[must_use]
+    pub fn alpha(mut self, alpha: f64) -> Self {
+        self.alpha = alpha;
+        self
     }
 
     /// The least error that is to be measured: the reference is made thirty times better, if that
@@ -86,21 +97,13 @@ impl Scenes {
         self.by_tolerance(name.into(), family.name(), 0, solver)
     }
 
-    /// Adds a line for each of [`Method::ALL`], and one for CVODE's BDF with orders up to 2 only,
-    /// which can do with motion that is hardly damped.
+    /// Adds a line for each of [`all_solvers`].
     #[must_use]
     pub fn all_methods(self) -> Self {
-        Method::ALL.into_iter().fold(self, |scenes, method| {
-            let solver = Solver { method, ..Solver::default() };
-            let scenes = scenes.solver(method.name(), solver.clone());
-            match method {
-                Method::CvodeBdf => {
-                    let low = Solver { max_order: Some(2), ..solver };
-                    scenes.solver("cvode-bdf, order 2", low)
-                }
-                _ => scenes,
-            }
-        })
+        let alpha = self.alpha;
+        all_solvers()
+            .into_iter()
+            .fold(self, |scenes, (name, solver)| scenes.solver(name, Solver { alpha, ..solver }))
     }
 
     /// Adds a line: another scene by `solver`, tolerance by tolerance. The name is its family.
@@ -159,12 +162,19 @@ impl Scenes {
             let mend = "a relative error lies above 0 and below 1 (1e-7 is usual)";
             return Err(Error::input("finest", self.finest, mend));
         }
+        positive("alpha", self.alpha, "1/s")?;
         let end = self.scenes[0].end();
         for scene in &self.scenes {
             scene.validate()?;
             if scene.end() != end {
                 let mend = format!("all scenes that are compared end together, at {end} s here");
                 return Err(Error::input("end of a scene", format!("{} s", scene.end()), mend));
+            }
+        }
+        for (number, line) in self.lines.iter().enumerate() {
+            if self.lines[..number].iter().any(|other| other.name == line.name) {
+                let mend = "another line has it: name it otherwise";
+                return Err(Error::input("name of a line", format!("\"{}\"", line.name), mend));
             }
         }
         self.runs.iter().flatten().try_for_each(|run| run.solver.validate())
@@ -183,9 +193,32 @@ impl Scenes {
             .collect();
         let check = self.check.map(|k| (&self.scenes[k], &probes[k]));
         let target = self.finest / 30.0;
-        let truth = Truth::find(&self.scenes[0], &probes[0], check, target, limit, tell)?;
+        let truth =
+            Truth::find(&self.scenes[0], &probes[0], check, self.alpha, target, limit, tell)?;
         Ok(Reference { truth, probes })
     }
+}
+
+/// Name and solver of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up
+/// to 2 only, which can do with motion that is hardly damped, and for ARKODE one for each of the
+/// orders 3 and 5 beside 4.
+#[must_use]
+pub fn all_solvers() -> Vec<(String, Solver)> {
+    let mut solvers = Vec::new();
+    for method in Method::ALL {
+        let solver = Solver { method, ..Solver::default() };
+        solvers.push((method.name().to_owned(), solver.clone()));
+        let orders: &[u32] = match method {
+            Method::CvodeBdf => &[2],
+            Method::Arkode => &[3, 5],
+            _ => &[],
+        };
+        for order in orders {
+            let solver = Solver { max_order: Some(*order), ..solver.clone() };
+            solvers.push((format!("{method}, order {order}"), solver));
+        }
+    }
+    solvers
 }
 
 impl Problem for Scenes {
@@ -202,7 +235,7 @@ impl Problem for Scenes {
         let scenes = runs.iter().map(|run| run.scene).chain([0]).chain(self.check);
         let fingerprints: Vec<u64> = scenes.map(|scene| self.fingerprints[scene]).collect();
         let solver = runs.first().map(|run| Solver { rtol: 1.0, ..run.solver.clone() });
-        fingerprint::of_text(format_args!("{solver:?}"), &fingerprints)
+        fingerprint::of_text(format_args!("{solver:?} {}", self.alpha), &fingerprints)
     }
 
     fn prepare(&mut self, limit: Duration, tell: &mut dyn FnMut(&str)) -> Result<f64, Error> {

@@ -14,8 +14,13 @@ use crate::trajectory::Trajectory;
 const TIMES: usize = 101;
 /// Motion below this fraction of the body's size counts as that large.
 const LEAST_MOTION: f64 = 1e-6;
-/// Methods of different families: what two of them agree on is right.
-const METHODS: [Method; 3] = [Method::CvodeAdams, Method::CvodeBdf, Method::Rk];
+/// Methods of different families, each at its highest order: what two of them agree on is right.
+const METHODS: [(Method, Option<u32>); 4] = [
+    (Method::CvodeAdams, None),
+    (Method::CvodeBdf, None),
+    (Method::Arkode, Some(5)),
+    (Method::Rk, None),
+];
 /// No tolerance below: rounding errors rule there.
 const LEAST_RTOL: f64 = 1e-13;
 
@@ -122,12 +127,14 @@ impl Truth {
         scene: &Scene,
         probe: &Probe,
         check: Option<(&Scene, &Probe)>,
+        alpha: f64,
         target: f64,
         limit: Duration,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, Error> {
         let mut rtol = target.max(LEAST_RTOL);
-        let mut pair = fastest_two(scene, probe, rtol, limit, tell)?;
+        let mut pair =
+            fastest_two(scene, probe, &Solver { rtol, alpha, ..Solver::default() }, limit, tell)?;
         let mut truth = Self::of(scene, &pair[0], &pair[1]);
         while truth.resolution > target && rtol > 2.0 * LEAST_RTOL {
             rtol = (0.1 * rtol).max(LEAST_RTOL);
@@ -214,19 +221,19 @@ impl Way {
     }
 }
 
-/// The solutions by the two fastest methods.
+/// The solutions by the two fastest methods, in all else as `solver` has it.
 fn fastest_two(
     scene: &Scene,
     probe: &Probe,
-    rtol: f64,
+    solver: &Solver,
     limit: Duration,
     tell: &mut dyn FnMut(&str),
 ) -> Result<[Way; 2], Error> {
     let (mut found, mut failures) = (Vec::<Way>::new(), Vec::new());
-    for method in METHODS {
-        // nobody waits for the third of three
+    for (method, max_order) in METHODS {
+        // nobody waits for the third
         let limit = found.get(1).map_or(limit, |second| second.time);
-        let solver = Solver { method, rtol, ..Solver::default() };
+        let solver = Solver { method, max_order, ..solver.clone() };
         match Way::find(scene, probe, solver, limit, tell) {
             Ok(way) => found.push(way),
             Err(error @ Error::Integration(_)) => failures.push(reason(error).to_string()),
@@ -236,7 +243,7 @@ fn fastest_two(
         found.truncate(2);
     }
     <[Way; 2]>::try_from(found).map_err(|_| Error::Reference {
-        rtol,
+        rtol: solver.rtol,
         failures: failures.join("; "),
         mend: "allow more time, or ask for less accuracy".into(),
     })

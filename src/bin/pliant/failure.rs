@@ -33,7 +33,10 @@ impl Failure {
 impl From<Error> for Failure {
     fn from(error: Error) -> Self {
         match error {
-            Error::Integration(_) | Error::Statics(_) | Error::Output { .. } => Self::failed(error),
+            Error::Integration(_)
+            | Error::Statics(_)
+            | Error::Reference { .. }
+            | Error::Output { .. } => Self::failed(error),
             _ => Self::bad_input(error),
         }
     }

@@ -69,7 +69,7 @@ pub struct Directory {
 
 impl Directory {
     /// Makes sure that `path` can be written to, so that no result is lost, without making it yet.
-    fn new(path: PathBuf) -> Result<Self, Failure> {
+    pub fn new(path: PathBuf) -> Result<Self, Failure> {
         let here = Path::new(".");
         let existing = path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(here);
         match tempfile::tempfile_in(existing) {

@@ -1,5 +1,6 @@
 //! The command `pliant`: soft bodies from scene files, without a line of Rust.
 
+mod chart;
 mod check;
 mod failure;
 mod files;
@@ -31,6 +32,7 @@ enum Command {
     Run(run::Arguments),
     Static(statics::Arguments),
     Check(check::Arguments),
+    Chart(chart::Arguments),
     Methods(methods::Arguments),
 }
 
@@ -39,6 +41,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Static(arguments) => statics::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Chart(arguments) => chart::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),
     };
     match result {

@@ -1,0 +1,189 @@
+//! `pliant chart`
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pliant::simulate::ContactEvents;
+use pliant::study::{Scenes, Stage, Study, all_solvers};
+use pliant::{Method, Scene, SceneFile, Solver};
+
+use crate::failure::{Failure, print};
+use crate::files::Directory;
+
+/// Chart speed against accuracy on a scene, method by method and tolerance by tolerance
+///
+/// Errors are those of node positions, relative to the motion, against a reference that two
+/// methods agree on. Writes chart.svg, chart.png, chart.md (the fastest for each accuracy, and what to know
+/// before trusting it) and chart.csv (all runs). Runs that chart.csv has already are not run again,
+/// so that a command that was interrupted can be given again. Of the file's table [solver] only
+/// alpha and contact_events count.
+#[derive(Args)]
+pub struct Arguments {
+    /// Scene file
+    #[arg(value_name = "FILE")]
+    scene: PathBuf,
+    /// Integration methods [default: all, some of them with several orders]
+    #[arg(long, value_delimiter = ',')]
+    methods: Vec<Method>,
+    /// Highest orders of the methods [default: each method's own]
+    #[arg(long, value_delimiter = ',', value_name = "ORDERS")]
+    max_order: Vec<u32>,
+    /// Relative tolerances, from rough to fine
+    #[arg(long, value_delimiter = ',', default_value = "1e-2,1e-3,1e-4,1e-5,1e-6,1e-7,1e-8")]
+    rtol: Vec<f64>,
+    /// Rates at which errors of constraints decay (1/s); the reference has the first [default: that
+    /// of the file]
+    #[arg(long, value_delimiter = ',')]
+    alpha: Vec<f64>,
+    /// How contact events are met: step-over, locate or both [default: as the file has it]
+    #[arg(long, value_delimiter = ',', value_name = "WAYS")]
+    contact_events: Vec<ContactEvents>,
+    /// Other scene files, to be compared with the motion of the first: another strain, other cells
+    #[arg(long, value_delimiter = ',', value_name = "FILES")]
+    variants: Vec<PathBuf>,
+    /// End the scenes at this time (s)
+    #[arg(long, value_name = "SECONDS")]
+    until: Option<f64>,
+    /// How often each run is repeated to be timed
+    #[arg(long, value_name = "COUNT", default_value_t = 3)]
+    repetitions: usize,
+    /// Processor time that any run may take (s)
+    #[arg(long, value_name = "SECONDS", default_value_t = 120.0)]
+    limit: f64,
+    /// Chart processor times, which a busy machine disturbs less than times by the wall
+    #[arg(long)]
+    processor_time: bool,
+    /// Directory for the results [default: out/ and the name of the scene file, with -chart]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Show no progress, and print nothing but the results
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let file = SceneFile::read(&arguments.scene)?;
+    let stem = stem(&arguments.scene);
+    let title = if file.title.is_empty() { &stem } else { &file.title };
+    let path = arguments.out.clone().unwrap_or(Path::new("out").join(format!("{stem}-chart")));
+    let mut directory = Directory::new(path.clone())?;
+
+    let mut scenes = problem(arguments, title, &file)?;
+    let bar = bar(arguments.quiet);
+    let findings = Study::new(&mut scenes)
+        .repetitions(arguments.repetitions)
+        .limit(arguments.limit)
+        .keep(path.join("chart.csv"))
+        .run(&mut |Stage { done, all, what }| {
+            bar.set_length(all as u64);
+            bar.set_position(done as u64);
+            bar.set_message(what.to_owned());
+        });
+    bar.finish_and_clear();
+    let findings = match arguments.processor_time {
+        true => findings?.by_processor_time(),
+        false => findings?,
+    };
+
+    directory.write("chart.csv", |_| Ok(()))?;
+    directory.write("chart.md", |path| findings.write_table(path))?;
+    print(format_args!("{title}\n\n{}\n", findings.fastest()))?;
+    findings.notes().iter().try_for_each(print)?;
+    if findings.rows().all(|row| row.failure.is_some()) {
+        return Err(Failure::failed("no run succeeded: there is nothing to chart"));
+    }
+    directory.write("chart.svg", |path| findings.write_chart(path))?;
+    directory.write("chart.png", |path| findings.write_chart(path))?;
+    if !arguments.quiet {
+        directory.tell()?;
+    }
+    Ok(())
+}
+
+/// The scene by all solvers that are asked for, then the variants.
+fn problem(arguments: &Arguments, title: &str, file: &SceneFile) -> Result<Scenes, Failure> {
+    let solvers = solvers(arguments, &file.solver);
+    let end = |scene: Scene| match arguments.until {
+        Some(end) => scene.ended_at(end),
+        None => scene,
+    };
+    let mut scenes = Scenes::new(title, end(file.scene.clone()))
+        .alpha(arguments.alpha.first().copied().unwrap_or(file.solver.alpha))
+        .tolerances(arguments.rtol.clone());
+    for (name, solver) in &solvers {
+        scenes = scenes.solver(name, solver.clone());
+    }
+    for path in &arguments.variants {
+        let (variant, stem) = (SceneFile::read(path)?, stem(path));
+        for (name, solver) in &solvers {
+            let scene = end(variant.scene.clone());
+            scenes = scenes.variant(format!("{stem}: {name}"), scene, solver.clone());
+        }
+    }
+    Ok(scenes)
+}
+
+/// Name and solver of all lines: methods, alpha and contact events combined.
+fn solvers(arguments: &Arguments, file: &Solver) -> Vec<(String, Solver)> {
+    let Arguments { methods, max_order, alpha, contact_events, .. } = arguments;
+    let mut solvers = match methods[..] {
+        [] => all_solvers(),
+        _ => {
+            let solver = |&method: &Method| Solver { method, ..Solver::default() };
+            methods.iter().map(|method| (method.to_string(), solver(method))).collect()
+        }
+    };
+    if !max_order.is_empty() {
+        solvers = combined(solvers, max_order, |solver, order| {
+            solver.max_order = Some(order);
+            format!("order {order}")
+        });
+    }
+    solvers = combined(solvers, or(alpha, &file.alpha), |solver, alpha| {
+        solver.alpha = alpha;
+        format!("alpha {alpha:e}")
+    });
+    combined(solvers, or(contact_events, &file.contact_events), |solver, events| {
+        solver.contact_events = events;
+        events.to_string()
+    })
+}
+
+/// `values`, or `default` if there is none.
+fn or<'a, T>(values: &'a [T], default: &'a T) -> &'a [T] {
+    if values.is_empty() { std::slice::from_ref(default) } else { values }
+}
+
+/// Each of `solvers` with each of `values`, which its name tells if there are several.
+fn combined<T: Copy>(
+    solvers: Vec<(String, Solver)>,
+    values: &[T],
+    set: impl Fn(&mut Solver, T) -> String,
+) -> Vec<(String, Solver)> {
+    let with = |(name, solver): &(String, Solver), value: T| {
+        let mut solver = solver.clone();
+        let said = set(&mut solver, value);
+        match values {
+            [_] => (name.clone(), solver),
+            _ => (format!("{name}, {said}"), solver),
+        }
+    };
+    solvers.iter().flat_map(|solver| values.iter().map(|value| with(solver, *value))).collect()
+}
+
+fn stem(path: &Path) -> String {
+    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// Drawn on a terminal only, and not if `quiet`.
+fn bar(quiet: bool) -> ProgressBar {
+    let target = match quiet {
+        true => ProgressDrawTarget::hidden(),
+        false => ProgressDrawTarget::stderr(),
+    };
+    let bar = ProgressBar::with_draw_target(Some(1), target);
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len}, {elapsed}: {msg}");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
