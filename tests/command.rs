@@ -144,7 +144,7 @@ fn flags_override_the_file() {
     let place = Place::new();
     let scene = shipped("square-jump.toml");
     let flags = "--method rk --rtol 1e-4 --alpha 50 --atol-position 1e-6 --atol-velocity 1e-5 \
-                 --step 0.05 --until 0.72 --track bottom --formats svg,vtk --out some/where";
+                 --step 0.05 --until 0.72 --track bottom --formats svg,vtk,html --out some/where";
     let mut arguments = vec!["run", &scene];
     arguments.extend(flags.split_whitespace());
     let output = place.run(&arguments);
@@ -166,7 +166,10 @@ fn flags_override_the_file() {
     for name in ["body.pvd", "body_0000.vtu", "snapshots.svg", "report.json", "trajectory.csv"] {
         assert!(files.iter().any(|file| file == name), "{name} is missing");
     }
-    says(&fs::read_to_string(place.path("some/where/snapshots.svg")).unwrap(), &["Jumping"]);
+    for picture in ["snapshots.svg", "animation.html"] {
+        let text = fs::read_to_string(place.path("some/where").join(picture)).unwrap();
+        says(&text, &["Jumping square"]);
+    }
 }
 
 #[test]
@@ -174,7 +177,8 @@ fn solver_flags_reach_the_solver() {
     let place = Place::new();
     let scene = place.scene(&bar(1.0));
     let steps = |flags: &[&str]| {
-        let output = place.run(&[&["run", scene, "--out", "out"], flags].concat());
+        let common = ["run", scene, "--out", "out", "--method", "cvode-bdf"];
+        let output = place.run(&[&common[..], flags].concat());
         assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
         place.report("out")["steps"].as_u64().unwrap()
     };
