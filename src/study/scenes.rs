@@ -1,5 +1,6 @@
 //! A scene and its variants as a problem.
 
+use std::collections::BTreeSet;
 use std::time::Duration;
 
 use super::truth::{Probe, Truth, reason, shared_nodes};
@@ -232,8 +233,11 @@ impl Problem for Scenes {
 
     fn fingerprint(&self, line: usize) -> u64 {
         let runs = &self.runs[line];
-        let scenes = runs.iter().map(|run| run.scene).chain([0]).chain(self.check);
-        let fingerprints: Vec<u64> = scenes.map(|scene| self.fingerprints[scene]).collect();
+        // each once: more tolerances make no other line
+        let scenes: BTreeSet<usize> =
+            runs.iter().map(|run| run.scene).chain([0]).chain(self.check).collect();
+        let fingerprints: Vec<u64> =
+            scenes.into_iter().map(|scene| self.fingerprints[scene]).collect();
         let solver = runs.first().map(|run| Solver { rtol: 1.0, ..run.solver.clone() });
         fingerprint::of_text(format_args!("{solver:?} {}", self.alpha), &fingerprints)
     }
