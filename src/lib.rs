@@ -26,6 +26,7 @@
 //! brackets are its equations.
 
 pub mod body;
+mod central_difference;
 pub mod constraint;
 mod element;
 pub mod error;
@@ -48,7 +49,7 @@ pub mod sundials;
 mod system;
 pub mod trajectory;
 
-pub use body::{Body, CellField, CellSelection, Strain, Viscosity};
+pub use body::{Body, CellField, CellSelection, Inertia, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use error::Error;
 pub use force::{Chamber, Obstacle, Shape, Spring};

@@ -128,6 +128,14 @@ impl NodeMatrix {
         moved
     }
 
+    /// Whether no two nodes share anything.
+    pub(crate) fn is_diagonal(&self) -> bool {
+        let row_is = |row| {
+            self.pattern.row(row).all(|(entry, column)| column == row || self.values[entry] == 0.0)
+        };
+        (0..self.pattern.nodes()).all(row_is)
+    }
+
     /// Adds to the entry of two coupled nodes.
     pub(crate) fn add(&mut self, row: usize, column: usize, value: f64) {
         if let Some(entry) = self.pattern.find(row, column) {
@@ -239,6 +247,17 @@ impl BlockMatrix {
     /// y += factor A x
     pub(crate) fn add_product(&self, factor: f64, x: &[f64], y: &mut [f64]) {
         with_dimension!(self.dimension, block_product(&self.pattern, &self.values, factor, x, y));
+    }
+
+    /// |A| x, all entries taken by their size, at one degree of freedom.
+    pub(crate) fn absolute_row_product(&self, dof: usize, x: &[f64]) -> f64 {
+        let d = self.dimension;
+        let (node, axis) = (dof / d, dof % d);
+        let products = self.pattern.row(node).map(|(entry, column)| {
+            let row = &self.values[(entry * d + axis) * d..][..d];
+            row.iter().zip(&x[column * d..][..d]).map(|(a, x)| a.abs() * x).sum::<f64>()
+        });
+        products.sum()
     }
 
     /// x . A x

@@ -211,12 +211,10 @@ impl Trajectory {
     /// Takes note of the energies of a state.
     pub(crate) fn watch(&mut self, energy: &Energy) {
         let start = self.samples.first().map_or(energy.balance(), |s| s.energy.balance());
-        let Energy { kinetic, strain, contact, springs, dissipated, supplied, .. } = energy;
         let (report, change) = (&mut self.report, energy.balance() - start);
         report.energy_error = report.energy_error.max(change.abs());
         report.energy_created = report.energy_created.max(change);
-        let sum = kinetic + strain + contact + springs + dissipated.abs() + supplied.abs();
-        report.energy_scale = report.energy_scale.max(sum);
+        report.energy_scale = report.energy_scale.max(energy.size());
     }
 
     /// Forgets the samples after the first `count`, and the energies seen since: what was noted

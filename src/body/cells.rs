@@ -12,7 +12,9 @@
 
 use nalgebra::{SMatrix, SVector};
 
+use super::Inertia;
 use super::fields::{CellField, Measure, PointField, mean};
+use super::forces::add_forces;
 use super::regions::{Moduli, Regions};
 use super::strain::{energy_density, gradient, green_strain, stress, stretch_of, symmetric_part};
 use crate::element::{
@@ -28,8 +30,8 @@ use crate::sparse::{BlockMatrix, NodeMatrix};
 
 /// Cells of one kind, behind a face that knows neither kind nor dimension.
 pub(crate) trait Cells: Send + Sync {
-    /// Adds the inertia of all cells.
-    fn add_inertia(&self, regions: &Regions, inertia: &mut NodeMatrix);
+    /// Adds the inertia of all cells, `sharing` telling how.
+    fn add_inertia(&self, regions: &Regions, sharing: Inertia, inertia: &mut NodeMatrix);
 
     /// Adds sum w (lambda g_a g_b^T + mu ((g_a . g_b) I + g_b g_a^T)), `lame` telling the constants.
     fn add_stiffness(
@@ -83,34 +85,35 @@ pub(crate) struct Law {
 /// The cells of `mesh`; `section` is the area or thickness of the body.
 pub(super) fn cells(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
     let of = match (mesh.kind(), mesh.dimension()) {
-        (CellKind::Segment, 1) => CellsOf::<2, 1, 1>::boxed::<Segment>,
-        (CellKind::Segment, 2) => CellsOf::<2, 1, 2>::boxed::<Segment>,
-        (CellKind::Segment, _) => CellsOf::<2, 1, 3>::boxed::<Segment>,
-        (CellKind::Triangle, 2) => CellsOf::<3, 2, 2>::boxed::<Triangle>,
-        (CellKind::Triangle, _) => CellsOf::<3, 2, 3>::boxed::<Triangle>,
-        (CellKind::Triangle6, 2) => CellsOf::<6, 2, 2>::boxed::<Triangle6>,
-        (CellKind::Triangle6, _) => CellsOf::<6, 2, 3>::boxed::<Triangle6>,
-        (CellKind::Quadrilateral, 2) => CellsOf::<4, 2, 2>::boxed::<Quadrilateral>,
-        (CellKind::Quadrilateral, _) => CellsOf::<4, 2, 3>::boxed::<Quadrilateral>,
-        (CellKind::Tetrahedron, _) => CellsOf::<4, 3, 3>::boxed::<Tetrahedron>,
-        (CellKind::Tetrahedron10, _) => CellsOf::<10, 3, 3>::boxed::<Tetrahedron10>,
-        (CellKind::Hexahedron, _) => CellsOf::<8, 3, 3>::boxed::<Hexahedron>,
+        (CellKind::Segment, 1) => CellsOf::<2, 1, 1, 1>::boxed::<Segment>,
+        (CellKind::Segment, 2) => CellsOf::<2, 1, 2, 1>::boxed::<Segment>,
+        (CellKind::Segment, _) => CellsOf::<2, 1, 3, 1>::boxed::<Segment>,
+        (CellKind::Triangle, 2) => CellsOf::<3, 2, 2, 1>::boxed::<Triangle>,
+        (CellKind::Triangle, _) => CellsOf::<3, 2, 3, 1>::boxed::<Triangle>,
+        (CellKind::Triangle6, 2) => CellsOf::<6, 2, 2, 3>::boxed::<Triangle6>,
+        (CellKind::Triangle6, _) => CellsOf::<6, 2, 3, 3>::boxed::<Triangle6>,
+        (CellKind::Quadrilateral, 2) => CellsOf::<4, 2, 2, 4>::boxed::<Quadrilateral>,
+        (CellKind::Quadrilateral, _) => CellsOf::<4, 2, 3, 4>::boxed::<Quadrilateral>,
+        (CellKind::Tetrahedron, _) => CellsOf::<4, 3, 3, 1>::boxed::<Tetrahedron>,
+        (CellKind::Tetrahedron10, _) => CellsOf::<10, 3, 3, 4>::boxed::<Tetrahedron10>,
+        (CellKind::Hexahedron, _) => CellsOf::<8, 3, 3, 8>::boxed::<Hexahedron>,
     };
     of(mesh, section)
 }
 
-/// Cells of `N` nodes and dimension `M` in a space of dimension `D`.
-struct CellsOf<const N: usize, const M: usize, const D: usize> {
+/// Cells of `N` nodes, dimension `M` and `Q` strain points in a space of dimension `D`.
+struct CellsOf<const N: usize, const M: usize, const D: usize, const Q: usize> {
     nodes: Vec<[usize; N]>,
     /// Strain points, those of one cell after those of the other; volumes times section.
     points: Vec<StrainPoint<N, M, D>>,
-    points_per_cell: usize,
     /// For each cell, sum w N_a N_b (m^3).
     products: Vec<[[f64; N]; N]>,
+    quadratic: bool,
 }
 
-impl<const N: usize, const M: usize, const D: usize> CellsOf<N, M, D> {
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> CellsOf<N, M, D, Q> {
     fn boxed<C: ReferenceCell<N, M>>(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
+        const { assert!(C::STIFFNESS_RULE.len() == Q) };
         let positions = mesh.positions().as_chunks::<D>().0;
         let (mut nodes, mut points, mut products) = (Vec::new(), Vec::new(), Vec::new());
         for (number, cell) in mesh.cells().enumerate() {
@@ -131,12 +134,13 @@ impl<const N: usize, const M: usize, const D: usize> CellsOf<N, M, D> {
             products.push(product);
             nodes.push(std::array::from_fn(|a| cell[a]));
         }
-        Ok(Box::new(Self { nodes, points, points_per_cell: C::STIFFNESS_RULE.len(), products }))
+        let quadratic = mesh.kind().is_quadratic();
+        Ok(Box::new(Self { nodes, points, products, quadratic }))
     }
 
     /// Number, nodes and strain points of each cell.
     fn iter(&self) -> impl Iterator<Item = (usize, &[usize; N], &[StrainPoint<N, M, D>])> {
-        let points = self.points.chunks_exact(self.points_per_cell);
+        let points = self.points.chunks_exact(Q);
         self.nodes.iter().zip(points).enumerate().map(|(k, (nodes, points))| (k, nodes, points))
     }
 
@@ -158,10 +162,14 @@ impl<const N: usize, const M: usize, const D: usize> CellsOf<N, M, D> {
     }
 }
 
-impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> {
-    fn add_inertia(&self, regions: &Regions, inertia: &mut NodeMatrix) {
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Cells for CellsOf<N, M, D, Q> {
+    fn add_inertia(&self, regions: &Regions, sharing: Inertia, inertia: &mut NodeMatrix) {
         for (cell, (nodes, products)) in self.nodes.iter().zip(&self.products).enumerate() {
             let density = regions.of(cell).density;
+            let products = match sharing {
+                Inertia::Consistent => *products,
+                Inertia::Lumped => lumped(products, self.quadratic),
+            };
             for (a, b) in pairs::<N>() {
                 inertia.add(nodes[a], nodes[b], density * products[a][b]);
             }
@@ -196,28 +204,8 @@ impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> 
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
-        let conservative = forces.conservative.as_chunks_mut::<D>().0;
-        let dissipative = forces.dissipative.as_chunks_mut::<D>().0;
-        for (cell, nodes, points) in self.iter() {
-            let moduli = regions.of(cell);
-            for point in points {
-                let h = gradient(point, nodes, u);
-                let f = point.frame + h;
-                if law.green {
-                    check_orientation(cell, nodes, &f)?;
-                    let stress =
-                        f * stress(moduli.elastic, &green_strain(point, &h)) * point.volume;
-                    spread_force(point, nodes, &stress, conservative);
-                }
-                if law.objective {
-                    let rate = symmetric_part(&f.tr_mul(&gradient(point, nodes, v)));
-                    let stress = f * stress(moduli.viscous, &rate) * point.volume;
-                    spread_force(point, nodes, &stress, dissipative);
-                }
-            }
-        }
-        Ok(())
+        let points = self.points.as_chunks::<Q>().0;
+        add_forces(&self.nodes, points, regions, law, u, v, forces)
     }
 
     fn add_tangents(
@@ -315,22 +303,7 @@ impl<const N: usize, const M: usize, const D: usize> Cells for CellsOf<N, M, D> 
 
     fn volumes(&self) -> Vec<f64> {
         let volume = |points: &[StrainPoint<N, M, D>]| points.iter().map(|p| p.volume).sum();
-        self.points.chunks_exact(self.points_per_cell).map(volume).collect()
-    }
-}
-
-/// Subtracts P g_a from the force on each node, P the stress F S times the volume.
-fn spread_force<const N: usize, const M: usize, const D: usize>(
-    point: &StrainPoint<N, M, D>,
-    nodes: &[usize; N],
-    stress: &SMatrix<f64, D, M>,
-    forces: &mut [[f64; D]],
-) {
-    for (node, g) in nodes.iter().zip(&point.gradients) {
-        let force = stress * g;
-        for i in 0..D {
-            forces[*node][i] -= force[i];
-        }
+        self.points.chunks_exact(Q).map(volume).collect()
     }
 }
 
@@ -347,7 +320,7 @@ fn material_block<const D: usize>(
 }
 
 /// A cell that is turned inside out has no meaning.
-fn check_orientation<const N: usize, const M: usize, const D: usize>(
+pub(super) fn check_orientation<const N: usize, const M: usize, const D: usize>(
     cell: usize,
     nodes: &[usize; N],
     f: &SMatrix<f64, D, M>,
@@ -362,6 +335,19 @@ fn check_orientation<const N: usize, const M: usize, const D: usize>(
          collapses under strong compression; load it less or refine the mesh there",
         cell + 1
     )))
+}
+
+/// `products` as a diagonal matrix with the same sum: its row sums, or those of quadratic cells
+/// being 0 or below at corners, its scaled diagonal.
+fn lumped<const N: usize>(products: &[[f64; N]; N], quadratic: bool) -> [[f64; N]; N] {
+    let row_sums = products.map(|row| row.iter().sum::<f64>());
+    let trace: f64 = (0..N).map(|a| products[a][a]).sum();
+    let scale = row_sums.iter().sum::<f64>() / trace;
+    let mut lumped = [[0.0; N]; N];
+    for (a, row) in lumped.iter_mut().enumerate() {
+        row[a] = if quadratic { scale * products[a][a] } else { row_sums[a] };
+    }
+    lumped
 }
 
 fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {

@@ -3,6 +3,7 @@
 mod cells;
 mod elastic;
 mod fields;
+mod forces;
 mod polynomial;
 mod regions;
 mod strain;
@@ -47,6 +48,23 @@ pub enum Viscosity {
     Natural,
     /// Stress from the rate of Green's strain: a body that spins as a whole is not braked.
     Objective,
+}
+
+/// How the inertia of the cells is shared out among their nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Inertia {
+    /// M as the shape functions have it: nodes of one cell share inertia.
+    #[default]
+    Consistent,
+    /// All mass in the nodes, so that M is diagonal: what makes explicit methods cheap. Other
+    /// equations than the consistent ones, with lower frequencies: both tend to the same motion
+    /// when the mesh is refined.
+    ///
+    /// Nodes of linear cells get the integrals of their shape functions (row sums). At corners of
+    /// quadratic cells those are 0 or below, so nodes of these get the diagonal of the consistent
+    /// matrix, scaled to the mass of the cell (E. Hinton, T. Rock, O. C. Zienkiewicz, Earthquake
+    /// Eng. Struct. Dyn. 4 (1976) 245-249).
+    Lumped,
 }
 
 /// An elastic body: mesh, material, and the matrices M, K and B.
@@ -96,6 +114,7 @@ pub struct BodyBuilder {
     regions: Vec<(CellSelection, Material)>,
     strain: Strain,
     viscosity: Option<Viscosity>,
+    inertia: Inertia,
     plane: Plane,
     thickness: Option<f64>,
     area: Option<f64>,
@@ -124,6 +143,12 @@ impl BodyBuilder {
     /// How viscosity acts. Default: natural with Cauchy strain, objective with Green strain.
     pub fn viscosity(mut self, viscosity: Viscosity) -> Self {
         self.viscosity = Some(viscosity);
+        self
+    }
+
+    /// How inertia is shared out among the nodes (default: consistently).
+    pub fn inertia(mut self, inertia: Inertia) -> Self {
+        self.inertia = inertia;
         self
     }
 
@@ -174,7 +199,7 @@ impl BodyBuilder {
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();
-        cells.add_inertia(&regions, &mut inertia);
+        cells.add_inertia(&regions, self.inertia, &mut inertia);
         cells.add_stiffness(&regions, &|moduli| moduli.elastic, &mut stiffness);
         cells.add_stiffness(&regions, &|moduli| moduli.viscous, &mut damping);
         let first_point = mesh.node_count() - self.points.len();
@@ -237,6 +262,7 @@ impl Body {
             regions: Vec::new(),
             strain: Strain::default(),
             viscosity: None,
+            inertia: Inertia::default(),
             plane: Plane::default(),
             thickness: None,
             area: None,
@@ -280,7 +306,7 @@ impl Body {
         self.mesh.node_count() * self.dimension()
     }
 
-    /// Inertia matrix M = m (x) I; this is m (kg), consistent with the shape functions.
+    /// Inertia matrix M = m (x) I; this is m (kg).
     pub fn inertia(&self) -> &NodeMatrix {
         &self.inertia
     }
@@ -360,15 +386,16 @@ impl Body {
         (self.strain == Strain::Cauchy).then(|| self.stiffness.clone())
     }
 
-    /// B, if the viscous force is -B v.
+    /// B, if the viscous force is -B v, and not 0.
     pub(crate) fn constant_damping(&self) -> Option<Arc<BlockMatrix>> {
-        (self.viscosity == Viscosity::Natural).then(|| self.damping.clone())
+        let natural = self.viscosity == Viscosity::Natural;
+        (natural && self.regions.are_viscous()).then(|| self.damping.clone())
     }
 
     /// The elastic and viscous forces that have no constant matrix.
     pub(crate) fn elastic(&self) -> Option<Elastic> {
         let green = self.strain == Strain::Green;
-        let objective = self.viscosity == Viscosity::Objective;
+        let objective = self.viscosity == Viscosity::Objective && self.regions.are_viscous();
         let (cells, regions) = (self.cells.clone(), self.regions.clone());
         (green || objective).then(|| Elastic::new(cells, regions, Law { green, objective }))
     }
@@ -378,8 +405,8 @@ impl Body {
         self.inertia.values.iter().sum()
     }
 
-    /// Mass that moves with each node (kg): the row sums of m. Corners of quadratic cells may have
-    /// none, or less than none.
+    /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, corners of
+    /// quadratic cells may have none, or less than none.
     pub fn nodal_masses(&self) -> Vec<f64> {
         let pattern = self.inertia.pattern();
         let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();

@@ -140,4 +140,8 @@ impl Regions {
     pub(super) fn of(&self, cell: usize) -> &Moduli {
         &self.moduli[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
     }
+    /// Whether any of them is viscous.
+    pub(super) fn are_viscous(&self) -> bool {
+        self.moduli.iter().any(|moduli| moduli.viscous != Lame { lambda: 0.0, mu: 0.0 })
+    }
 }

@@ -199,6 +199,18 @@ impl Force for Contact {
         }
     }
 
+    /// A point shares K_p n n^T out among its nodes by parts that add up to 1, so that no row of
+    /// entries sums up to more than its node's part.
+    fn add_reserves(&self, t: f64, u: &[f64], stiffness: &mut [f64], damping: &mut [f64]) {
+        let apart = |point: &&ContactPoint| self.nearest(t, point, u).distance > 0.0;
+        for point in self.points.iter().filter(apart) {
+            for (node, share) in point.on.nodes() {
+                stiffness[node] += share * point.law.stiffness;
+                damping[node] += share * f64::max(point.law.damping, point.law.friction);
+            }
+        }
+    }
+
     fn is_nonlinear(&self) -> bool {
         true
     }

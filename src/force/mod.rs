@@ -80,8 +80,17 @@ impl NodalForces {
     }
 }
 
+/// a . b, summed up in interleaved parts, for speed.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for (k, sum) in sums.iter_mut().enumerate() {
+            *sum += a[k] * b[k];
+        }
+    }
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// a x b
@@ -140,6 +149,10 @@ pub trait Force: Send + Sync {
         _damping: &mut BlockMatrix,
     ) {
     }
+
+    /// Adds, node by node, bounds on what -df/du (to `stiffness`, N/m) and -df/dv (to `damping`,
+    /// N s/m) may grow by from one moment to the next: contacts that do not touch yet.
+    fn add_reserves(&self, _t: f64, _u: &[f64], _stiffness: &mut [f64], _damping: &mut [f64]) {}
 
     /// Whether the force depends on u or v, so that the Newton matrix must follow it.
     fn is_nonlinear(&self) -> bool;

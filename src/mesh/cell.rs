@@ -36,6 +36,11 @@ impl CellKind {
         }
     }
 
+    /// Whether edges have mid nodes.
+    pub(crate) fn is_quadratic(self) -> bool {
+        matches!(self, Self::Triangle6 | Self::Tetrahedron10)
+    }
+
     /// Dimension of the cell itself: 1 for a segment, 2 for triangles and quadrilaterals, 3 for
     /// tetrahedra and hexahedra.
     pub fn dimension(self) -> usize {

@@ -30,11 +30,14 @@ pub enum Method {
     /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
     /// and as a check of the others.
     Rk,
+    /// Explicit central differences, order 2: for bodies with lumped inertia that are hardly damped.
+    /// Steps are as long as stability allows, so that at a loose `rtol` errors are far below it.
+    CentralDifference,
 }
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Auto,
         Self::CvodeBdf,
         Self::CvodeAdams,
@@ -42,10 +45,11 @@ impl Method {
         Self::IdaKlu,
         Self::Arkode,
         Self::Rk,
+        Self::CentralDifference,
     ];
 
     /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`, `arkode`,
-    /// `rk`.
+    /// `rk`, `central-difference`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -55,6 +59,7 @@ impl Method {
             Self::IdaKlu => "ida-klu",
             Self::Arkode => "arkode",
             Self::Rk => "rk",
+            Self::CentralDifference => "central-difference",
         }
     }
 
@@ -81,6 +86,9 @@ impl Method {
             }
             Self::Rk => {
                 "motion that is not stiff: light damping, small alpha (Dormand-Prince 5(4))"
+            }
+            Self::CentralDifference => {
+                "bodies of lumped inertia without much damping (explicit central differences)"
             }
         }
     }
@@ -166,7 +174,8 @@ pub struct Solver {
     /// waves in the body, its displacements' counterpart in a vibration.
     pub atol_velocity: Option<f64>,
     /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger
-    /// means less drift; it costs the implicit methods nothing, an explicit one a step of 3.3/alpha.
+    /// means less drift; it costs the implicit methods and central differences nothing, `rk` a step
+    /// of 3.3/alpha.
     pub alpha: f64,
     /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's (default: 4).
     pub max_order: Option<u32>,
@@ -206,9 +215,9 @@ impl Solver {
         self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
         let orders = self.method.orders();
         match self.max_order {
-            Some(_) if self.method == Method::Rk => {
-                let mend = "the Runge-Kutta method has one order only: leave it out";
-                Err(Error::input("max_order", format!("{:?}", self.max_order), mend))
+            Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {
+                let mend = format!("{} has one order only: leave it out", self.method);
+                Err(Error::input("max_order", order, mend))
             }
             Some(order) if !orders.contains(&order) => {
                 let (lowest, highest) = (orders.start(), orders.end());

@@ -1,5 +1,6 @@
 //! One face for all integrators: step, look back into the step, count.
 
+use crate::central_difference::{self, CentralDifference};
 use crate::ode::Failure;
 use crate::rk::{self, DormandPrince};
 use crate::simulate::solver::Tolerances;
@@ -18,6 +19,7 @@ pub(super) enum Stepper {
     Cvode(Cvode<System>),
     Ida(Ida<IndexOne>),
     Rk(Box<DormandPrince<System>>),
+    CentralDifference(Box<CentralDifference>),
 }
 
 impl Stepper {
@@ -52,6 +54,11 @@ impl Stepper {
                 let options = options.stop_time(end);
                 Ok(Self::Rk(Box::new(DormandPrince::new(system, t, state, &options)?)))
             }
+            Method::CentralDifference => {
+                let started =
+                    CentralDifference::new(system, t, end, state, solver.rtol, tolerances)?;
+                Ok(Self::CentralDifference(Box::new(started)))
+            }
         }
     }
 
@@ -71,6 +78,7 @@ impl Stepper {
                 Ok(ida.t())
             }
             Self::Rk(rk) => Ok(rk.step()?),
+            Self::CentralDifference(central) => central.step(),
         }
     }
 
@@ -81,6 +89,7 @@ impl Stepper {
             Self::Cvode(cvode) => Ok(cvode.interpolate(t, 0, state)?),
             Self::Ida(ida) => Ok(ida.interpolate(t, 0, state)?),
             Self::Rk(rk) => Ok(rk.interpolate(t, state)?),
+            Self::CentralDifference(central) => central.interpolate(t, state),
         }
     }
 
@@ -91,6 +100,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.last_order(),
             Self::Ida(ida) => ida.last_order(),
             Self::Rk(_) => rk::ORDER,
+            Self::CentralDifference(_) => central_difference::ORDER,
         }
     }
 
@@ -106,6 +116,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.y(),
             Self::Ida(ida) => ida.y(),
             Self::Rk(rk) => rk.y(),
+            Self::CentralDifference(central) => central.y(),
         }
     }
 
@@ -115,6 +126,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.system(),
             Self::Ida(ida) => &ida.system().system,
             Self::Rk(rk) => rk.system(),
+            Self::CentralDifference(central) => central.system(),
         }
     }
 
@@ -124,6 +136,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.system_mut(),
             Self::Ida(ida) => &mut ida.system_mut().system,
             Self::Rk(rk) => rk.system_mut(),
+            Self::CentralDifference(central) => central.system_mut(),
         }
     }
 
@@ -134,6 +147,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.into_system(),
             Self::Ida(ida) => ida.into_system().system,
             Self::Rk(rk) => rk.into_system(),
+            Self::CentralDifference(central) => central.into_system(),
         }
     }
 
@@ -176,6 +190,21 @@ impl Stepper {
                     last_step: s.last_step,
                     last_order: rk::ORDER,
                     notice: s.stability_limited.map(|limit| limit.to_string()),
+                }
+            }
+            Self::CentralDifference(central) => {
+                let s = central.statistics();
+                Counts {
+                    steps: s.steps,
+                    evaluations: s.evaluations,
+                    jacobian_evaluations: central.system().tangent_evaluations(),
+                    factorizations: 0,
+                    error_test_failures: s.rejected_steps,
+                    convergence_failures: s.refused_steps,
+                    contact_events: 0,
+                    last_step: s.last_step,
+                    last_order: central_difference::ORDER,
+                    notice: central.notice(),
                 }
             }
         }

@@ -20,8 +20,10 @@
 mod at_rest;
 mod cholesky;
 mod dae;
+mod explicit;
 mod newton;
 mod ode;
+mod rates;
 mod reduced;
 mod spectrum;
 #[cfg(test)]
@@ -33,6 +35,7 @@ pub(crate) use at_rest::{AtRest, Balance};
 pub(crate) use dae::IndexOne;
 use newton::Newton;
 pub(crate) use ode::ENERGIES;
+pub(crate) use rates::{Rates, RatesBound};
 use reduced::{Coupling, Reduced};
 pub use spectrum::Spectrum;
 
@@ -96,6 +99,12 @@ impl Energy {
         let stored = self.strain + self.gravity + self.contact + self.springs;
         self.kinetic + stored + self.dissipated - self.supplied
     }
+
+    /// Sum of all but gravity, whose zero is arbitrary, as the scale of the balance.
+    pub(crate) fn size(&self) -> f64 {
+        let stored = self.strain + self.contact + self.springs;
+        self.kinetic + stored + self.dissipated.abs() + self.supplied.abs()
+    }
 }
 
 impl System {
@@ -109,7 +118,11 @@ impl System {
         phase: &str,
     ) -> Result<Self, Error> {
         let (dimension, dofs) = (model.dimension, model.dofs());
-        let mut inertia = Reduced::new(model.pattern(), dimension, &rows, Coupling::SameAxis);
+        let coupling = match model.inertia.is_diagonal() {
+            true => Coupling::Diagonal,
+            false => Coupling::SameAxis,
+        };
+        let mut inertia = Reduced::new(model.pattern(), dimension, &rows, coupling);
         let values = &model.inertia.values;
         if inertia.factorize(|source| values[source.entry]).is_err() {
             return Err(match inertia.dependent_row() {
@@ -263,7 +276,13 @@ impl System {
     }
 
     fn evaluate_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
-        let Evaluation { nodal, total, .. } = &mut self.at;
+        self.collect_forces(t, u, v)?;
+        self.at.nodal.add_up(&mut self.at.total);
+        Ok(())
+    }
+
+    fn collect_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+        let nodal = &mut self.at.nodal;
         nodal.clear();
         if let Some(stiffness) = &self.model.stiffness {
             stiffness.add_product(-1.0, u, &mut nodal.conservative);
@@ -278,7 +297,6 @@ impl System {
             }
             added?;
         }
-        nodal.add_up(total);
         Ok(())
     }
 

@@ -31,6 +31,8 @@ pub(super) struct Source {
 /// Which entries X has.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Coupling {
+    /// Nothing but itself, as lumped inertia.
+    Diagonal,
     /// Equal axes only, as the inertia matrix.
     SameAxis,
     /// All axes of coupled nodes.
@@ -72,7 +74,12 @@ impl Reduced {
             for (entry, node) in pattern.row(column / dimension) {
                 for axis in 0..dimension {
                     let axes = [column % dimension, axis];
-                    if coupling == Coupling::SameAxis && axes[0] != axes[1] {
+                    let is_coupled = match coupling {
+                        Coupling::Diagonal => node * dimension + axis == column,
+                        Coupling::SameAxis => axes[0] == axes[1],
+                        Coupling::AllAxes => true,
+                    };
+                    if !is_coupled {
                         continue;
                     }
                     // X is symmetric: entry (column, row) stands for (row, column).

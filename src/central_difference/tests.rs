@@ -1,0 +1,233 @@
+//! The scheme itself, at fixed steps, against what is known of it in closed form.
+
+use std::f64::consts::PI;
+
+use super::*;
+use crate::constraint::Start;
+use crate::{Body, Cells, Inertia, Material, Mesh, Obstacle, Phase, Scene, Strain, Viscosity};
+
+/// So fast that a held node told to move does so within the first step.
+const ALPHA: f64 = 1e12;
+
+fn system(scene: &Scene) -> System {
+    let natural = vec![0.0; scene.body().dofs()];
+    let start = Start { time: 0.0, u: &natural };
+    let forces = scene.forces().unwrap();
+    let model = scene.model(&forces);
+    let of_phase = forces.into_iter().next().unwrap();
+    scene.system(&model, &scene.phases()[0], of_phase, &start, ALPHA).unwrap()
+}
+
+/// The method on the first phase of a scene, with steps of a given size: no error test, no
+/// other step sizes.
+fn fixed(scene: &Scene, h: f64) -> CentralDifference {
+    let [u, v] = scene.start();
+    let (y, end) = ([u, v, &[0.0; 2]].concat(), scene.phases()[0].until);
+    let atol = vec![f64::INFINITY; y.len()];
+    let mut central = CentralDifference::new(system(scene), 0.0, end, &y, 0.5, atol).unwrap();
+    central.control = Control::new(0.0, end, h);
+    central.stability.freeze();
+    central
+}
+
+/// Displacements after `steps` steps.
+fn after(central: &mut CentralDifference, steps: usize) -> &[f64] {
+    for _ in 0..steps {
+        central.step().unwrap();
+    }
+    &central.y()[..central.system().dofs()]
+}
+
+/// A bar of 1 m whose left end is held, with lumped inertia and waves of 1 m/s; `viscosity` is the
+/// time c/E (s).
+fn bar(cells: usize, viscosity: f64) -> Scene {
+    let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity };
+    let body = Body::new(Mesh::bar(1.0, cells + 1).unwrap(), material);
+    let body = body.area(1.0).inertia(Inertia::Lumped).build().unwrap();
+    Scene::new(body).phase(Phase::until(1e9).hold("left"))
+}
+
+/// Frequency (rad/s) of the k-th vibration (from 1) of the lumped bar.
+fn frequency(cells: usize, k: usize) -> f64 {
+    2.0 * cells as f64 * ((2 * k - 1) as f64 * PI / (4 * cells) as f64).sin()
+}
+
+/// Size of a trembling bar after 4000 steps of the given part of the longest stable step, or once it is
+/// more than a million.
+fn tremor(cells: usize, viscosity: f64, part: f64) -> f64 {
+    let omega = frequency(cells, cells);
+    // stiffness and damping are proportional, so the same motion has the highest of both
+    let rate = viscosity * omega * omega;
+    let scene = bar(cells, viscosity).initial_displacement(|x| vec![(37.0 * x[0]).sin()]);
+    let longest = 2.0 / (rate + rate.hypot(omega));
+    let mut central = fixed(&scene, part * longest);
+    let size = |u: &[f64]| u.iter().fold(0.0, |size, u| f64::max(size, u.abs()));
+    (0..4000)
+        .map(|_| size(after(&mut central, 1)))
+        .find(|size| *size > 1e6)
+        .unwrap_or_else(|| size(&central.y))
+}
+
+/// The bound is sharp, with and without damping.
+#[test]
+fn stability_ends_where_it_should() {
+    for viscosity in [0.0, 0.001, 0.02, 0.5] {
+        for cells in [1, 4, 20] {
+            let (below, above) = (tremor(cells, viscosity, 0.99), tremor(cells, viscosity, 1.02));
+            println!("c/E {viscosity} s, {cells} cells: {below:.1e} below, {above:.1e} above");
+            // the highest vibration is amplified by 1/sqrt(1 - 0.99^2) = 7, others by less
+            assert!(below < 30.0, "c/E {viscosity}, {cells} cells: {below:e}");
+            assert!(above > 1e6, "c/E {viscosity}, {cells} cells: {above:e}");
+        }
+    }
+}
+
+/// The bounds on the rates of a bar, free of shear and of waves across, are sharp.
+#[test]
+fn rates_of_a_bar() {
+    for cells in [1, 2, 10, 100] {
+        let scene = bar(cells, 0.01);
+        let mut system = system(&scene);
+        let mut bound = crate::system::RatesBound::new(&mut system);
+        let still = vec![0.0; system.dofs()];
+        let rates = system.rates(0.0, &still, &still, &mut bound);
+        let omega = frequency(cells, cells);
+        for (found, exact) in [(rates.frequency, omega), (rates.decay, 0.01 * omega * omega)] {
+            println!("{cells} cells: {found} {exact}");
+            assert!(found > (1.0 - 1e-12) * exact && found < 1.01 * exact, "{found} {exact}");
+        }
+    }
+}
+
+/// A damped vibration u'' + r u' + omega^2 u = 0 against its closed form: order 2 in both.
+#[test]
+fn order_two() {
+    for viscosity in [0.0, 0.1] {
+        let (omega, end): (f64, f64) = (frequency(1, 1), 5.0);
+        let half_rate = 0.5 * viscosity * omega * omega;
+        let slow = (omega * omega - half_rate * half_rate).sqrt();
+        let exact =
+            (-half_rate * end).exp() * ((slow * end).cos() + half_rate / slow * (slow * end).sin());
+        let errors = [50, 100, 200, 400].map(|steps| {
+            let scene = bar(1, viscosity).initial_displacement(|x| vec![x[0]]);
+            (after(&mut fixed(&scene, end / steps as f64), steps)[1] - exact).abs()
+        });
+        println!("c/E {viscosity}: {errors:?}");
+        for pair in errors.windows(2) {
+            // the next terms are (omega h)^2/16 or less, relative
+            assert!((pair[0] / pair[1] - 4.0).abs() < 0.1, "c/E {viscosity}: {errors:?}");
+        }
+    }
+}
+
+/// kinetic + potential + dissipated - supplied, less h^2 a.M a/8.
+fn balance(central: &CentralDifference) -> f64 {
+    let n = central.system.dofs();
+    let (u, v) = (&central.y[..n], &central.y[n..2 * n]);
+    let mut energy = central.system.energy(central.t, u, v);
+    (energy.dissipated, energy.supplied) = (central.y[2 * n], central.y[2 * n + 1]);
+    let h = central.t - central.t_before;
+    energy.balance() - h * h / 8.0 * crate::force::dot(&central.force, &central.second)
+}
+
+/// A clamped rubber square of 3 x 3 cells, lumped.
+fn square(strain: Strain, viscosity: f64, phase: Phase) -> Scene {
+    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.4, viscosity };
+    let body = Body::new(mesh, rubber).thickness(0.01).strain(strain).inertia(Inertia::Lumped);
+    Scene::new(body.build().unwrap()).phase(phase.hold("bottom"))
+}
+
+/// Under linear forces the balance of the scheme is constant to round-off, whatever the step, and
+/// though held nodes jump into motion.
+#[test]
+fn linear_forces_keep_the_energy_of_the_scheme() {
+    let phase = Phase::until(1e9).move_nodes([13, 14], [0.02, -0.05]);
+    let scene = square(Strain::Cauchy, 0.0, phase);
+    for h in [1e-5, 3e-4] {
+        let mut central = fixed(&scene, h);
+        let dofs = after(&mut central, 1000).len();
+        let scale = central.y()[2 * dofs + 1].abs();
+        let mut worst = 0.0_f64;
+        for _ in 0..20 {
+            after(&mut central, 1000);
+            worst = worst.max(balance(&central).abs() / scale);
+        }
+        println!("h {h:e}: balance {worst:.1e} of the energy supplied, {scale:.3} J");
+        // 20,000 sums of numbers of the size of the energy
+        assert!(worst < 1e-11, "h {h:e}: {worst:e}");
+    }
+}
+
+/// The heat of natural and of objective viscosity is booked to second order.
+#[test]
+fn heat_is_second_order() {
+    for strain in [Strain::Cauchy, Strain::Green] {
+        let phase = Phase::until(1e9).load([16], [20.0, 50.0]);
+        let scene = square(strain, 200.0, phase);
+        let errors = [400, 800, 1600].map(|steps| {
+            let mut central = fixed(&scene, 0.04 / steps as f64);
+            after(&mut central, steps);
+            let dissipated = central.y()[central.y().len() - 2];
+            (dissipated, balance(&central).abs() / dissipated)
+        });
+        println!("{strain:?}: heat (J) and error of the balance {errors:?}");
+        for pair in errors.windows(2) {
+            let ratio = pair[0].1 / pair[1].1;
+            assert!((ratio - 4.0).abs() < 0.4, "{strain:?}: {errors:?}");
+        }
+    }
+}
+
+/// Without damping the energy of a beam that swings far out does not drift in 100,000 steps.
+#[test]
+fn energy_does_not_drift() {
+    let material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
+    let mesh = Mesh::rectangle([1.0, 0.1], [11, 2], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, material).thickness(0.1).strain(Strain::Green);
+    let scene = Scene::new(body.inertia(Inertia::Lumped).build().unwrap());
+    let scene = scene.gravity([0.0, -2.0]).phase(Phase::until(1e9).hold("left"));
+    let mut system = system(&scene);
+    let mut bound = crate::system::RatesBound::new(&mut system);
+    let still = vec![0.0; system.dofs()];
+    let omega = system.rates(0.0, &still, &still, &mut bound).frequency;
+    let mut central = fixed(&scene, 0.8 * 2.0 / omega);
+    let start = balance(&central);
+    let mut scale = 0.0_f64;
+    let stretches = [(); 10].map(|()| {
+        let mut worst = 0.0_f64;
+        for _ in 0..1000 {
+            after(&mut central, 10);
+            worst = worst.max((balance(&central) - start).abs());
+            scale = scale.max(
+                central.system.energy(central.t, &central.y[..44], &central.y[44..88]).kinetic,
+            );
+        }
+        worst
+    });
+    println!("scale {scale:.3} J, balance off by at most {stretches:?} J in each tenth");
+    assert!(stretches.iter().all(|worst| *worst < 0.02 * scale), "{stretches:?} of {scale}");
+    assert!(stretches[9] < 2.0 * stretches[0], "{stretches:?}");
+}
+
+/// A node held by nothing but a stiff floor: the step is stable before it touches.
+#[test]
+fn contacts_count_before_they_touch() {
+    let body = Body::new(
+        Mesh::bar(1.0, 2).unwrap(),
+        Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 },
+    );
+    let body =
+        body.area(1.0).inertia(Inertia::Lumped).viscosity(Viscosity::Natural).build().unwrap();
+    let floor = Obstacle::half_plane([-1.0], [1.0]).stiffness(1e4).damping(30.0);
+    let scene = Scene::new(body).obstacle(floor).phase(Phase::until(1.0));
+    let mut system = system(&scene);
+    let mut bound = crate::system::RatesBound::new(&mut system);
+    let still = vec![0.0; 2];
+    let far = system.rates(0.0, &still, &still, &mut bound);
+    let touching = system.rates(0.0, &[-1.5, -2.5], &still, &mut bound);
+    // on half a kilogramme, beside springs of 1 N/m
+    assert!((far.frequency / 2e4f64.sqrt() - 1.0).abs() < 1e-3, "{far:?}");
+    assert!((far.decay / 60.0 - 1.0).abs() < 1e-3, "{far:?}");
+    assert!((touching.frequency / far.frequency - 1.0).abs() < 1e-3, "{touching:?}");
+}
