@@ -49,7 +49,8 @@ fn a_mass_on_a_spring_swings() {
             assert!(apart < 1e-5 * (f / k).abs(), "{method}: {apart:e} at {} s", sample.time);
             assert_eq!(sample.u[11], 0.0);
         }
-        assert_balanced(&trajectory, 1e-6);
+        // the energy that central differences conserve is off by (omega h)^2/8
+        assert_balanced(&trajectory, if method == Method::CentralDifference { 1e-5 } else { 1e-6 });
     }
 }
 

@@ -19,10 +19,10 @@ pub(super) struct Guide {
     alpha: f64,
     /// R_0 and R_0' + alpha R_0, row by row.
     remainders: Vec<(f64, f64)>,
-    /// A^T u and A^T v at the time last aimed at, row by row, and the mean of A^T v until then.
+    /// A^T u and A^T v at the time last aimed at, row by row.
     positions: Vec<f64>,
-    means: Vec<f64>,
     pub(super) rates: Vec<f64>,
+    means: Vec<f64>,
 }
 
 impl Guide {
@@ -60,13 +60,25 @@ impl Guide {
         Ok(())
     }
 
-    /// Rates that lead from displacements `u` to the positions aimed at within `h`.
-    pub(super) fn rates_from(&mut self, system: &System, u: &[f64], h: f64) -> &[f64] {
-        for ((mean, row), position) in self.means.iter_mut().zip(system.rows()).zip(&self.positions)
-        {
-            *mean = (position - row.apply(u)) / h;
+    /// Mean rates from `t` on over a time `h`, free of the round-off in differences of positions.
+    pub(super) fn mean_rates(
+        &mut self,
+        system: &System,
+        t: f64,
+        h: f64,
+    ) -> Result<&[f64], Failure> {
+        let Self { since, alpha, remainders, means, .. } = self;
+        let elapsed = t - *since;
+        let (decay, decay_ahead) = ((-*alpha * elapsed).exp(), -*alpha * h);
+        for (k, (row, &(off, slope))) in system.rows().iter().zip(&*remainders).enumerate() {
+            let velocity = |s: f64| system.prescribed(row, t + s * h).map(|motion| motion.velocity);
+            // Simpson's rule
+            let prescribed = (velocity(0.0)? + 4.0 * velocity(0.5)? + velocity(1.0)?) / 6.0;
+            let ahead =
+                (off + slope * elapsed) * decay_ahead.exp_m1() / h + slope * decay_ahead.exp();
+            means[k] = prescribed + ahead * decay;
         }
-        &self.means
+        Ok(means)
     }
 
     /// Puts the components that nodal rows prescribe where they were found to be.

@@ -209,7 +209,7 @@ impl CentralDifference {
         let (v_next, energies) = rest.split_at_mut(n);
         guide.aim(system, next)?;
 
-        let rates = guide.rates_from(system, u, h);
+        let rates = guide.mean_rates(system, self.t, h)?;
         let kick = Kick { duration: 0.5 * h, force: &self.force, rates };
         let mut supplied = mobility.kick(system, &kick, v, &mut self.first, middle);
         let outputs = u_next.iter_mut().zip(&mut *extrapolated);

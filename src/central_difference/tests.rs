@@ -52,8 +52,8 @@ fn frequency(cells: usize, k: usize) -> f64 {
     2.0 * cells as f64 * ((2 * k - 1) as f64 * PI / (4 * cells) as f64).sin()
 }
 
-/// Size of a trembling bar after 4000 steps of the given part of the longest stable step, or once it is
-/// more than a million.
+/// Largest displacement of a trembling bar in 4000 steps of the given part of the longest stable step,
+/// or the first one of more than a million.
 fn tremor(cells: usize, viscosity: f64, part: f64) -> f64 {
     let omega = frequency(cells, cells);
     // stiffness and damping are proportional, so the same motion has the highest of both
@@ -62,10 +62,14 @@ fn tremor(cells: usize, viscosity: f64, part: f64) -> f64 {
     let longest = 2.0 / (rate + rate.hypot(omega));
     let mut central = fixed(&scene, part * longest);
     let size = |u: &[f64]| u.iter().fold(0.0, |size, u| f64::max(size, u.abs()));
-    (0..4000)
-        .map(|_| size(after(&mut central, 1)))
-        .find(|size| *size > 1e6)
-        .unwrap_or_else(|| size(&central.y))
+    let mut largest = 0.0_f64;
+    for _ in 0..4000 {
+        largest = largest.max(size(after(&mut central, 1)));
+        if largest > 1e6 {
+            break;
+        }
+    }
+    largest
 }
 
 /// The bound is sharp, with and without damping.
@@ -75,8 +79,8 @@ fn stability_ends_where_it_should() {
         for cells in [1, 4, 20] {
             let (below, above) = (tremor(cells, viscosity, 0.99), tremor(cells, viscosity, 1.02));
             println!("c/E {viscosity} s, {cells} cells: {below:.1e} below, {above:.1e} above");
-            // the highest vibration is amplified by 1/sqrt(1 - 0.99^2) = 7, others by less
-            assert!(below < 30.0, "c/E {viscosity}, {cells} cells: {below:e}");
+            // the start is of size 1; the highest vibration is amplified by 1/sqrt(1 - 0.99^2) = 7
+            assert!(below < 8.0, "c/E {viscosity}, {cells} cells: {below:e}");
             assert!(above > 1e6, "c/E {viscosity}, {cells} cells: {above:e}");
         }
     }

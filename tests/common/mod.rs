@@ -1,7 +1,7 @@
 //! What the tests of whole scenes share.
 #![allow(dead_code)] // each test binary uses its part
 
-use pliant::{Sampling, Scene, Solver, Trajectory};
+use pliant::{Method, Sampling, Scene, Solver, Trajectory};
 
 /// A table of reference values with named columns.
 pub struct Table {
@@ -56,4 +56,23 @@ pub fn difference(a: &Trajectory, b: &Trajectory) -> f64 {
         }
     }
     worst / largest
+}
+
+/// What a motion's error may be after many steps, each with an error of `rtol`: some hundred times
+/// that, for methods that raise their order as rtol falls or have a high one. With order 2 steps shrink
+/// as rtol^(1/3) and their number makes it rtol^(2/3).
+pub fn global_error(method: Method, rtol: f64) -> f64 {
+    match method {
+        Method::CentralDifference => 10.0 * rtol.powf(2.0 / 3.0),
+        _ => 500.0 * rtol,
+    }
+}
+
+/// A tolerance and its hundredth between which errors fall. At 1e-5 it is stability that bounds the steps
+/// of central differences, and their errors are smaller than asked for.
+pub fn tolerances(method: Method) -> [f64; 2] {
+    match method {
+        Method::CentralDifference => [1e-6, 1e-8],
+        _ => [1e-5, 1e-7],
+    }
 }
