@@ -1,6 +1,6 @@
 //! Scenes of Hirai, *Computing Dynamic Deformation*.
 
-use crate::body::{Body, BodyBuilder, CellSelection, Strain, Viscosity};
+use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
 use crate::constraint::Axis;
 use crate::error::Error;
 use crate::force::Obstacle;
@@ -210,13 +210,21 @@ pub struct ClampedBeam {
     /// damping ratio of about 1 %, omega c / (2 E); higher modes have more, in proportion to their
     /// frequency.
     pub viscosity: f64,
+    /// Default: consistent.
+    pub inertia: Inertia,
     /// End (s). Default: 2.
     pub until: f64,
 }
 
 impl Default for ClampedBeam {
     fn default() -> Self {
-        Self { nodes: [36, 3], cells: Cells::Triangles, viscosity: 0.0, until: 2.0 }
+        Self {
+            nodes: [36, 3],
+            cells: Cells::Triangles,
+            viscosity: 0.0,
+            inertia: Inertia::Consistent,
+            until: 2.0,
+        }
     }
 }
 
@@ -226,11 +234,11 @@ impl ClampedBeam {
     /// # Errors
     /// Fewer than 2 x 2 nodes; viscosity or end out of range.
     pub fn scene(&self) -> Result<Scene, Error> {
-        let &Self { nodes, cells, viscosity, until } = self;
+        let &Self { nodes, cells, viscosity, inertia, until } = self;
         let mesh = Mesh::rectangle([0.35, 0.02], nodes, cells)?;
         let material = Material { viscosity, ..FLAG_MATERIAL };
-        let body = Body::new(mesh, material).thickness(1.0).strain(Strain::Green).build()?;
-        let scene = Scene::new(body)
+        let body = Body::new(mesh, material).thickness(1.0).strain(Strain::Green);
+        let scene = Scene::new(body.inertia(inertia).build()?)
             .gravity([0.0, -2.0])
             .phase(Phase::until(until).named("swings").hold("left"));
         scene.validate().map(|()| scene)

@@ -2,13 +2,13 @@
 
 use super::selection::{BOX, corners};
 use super::value::Value;
-use crate::body::{Body, BodyBuilder, CellSelection, Strain, Viscosity};
+use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
 use crate::error::{Error, positive};
 use crate::material::{Material, Plane};
 use crate::mesh::Mesh;
 
 const BODY: &[&str] =
-    &["mesh", "thickness", "area", "strain", "plane", "viscous", "material", "region"];
+    &["mesh", "thickness", "area", "strain", "plane", "viscous", "inertia", "material", "region"];
 
 /// The body that `value`, the table `[body]`, describes, with the point masses of `points`.
 pub(super) fn body(
@@ -34,6 +34,11 @@ pub(super) fn body(
         value.word(&[("natural", Viscosity::Natural), ("objective", Viscosity::Objective)])
     })? {
         body = body.viscosity(viscosity);
+    }
+    if let Some(inertia) = table.optional("inertia", "how inertia is shared out", |value| {
+        value.word(&[("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)])
+    })? {
+        body = body.inertia(inertia);
     }
     if let Some(plane) = table.optional("plane", "what is 0 across the plane", |value| {
         value.word(&[("strain", Plane::Strain), ("stress", Plane::Stress)])

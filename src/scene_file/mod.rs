@@ -35,7 +35,7 @@
 //! | table | keys |
 //! | --- | --- |
 //! | top | `title`; `dimension`: 1, 2 or 3 (default: that of the mesh; in a higher one, bars are strings and surfaces membranes); `gravity` (m/s^2) |
-//! | `[body]` | `mesh`; `thickness` (m) in 2D, `area` (m^2) in 1D; `strain`: `"cauchy"` (default), `"green"` or `"auto"`; `viscous`: `"natural"` or `"objective"` (defaults: with Cauchy, with Green strain); `plane`: `"strain"` (default) or `"stress"`; `material` = { `density` (kg/m^3), `young` (Pa), `poisson`, `viscosity` (Pa s) } |
+//! | `[body]` | `mesh`; `thickness` (m) in 2D, `area` (m^2) in 1D; `strain`: `"cauchy"` (default), `"green"` or `"auto"`; `viscous`: `"natural"` or `"objective"` (defaults: with Cauchy, with Green strain); `inertia`: `"consistent"` (default) or `"lumped"` ([`Inertia`](crate::Inertia)); `plane`: `"strain"` (default) or `"stress"`; `material` = { `density` (kg/m^3), `young` (Pa), `poisson`, `viscosity` (Pa s) } |
 //! | `mesh` | `kind`, and for `"bar"` `length`, `nodes`; for `"rectangle"` and `"cuboid"` `size`, `nodes`, `cells`; for `"ring"` and `"half-ring"` `inner`, `outer`, `nodes` = [around, radial], `cells`; for `"gmsh"` `file`, relative to the scene file ([`Mesh::read_gmsh`](crate::Mesh::read_gmsh)). For all: `origin` (m), the lower corner, or the centre of a ring |
 //! | `cells` | `"triangles"`, `"crossed"`, `"rectangles"`, `"triangles6"` ([`Cells`](crate::Cells)); `"tetrahedra"`, `"hexahedra"`, `"tetrahedra10"` ([`SolidCells`](crate::SolidCells)) |
 //! | `[[body.region]]` | `name`; `box` (cells whose centroid lies in it) or `group` (a physical group of Gmsh); `material`: the keys that differ |

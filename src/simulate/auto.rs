@@ -3,7 +3,8 @@
 //! The rules come from charts of speed against accuracy over the documents' scenes: diagonally
 //! implicit Runge-Kutta methods lead where vibrations are lightly damped, for they are L-stable and
 //! may step over them; BDF leads where damping is strong, for a step costs it one stage; explicit
-//! Runge-Kutta leads where accuracy asks for steps not much longer than those of its stability.
+//! Runge-Kutta leads where accuracy asks for steps not much longer than those of its stability. With
+//! lumped inertia a step of central differences costs so little that they lead well before that.
 
 use super::{Method, Solver};
 use crate::system::{Spectrum, System};
@@ -16,9 +17,10 @@ pub(super) struct Plan {
     max_order: Option<u32>,
     /// Why this method, and those before it in the phase, if they were chosen.
     pub(super) reason: Option<String>,
-    /// Longest stable step of the explicit method (s).
+    /// Longest stable steps of explicit Runge-Kutta and, with lumped inertia, of central differences (s).
     explicit_step: f64,
-    /// Steps of the explicit method after which the implicit one is tried again.
+    central_step: f64,
+    /// Steps of explicit Runge-Kutta after which the implicit one is tried again.
     patience: usize,
 }
 
@@ -29,6 +31,13 @@ const STRONG_DAMPING: f64 = 0.006;
 /// Steps of the implicit method, in longest stable ones of the explicit method, below which the
 /// explicit one is faster: 7 stages with a solve each and a bit, against 6 without.
 const WORTH_EXPLICIT: f64 = 3.0;
+
+/// The same for central differences: what a step of the implicit method costs, in theirs.
+const WORTH_CENTRAL: f64 = 60.0;
+
+/// Part of their longest stable step below which it is accuracy that bounds steps of central differences,
+/// and a method of higher order is better.
+const SHORT: f64 = 0.1;
 
 /// Steps on the real axis and on the imaginary one that Dormand-Prince 5(4) takes, times the rate.
 const EXPLICIT_REACH: f64 = 3.3;
@@ -47,6 +56,7 @@ impl Plan {
                 solver,
                 reason: None,
                 explicit_step: 0.0,
+                central_step: 0.0,
                 patience: 0,
             };
         }
@@ -59,6 +69,7 @@ impl Plan {
             max_order: asked.max_order,
             reason: Some(reason),
             explicit_step: explicit_step(&spectrum, alpha),
+            central_step: if system.is_lumped() { central_step(&spectrum) } else { 0.0 },
             patience: 4 * TRIAL,
         }
     }
@@ -85,17 +96,31 @@ impl Plan {
     /// begins with small steps.)
     pub(super) fn reconsidered(&self, means: [f64; 2], steps: usize) -> Option<Self> {
         self.reason.as_ref()?;
-        let (bound, [step, _]) = (self.explicit_step, means);
+        let (bound, central, [step, _]) = (self.explicit_step, self.central_step, means);
+        let below = |limit: f64| means.iter().all(|step| *step < limit);
+        let explicit = |method| {
+            let reason = format!("accuracy asks for steps of {step:.1e} s");
+            Some(self.followed_by(method, None, &reason))
+        };
+        let implicit = |central_step| {
+            let plan = self.followed_by(
+                Method::Arkode,
+                self.max_order,
+                &format!("stability may bound steps of {step:.1e} s"),
+            );
+            Some(Self { patience: 4 * self.patience, central_step, ..plan })
+        };
         match self.solver.method {
-            Method::Arkode if means.iter().all(|step| *step < WORTH_EXPLICIT * bound) => {
-                let reason = format!("accuracy asks for steps of {step:.1e} s");
-                Some(self.followed_by(Method::Rk, None, &reason))
+            Method::Arkode if below(WORTH_EXPLICIT * bound) && below(central) => {
+                explicit(Method::Rk)
             }
+            Method::Arkode if below(WORTH_CENTRAL * central) => explicit(Method::CentralDifference),
+            Method::Arkode if below(WORTH_EXPLICIT * bound) => explicit(Method::Rk),
             // does stability bound the steps, or accuracy? Only the implicit method can tell
-            Method::Rk if steps >= self.patience && step > 0.3 * bound => {
-                let reason = format!("stability may bound steps of {step:.1e} s");
-                let plan = self.followed_by(Method::Arkode, self.max_order, &reason);
-                Some(Self { patience: 4 * self.patience, ..plan })
+            Method::Rk if steps >= self.patience && step > 0.3 * bound => implicit(central),
+            Method::CentralDifference if below(SHORT * central) => implicit(step),
+            Method::CentralDifference if steps >= WORTH_CENTRAL as usize * self.patience => {
+                implicit(central)
             }
             _ => None,
         }
@@ -141,7 +166,13 @@ fn choose(spectrum: &Spectrum) -> (Method, String) {
     (method, format!("{method}, as {why}"))
 }
 
-/// Longest step (s) with which the explicit method is stable.
+/// Longest step (s) with which central differences are stable.
+fn central_step(spectrum: &Spectrum) -> f64 {
+    let Spectrum { highest_frequency, damping_rate, .. } = *spectrum;
+    2.0 / (damping_rate + damping_rate.hypot(highest_frequency))
+}
+
+/// Longest step (s) with which explicit Runge-Kutta is stable.
 fn explicit_step(spectrum: &Spectrum, alpha: f64) -> f64 {
     let Spectrum { highest_frequency, damping_rate, .. } = *spectrum;
     // an undamped vibration is on the edge of the region of stability, which leaves the axis at 1

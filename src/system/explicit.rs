@@ -40,11 +40,16 @@ impl System {
         });
     }
 
+    /// Whether M is diagonal.
+    pub(crate) fn is_lumped(&self) -> bool {
+        self.model.inertia.is_diagonal()
+    }
+
     /// Mass (kg) at each degree of freedom; `None` if nodes share inertia.
     pub(crate) fn lumped_masses(&self) -> Option<Vec<f64>> {
         let Model { inertia, dimension, .. } = &*self.model;
         let mass = |dof: usize| inertia.get(dof / dimension, dof / dimension);
-        inertia.is_diagonal().then(|| (0..self.dofs()).map(mass).collect())
+        self.is_lumped().then(|| (0..self.dofs()).map(mass).collect())
     }
 
     /// What a row prescribes at time `t`.
