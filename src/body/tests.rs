@@ -10,6 +10,10 @@ use crate::samples::SQUARE_MATERIAL;
 
 /// Bodies of every kind of cell, in every space they may live in, somewhat irregular.
 pub(super) fn bodies(strain: Strain) -> Vec<(String, Body)> {
+    bodies_with(strain, Inertia::Consistent)
+}
+
+fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
     let square = [0.0, 0.0, 1.0, 0.2, 1.3, 1.1, -0.1, 0.9];
     let wedge = [0.0, 0.0, 1.2, 0.1, 0.2, 1.0, 0.6, 0.1, 0.7, 0.6, 0.1, 0.5];
     let solid = [0.0, 0.0, 0.0, 1.1, 0.1, 0.0, 0.2, 1.0, -0.1, 0.1, 0.2, 1.2];
@@ -45,7 +49,7 @@ pub(super) fn bodies(strain: Strain) -> Vec<(String, Body)> {
                 })
                 .collect();
             let mesh = Mesh::new(dimension, positions, kind, cells.clone()).unwrap();
-            let mut builder = Body::new(mesh, SQUARE_MATERIAL).strain(strain);
+            let mut builder = Body::new(mesh, SQUARE_MATERIAL).strain(strain).inertia(inertia);
             builder = match kind.dimension() {
                 1 => builder.area(1e-4),
                 2 => builder.thickness(0.01),
@@ -235,4 +239,22 @@ fn a_point_mass_is_a_node_without_cells() {
     assert_eq!(body.inertia().get(4, 4), 0.25);
     assert_eq!(body.stiffness().get(8, 8), 0.0);
     assert!(Arc::ptr_eq(body.inertia().pattern(), body.stiffness().pattern()));
+}
+
+/// Lumping keeps the mass of each body and leaves every node some: with linear shape functions, its
+/// row of the consistent matrix.
+#[test]
+fn lumped_inertia_is_diagonal_and_all_there() {
+    let both = bodies(Strain::Cauchy).into_iter().zip(bodies_with(Strain::Cauchy, Inertia::Lumped));
+    for ((name, consistent), (_, lumped)) in both {
+        let mesh = lumped.mesh();
+        assert!(lumped.inertia().is_diagonal() && !consistent.inertia().is_diagonal(), "{name}");
+        let (masses, of_rows) = (lumped.nodal_masses(), consistent.nodal_masses());
+        assert!(masses.iter().all(|mass| *mass > 0.0), "{name}: {masses:?}");
+        assert!((lumped.mass() / consistent.mass() - 1.0).abs() < 1e-14, "{name}");
+        if !mesh.kind().is_quadratic() {
+            let apart = masses.iter().zip(&of_rows).map(|(a, b)| (a / b - 1.0).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-14, "{name}: {masses:?} {of_rows:?}");
+        }
+    }
 }
