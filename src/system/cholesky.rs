@@ -3,6 +3,7 @@
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::linalg::solvers::Solve;
+use faer::perm::Perm;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
     factorize_symbolic_cholesky,
@@ -22,6 +23,8 @@ pub(super) struct Cholesky {
     symbolic: SymbolicCholesky<usize>,
     factor: Vec<f64>,
     memory: MemBuffer,
+    /// Threads of the factorization.
+    par: Par,
     /// In force if the last factorization was LU.
     lu: Option<Lu<usize, f64>>,
     full: Option<Full>,
@@ -35,29 +38,42 @@ struct Full {
     sources: Vec<usize>,
 }
 
+/// Mean length of the columns of a factor from which threads pay: that of solids of some 10,000 unknowns.
+/// Plane bodies stay below it up to a million.
+const WORTH_THREADS: usize = 400;
+
 /// The matrix is not positive definite, or singular.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Indefinite;
 
 impl Cholesky {
-    /// Analyses the pattern of a lower triangle (columns sorted, full diagonal).
+    /// Analyses the pattern of a lower triangle (columns sorted, full diagonal). Unknowns are
+    /// eliminated by approximate minimum degree, or in the `order` given if that leaves less fill.
     ///
     /// # Panics
     /// When the factor does not fit into memory: as any allocation does.
-    pub(super) fn new(pattern: SymbolicSparseColMat<usize>) -> Self {
-        let symbolic = factorize_symbolic_cholesky(
-            pattern.as_ref(),
-            Side::Lower,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams::default(),
-        )
-        .unwrap_or_else(|error| panic!("analysis of a sparse factorization: {error:?}"));
+    pub(super) fn new(pattern: SymbolicSparseColMat<usize>, order: Option<Vec<usize>>) -> Self {
+        let mut symbolic = analyse(&pattern, SymmetricOrdering::Amd);
+        if let Some(order) = order {
+            let mut inverse = vec![0; order.len()];
+            order.iter().enumerate().for_each(|(at, &unknown)| inverse[unknown] = at);
+            let n = order.len();
+            let order = Perm::new_checked(order.into(), inverse.into(), n);
+            let other = analyse(&pattern, SymmetricOrdering::Custom(order.as_ref()));
+            if other.len_val() < symbolic.len_val() {
+                symbolic = other;
+            }
+        }
+        let par = match symbolic.len_val() > WORTH_THREADS * pattern.nrows() {
+            true => Par::rayon(0),
+            false => Par::Seq,
+        };
         let memory = MemBuffer::new(StackReq::any_of(&[
-            symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default()),
+            symbolic.factorize_numeric_llt_scratch::<f64>(par, Spec::default()),
             symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
         ]));
         let factor = vec![0.0; symbolic.len_val()];
-        Self { pattern, symbolic, factor, memory, lu: None, full: None }
+        Self { pattern, symbolic, factor, memory, par, lu: None, full: None }
     }
 
     /// Factorizes the positive definite matrix whose lower triangle has these values.
@@ -70,7 +86,7 @@ impl Cholesky {
                 matrix,
                 Side::Lower,
                 LltRegularization::default(),
-                Par::Seq,
+                self.par,
                 MemStack::new(&mut self.memory),
                 Spec::default(),
             )
@@ -109,6 +125,15 @@ impl Cholesky {
             Some(lu) => lu.solve_in_place(x),
         }
     }
+}
+
+fn analyse(
+    pattern: &SymbolicSparseColMat<usize>,
+    order: SymmetricOrdering<'_, usize>,
+) -> SymbolicCholesky<usize> {
+    let params = CholeskySymbolicParams::default();
+    factorize_symbolic_cholesky(pattern.as_ref(), Side::Lower, order, params)
+        .unwrap_or_else(|error| panic!("analysis of a sparse factorization: {error:?}"))
 }
 
 impl Full {
@@ -174,7 +199,7 @@ mod tests {
         for side in [4, 40] {
             for shift in [0.0, -3.0] {
                 let (pattern, values, dense) = grid(side, shift);
-                let mut factor = Cholesky::new(pattern);
+                let mut factor = Cholesky::new(pattern, None);
                 assert_eq!(factor.factorize(&values).is_ok(), shift == 0.0);
                 let right: Vec<f64> = (0..side * side).map(|i| (i as f64).sin()).collect();
                 let expected =
@@ -203,7 +228,7 @@ mod tests {
     #[test]
     fn a_singular_matrix_is_refused() {
         let pattern = SymbolicSparseColMat::new_checked(2, 2, vec![0, 2, 3], None, vec![0, 1, 1]);
-        let mut factor = Cholesky::new(pattern);
+        let mut factor = Cholesky::new(pattern, None);
         assert_eq!(factor.factorize_indefinite(&[1.0, 1.0, 1.0]), Err(Indefinite));
     }
 }

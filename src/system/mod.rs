@@ -122,7 +122,7 @@ impl System {
             true => Coupling::Diagonal,
             false => Coupling::SameAxis,
         };
-        let mut inertia = Reduced::new(model.pattern(), dimension, &rows, coupling);
+        let mut inertia = Reduced::new(&model, &rows, coupling);
         let values = &model.inertia.values;
         if inertia.factorize(|source| values[source.entry]).is_err() {
             return Err(match inertia.dependent_row() {

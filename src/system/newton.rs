@@ -83,7 +83,7 @@ impl Newton {
     pub(super) fn new(model: &Model, rows: &[Row], follows: bool) -> Self {
         let dofs = model.dofs();
         Self {
-            solver: Reduced::new(model.pattern(), model.dimension, rows, Coupling::AllAxes),
+            solver: Reduced::new(model, rows, Coupling::AllAxes),
             stiffness: Tangent::new(model, &model.stiffness, follows),
             damping: Tangent::new(model, &model.damping, follows),
             follows,

@@ -15,7 +15,7 @@ use faer::{Mat, MatMut, Par, Spec};
 
 use super::cholesky::{Cholesky, Indefinite};
 use crate::constraint::Row;
-use crate::sparse::NodePattern;
+use crate::model::Model;
 
 /// Which entry of the matrices of the body an entry of X comes from.
 #[derive(Clone, Copy)]
@@ -56,12 +56,8 @@ pub(super) struct Reduced {
 }
 
 impl Reduced {
-    pub(super) fn new(
-        pattern: &NodePattern,
-        dimension: usize,
-        rows: &[Row],
-        coupling: Coupling,
-    ) -> Self {
+    pub(super) fn new(model: &Model, rows: &[Row], coupling: Coupling) -> Self {
+        let (pattern, dimension) = (model.pattern(), model.dimension);
         let dofs = pattern.nodes() * dimension;
         let mut position: Vec<Option<usize>> = vec![Some(0); dofs];
         rows.iter().filter_map(Row::nodal).for_each(|(dof, _)| position[dof] = None);
@@ -100,12 +96,28 @@ impl Reduced {
         }
         let lower =
             SymbolicSparseColMat::new_checked(free.len(), free.len(), offsets, None, row_indices);
+        let of_nodes = |nodes: &Vec<usize>| -> Vec<usize> {
+            let of = |(axis, &node): (usize, &usize)| position[node * dimension + axis];
+            let axes = 0..dimension;
+            match coupling {
+                // axes that are not coupled are eliminated one after the other
+                Coupling::Diagonal | Coupling::SameAxis => axes
+                    .flat_map(|axis| nodes.iter().map(move |n| (axis, n)))
+                    .filter_map(of)
+                    .collect(),
+                Coupling::AllAxes => {
+                    let all = nodes.iter().flat_map(|n| axes.clone().map(move |axis| (axis, n)));
+                    all.filter_map(of).collect()
+                }
+            }
+        };
+        let order = model.dissection.as_ref().map(of_nodes);
         Self {
             values: vec![0.0; sources.len()],
             border_values: vec![0.0; border.len()],
             general: GeneralRows::new(rows, &position),
             work: vec![0.0; free.len()],
-            cholesky: Cholesky::new(lower),
+            cholesky: Cholesky::new(lower, order),
             free,
             sources,
             border,

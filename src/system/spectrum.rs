@@ -110,7 +110,7 @@ impl System {
         if highest == 0.0 {
             return None;
         }
-        let mut solver = Reduced::new(self.model.pattern(), d, &self.rows, Coupling::AllAxes);
+        let mut solver = Reduced::new(&self.model, &self.rows, Coupling::AllAxes);
         let mut shift = SHIFT * highest;
         // Kt may have become indefinite by compression
         let (inertia, stiffness) = (&self.model.inertia, self.tangents().0);

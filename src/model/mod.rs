@@ -1,6 +1,10 @@
 //! The constant numbers of a scene: its matrices on one pattern that fits all forces.
 
+mod dissection;
+
 use std::sync::Arc;
+
+use dissection::nested_dissection;
 
 use crate::body::Body;
 use crate::force::Force;
@@ -15,7 +19,13 @@ pub(crate) struct Model {
     pub(crate) stiffness: Option<Arc<BlockMatrix>>,
     /// Constant part of -df/dv: B, for natural viscosity.
     pub(crate) damping: Option<Arc<BlockMatrix>>,
+    /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
+    /// that are large enough for that to matter.
+    pub(crate) dissection: Option<Vec<usize>>,
 }
+
+/// Nodes from which a second order of elimination is worth the search.
+const LARGE: usize = 2000;
 
 impl Model {
     /// The model of `body` under `forces`.
@@ -25,18 +35,25 @@ impl Model {
             .flat_map(Force::couplings)
             .filter(|&[a, b]| pattern.find(a, b).is_none())
             .collect();
+        let (dimension, positions) = (body.dimension(), body.mesh().positions());
+        let dissection = |pattern: &NodePattern| {
+            let is_large = pattern.nodes() >= LARGE;
+            is_large.then(|| nested_dissection(pattern, positions, dimension))
+        };
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
         if strangers.is_empty() {
-            return Self { dimension: body.dimension(), inertia, stiffness, damping };
+            let dissection = dissection(pattern);
+            return Self { dimension, inertia, stiffness, damping, dissection };
         }
         let pattern = Arc::new(pattern.with_pairs(&strangers));
         let moved = |matrix: Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
         Self {
-            dimension: body.dimension(),
+            dimension,
             inertia: Arc::new(inertia.moved_to(&pattern)),
             stiffness: stiffness.map(moved),
             damping: damping.map(moved),
+            dissection: dissection(&pattern),
         }
     }
 
