@@ -4,6 +4,7 @@
 //! live [`NodeMatrix`], one number per pair of nodes (inertia, which acts alike on each axis), and
 //! [`BlockMatrix`], one small dense block per pair (stiffness, damping, tangents).
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -221,6 +222,12 @@ impl BlockMatrix {
         Some(&mut self.values[entry * size..][..size])
     }
 
+    /// All rows, to be divided among threads.
+    pub(crate) fn rows_mut(&mut self) -> Rows<'_> {
+        let Self { pattern, dimension, values } = self;
+        Rows { pattern, nodes: 0..pattern.nodes(), size: *dimension * *dimension, values }
+    }
+
     /// Number at the axes `[row, column]` of the block `entry` in the symmetric part of the matrix,
     /// `transposed` being the entry of the same nodes the other way round.
     pub(crate) fn symmetric(
@@ -263,6 +270,37 @@ impl BlockMatrix {
     /// x . A x
     pub(crate) fn quadratic_form(&self, x: &[f64]) -> f64 {
         (0..x.len()).map(|dof| x[dof] * self.row_product(dof, x)).sum()
+    }
+}
+
+/// The rows of some nodes of a [`BlockMatrix`].
+pub(crate) struct Rows<'a> {
+    pattern: &'a NodePattern,
+    nodes: Range<usize>,
+    /// Numbers per block.
+    size: usize,
+    values: &'a mut [f64],
+}
+
+impl<'a> Rows<'a> {
+    /// The rows before those of `node`, and the others.
+    pub(crate) fn split_at(self, node: usize) -> (Rows<'a>, Rows<'a>) {
+        let Self { pattern, nodes: Range { start, end }, size, values } = self;
+        let before = pattern.offsets[node] - pattern.offsets[start];
+        let (before, after) = values.split_at_mut(before * size);
+        (
+            Rows { pattern, nodes: start..node, size, values: before },
+            Rows { pattern, nodes: node..end, size, values: after },
+        )
+    }
+
+    /// The block of two coupled nodes, row by row, if the row is among them.
+    pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> Option<&mut [f64]> {
+        if !self.nodes.contains(&row) {
+            return None;
+        }
+        let entry = self.pattern.find(row, column)? - self.pattern.offsets[self.nodes.start];
+        Some(&mut self.values[entry * self.size..][..self.size])
     }
 }
 

@@ -14,8 +14,9 @@ use nalgebra::{SMatrix, SVector};
 
 use super::Inertia;
 use super::fields::{CellField, Measure, PointField, mean};
-use super::forces::add_forces;
+use super::forces::Shared;
 use super::regions::{Moduli, Regions};
+use super::shares::Shares;
 use super::strain::{energy_density, gradient, green_strain, stress, stretch_of, symmetric_part};
 use crate::element::{
     Hexahedron, MassPoint, Quadrilateral, ReferenceCell, Segment, StrainPoint, Tetrahedron,
@@ -26,7 +27,7 @@ use crate::force::NodalForces;
 use crate::material::Lame;
 use crate::mesh::{CellKind, Mesh};
 use crate::ode::Failure;
-use crate::sparse::{BlockMatrix, NodeMatrix};
+use crate::sparse::{BlockMatrix, NodeMatrix, Rows};
 
 /// Cells of one kind, behind a face that knows neither kind nor dimension.
 pub(crate) trait Cells: Send + Sync {
@@ -109,6 +110,7 @@ struct CellsOf<const N: usize, const M: usize, const D: usize, const Q: usize> {
     /// For each cell, sum w N_a N_b (m^3).
     products: Vec<[[f64; N]; N]>,
     quadratic: bool,
+    shares: Shares,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> CellsOf<N, M, D, Q> {
@@ -135,7 +137,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> CellsOf<N, 
             nodes.push(std::array::from_fn(|a| cell[a]));
         }
         let quadratic = mesh.kind().is_quadratic();
-        Ok(Box::new(Self { nodes, points, products, quadratic }))
+        let shares = Shares::new(&nodes, mesh.node_count());
+        Ok(Box::new(Self { nodes, points, products, quadratic, shares }))
     }
 
     /// Number, nodes and strain points of each cell.
@@ -144,10 +147,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> CellsOf<N, 
         self.nodes.iter().zip(points).enumerate().map(|(k, (nodes, points))| (k, nodes, points))
     }
 
-    /// Calls `put` with the nodes and the block of each pair of nodes of a cell.
+    /// Adds the block of each pair of nodes of a cell, as far as the matrix has these rows.
     fn scatter(
         nodes: &[usize; N],
-        matrix: &mut BlockMatrix,
+        matrix: &mut Rows<'_>,
         block: impl Fn(usize, usize) -> SMatrix<f64, D, D>,
     ) {
         for (a, b) in pairs::<N>() {
@@ -156,6 +159,63 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> CellsOf<N, 
             for i in 0..D {
                 for j in 0..D {
                     entries[i * D + j] += block[(i, j)];
+                }
+            }
+        }
+    }
+
+    /// Adds the tangents of some cells.
+    fn add_tangents_of(
+        &self,
+        cells: impl Iterator<Item = usize>,
+        regions: &Regions,
+        law: Law,
+        [u, v]: [&[f64]; 2],
+        mut stiffness: Rows<'_>,
+        mut damping: Rows<'_>,
+    ) {
+        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
+        for cell in cells {
+            let (nodes, points) = (&self.nodes[cell], &self.points[cell * Q..][..Q]);
+            let moduli = regions.of(cell);
+            for point in points {
+                let h = gradient(point, nodes, u);
+                let f = point.frame + h;
+                let spread = point.gradients.map(|g| f * g);
+                let f_square = f * f.transpose();
+                let stretch = |a: usize, b: usize| point.gradients[a].dot(&point.gradients[b]);
+                if law.green {
+                    let stress = stress(moduli.elastic, &green_strain(point, &h));
+                    Self::scatter(nodes, &mut stiffness, |a, b| {
+                        let (ga, gb) = (&point.gradients[a], &point.gradients[b]);
+                        let geometric = SMatrix::identity() * ga.dot(&(stress * gb));
+                        let (fa, fb) = (&spread[a], &spread[b]);
+                        (material_block(moduli.elastic, fa, fb, stretch(a, b), &f_square)
+                            + geometric)
+                            * point.volume
+                    });
+                }
+                if law.objective {
+                    let rate_gradient = gradient(point, nodes, v);
+                    let rate = symmetric_part(&f.tr_mul(&rate_gradient));
+                    let stress = stress(moduli.viscous, &rate);
+                    let moving = point.gradients.map(|g| rate_gradient * g);
+                    let mixed_square = f * rate_gradient.transpose();
+                    let Lame { lambda, mu } = moduli.viscous;
+                    Self::scatter(nodes, &mut damping, |a, b| {
+                        let (fa, fb) = (&spread[a], &spread[b]);
+                        material_block(moduli.viscous, fa, fb, stretch(a, b), &f_square)
+                            * point.volume
+                    });
+                    // the rate changes with F, too: not symmetric
+                    Self::scatter(nodes, &mut stiffness, |a, b| {
+                        let (ga, gb) = (&point.gradients[a], &point.gradients[b]);
+                        let geometric = SMatrix::identity() * ga.dot(&(stress * gb));
+                        let shear =
+                            mixed_square * stretch(a, b) + spread[b] * moving[a].transpose();
+                        let volumetric = spread[a] * moving[b].transpose();
+                        (geometric + volumetric * lambda + shear * mu) * point.volume
+                    });
                 }
             }
         }
@@ -182,12 +242,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Cells for C
         lame: &dyn Fn(&Moduli) -> Lame,
         stiffness: &mut BlockMatrix,
     ) {
+        let mut stiffness = stiffness.rows_mut();
         for (cell, nodes, points) in self.iter() {
             let lame = lame(regions.of(cell));
             for point in points {
                 let spread = point.gradients.map(|g| point.frame * g);
                 let frame_square = point.frame * point.frame.transpose();
-                Self::scatter(nodes, stiffness, |a, b| {
+                Self::scatter(nodes, &mut stiffness, |a, b| {
                     let stretch = point.gradients[a].dot(&point.gradients[b]);
                     material_block(lame, &spread[a], &spread[b], stretch, &frame_square)
                         * point.volume
@@ -204,8 +265,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Cells for C
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let points = self.points.as_chunks::<Q>().0;
-        add_forces(&self.nodes, points, regions, law, u, v, forces)
+        let Self { nodes, points, shares, .. } = self;
+        let cells = Shared { nodes, points: points.as_chunks::<Q>().0, shares };
+        cells.add_forces(regions, law, u, v, forces)
     }
 
     fn add_tangents(
@@ -217,50 +279,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Cells for C
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
-        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
-        for (cell, nodes, points) in self.iter() {
-            let moduli = regions.of(cell);
-            for point in points {
-                let h = gradient(point, nodes, u);
-                let f = point.frame + h;
-                let spread = point.gradients.map(|g| f * g);
-                let f_square = f * f.transpose();
-                let stretch = |a: usize, b: usize| point.gradients[a].dot(&point.gradients[b]);
-                if law.green {
-                    let stress = stress(moduli.elastic, &green_strain(point, &h));
-                    Self::scatter(nodes, stiffness, |a, b| {
-                        let (ga, gb) = (&point.gradients[a], &point.gradients[b]);
-                        let geometric = SMatrix::identity() * ga.dot(&(stress * gb));
-                        let (fa, fb) = (&spread[a], &spread[b]);
-                        (material_block(moduli.elastic, fa, fb, stretch(a, b), &f_square)
-                            + geometric)
-                            * point.volume
-                    });
-                }
-                if law.objective {
-                    let rate_gradient = gradient(point, nodes, v);
-                    let rate = symmetric_part(&f.tr_mul(&rate_gradient));
-                    let stress = stress(moduli.viscous, &rate);
-                    let moving = point.gradients.map(|g| rate_gradient * g);
-                    let mixed_square = f * rate_gradient.transpose();
-                    let Lame { lambda, mu } = moduli.viscous;
-                    Self::scatter(nodes, damping, |a, b| {
-                        let (fa, fb) = (&spread[a], &spread[b]);
-                        material_block(moduli.viscous, fa, fb, stretch(a, b), &f_square)
-                            * point.volume
-                    });
-                    // the rate changes with F, too: not symmetric
-                    Self::scatter(nodes, stiffness, |a, b| {
-                        let (ga, gb) = (&point.gradients[a], &point.gradients[b]);
-                        let geometric = SMatrix::identity() * ga.dot(&(stress * gb));
-                        let shear =
-                            mixed_square * stretch(a, b) + spread[b] * moving[a].transpose();
-                        let volumetric = spread[a] * moving[b].transpose();
-                        (geometric + volumetric * lambda + shear * mu) * point.volume
-                    });
-                }
-            }
-        }
+        let add = |share: usize, stiffness: Rows<'_>, damping: Rows<'_>| {
+            let cells = self.shares.cells[share].iter().cloned().flatten();
+            self.add_tangents_of(cells, regions, law, [u, v], stiffness, damping);
+        };
+        self.shares.each(stiffness.rows_mut(), damping.rows_mut(), &add);
     }
 
     fn green_energy(&self, regions: &Regions, u: &[f64]) -> f64 {

@@ -10,10 +10,14 @@
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
+use std::ops::Range;
+
 use nalgebra::SMatrix;
+use rayon::prelude::*;
 
 use super::cells::{Law, check_orientation};
 use super::regions::Regions;
+use super::shares::Shares;
 use crate::element::StrainPoint;
 use crate::force::NodalForces;
 use crate::material::Lame;
@@ -22,21 +26,67 @@ use crate::ode::Failure;
 /// A matrix of M columns.
 type Columns<const D: usize, const M: usize> = [[f64; D]; M];
 
-/// Adds the forces of Green strain, if `law` has them, and of objective viscosity.
-pub(super) fn add_forces<const N: usize, const M: usize, const D: usize, const Q: usize>(
-    nodes: &[[usize; N]],
-    points: &[[StrainPoint<N, M, D>; Q]],
-    regions: &Regions,
-    law: Law,
-    u: &[f64],
-    v: &[f64],
-    forces: &mut NodalForces,
-) -> Result<(), Failure> {
-    let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
-    let cells = || nodes.iter().zip(points).enumerate();
-    let conservative = forces.conservative.as_chunks_mut::<D>().0;
-    if law.green {
-        for (cell, (nodes, points)) in cells() {
+/// Cells as arrays of one kind, and how they are shared out.
+pub(super) struct Shared<'a, const N: usize, const M: usize, const D: usize, const Q: usize> {
+    pub(super) nodes: &'a [[usize; N]],
+    pub(super) points: &'a [[StrainPoint<N, M, D>; Q]],
+    pub(super) shares: &'a Shares,
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Shared<'_, N, M, D, Q> {
+    /// Adds the forces of Green strain, if `law` has them, and of objective viscosity.
+    pub(super) fn add_forces(
+        &self,
+        regions: &Regions,
+        law: Law,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let NodalForces { conservative, dissipative, .. } = forces;
+        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
+        let add_share = |number: usize, conservative: &mut [f64], dissipative: &mut [f64]| {
+            let first = number * self.shares.nodes;
+            for run in &self.shares.cells[number] {
+                if law.green {
+                    let forces = conservative.as_chunks_mut::<D>().0;
+                    self.add_elastic(run, regions, u, first, forces)?;
+                }
+                if law.objective {
+                    self.add_viscous(run, regions, u, v, first, dissipative.as_chunks_mut::<D>().0);
+                }
+            }
+            Ok(())
+        };
+        if self.shares.cells.len() == 1 {
+            return add_share(0, conservative, dissipative);
+        }
+        let length = D * self.shares.nodes;
+        let shares = conservative.par_chunks_mut(length).zip(dissipative.par_chunks_mut(length));
+        let failed =
+            shares.enumerate().find_map_first(|(number, (c, d))| add_share(number, c, d).err());
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// Number, nodes and strain points of a run of cells.
+    fn cells(
+        &self,
+        run: &Range<usize>,
+    ) -> impl Iterator<Item = (usize, &[usize; N], &[StrainPoint<N, M, D>; Q])> {
+        let cells = self.nodes[run.clone()].iter().zip(&self.points[run.clone()]);
+        cells.zip(run.clone()).map(|((nodes, points), cell)| (cell, nodes, points))
+    }
+
+    /// Adds the forces of Green strain of a run of cells to those on the nodes from `first` on.
+    fn add_elastic(
+        &self,
+        run: &Range<usize>,
+        regions: &Regions,
+        u: &[[f64; D]],
+        first: usize,
+        forces: &mut [[f64; D]],
+    ) -> Result<(), Failure> {
+        for (cell, nodes, points) in self.cells(run) {
             let elastic = regions.of(cell).elastic;
             let displacements = relative(nodes, u);
             let mut pull = [[-0.0; D]; N];
@@ -47,12 +97,22 @@ pub(super) fn add_forces<const N: usize, const M: usize, const D: usize, const Q
                 let stress = stress(elastic, point.volume, &twice_strain(point, &h));
                 collect(point, &f, &stress, &mut pull);
             }
-            subtract(nodes, &pull, conservative);
+            subtract(nodes, &pull, first, forces);
         }
+        Ok(())
     }
-    let dissipative = forces.dissipative.as_chunks_mut::<D>().0;
-    if law.objective {
-        for (cell, (nodes, points)) in cells() {
+
+    /// Adds the forces of objective viscosity likewise.
+    fn add_viscous(
+        &self,
+        run: &Range<usize>,
+        regions: &Regions,
+        u: &[[f64; D]],
+        v: &[[f64; D]],
+        first: usize,
+        forces: &mut [[f64; D]],
+    ) {
+        for (cell, nodes, points) in self.cells(run) {
             let viscous = regions.of(cell).viscous;
             let (displacements, velocities) = (relative(nodes, u), relative(nodes, v));
             let mut pull = [[-0.0; D]; N];
@@ -61,10 +121,9 @@ pub(super) fn add_forces<const N: usize, const M: usize, const D: usize, const Q
                 let rate = twice_symmetric(&f, &gradient(point, &velocities));
                 collect(point, &f, &stress(viscous, point.volume, &rate), &mut pull);
             }
-            subtract(nodes, &pull, dissipative);
+            subtract(nodes, &pull, first, forces);
         }
     }
-    Ok(())
 }
 
 /// The vectors of the nodes of a cell, less that of the first one.
@@ -170,23 +229,25 @@ fn collect<const N: usize, const M: usize, const D: usize>(
     }
 }
 
-/// Subtracts the forces of a cell; the first node gets what balances the others.
+/// Subtracts the forces of a cell from those on a share of the nodes, which begins with node `first`;
+/// the first node of the cell gets what balances the others.
 #[inline(always)]
 fn subtract<const N: usize, const D: usize>(
     nodes: &[usize; N],
     pull: &[[f64; D]; N],
+    first: usize,
     forces: &mut [[f64; D]],
 ) {
     let mut sum = [-0.0; D];
     for a in 1..N {
-        let on_node = &mut forces[nodes[a]];
-        for i in 0..D {
-            on_node[i] -= pull[a][i];
-            sum[i] += pull[a][i];
+        (0..D).for_each(|i| sum[i] += pull[a][i]);
+        if let Some(on_node) = forces.get_mut(nodes[a].wrapping_sub(first)) {
+            (0..D).for_each(|i| on_node[i] -= pull[a][i]);
         }
     }
-    let on_first = &mut forces[nodes[0]];
-    (0..D).for_each(|i| on_first[i] += sum[i]);
+    if let Some(on_first) = forces.get_mut(nodes[0].wrapping_sub(first)) {
+        (0..D).for_each(|i| on_first[i] += sum[i]);
+    }
 }
 
 #[inline(always)]

@@ -6,6 +6,7 @@ mod fields;
 mod forces;
 mod polynomial;
 mod regions;
+mod shares;
 mod strain;
 #[cfg(test)]
 mod tests;

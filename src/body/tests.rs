@@ -258,3 +258,46 @@ fn lumped_inertia_is_diagonal_and_all_there() {
         }
     }
 }
+
+/// Forces and tangents of a mesh that is shared out among threads: the same to the last bit on one
+/// thread and on several; forces those of the direct computation, tangents their derivatives.
+#[test]
+fn threads_share_out_large_meshes() {
+    let mesh = Mesh::rectangle([1.0, 0.5], [130, 65], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+    let body = body.build().unwrap();
+    let (u, v) = (noise(body.dofs(), 1e-4, 1.0), noise(body.dofs(), 0.1, 2.0));
+    let tangents = |u: &[f64], v: &[f64]| {
+        let zeros = BlockMatrix::zeros(body.inertia().pattern(), 2);
+        let (mut stiffness, mut damping) = (zeros.clone(), zeros);
+        body.elastic().unwrap().add_tangents(0.0, u, v, &mut stiffness, &mut damping);
+        (stiffness, damping)
+    };
+    let on_threads = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| (forces(&body, &u, &v), tangents(&u, &v)))
+    };
+    let (one, (stiffness, damping)) = on_threads(1);
+    let (three, (stiffness_of_three, damping_of_three)) = on_threads(3);
+    assert_eq!((&one.conservative, &one.dissipative), (&three.conservative, &three.dissipative));
+    assert_eq!(stiffness.values, stiffness_of_three.values);
+    assert_eq!(damping.values, damping_of_three.values);
+
+    let mut direct = vec![0.0_f64; body.dofs()];
+    GreenPolynomial::new(&body).unwrap().forces(&u, &mut direct).unwrap();
+    let largest = direct.iter().fold(0.0, |largest: f64, f| largest.max(f.abs()));
+    let apart = direct.iter().zip(&one.conservative).map(|(a, b)| (a - b).abs());
+    assert!(apart.fold(0.0, f64::max) < 1e-12 * largest);
+
+    // along one direction, by central differences: third derivatives times 1e-14
+    let (x, h) = (noise(body.dofs(), 1.0, 3.0), 1e-7);
+    let shifted = |u: &[f64], h: f64| u.iter().zip(&x).map(|(u, x)| u + h * x).collect::<Vec<_>>();
+    let at = |h: f64| forces(&body, &shifted(&u, h), &v).conservative;
+    let mut product = vec![0.0; body.dofs()];
+    let (elastic_only, _) = tangents(&u, &vec![0.0; body.dofs()]);
+    elastic_only.add_product(-1.0, &x, &mut product);
+    let largest = product.iter().fold(0.0, |largest: f64, f| largest.max(f.abs()));
+    let slopes = at(h).into_iter().zip(at(-h)).map(|(ahead, behind)| (ahead - behind) / (2.0 * h));
+    let apart = slopes.zip(&product).map(|(a, b)| (a - b).abs());
+    assert!(apart.fold(0.0, f64::max) < 1e-6 * largest);
+}
