@@ -69,14 +69,14 @@ impl Guide {
     ) -> Result<&[f64], Failure> {
         let Self { since, alpha, remainders, means, .. } = self;
         let elapsed = t - *since;
-        let (decay, decay_ahead) = ((-*alpha * elapsed).exp(), -*alpha * h);
+        let decay = (-*alpha * elapsed).exp();
+        let [ahead, change] = [(-*alpha * h).exp(), (-*alpha * h).exp_m1() / h];
         for (k, (row, &(off, slope))) in system.rows().iter().zip(&*remainders).enumerate() {
             let velocity = |s: f64| system.prescribed(row, t + s * h).map(|motion| motion.velocity);
             // Simpson's rule
             let prescribed = (velocity(0.0)? + 4.0 * velocity(0.5)? + velocity(1.0)?) / 6.0;
-            let ahead =
-                (off + slope * elapsed) * decay_ahead.exp_m1() / h + slope * decay_ahead.exp();
-            means[k] = prescribed + ahead * decay;
+            let remainder = (off + slope * elapsed) * change + slope * ahead;
+            means[k] = prescribed + remainder * decay;
         }
         Ok(means)
     }
