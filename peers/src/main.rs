@@ -107,11 +107,12 @@ fn add_lines(comparison: &mut Comparison, case: &Case, inertia: Inertia, quick: 
         comparison.line(name, family, way, settings);
     };
     let pliant = Way::Pliant;
-    line("pliant auto", "auto", pliant(Method::Auto, None), &tolerances);
+    let pliant_family = if inertia == Inertia::Lumped { "pliant, lumped" } else { "pliant" };
+    line("pliant auto", pliant_family, pliant(Method::Auto, None), &tolerances);
     if inertia == Inertia::Lumped {
         line(
             "pliant central-difference",
-            "central-difference",
+            pliant_family,
             pliant(Method::CentralDifference, None),
             &tolerances,
         );
@@ -120,11 +121,13 @@ fn add_lines(comparison: &mut Comparison, case: &Case, inertia: Inertia, quick: 
         line("C central differences", "C", central, &fractions[..if quick { 3 } else { 5 }]);
         return;
     }
-    line("pliant arkode", "arkode", pliant(Method::Arkode, None), &tolerances);
-    line("pliant arkode, order 3", "arkode", pliant(Method::Arkode, Some(3)), &tolerances);
+    line("pliant arkode", pliant_family, pliant(Method::Arkode, None), &tolerances);
+    line("pliant arkode, order 3", pliant_family, pliant(Method::Arkode, Some(3)), &tolerances);
     match case.name {
-        "beam-35x2" | "beam-70x4" => line("pliant rk", "rk", pliant(Method::Rk, None), &tolerances),
-        _ => line("pliant cvode-bdf", "cvode-bdf", pliant(Method::CvodeBdf, None), &tolerances),
+        "beam-35x2" | "beam-70x4" => {
+            line("pliant rk", pliant_family, pliant(Method::Rk, None), &tolerances)
+        }
+        _ => line("pliant cvode-bdf", pliant_family, pliant(Method::CvodeBdf, None), &tolerances),
     }
     let own = std::env::current_exe().unwrap_or_default();
     let diffsol = |method| program(&own.display().to_string(), &["diffsol"], method);
