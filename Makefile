@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench docs valgrind clean
+.PHONY: help setup demo test bench peers docs valgrind clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -26,6 +26,9 @@ test: ## Every check: format, lints, tests, documentation and its examples
 
 bench: setup ## Benchmarks
 	cargo bench
+
+peers: setup ## Compare with SciPy, Octave, diffsol and others (peers/README.md)
+	peers/run
 
 docs: setup ## Documentation of the library
 	cargo doc --no-deps

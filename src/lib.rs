@@ -29,6 +29,7 @@ pub mod body;
 mod central_difference;
 pub mod constraint;
 mod element;
+pub mod equations;
 pub mod error;
 pub mod force;
 pub mod material;
@@ -51,6 +52,7 @@ pub mod trajectory;
 
 pub use body::{Body, CellField, CellSelection, Inertia, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
+pub use equations::Equations;
 pub use error::Error;
 pub use force::{Chamber, Obstacle, Shape, Spring};
 pub use material::{Lame, Material, Plane};

@@ -91,7 +91,7 @@ impl NodePattern {
     }
 
     /// The entries of one row, as (index, column).
-    pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
         (self.offsets[row]..self.offsets[row + 1]).map(|entry| (entry, self.columns[entry]))
     }
 }
@@ -116,6 +116,11 @@ impl NodeMatrix {
     /// The shared pattern.
     pub fn pattern(&self) -> &Arc<NodePattern> {
         &self.pattern
+    }
+
+    /// The entries, in the order of the pattern.
+    pub fn values(&self) -> &[f64] {
+        &self.values
     }
 
     /// The same matrix on a pattern with more entries.
@@ -193,6 +198,11 @@ impl BlockMatrix {
         let d = self.dimension;
         let entry = self.pattern.find(row / d, column / d);
         entry.map_or(0.0, |entry| self.values[(entry * d + row % d) * d + column % d])
+    }
+
+    /// The blocks in the order of the pattern, each row by row.
+    pub fn values(&self) -> &[f64] {
+        &self.values
     }
 
     /// The whole matrix as a dense one, for small bodies and tests.

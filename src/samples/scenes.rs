@@ -47,6 +47,8 @@ pub struct SquareJump {
     pub nodes: usize,
     /// How the square is divided. Default: triangles; Fig. 4.7 has rectangles.
     pub cells: Cells,
+    /// Default: consistent.
+    pub inertia: Inertia,
     /// Stiffness of the floor under all nodes of the bottom together (N/m). Default: 400, the
     /// 100 N/m per node of the documents on 4 nodes and 40 on 10.
     pub floor: f64,
@@ -58,7 +60,14 @@ pub struct SquareJump {
 
 impl Default for SquareJump {
     fn default() -> Self {
-        Self { nodes: 4, cells: Cells::Triangles, floor: 400.0, gravity: 0.0, until: 1.5 }
+        Self {
+            nodes: 4,
+            cells: Cells::Triangles,
+            inertia: Inertia::Consistent,
+            floor: 400.0,
+            gravity: 0.0,
+            until: 1.5,
+        }
     }
 }
 
@@ -69,8 +78,8 @@ impl SquareJump {
     /// Fewer than 4 nodes.
     pub fn scene(&self) -> Result<Scene, Error> {
         let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
-        let mut scene = Scene::new(square(self.nodes, self.cells)?.build()?)
-            .obstacle(floor.stiffness(self.floor / self.nodes as f64));
+        let body = square(self.nodes, self.cells)?.inertia(self.inertia).build()?;
+        let mut scene = Scene::new(body).obstacle(floor.stiffness(self.floor / self.nodes as f64));
         if self.gravity != 0.0 {
             scene = scene.gravity([0.0, -self.gravity]);
         }

@@ -112,8 +112,9 @@ impl<'a> Chart<'a> {
         for (line, style) in lines() {
             document = document.add(self.line(line, style));
         }
+        let apart = ((height - 84.0) / self.findings.lines().len() as f64).min(34.0);
         lines().enumerate().fold(document, |document, (number, (line, style))| {
-            document.add(key(line, style, 76.0 + 34.0 * number as f64))
+            document.add(key(line, style, 76.0 + apart * number as f64))
         })
     }
 

@@ -44,6 +44,7 @@ use crate::error::Error;
 use crate::force::{Force, NodalForces, Reservoir, dot};
 use crate::model::Model;
 use crate::ode::Failure;
+use crate::sparse::NodeMatrix;
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
@@ -154,6 +155,11 @@ impl System {
     /// Number of displacement components.
     pub(crate) fn dofs(&self) -> usize {
         self.model.dofs()
+    }
+
+    /// The inertia matrix.
+    pub(crate) fn inertia(&self) -> &NodeMatrix {
+        &self.model.inertia
     }
 
     /// The constraints, row by row.

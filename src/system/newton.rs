@@ -129,13 +129,13 @@ impl System {
     }
 
     /// Kt and D in force.
-    pub(super) fn tangents(&self) -> (&BlockMatrix, &BlockMatrix) {
+    pub(crate) fn tangents(&self) -> (&BlockMatrix, &BlockMatrix) {
         (self.newton.stiffness.get(), self.newton.damping.get())
     }
 
     /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
     /// current.
-    pub(super) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
+    pub(crate) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
         let Newton { stiffness, damping, follows, is_set, tangent_evaluations, .. } =
             &mut self.newton;
         if !*follows {

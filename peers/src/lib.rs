@@ -1,0 +1,6 @@
+//! The equations that pliant and its peers solve, for Rust and, through [`ffi`], for Python.
+
+pub mod ffi;
+pub mod motion;
+pub mod scenes;
+pub mod stage;

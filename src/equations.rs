@@ -1,0 +1,106 @@
+//! The equations of motion of a phase by themselves, for integrators that are not of this crate.
+//!
+//! ```
+//! use pliant::samples::beam_jump;
+//!
+//! let scene = beam_jump()?;
+//! let rest = vec![0.0; scene.body().dofs()];
+//! let mut push = scene.equations(0, &rest)?;
+//! let held: Vec<usize> = push.prescribed(0.0).map(|(dof, _)| dof).collect();
+//! assert_eq!(held, [0]);
+//! let mut f = rest.clone();
+//! push.forces(0.0, &rest, &rest, &mut f).unwrap();
+//! assert_eq!(f, [0.0, 0.0, 0.0, 0.0, 0.0, -2.0]);
+//! # Ok::<(), pliant::Error>(())
+//! ```
+
+use std::fmt;
+
+use crate::constraint::{Prescribed, Row, Start};
+use crate::error::Error;
+use crate::ode::Failure;
+use crate::scene::Scene;
+use crate::sparse::{BlockMatrix, NodeMatrix};
+use crate::system::System;
+
+/// The equations of one phase of a scene, discrete in space and continuous in time.
+///
+/// M v' = f(t, u, v) and u' = v hold for all displacement components but those that
+/// [`prescribed`](Self::prescribed) names, which follow b(t). Vectors have dimension components for
+/// each node.
+pub struct Equations {
+    system: System,
+}
+
+impl Scene {
+    /// The equations of phase number `phase`, counted from 0, which begins with the displacements `u`
+    /// (m): nodes that it holds stay there, nodes that it moves start there.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate); a phase that the scene does not have; displacements of
+    /// the wrong number; constraints that tie several components together.
+    pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, Error> {
+        let forces = self.forces()?;
+        let model = self.model(&forces);
+        let (Some(own), Some(forces)) = (self.phases().get(phase), forces.into_iter().nth(phase))
+        else {
+            let mend = format!("the scene has {}, counted from 0", self.phases().len());
+            return Err(Error::input("number of the phase", phase, mend));
+        };
+        if u.len() != self.body().dofs() {
+            let mend = format!("it needs {} numbers, one for each component", self.body().dofs());
+            return Err(Error::input("start of the phase", format!("{} numbers", u.len()), mend));
+        }
+        let time = phase.checked_sub(1).map_or(0.0, |before| self.phases()[before].end());
+        // positions follow b(t) exactly here, so that no stabilization is needed
+        let system = self.system(&model, own, forces, &Start { time, u }, 0.0)?;
+        match system.rows().iter().find(|row| row.nodal().is_none()) {
+            None => Ok(Equations { system }),
+            Some(row) => Err(Error::Constraint {
+                phase: own.name().into(),
+                nodes: row.label(self.body().dimension()),
+                problem: "are tied together: equations are given for single components".into(),
+            }),
+        }
+    }
+}
+
+impl fmt::Debug for Equations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Equations").field("dofs", &self.system.dofs()).finish_non_exhaustive()
+    }
+}
+
+impl Equations {
+    /// M = m (x) I; this is m (kg).
+    pub fn inertia(&self) -> &NodeMatrix {
+        self.system.inertia()
+    }
+
+    /// Displacement components that are prescribed at time `t` (s), with b, b' and b''.
+    pub fn prescribed(&self, t: f64) -> impl Iterator<Item = (usize, Prescribed)> {
+        let row = move |row: &Row| {
+            let (dof, coefficient) = row.nodal()?;
+            let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
+            let [displacement, velocity, acceleration] =
+                [displacement, velocity, acceleration].map(|b| b / coefficient);
+            Some((dof, Prescribed { displacement, velocity, acceleration }))
+        };
+        self.system.rows().iter().filter_map(row)
+    }
+
+    /// Writes f(t, u, v): all forces (N) at the displacements `u` (m) and velocities `v` (m/s), those
+    /// that keep up the constraints left out.
+    ///
+    /// # Errors
+    /// A state in which a force has no meaning, as one with an inverted cell.
+    pub fn forces(&mut self, t: f64, u: &[f64], v: &[f64], f: &mut [f64]) -> Result<(), Failure> {
+        self.system.forces(t, u, v, f)
+    }
+
+    /// -df/du (N/m) and -df/dv (N s/m). They need not be symmetric.
+    pub fn tangents(&mut self, t: f64, u: &[f64], v: &[f64]) -> [&BlockMatrix; 2] {
+        self.system.update_tangents(t, u, v, false);
+        self.system.tangents().into()
+    }
+}
