@@ -153,7 +153,8 @@ impl Chart {
             if let Some(point) = points.iter().find(|(x, y)| !(x.is_finite() && y.is_finite())) {
                 return refuse(point, "it must be a pair of finite numbers");
             }
-            if let Some(point) = points.iter().find(|(x, y)| log_x && *x <= 0.0 || log_y && *y <= 0.0)
+            if let Some(point) =
+                points.iter().find(|(x, y)| log_x && *x <= 0.0 || log_y && *y <= 0.0)
             {
                 return refuse(point, "along a logarithmic axis it must be positive");
             }
@@ -281,7 +282,8 @@ impl Chart {
             .draw()?;
         let scaled = |value: f64, logarithmic| if logarithmic { value.log10() } else { value };
         for (series, colour) in self.coloured() {
-            let points = || series.points.iter().map(|&(x, y)| (scaled(x, log_x), scaled(y, log_y)));
+            let points =
+                || series.points.iter().map(|&(x, y)| (scaled(x, log_x), scaled(y, log_y)));
             let stroke = colour.stroke_width(2 * FINE);
             match series.style {
                 Style::Reference => {

@@ -1,0 +1,60 @@
+//! Stability where methods fail: runs every experiment of `docs/stability.md` and writes that page
+//! with its numbers and pictures.
+//!
+//! `cargo run --release --example stability`
+//!
+//! What to look for: `git diff docs`. Counts of steps may change by a few with versions of SUNDIALS
+//! and of compilers; what the page concludes from them is held by `tests/stability`.
+
+mod gallery;
+
+use std::fs;
+use std::path::PathBuf;
+
+use clap::Parser;
+use gallery::page::Page;
+use gallery::{Outcome, alpha, contact, explicit, index, orders, rotation};
+
+/// Writes the page on stability: every number and picture of it is computed.
+#[derive(Parser)]
+struct Arguments {
+    /// Directory of the page; its pictures go to `stability/` in it
+    #[arg(long, default_value = "docs")]
+    out: PathBuf,
+    /// Sections to write, by their letters
+    #[arg(long, default_value = "abcdefghi")]
+    only: String,
+}
+
+const INTRODUCTION: &str = "\
+# Stability: where methods and models fail
+
+Every section shows a failure with its numbers, says why, and what works instead. All numbers and
+pictures are results of `cargo run --release --example stability`, which writes this page; the tests
+in `tests/stability/` hold its conclusions.";
+
+type Section = fn(&mut Page) -> Outcome<()>;
+
+const SECTIONS: [(char, Section); 6] = [
+    ('a', explicit::section),
+    ('b', alpha::section),
+    ('c', orders::section),
+    ('d', rotation::section),
+    ('e', contact::section),
+    ('f', index::section),
+];
+
+fn main() -> Outcome<()> {
+    let Arguments { out, only } = Arguments::parse();
+    let mut page = Page::new(out.join("stability"));
+    page.say(INTRODUCTION);
+    for (letter, section) in SECTIONS {
+        if only.contains(letter) {
+            let clock = std::time::Instant::now();
+            section(&mut page)?;
+            eprintln!("section {letter}: {:.1} s", clock.elapsed().as_secs_f64());
+        }
+    }
+    fs::write(out.join("stability.md"), page.text().trim_end().to_string() + "\n")?;
+    Ok(())
+}
