@@ -10,10 +10,13 @@ mod gallery;
 
 use std::fs;
 use std::path::PathBuf;
+use std::time::Instant;
 
 use clap::Parser;
 use gallery::page::Page;
-use gallery::{Outcome, alpha, contact, explicit, index, orders, rotation};
+use gallery::{
+    Outcome, alpha, compression, contact, explicit, index, locking, orders, pulses, rotation,
+};
 
 /// Writes the page on stability: every number and picture of it is computed.
 #[derive(Parser)]
@@ -35,22 +38,32 @@ in `tests/stability/` hold its conclusions.";
 
 type Section = fn(&mut Page) -> Outcome<()>;
 
-const SECTIONS: [(char, Section); 6] = [
+const SECTIONS: [(char, Section); 9] = [
     ('a', explicit::section),
     ('b', alpha::section),
     ('c', orders::section),
     ('d', rotation::section),
     ('e', contact::section),
     ('f', index::section),
+    ('g', compression::section),
+    ('h', locking::section),
+    ('i', pulses::section),
 ];
 
-fn main() -> Outcome<()> {
-    let Arguments { out, only } = Arguments::parse();
+fn main() {
+    if let Err(error) = run(&Arguments::parse()) {
+        eprintln!("{error}");
+        std::process::exit(1);
+    }
+}
+
+fn run(arguments: &Arguments) -> Outcome<()> {
+    let Arguments { out, only } = arguments;
     let mut page = Page::new(out.join("stability"));
     page.say(INTRODUCTION);
     for (letter, section) in SECTIONS {
         if only.contains(letter) {
-            let clock = std::time::Instant::now();
+            let clock = Instant::now();
             section(&mut page)?;
             eprintln!("section {letter}: {:.1} s", clock.elapsed().as_secs_f64());
         }

@@ -367,7 +367,11 @@ pub fn section(page: &mut Page) -> Outcome<()> {
         );
     }
     let failure = pendulum(Form::Three, true, 1e-6, 10)?.failure.unwrap_or("(it did not)".into());
-    page.say(format!("Index 3 says why it ends: `{failure}`"));
+    page.say(format!(
+        "Runs that neither end nor fail are given {} steps. The message of index 3, from a consistent start: \
+         `{failure}`. Its guess is wrong here: what the error test meets at t = 0 is the index, not the start.",
+        count(LIMIT as usize)
+    ));
     tolerances(page)?;
     let [thrown, off, wrong] = refusals()?;
     page.say("**Starts that contradict the equations** are refused by name, not integrated:");
@@ -394,14 +398,17 @@ fn tolerances(page: &mut Page) -> Outcome<()> {
         .logarithmic(true, true);
     for form in Form::ALL {
         let mut line = Vec::new();
-        for rtol in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8] {
-            let result =
-                pendulum(form, form != Form::StabilizedTwo && form != Form::Three, rtol, 10)?;
+        // multipliers are left out of the error test where they would end the run
+        for rtol in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7] {
+            let tested = matches!(form, Form::One | Form::StabilizedOne);
+            let result = pendulum(form, tested, rtol, 10)?;
             if result.failure.is_none() {
                 line.push((rtol, result.drift.max(1e-16)));
             }
         }
-        chart = chart.marked(form.name(), line);
+        if !line.is_empty() {
+            chart = chart.marked(form.name(), line);
+        }
     }
     page.chart("index-drift", "drift over tolerance (runs that fail are left out)", &chart)
 }

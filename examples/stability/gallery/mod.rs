@@ -2,13 +2,16 @@
 //! reports it. The experiments are run by `tests/stability` as well, smaller.
 
 pub mod alpha;
+pub mod compression;
 pub mod contact;
 pub mod explicit;
 pub mod heat;
 pub mod index;
 pub mod linear;
+pub mod locking;
 pub mod orders;
 pub mod page;
+pub mod pulses;
 pub mod rotation;
 
 /// What experiments return; anything that goes wrong ends the program with its message.

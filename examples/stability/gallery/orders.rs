@@ -3,12 +3,9 @@
 use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use pliant::output::Chart;
-use pliant::rk::{DormandPrince, Options};
 use pliant::samples::{ClampedBeam, FLAG_MATERIAL};
 use pliant::sundials::{Cvode, CvodeOptions, Jacobian, LinearSolver};
-use pliant::{
-    Body, Cells, Error, Material, Mesh, Method, Phase, Sampling, Scene, Solver, Trajectory,
-};
+use pliant::{Body, Cells, Error, Material, Mesh, Method, Sampling, Scene, Solver, Trajectory};
 
 use super::Outcome;
 use super::heat::{Cell, heat_map};
@@ -30,6 +27,7 @@ pub fn beam(nodes: [usize; 2], damping_ratio: f64, until: f64) -> Result<Scene, 
 }
 
 /// A run, held against a reference.
+#[derive(Debug, Clone, Copy)]
 pub struct Run {
     /// Steps until the end, or until it gave up.
     pub steps: usize,
@@ -37,8 +35,8 @@ pub struct Run {
     pub error: f64,
     /// Largest rise of the energy balance, as a part of the largest energy.
     pub created: f64,
-    /// Whether it came to the end.
-    pub ended: bool,
+    /// Time at which it came to its end, or gave up (s).
+    pub time: f64,
 }
 
 fn solver(method: Method, max_order: Option<u32>, rtol: f64, max_steps: usize) -> Solver {
@@ -59,9 +57,9 @@ pub fn bdf(
     reference: &Trajectory,
 ) -> Result<Run, Error> {
     let solver = solver(Method::CvodeBdf, Some(order), rtol, max_steps);
-    let (motion, ended) = match scene.simulate(&solver, &Sampling::every(0.05)) {
-        Ok(motion) => (motion, true),
-        Err(Error::Integration(end)) => (end.trajectory, false),
+    let motion = match scene.simulate(&solver, &Sampling::every(0.05)) {
+        Ok(motion) => motion,
+        Err(Error::Integration(end)) => end.trajectory,
         Err(other) => return Err(other),
     };
     let (mut error, mut largest) = (0.0_f64, 0.0_f64);
@@ -78,7 +76,7 @@ pub fn bdf(
     }
     let report = motion.report();
     let created = report.energy_created / report.energy_scale;
-    Ok(Run { steps: report.steps(), error: error / largest, created, ended })
+    Ok(Run { steps: report.steps(), error: error / largest, created, time: motion.last().time })
 }
 
 /// The beam with linear forces, and its displacements and velocities when it is let go from the
@@ -122,17 +120,15 @@ impl LinearBeam {
             .newton(LinearSolver::Dense(Jacobian::Supplied))
             .max_order(order)
             .stability_limit_detection(detection)
-            .max_steps(200_000);
+            .max_steps(50_000);
         let system = Dense(self.system.jacobian());
         let mut solver = Cvode::new(system.clone(), 0.0, &self.start, &options)?;
         if solver.solve_to(1.0).is_err() {
             return Ok(None);
         }
-        let exact = Options::default().rtol(1e-8).atol(1e-10).max_steps(10_000_000);
-        let mut reference = DormandPrince::new(system, 0.0, &self.start, &exact)?;
-        let exact = reference.solve_to(1.0)?;
+        let exact = exponential(&system.0) * Mat::from_fn(2 * n, 1, |i, _| self.start[i]);
         let scale = self.start.iter().take(n).fold(0.0_f64, |most, u| most.max(u.abs()));
-        let apart = solver.y().iter().zip(exact).take(n).map(|(a, b)| (a - b).abs());
+        let apart = solver.y().iter().enumerate().take(n).map(|(i, y)| (y - exact[(i, 0)]).abs());
         let statistics = solver.statistics();
         Ok(Some((
             statistics.steps as usize,
@@ -142,8 +138,21 @@ impl LinearBeam {
     }
 }
 
+/// exp(J), by Taylor's series of a small part and squaring.
+fn exponential(jacobian: &Mat<f64>) -> Mat<f64> {
+    let squarings = (jacobian.norm_l2().log2().ceil() as i32 + 2).max(0);
+    let (n, part) = (jacobian.nrows(), jacobian * faer::Scale(0.5_f64.powi(squarings)));
+    // by Horner's rule; the norm is below 1/4, and 0.25^14/14! below round-off
+    let mut sum = Mat::<f64>::identity(n, n);
+    for k in (1..=13).rev() {
+        sum = Mat::<f64>::identity(n, n) + &part * &sum * faer::Scale(1.0 / f64::from(k));
+    }
+    (0..squarings).for_each(|_| sum = &sum * &sum);
+    sum
+}
+
 /// Damping ratios of the map.
-const RATIOS: [f64; 8] = [0.0, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1];
+const RATIOS: [f64; 7] = [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1];
 
 /// The section of the page.
 pub fn section(page: &mut Page) -> Outcome<()> {
@@ -154,6 +163,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
          only when their amplitude is as large as the tolerance.",
         CRITICAL[0], CRITICAL[1], CRITICAL[2]
     ));
+    undamped(page)?;
     map(page)?;
     detection(page)?;
     page.say(
@@ -165,8 +175,34 @@ pub fn section(page: &mut Page) -> Outcome<()> {
     Ok(())
 }
 
+fn undamped(page: &mut Page) -> Outcome<()> {
+    let (rtol, limit) = (1e-3, 200_000);
+    let scene = beam([36, 3], 0.0, 1.0)?;
+    let exact = reference(&scene, rtol)?;
+    let mut rows = Vec::new();
+    for order in 1..=5 {
+        let run = bdf(&scene, order, rtol, limit, &exact)?;
+        rows.push([
+            count(order as usize),
+            count(run.steps),
+            few(run.time),
+            if run.time < 1.0 { "-".into() } else { few(run.error) },
+            percent(run.created),
+        ]);
+    }
+    page.say(format!(
+        "**Without damping** a beam of 35 x 2 cm, clamped at one end, swings under sudden gravity for 1 s (36 x 3 \
+         nodes, Green strain, 420 unknowns, rtol {rtol:e}, {} steps at most). Error: the largest one of a \
+         displacement, as a part of the largest displacement, against `arkode` at rtol 1e-6. Energy created: the largest rise \
+         of the energy balance, as a part of the largest energy; the report warns above 1 %.",
+        count(limit)
+    ));
+    page.table(["cap of the order", "steps", "time reached (s)", "error", "energy created"], &rows);
+    Ok(())
+}
+
 fn map(page: &mut Page) -> Outcome<()> {
-    let (rtol, limit) = (1e-3, 100_000);
+    let (rtol, limit) = (1e-3, 20_000);
     let (mut rows, mut cells) = (Vec::new(), Vec::new());
     for ratio in RATIOS {
         let scene = beam([36, 3], ratio, 1.0)?;
@@ -175,22 +211,21 @@ fn map(page: &mut Page) -> Outcome<()> {
         for order in 1..=5 {
             let run = bdf(&scene, order, rtol, limit, &exact)?;
             let fate = match () {
-                () if !run.ended => "gave up".to_string(),
+                () if run.time < 1.0 => "gave up".to_string(),
                 () => few(run.error),
             };
             row.push(format!("{} / {fate}", count(run.steps)));
-            let is_bad = !run.ended || run.error > 0.5;
-            let second = if run.ended { format!("error {}", percent(run.error)) } else { fate };
+            let is_bad = run.time < 1.0 || run.error > 0.5;
+            let second =
+                if run.time == 1.0 { format!("error {}", percent(run.error)) } else { fate };
             line.push(Cell { value: run.steps as f64, lines: [count(run.steps), second], is_bad });
         }
         rows.push(<[String; 6]>::try_from(row).map_err(|row| format!("{} cells", row.len()))?);
         cells.push(line);
     }
     page.say(format!(
-        "**The map.** A beam of 35 x 2 cm clamped at one end under sudden gravity (36 x 3 nodes, Green \
-         strain, 420 unknowns), 1 s at rtol {rtol:e}, for damping ratios of its lowest vibration and caps \
-         of the order: steps, and the largest error of a displacement as a part of the largest displacement. \
-         Runs end after {} steps.",
+        "**The map.** The same beam with damping, by the damping ratio of its lowest vibration: steps and \
+         error. Runs end after {} steps.",
         count(limit)
     ));
     page.table(["damping ratio", "cap 1", "cap 2", "cap 3", "cap 4", "cap 5"], &rows);
@@ -208,7 +243,7 @@ fn detection(page: &mut Page) -> Outcome<()> {
     let rtol = 1e-4;
     let mut rows = Vec::new();
     let mut lines = [Vec::new(), Vec::new(), Vec::new()];
-    for ratio in [0.0, 1e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3] {
+    for ratio in [0.0, 1e-4, 1e-3, 1e-2, 3e-2, 0.1, 0.3] {
         let beam = LinearBeam::new([21, 2], ratio)?;
         let mut row = vec![few(ratio)];
         for (line, (order, detection)) in lines.iter_mut().zip([(2, false), (5, false), (5, true)])
