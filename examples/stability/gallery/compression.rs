@@ -136,7 +136,7 @@ fn equilibria(page: &mut Page) -> Outcome<()> {
     }
     page.say(format!(
         "**Loss of definiteness is found.** A bar of {CELLS} cells held at both ends: the force that it \
-         resists with, and omega^2 of its slowest motion over that at s = 1, (3 s^2 - 1)/2 as long as it is stable. Beyond, all shapes grow, the \
+         resists with, and the eigenvalue omega^2 of its slowest motion over that at s = 1, (3 s^2 - 1)/2 as long as it is stable. Beyond, all shapes grow, the \
          one from node to node fastest: refining the mesh makes it worse."
     ));
     page.table(
@@ -153,11 +153,11 @@ fn equilibria(page: &mut Page) -> Outcome<()> {
     let curve =
         |value: fn(f64) -> f64| (50..=100).map(f64::from).map(move |s| (0.01 * s, value(0.01 * s)));
     let chart = Chart::new("A bar under compression: what it resists with, and its stability")
-        .axes("stretch", "force (N); omega^2 / omega_0^2")
+        .axes("stretch", "force (N); eigenvalue")
         .marked("force", found)
-        .marked("omega^2 / omega_0^2", eigenvalues)
-        .reference("closed forms", curve(|s| -force(s)))
-        .reference("(the same)", curve(eigenvalue));
+        .marked("eigenvalue", eigenvalues)
+        .reference("closed form, force", curve(|s| -force(s)))
+        .reference("closed form, eigenvalue", curve(eigenvalue));
     page.chart("compression-bar", "force and stability over stretch", &chart)
 }
 

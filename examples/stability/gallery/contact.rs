@@ -109,7 +109,7 @@ pub fn bar(hardness: f64, cells: usize) -> Result<Trajectory, Error> {
         .initial_velocity(move |_| vec![-speed])
         .phase(Phase::until(until));
     let solver = Solver { method: Method::Rk, rtol: 1e-6, ..Solver::default() };
-    scene.simulate(&solver, &Sampling::every(until / 400.0))
+    scene.simulate(&solver, &Sampling::every(until / 1000.0))
 }
 
 fn floor(hardness: f64) -> f64 {
@@ -255,8 +255,11 @@ fn waves(page: &mut Page) -> Outcome<()> {
         let leaves = motion.mean_velocity(motion.last())[0] / BAR[2];
         let most = force.iter().map(|at| at.1).fold(0.0, f64::max);
         rows.push([few(hardness), few(time), few(most), few(impulse), few(leaves)]);
-        let until = force.iter().position(|at| at.0 > 3.6).unwrap_or(force.len());
-        chart = chart.series(format!("floor {hardness} E A/L"), force[..until].to_vec());
+        // the ringing of the last one would fill the chart
+        if hardness < 1000.0 {
+            let until = force.iter().position(|at| at.0 > 3.6).unwrap_or(force.len());
+            chart = chart.series(format!("floor {hardness} E A/L"), force[..until].to_vec());
+        }
     }
     page.say(
         "**A bar against the wave equation.** On a rigid floor a bar of length L and wave speed c that comes \
@@ -272,6 +275,10 @@ fn waves(page: &mut Page) -> Outcome<()> {
             "speed after / v",
         ],
         &rows,
+    );
+    page.say(
+        "A floor stiffer than a cell (200 E A/L here) makes the last node ring on it: the impulse stays right, \
+         the force of a moment means nothing.",
     );
     let rigid = [(0.0, 0.0), (0.0, 1.0), (2.0, 1.0), (2.0, 0.0)];
     page.chart("contact-bar", "force over time", &chart.reference("rigid floor", rigid))
