@@ -33,8 +33,20 @@ const INTRODUCTION: &str = "\
 # Stability: where methods and models fail
 
 Every section shows a failure with its numbers, says why, and what works instead. All numbers and
-pictures are results of `cargo run --release --example stability`, which writes this page; the tests
-in `tests/stability/` hold its conclusions.";
+pictures are results of `cargo run --release --example stability`, which writes this page in a few
+minutes; the tests in `tests/stability/` hold its conclusions.
+
+| | fails | works |
+| --- | --- | --- |
+| a | explicit Runge-Kutta on viscous bodies | implicit methods |
+| b | alpha = 0; starts with R' not 0; large alpha with Runge-Kutta | other methods, projected velocities |
+| c | BDF of order 3 to 5 with next to no damping | a cap of 2, `arkode`, `auto` |
+| d | Cauchy strain and natural viscosity in rotation | Green strain with objective viscosity |
+| e | hard penalty floors | moderate stiffness, tight tolerances, the energy balance as a check |
+| f | constraints in index 3 | index 1, stabilized; stabilized index 2 |
+| g | St. Venant-Kirchhoff material under strong compression | nothing beyond its limit; it is named |
+| h | linear triangles and rectangles as nu goes to 1/2 | quadratic triangles, alternating diagonals |
+| i | pulses as functions of time | tables, phases, stop times |";
 
 type Section = fn(&mut Page) -> Outcome<()>;
 

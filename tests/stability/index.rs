@@ -1,6 +1,7 @@
 //! f. The index of the equations.
 
-use crate::gallery::index::{Form, pendulum, pressed, refusals, square};
+use crate::gallery::forms::Form;
+use crate::gallery::index::{pendulum, pressed, refusals, square};
 
 #[test]
 fn index_three_fails() {

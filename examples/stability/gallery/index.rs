@@ -1,88 +1,14 @@
 //! The index of the equations of motion as a differential-algebraic system.
 
-use std::f64::consts::PI;
-
-use faer::Mat;
-use faer::linalg::solvers::{PartialPivLu, Solve};
-use pliant::ode::{Dae, Failure};
+use pliant::ode::Dae;
 use pliant::output::Chart;
-use pliant::samples::{Pendulum, SQUARE_MATERIAL};
+use pliant::samples::Pendulum;
 use pliant::sundials::{Ida, IdaOptions};
-use pliant::{
-    Axis, Body, Cells, Error, Mesh, Method, Phase, Prescribed, Sampling, Scene, Solver, Trajectory,
-};
+use pliant::{Axis, Error, Method, Phase, Sampling, Scene, Solver, Trajectory};
 
 use super::Outcome;
-use super::linear::Linear;
+use super::forms::{Form, PRESS, PendulumForm, SquareForm, path, square_body};
 use super::page::{Page, count, few};
-
-/// How the constraint R = 0 enters the equations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// R = 0.
-    Three,
-    /// R' = 0.
-    Two,
-    /// R = 0 and R' = 0, with a second multiplier in u' = v + A eta (C. W. Gear, G. K. Gupta,
-    /// B. Leimkuhler, "Automatic integration of Euler-Lagrange equations with constraints", 1985).
-    StabilizedTwo,
-    /// R'' = 0.
-    One,
-    /// R'' + 2 alpha R' + alpha^2 R = 0.
-    StabilizedOne,
-}
-
-impl Form {
-    /// All forms.
-    pub const ALL: [Self; 5] =
-        [Self::Three, Self::Two, Self::StabilizedTwo, Self::One, Self::StabilizedOne];
-
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Three => "index 3",
-            Self::Two => "index 2",
-            Self::StabilizedTwo => "index 2, stabilized (GGL)",
-            Self::One => "index 1",
-            Self::StabilizedOne => "index 1, stabilized",
-        }
-    }
-
-    /// What the constraint is replaced by, from R, R' and R''.
-    fn equation(self, [r, rate, second]: [f64; 3]) -> f64 {
-        match self {
-            Self::Three => r,
-            Self::Two | Self::StabilizedTwo => rate,
-            Self::One => second,
-            Self::StabilizedOne => second + 2.0 * ALPHA * rate + ALPHA * ALPHA * r,
-        }
-    }
-}
-
-/// Rate of the stabilization of index 1 (1/s).
-const ALPHA: f64 = 10.0;
-
-/// A pendulum in Cartesian coordinates: x, y, vx, vy, tension T, and eta in the stabilized form of
-/// index 2.
-pub struct PendulumForm(pub Form);
-
-impl Dae for PendulumForm {
-    fn residual(&mut self, _t: f64, s: &[f64], sp: &[f64], r: &mut [f64]) -> Result<(), Failure> {
-        let (x, y, vx, vy, tension) = (s[0], s[1], s[2], s[3], s[4]);
-        let eta = if self.0 == Form::StabilizedTwo { s[5] } else { 0.0 };
-        r[0] = sp[0] - vx + eta * x;
-        r[1] = sp[1] - vy + eta * y;
-        r[2] = sp[2] + tension * x;
-        r[3] = sp[3] + tension * y + Pendulum::GRAVITY;
-        let position = 0.5 * (x * x + y * y - 1.0);
-        let second = vx * vx + vy * vy - Pendulum::GRAVITY * y - tension * (x * x + y * y);
-        r[4] = self.0.equation([position, x * vx + y * vy, second]);
-        if self.0 == Form::StabilizedTwo {
-            r[5] = position;
-        }
-        Ok(())
-    }
-}
 
 /// What IDA made of a form.
 #[derive(Debug, Clone, Default)]
@@ -150,107 +76,12 @@ impl Run {
     }
 }
 
-/// Time for which the square is pressed (s), and depth (m).
-const PRESS: [f64; 2] = [0.25, 0.04];
-
-/// The path of the pressed nodes: smooth, but for a jump of b'' at the start.
-fn path(t: f64) -> Prescribed {
-    let [time, depth] = PRESS;
-    let (omega, half) = (PI / time, 0.5 * depth);
-    Prescribed {
-        displacement: -half * (1.0 - (omega * t).cos()),
-        velocity: -half * omega * (omega * t).sin(),
-        acceleration: -half * omega * omega * (omega * t).cos(),
-    }
-}
-
-fn square_body() -> Result<Body, Error> {
-    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
-    Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()
-}
-
 /// The pressed square of the documents with the smooth [`path`], as its scene has it: the reference.
 pub fn pressed() -> Result<Trajectory, Error> {
     let push = Phase::until(PRESS[0]).hold("bottom").hold_axes([14, 15], [Axis::X]);
     let scene = Scene::new(square_body()?).phase(push.follow([14, 15], Axis::Y, path));
     let solver = Solver { method: Method::Rk, rtol: 1e-10, ..Solver::default() };
     scene.simulate(&solver, &Sampling::phase_ends())
-}
-
-/// The same square as a DAE in one of the forms: u, v, lambda and, for one of them, eta.
-pub struct SquareForm {
-    form: Form,
-    body: Linear,
-    /// Degrees of freedom that are held or led.
-    rows: Vec<usize>,
-}
-
-impl SquareForm {
-    /// # Errors
-    /// None.
-    pub fn new(form: Form) -> Outcome<Self> {
-        let nodes = [0, 1, 2, 3, 13, 14];
-        let rows = nodes.into_iter().flat_map(|node| [2 * node, 2 * node + 1]).collect();
-        Ok(Self { form, body: Linear::new(&square_body()?, &[]), rows })
-    }
-
-    fn prescribed(&self, row: usize, t: f64) -> Prescribed {
-        let is_led = self.rows[row] >= 26 && self.rows[row] % 2 == 1;
-        let rest = Prescribed { displacement: 0.0, velocity: 0.0, acceleration: 0.0 };
-        if is_led { path(t) } else { rest }
-    }
-
-    fn has_eta(&self) -> bool {
-        self.form == Form::StabilizedTwo
-    }
-
-    /// Consistent y and y' at t = 0, from M v' - A lambda = 0 and A^T v' = b''.
-    pub fn start(&self) -> (Vec<f64>, Vec<f64>) {
-        let (n, m) = (self.body.size(), self.rows.len());
-        let saddle = Mat::from_fn(n + m, n + m, |i, j| match (i < n, j < n) {
-            (true, true) => self.body.inertia[(i, j)],
-            (true, false) => -f64::from(self.rows[j - n] == i),
-            (false, true) => f64::from(self.rows[i - n] == j),
-            (false, false) => 0.0,
-        });
-        let right = Mat::from_fn(n + m, 1, |i, _| match i.checked_sub(n) {
-            Some(row) => self.prescribed(row, 0.0).acceleration,
-            None => 0.0,
-        });
-        let found = PartialPivLu::new(saddle.as_ref()).solve(right);
-        let size = 2 * n + m + if self.has_eta() { m } else { 0 };
-        let (mut y, mut yp) = (vec![0.0; size], vec![0.0; size]);
-        (0..n).for_each(|i| yp[n + i] = found[(i, 0)]);
-        (0..m).for_each(|row| y[2 * n + row] = found[(n + row, 0)]);
-        (y, yp)
-    }
-}
-
-impl Dae for SquareForm {
-    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Failure> {
-        let (n, m) = (self.body.size(), self.rows.len());
-        let (u, v, lambda) = (&y[..n], &y[n..2 * n], &y[2 * n..2 * n + m]);
-        let Linear { inertia, stiffness, damping } = &self.body;
-        for i in 0..n {
-            r[i] = yp[i] - v[i];
-            let row = |j: usize| {
-                inertia[(i, j)] * yp[n + j] + damping[(i, j)] * v[j] + stiffness[(i, j)] * u[j]
-            };
-            r[n + i] = (0..n).map(row).sum();
-        }
-        for (k, &dof) in self.rows.iter().enumerate() {
-            let b = self.prescribed(k, t);
-            r[n + dof] -= lambda[k];
-            let constraint =
-                [u[dof] - b.displacement, v[dof] - b.velocity, yp[n + dof] - b.acceleration];
-            r[2 * n + k] = self.form.equation(constraint);
-            if self.has_eta() {
-                r[dof] -= y[2 * n + m + k];
-                r[2 * n + m + k] = constraint[0];
-            }
-        }
-        Ok(())
-    }
 }
 
 /// The pressed square in a form, held against its scene.
@@ -318,7 +149,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
     page.say(
         "With the constraint R = 0 itself the equations have index 3: its multiplier follows from R''. BDF \
          divides by h^2 for that, so that in the multiplier an error of the Newton iteration counts 1/h^2 \
-         times; the error test sees that, cuts h, and makes it worse. IDA's theory ends at \
+         times; the error test sees that, cuts h, and makes it worse. IDA is made for \
          index 1. Forms of lower index, all through the general layer, `rtol` = 1e-6; errors of the \
          multiplier are parts of its size.",
     );

@@ -5,6 +5,7 @@ pub mod alpha;
 pub mod compression;
 pub mod contact;
 pub mod explicit;
+pub mod forms;
 pub mod heat;
 pub mod index;
 pub mod linear;
