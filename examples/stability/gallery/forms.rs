@@ -2,8 +2,8 @@
 
 use std::f64::consts::PI;
 
-use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
+use faer::{Mat, MatMut};
 use pliant::ode::{Dae, Failure};
 use pliant::samples::{Pendulum, SQUARE_MATERIAL};
 use pliant::{Body, Cells, Error, Mesh, Prescribed};
@@ -74,6 +74,43 @@ impl Dae for PendulumForm {
         r[4] = self.0.equation([position, x * vx + y * vy, second]);
         if self.0 == Form::StabilizedTwo {
             r[5] = position;
+        }
+        Ok(())
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        _t: f64,
+        cj: f64,
+        s: &[f64],
+        _sp: &[f64],
+        mut j: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        let (x, y, vx, vy, tension) = (s[0], s[1], s[2], s[3], s[4]);
+        for (row, other) in [(0, 2), (1, 3)] {
+            j[(row, row)] = cj;
+            j[(row, other)] = -1.0;
+            j[(other, row)] = tension;
+            j[(other, other)] = cj;
+        }
+        (j[(2, 4)], j[(3, 4)]) = (x, y);
+        // of R, R' and R'' by x, y, vx, vy, tension
+        let gradients = [
+            [x, vx, -2.0 * tension * x],
+            [y, vy, -Pendulum::GRAVITY - 2.0 * tension * y],
+            [0.0, x, 2.0 * vx],
+            [0.0, y, 2.0 * vy],
+            [0.0, 0.0, -x * x - y * y],
+        ];
+        for (unknown, gradient) in gradients.into_iter().enumerate() {
+            j[(4, unknown)] = self.0.equation(gradient);
+        }
+        if self.0 == Form::StabilizedTwo {
+            let eta = s[5];
+            j[(0, 0)] += eta;
+            j[(1, 1)] += eta;
+            (j[(0, 5)], j[(1, 5)]) = (x, y);
+            (j[(5, 0)], j[(5, 1)]) = (x, y);
         }
         Ok(())
     }
