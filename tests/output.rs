@@ -225,6 +225,39 @@ fn a_chart_names_its_series() -> Outcome {
     Ok(())
 }
 
+/// Along logarithmic axes equal factors are equal distances, and powers of ten are labelled: of many
+/// every second.
+#[test]
+fn a_logarithmic_chart_spaces_decades_equally() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("chart.svg");
+    let chart = Chart::new("Powers").axes("x", "y").logarithmic(true, true);
+    let powers = |points: &[i32]| points.iter().map(|k| 10_f64.powi(*k)).collect::<Vec<_>>();
+    let xs = powers(&[-2, -1, 0, 1]);
+    let points = xs.iter().copied().zip(powers(&[6, 3, 0, -3]));
+    chart.clone().marked("measured", points).reference("expected", [(1.0, 1.0)]).write(&path)?;
+    let text = fs::read_to_string(&path)?;
+    let document = roxmltree::Document::parse(&text)?;
+    let texts: Vec<&str> = document.descendants().filter_map(|n| n.text()).map(str::trim).collect();
+    for label in ["measured", "expected", "10⁻²", "10⁻¹", "1", "10¹", "10⁶", "10⁴"] {
+        assert!(texts.contains(&label), "{label} in {texts:?}");
+    }
+    let dots = document.descendants().filter(|n| n.has_tag_name("circle"));
+    let places: Vec<[f64; 2]> = dots
+        .map(|dot| ["cx", "cy"].map(|name| dot.attribute(name).unwrap_or("").parse().unwrap()))
+        .collect();
+    // the first is that of the legend
+    for axis in 0..2 {
+        let gaps: Vec<f64> = places[1..].windows(2).map(|w| w[1][axis] - w[0][axis]).collect();
+        assert_eq!(gaps.len(), 3);
+        // places are whole numbers of a grid of eighths of pixels
+        assert!(gaps.iter().all(|gap| (gap - gaps[0]).abs() <= 2.0 && *gap > 100.0), "{gaps:?}");
+    }
+    let refused = chart.series("bad", [(1.0, 0.0)]).write(&path).unwrap_err();
+    assert!(refused.to_string().contains("must be positive"), "{refused}");
+    Ok(())
+}
+
 fn read_grid(path: &Path) -> Result<UnstructuredGridPiece, Box<dyn Error>> {
     let DataSet::UnstructuredGrid { pieces, .. } = Vtk::import(path)?.data else {
         return Err("not an unstructured grid".into());

@@ -16,6 +16,7 @@
 mod animation;
 mod chart;
 mod csv;
+mod decades;
 #[cfg(feature = "study")]
 mod png;
 mod report;
@@ -30,6 +31,8 @@ use std::path::Path;
 pub use self::animation::write_animation;
 pub use self::chart::Chart;
 pub use self::csv::{write_csv, write_energies};
+#[cfg(feature = "study")]
+pub(crate) use self::decades::{power_text, ticks};
 #[cfg(feature = "study")]
 pub(crate) use self::png::png;
 pub use self::report::{write_report, write_static_report};

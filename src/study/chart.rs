@@ -10,7 +10,7 @@ use svg::node::element::{Circle, Group, Line, Path as Outline, Polyline, Rectang
 use super::fastest::time_text;
 use super::{Findings, LineFindings};
 use crate::error::Error;
-use crate::output::{FONT, INK, png, write_file};
+use crate::output::{FONT, INK, png, power_text, ticks, write_file};
 
 /// Left, top, right and bottom of the field in which lines are drawn (px).
 const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
@@ -26,7 +26,6 @@ const FAMILIES: [&str; 7] =
 const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
 const GRID: &str = "#dddddd";
 const FAINT_GRID: &str = "#f1f1f1";
-const SUPERSCRIPTS: [&str; 10] = ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"];
 /// Larger relative errors are drawn as large as this: wrong is wrong.
 const WORST: f64 = 10.0;
 
@@ -292,37 +291,6 @@ fn key(line: &LineFindings, style: &Style, y: f64) -> Group {
     }
 }
 
-/// Values within `decades` at which an axis has lines, and whether they are labelled: powers of
-/// ten, and in a short range others, too.
-fn ticks([low, high]: [f64; 2]) -> Vec<(f64, bool)> {
-    let is_short = high - low < 2.5;
-    let mut ticks = Vec::new();
-    for decade in low.floor() as i32..=high.floor() as i32 {
-        for digit in 1..=9 {
-            let value = format!("{digit}e{decade}").parse::<f64>().expect("a number");
-            if (low..=high).contains(&value.log10()) {
-                ticks.push((value, digit == 1 || is_short && (digit == 2 || digit == 5)));
-            }
-        }
-    }
-    ticks
-}
-
-/// 10⁻³, 2·10⁻³
-fn power_text(value: f64) -> String {
-    let text = format!("{value:e}");
-    let (digit, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-    let raised: String = exponent
-        .chars()
-        .map(|c| c.to_digit(10).map_or("⁻", |digit| SUPERSCRIPTS[digit as usize]))
-        .collect();
-    match (digit, exponent) {
-        (digit, "0") => digit.into(),
-        ("1", _) => format!("10{raised}"),
-        _ => format!("{digit}·10{raised}"),
-    }
-}
-
 /// 10 ms
 fn round_time_text(seconds: f64) -> String {
     let text = time_text(seconds);
@@ -351,20 +319,10 @@ fn round(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{power_text, round_time_text, ticks};
-
-    #[test]
-    fn ticks_are_powers_of_ten_and_more_in_a_short_range() {
-        let labelled = |range| -> Vec<f64> {
-            ticks(range).into_iter().filter(|tick| tick.1).map(|tick| tick.0).collect()
-        };
-        assert_eq!(labelled([-3.2, 0.1]), [1e-3, 1e-2, 1e-1, 1.0]);
-        assert_eq!(labelled([-1.8, -0.9]), [2e-2, 5e-2, 0.1]);
-    }
+    use super::round_time_text;
 
     #[test]
     fn labels_are_short() {
-        assert_eq!([1e-3, 2e-10, 1.0, 10.0].map(power_text), ["10⁻³", "2·10⁻¹⁰", "1", "10¹"]);
         let times = [1e-5, 2e-3, 0.1, 1.0, 100.0].map(round_time_text);
         assert_eq!(times, ["10 \u{b5}s", "2 ms", "100 ms", "1 s", "100 s"]);
     }

@@ -1,0 +1,37 @@
+//! i. Large steps over short pulses.
+
+use pliant::Method;
+
+use crate::gallery::pulses::{Pulse, general};
+
+const METHODS: [Method; 5] =
+    [Method::CvodeBdf, Method::CvodeAdams, Method::Ida, Method::Arkode, Method::Rk];
+
+#[test]
+fn what_is_said_by_points_is_not_skipped() {
+    for method in METHODS {
+        for (width, vibrates) in [(0.1, false), (1e-3, true), (1e-5, false), (1e-5, true)] {
+            let momentum = Pulse { width, told: true, vibrates }.momentum(method, 1e-5).unwrap();
+            // ten times rtol
+            assert!((momentum - 1.0).abs() < 1e-4, "{method} {width} {vibrates}: {momentum}");
+        }
+    }
+}
+
+#[test]
+fn a_function_of_time_is_stepped_over() {
+    for method in METHODS {
+        for (width, vibrates) in [(0.1, false), (1e-5, false), (1e-5, true)] {
+            let momentum = Pulse { width, told: false, vibrates }.momentum(method, 1e-5).unwrap();
+            // what is left of none: vibrations add up to no momentum but for round-off
+            assert!(momentum.abs() < 1e-6, "{method} {width} {vibrates}: {momentum}");
+        }
+    }
+}
+
+#[test]
+fn the_general_layer_has_to_be_told_as_well() {
+    assert_eq!(general(1e-3, false, 1e-5).unwrap(), 0.0);
+    // two rtol of the momentum
+    assert!((general(1e-3, true, 1e-5).unwrap() - 1.0).abs() < 1e-4);
+}
