@@ -24,8 +24,8 @@ test: ## Every check: format, lints, tests, documentation and its examples
 	cargo test
 	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps
 
-bench: setup ## Benchmarks
-	cargo bench
+bench: setup ## Benchmarks: one table of what the parts of a step cost; all others: cargo bench
+	cargo bench --bench table
 
 peers: setup ## Compare with SciPy, Octave, diffsol and others (peers/README.md)
 	peers/run

@@ -103,4 +103,19 @@ impl Equations {
         self.system.update_tangents(t, u, v, false);
         self.system.tangents().into()
     }
+
+    /// Factorizes the Newton matrix M + gamma D + gamma^2 Kt of an implicit method of step parameter
+    /// `gamma` (s), with the [`tangents`](Self::tangents) last asked for.
+    ///
+    /// # Errors
+    /// A singular matrix.
+    pub fn factorize(&mut self, gamma: f64) -> Result<(), Failure> {
+        self.system.factorize_newton(gamma)
+    }
+
+    /// Solves (I - gamma J) x = r, with J the Jacobian of (u', v') = (v, M^-1 f) and the factor last made:
+    /// `ru` and `rv` hold r and become x. Prescribed components get xv = rv and xu = ru + gamma xv.
+    pub fn solve(&mut self, ru: &mut [f64], rv: &mut [f64]) {
+        self.system.solve_newton_ode(ru, rv);
+    }
 }

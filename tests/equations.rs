@@ -114,3 +114,39 @@ fn bad_input_is_named() {
     let error = message(Scene::new(body).phase(tied).equations(0, &[0.0; 8]));
     assert!(error.contains("tied") && error.contains("single components"), "{error}");
 }
+
+/// The solution of the Newton system, put into the equations it stands for:
+/// (M + gamma D) xv + gamma Kt xu = M rv, and xu = ru + gamma xv.
+#[test]
+fn the_newton_matrix_is_that_of_the_ode() {
+    let scene = ClampedBeam { nodes: [6, 3], viscosity: 4000.0, ..ClampedBeam::default() };
+    let scene = scene.scene().unwrap();
+    let [u, v] = state(scene.body().dofs());
+    let n = u.len();
+    let mut equations = scene.equations(0, &vec![0.0; n]).unwrap();
+    // symmetric tangents, as the Newton matrix takes their symmetric part
+    let [k, d] = equations.tangents(0.0, &u, &vec![0.0; n]).map(|matrix| matrix.to_dense());
+    let m = |i: usize, j: usize| {
+        if i % 2 == j % 2 { equations.inertia().get(i / 2, j / 2) } else { 0.0 }
+    };
+    let m = faer::Mat::from_fn(n, n, m);
+    let held: Vec<usize> = equations.prescribed(0.0).map(|(dof, _)| dof).collect();
+    let gamma = 3e-4;
+    let (ru, rv) = (v.clone(), u.iter().map(|u| 1e3 * u).collect::<Vec<_>>());
+    let (mut xu, mut xv) = (ru.clone(), rv.clone());
+    equations.factorize(gamma).unwrap();
+    equations.solve(&mut xu, &mut xv);
+    for i in 0..n {
+        assert!((xu[i] - ru[i] - gamma * xv[i]).abs() < 1e-15);
+        if held.contains(&i) {
+            assert_eq!(xv[i], rv[i]);
+            continue;
+        }
+        let terms = (0..n).flat_map(|j| {
+            [m[(i, j)] * (xv[j] - rv[j]), gamma * d[(i, j)] * xv[j], gamma * k[(i, j)] * xu[j]]
+        });
+        let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), x: f64| (sum + x, size + x.abs()));
+        // round-off of about 50 terms, times the condition of the matrix
+        assert!(sum.abs() < 1e-12 * size, "component {i}: {sum:e} of {size:e}");
+    }
+}

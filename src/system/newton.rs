@@ -156,7 +156,7 @@ impl System {
     }
 
     /// Factorizes N = M + gamma D + gamma^2 Kt.
-    pub(super) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
+    pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
         self.newton.factorizations += 1;
         let Newton { solver, stiffness, damping, .. } = &mut self.newton;
@@ -202,7 +202,7 @@ impl System {
     }
 
     /// The Newton system of the ODE form: `ru`, `rv` become xu, xv.
-    pub(super) fn solve_newton_ode(&mut self, ru: &mut [f64], rv: &mut [f64]) {
+    pub(crate) fn solve_newton_ode(&mut self, ru: &mut [f64], rv: &mut [f64]) {
         let Newton { right, demands, .. } = &mut self.newton;
         right.fill(0.0);
         self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
