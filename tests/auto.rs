@@ -36,6 +36,22 @@ fn the_choice_follows_the_damping() {
     assert!(report.to_string().contains(reason));
 }
 
+/// A ring that walks on a floor with damping creeps in its slowest motion, by a damping ratio above
+/// 1, and vibrates in others: BDF crawls there at its orders above 2.
+#[test]
+fn what_creeps_tells_nothing_of_vibrations() {
+    let scene = samples::ring_springs(1.0).unwrap();
+    let trajectory = run(&scene, &auto(1e-3));
+    let walks = &trajectory.report().phases[1];
+    assert_eq!(walks.method, Method::Arkode);
+    let reason = walks.reason.as_deref().unwrap();
+    assert!(reason.contains("overdamped"), "{reason}");
+    let bdf = run(&scene, &Solver { method: Method::CvodeBdf, rtol: 1e-3, ..Solver::default() });
+    let bdf = &bdf.report().phases[1];
+    // a step of ARKODE costs about ten of BDF
+    assert!(10 * walks.counts.steps < bdf.counts.steps, "{walks:?} {bdf:?}");
+}
+
 /// Tight tolerances ask for steps that the explicit method takes as well.
 #[test]
 fn it_changes_to_the_explicit_method_in_mid_phase() {

@@ -153,16 +153,15 @@ fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
 
 fn choose(spectrum: &Spectrum) -> (Method, String) {
     let ratio = spectrum.lowest_damping_ratio;
-    let why = match spectrum.slowest_period() {
-        None => "nothing vibrates".into(),
-        Some(period) => {
-            let how = if ratio < STRONG_DAMPING { "lightly" } else { "strongly" };
-            format!(
-                "the slowest vibration ({period:.1e} s) is {how} damped, by the ratio {ratio:.1e}"
-            )
-        }
+    let (method, how) = match ratio {
+        // what only creeps, as a body on a floor that damps, tells nothing of what vibrates in it
+        1.0.. => (Method::Arkode, "overdamped"),
+        STRONG_DAMPING.. => (Method::CvodeBdf, "strongly damped"),
+        _ => (Method::Arkode, "lightly damped"),
     };
-    let method = if ratio < STRONG_DAMPING { Method::Arkode } else { Method::CvodeBdf };
+    let why = spectrum.slowest_period().map_or("nothing vibrates".into(), |period| {
+        format!("the slowest vibration ({period:.1e} s) is {how}, by the ratio {ratio:.1e}")
+    });
     (method, format!("{method}, as {why}"))
 }
 
