@@ -9,7 +9,7 @@ use pliant::{Error, Method, Solver};
 /// Arguments of every example.
 #[derive(Args)]
 pub struct Common {
-    /// Integration method: cvode-bdf, cvode-adams, ida, ida-klu or rk
+    /// Integration method (`pliant methods` lists them)
     #[arg(long, default_value_t = Method::CvodeBdf)]
     pub method: Method,
     /// Relative tolerance
