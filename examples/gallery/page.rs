@@ -137,8 +137,8 @@ fn auto(sections: &[Section]) -> String {
         write!(table, "\n| {} |", sample.title()).unwrap();
         for point in JUDGED {
             let cell = match compared(auto, point, findings) {
-                Some((ratio, _)) if ratio <= TARGETS[0] => ratio_text(ratio),
-                Some((ratio, best)) => format!("**{}**, {best}", ratio_text(ratio)),
+                Some((ratio, _)) if ratio <= TARGETS[0] => format!("{ratio:.2}"),
+                Some((ratio, best)) => format!("**{ratio:.2}**, {best}"),
                 None => "–".into(),
             };
             write!(table, " {cell} |").unwrap();
