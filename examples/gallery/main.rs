@@ -94,10 +94,10 @@ mod tests {
         for part in [
             "\n| Jumping beam | ",
             "\nOf 2 ratios ",
-            "\n## Jumping beam\n\n![Jumping beam: error over time](beam-jump.svg)\n",
-            "\n## HIRES\n",
+            "\n### Jumping beam\n\n![Jumping beam: error over time](beam-jump.svg)\n",
+            "\n### HIRES\n",
             "\n| 1e-2 | ",
-            "\n- Two methods agree on the reference to ",
+            "\n- The reference is known to ",
         ] {
             assert!(page.contains(part), "{part} is missing in {page}");
         }
@@ -128,7 +128,7 @@ mod tests {
         let page = fs::read_to_string(directory.join("README.md")).unwrap();
         for sample in Sample::value_variants() {
             let chart = format!("{}.svg", sample.name());
-            assert!(page.contains(&format!("\n## {}\n", sample.title())), "{sample:?}");
+            assert!(page.contains(&format!("\n### {}\n", sample.title())), "{sample:?}");
             assert!(page.contains(&format!("({chart})")), "{sample:?}");
             assert!(directory.join(&chart).is_file(), "{chart} is missing");
         }

@@ -5,7 +5,8 @@
 //!
 //! - `{time of LINE at ERROR}`: how long a line takes to reach a relative error;
 //! - `{LINE / LINE at ERROR}`: how many times longer the first one takes;
-//! - `{error of LINE at POINT}`, `{steps of LINE at POINT}`, `{energy of LINE at POINT}`: of a run;
+//! - `{error of LINE at POINT}`, `{energy of LINE at POINT}`, `{steps of LINE at POINT}`,
+//!   `{seconds of LINE at POINT}`: of a run;
 //! - `{fastest}`, `{auto}`: the tables over all problems.
 
 use std::fmt::Write;
@@ -30,7 +31,7 @@ pub struct Section {
 
 /// The page in Markdown.
 pub fn page(sections: &[Section]) -> String {
-    let before = READINGS.split("\n## ").next().unwrap_or_default();
+    let before = READINGS.split("\n### ").next().unwrap_or_default();
     let mut page =
         before.replace("{fastest}", &fastest(sections)).replace("{auto}", &auto(sections));
     sections.iter().for_each(|section| page += &section.text());
@@ -45,7 +46,7 @@ impl Section {
         let table = findings.fastest().markdown();
         let notes: String = findings.notes().iter().map(|note| format!("- {note}\n")).collect();
         format!(
-            "\n## {title}\n\n![{title}: error over time]({name}.svg)\n\n{reading}\n\n{table}\n\
+            "\n### {title}\n\n![{title}: error over time]({name}.svg)\n\n{reading}\n\n{table}\n\
              <details><summary>Notes</summary>\n\n{notes}\n</details>\n"
         )
     }
@@ -54,7 +55,7 @@ impl Section {
 /// What is said of a problem.
 fn reading(name: &str) -> &'static str {
     READINGS
-        .split("\n## ")
+        .split("\n### ")
         .skip(1)
         .filter_map(|section| section.split_once('\n'))
         .find_map(|(heading, text)| (heading == name).then_some(text.trim()))
@@ -86,15 +87,25 @@ fn number(asked: &str, findings: &Findings) -> Option<String> {
     let row = || row(line(name), at);
     match what {
         "time" => time(name).map(time_text),
-        "error" => row()?.error.map(|error| format!("{error:.0e}")),
-        "energy" => row()?.energy_error.map(|error| format!("{error:.0e}")),
+        "error" => row()?.error.map(part_text),
+        "energy" => row()?.energy_error.map(part_text),
         "steps" => row()?.steps.map(|steps| steps.to_string()),
+        "seconds" => row().map(|row| time_text(row.seconds)),
         _ => panic!("{{{asked}}}: there is no {what}"),
     }
 }
 
 fn row<'a>(line: &'a LineFindings, point: &str) -> Option<&'a Row> {
     line.rows.iter().find(|row| row.point == point)
+}
+
+/// A part of a whole.
+fn part_text(part: f64) -> String {
+    match part {
+        small if small < 1e-3 => format!("{small:.0e}"),
+        small if small < 0.0995 => format!("{:.1} %", 100.0 * small),
+        large => format!("{:.0} %", 100.0 * large),
+    }
 }
 
 fn ratio_text(ratio: f64) -> String {
@@ -112,7 +123,7 @@ fn fastest(sections: &[Section]) -> String {
         write!(table, "\n| {} |", sample.title()).unwrap();
         for accuracy in &findings.fastest().accuracies[..*digits.end()] {
             let cell = match accuracy.reached.iter().find(|(name, _)| name != "auto") {
-                Some((name, time)) => format!("{name}, {}", time_text(*time)),
+                Some((name, time)) => format!("{name}: {}", time_text(*time)),
                 None if accuracy.is_resolved => "none".into(),
                 None => "–".into(),
             };
