@@ -93,7 +93,7 @@ mod tests {
         let page = made(&["beam-jump", "hires"], directory.path());
         for part in [
             "\n| Jumping beam | ",
-            "\nOf 2 ratios ",
+            "\nOf 1 ratios ",
             "\n### Jumping beam\n\n![Jumping beam: error over time](beam-jump.svg)\n",
             "\n### HIRES\n",
             "\n| 1e-2 | ",
