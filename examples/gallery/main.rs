@@ -21,6 +21,7 @@ use page::{Section, page};
 use pliant::Error;
 use pliant::study::Study;
 use problems::Sample;
+use rayon::ThreadPoolBuilder;
 
 /// Charts of speed against accuracy, and a page about them.
 #[derive(Parser)]
@@ -46,7 +47,10 @@ struct Arguments {
 }
 
 fn main() {
-    finish(run(&Arguments::parse()));
+    let arguments = Arguments::parse();
+    // What is compared is work, and processor times are those of one thread.
+    let one = ThreadPoolBuilder::new().num_threads(1).build().expect("a thread can be started");
+    finish(one.install(|| run(&arguments)));
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
