@@ -27,7 +27,7 @@ test: ## Every check: format, lints, tests, documentation and its examples
 bench: setup ## Benchmarks: one table of what the parts of a step cost; all others: cargo bench
 	cargo bench --bench table
 
-charts: setup ## The gallery in docs/charts, about half an hour; out/charts keeps what was run
+charts: setup ## The gallery in docs/charts, some 20 minutes; out/charts keeps what was run
 	cargo run --release --example gallery -- --out docs/charts
 
 peers: setup ## Compare with SciPy, Octave, diffsol and others (peers/README.md)
