@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench peers docs valgrind clean
+.PHONY: help setup demo test bench charts peers docs valgrind clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -26,6 +26,9 @@ test: ## Every check: format, lints, tests, documentation and its examples
 
 bench: setup ## Benchmarks: one table of what the parts of a step cost; all others: cargo bench
 	cargo bench --bench table
+
+charts: setup ## The gallery in docs/charts, some 20 minutes; out/charts keeps what was run
+	cargo run --release --example gallery -- --out docs/charts
 
 peers: setup ## Compare with SciPy, Octave, diffsol and others (peers/README.md)
 	peers/run

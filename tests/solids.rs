@@ -1,5 +1,6 @@
 //! Solids in equilibrium, against published values.
 
+use pliant::samples::{ClampedBeam, FLAG_MATERIAL};
 use pliant::{Body, Cells, Material, Mesh, Phase, Plane, Scene, Statics, Strain};
 
 /// The flag of Turek and Hron: 0.35 x 0.02 m behind a cylinder of radius 0.05 m centred at (0.2, 0.2),
@@ -52,6 +53,33 @@ fn linear_triangles_lock_as_known() {
         let ([_, down], _) = flag(cells, along, across, 0.5e6);
         assert!((down / expected - 1.0).abs() < 2e-3, "{cells} {along} x {across}: {down}");
     }
+}
+
+/// The beam of the samples is the flag, clamped on a straight edge. The arc holds the flag up to 1 mm
+/// further back: as deflection goes with the fourth power of length, the beam sinks by less, by up
+/// to 4/350 of 66.103 mm. Its lowest frequency is that of a slender beam in plane strain, 1.875104^2
+/// sqrt(E h^2/(12 (1 - nu^2) rho L^4)), but for shear, rotary inertia and the clamp that hinders the end
+/// from widening, each of the order of (h/L)^2 = 0.3 %; and as its damping is its stiffness times
+/// c/E, the damping ratio is omega c/(2 E), about 1 %.
+#[test]
+fn the_clamped_beam_sinks_and_swings_as_the_flag() {
+    let (cells, viscosity) = (Cells::Triangles6, 4000.0);
+    let beam = ClampedBeam { nodes: [71, 5], cells, viscosity, ..ClampedBeam::default() };
+    let scene = beam.scene().unwrap();
+    let found = scene.equilibrium(&Statics::default()).unwrap();
+    let tip = 2 * 71 + 70;
+    let down = 1e3 * found.displacements()[2 * tip + 1];
+    assert!(down < -66.103 * (1.0 - 4.0 / 350.0) && down > -66.103, "{down}");
+
+    let Material { density, young, poisson, .. } = FLAG_MATERIAL;
+    let stiffness = young * 0.02_f64.powi(2) / (12.0 * (1.0 - poisson.powi(2)));
+    let slender = 1.875104_f64.powi(2) * (stiffness / (density * 0.35_f64.powi(4))).sqrt();
+    let spectrum = scene.spectrum().unwrap()[0];
+    let omega = spectrum.lowest_frequency.unwrap();
+    assert!((omega / slender - 1.0).abs() < 0.01, "{omega} {slender}");
+    let ratio = omega * viscosity / (2.0 * young);
+    assert!((spectrum.lowest_damping_ratio / ratio - 1.0).abs() < 1e-3, "{spectrum:?}");
+    assert!((ratio - 0.01).abs() < 1e-3, "{ratio}");
 }
 
 /// Cook's membrane: corners (0, 0), (48, 44), (48, 60), (0, 44), plane stress, E = 1, nu = 1/3, total

@@ -169,8 +169,8 @@ impl Problem for Made {
         &self.lines
     }
 
-    fn fingerprint(&self, line: usize) -> u64 {
-        1000 * self.title.len() as u64 + line as u64
+    fn fingerprint(&self, line: usize, point: usize) -> u64 {
+        (100 * self.title.len() + 10 * line + point) as u64
     }
 
     fn prepare(&mut self, _limit: Duration, _tell: &mut dyn FnMut(&str)) -> Result<f64, Error> {
@@ -280,16 +280,26 @@ fn a_study_is_resumed_where_it_stopped() {
 #[test]
 fn scenes_are_told_apart_by_what_they_are_and_how_they_are_solved() {
     let solver = Solver::default();
-    let of = |scene: Scene, solver: Solver| {
-        Scenes::new("beam", scene).solver("line", solver).fingerprint(0)
+    let beam = |viscosity| Scenes::new("beam", clamped_beam([6, 2], viscosity).unwrap());
+    let of = |scenes: Scenes, solver: &Solver| {
+        scenes.tolerances([1e-3, 1e-4]).solver("line", solver.clone()).fingerprint(0, 1)
     };
-    let beam = |viscosity| clamped_beam([6, 2], viscosity).unwrap();
-    let same = of(beam(0.0), solver.clone());
-    assert_eq!(same, of(beam(0.0), Solver { rtol: 1e-3, ..solver.clone() }));
-    assert_ne!(same, of(beam(1.0), solver.clone()));
-    assert_ne!(same, of(beam(0.0), Solver { max_order: Some(2), ..solver.clone() }));
-    let variant = Scenes::new("beam", beam(0.0)).variant("line", beam(1.0), solver);
-    assert_ne!(same, variant.fingerprint(0));
+    let same = of(beam(0.0), &solver);
+    assert_eq!(same, of(beam(0.0), &Solver { rtol: 1e-9, ..solver.clone() }));
+    let more = beam(0.0).tolerances([1e-4, 1e-5]).solver("line", solver.clone());
+    assert_eq!((same, false), (more.fingerprint(0, 0), same == more.fingerprint(0, 1)));
+    let low = Solver { max_order: Some(2), ..solver.clone() };
+    let variant = clamped_beam([6, 2], 1.0).unwrap();
+    let variant = beam(0.0).tolerances([1e-3, 1e-4]).variant("line", variant, solver.clone());
+    for other in [
+        of(beam(1.0), &solver),
+        of(beam(0.0).alpha(1e4), &solver),
+        of(beam(0.0).finest(1e-4), &solver),
+        of(beam(0.0), &low),
+        variant.fingerprint(0, 1),
+    ] {
+        assert_ne!(same, other);
+    }
 }
 
 #[test]

@@ -89,7 +89,8 @@ impl Accuracy {
 }
 
 /// A time (s) with three digits, in a unit that suits it.
-pub(super) fn time_text(seconds: f64) -> String {
+#[must_use]
+pub fn time_text(seconds: f64) -> String {
     let (value, unit) = match seconds {
         s if s < 0.9995e-3 => (1e6 * s, "\u{b5}s"),
         s if s < 0.9995 => (1e3 * s, "ms"),

@@ -58,14 +58,6 @@ impl Findings {
         self.is_processor_time
     }
 
-    /// These findings and the lines of others, in one table and chart: of the same problem against a
-    /// reference of its own, say.
-    #[must_use]
-    pub fn and(mut self, others: Self) -> Self {
-        self.lines.extend(others.lines);
-        self
-    }
-
     /// Title of the problem.
     #[must_use]
     pub fn title(&self) -> &str {
@@ -101,7 +93,7 @@ impl Findings {
     pub fn notes(&self) -> Vec<String> {
         let resolution = self.resolution();
         let mut notes =
-            vec![format!("Two methods agree on the reference to {resolution:.1e} of the motion.")];
+            vec![format!("The reference is known to a relative error of {resolution:.1e}.")];
         let solved = self.rows().filter(|row| row.error.is_some());
         let (sure, unsure): (Vec<_>, Vec<_>) = solved.partition(|row| row.is_resolved());
         if !unsure.is_empty() {

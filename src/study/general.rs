@@ -119,9 +119,10 @@ impl Problem for General {
         &self.lines
     }
 
-    fn fingerprint(&self, line: usize) -> u64 {
-        let Self { title, reference, .. } = self;
-        fingerprint::of_text(format_args!("{title} {reference:?} {:?}", WAYS[line]), &[])
+    fn fingerprint(&self, line: usize, point: usize) -> u64 {
+        let Self { title, reference, lines, .. } = self;
+        let rtol = lines[line].points[point].rtol;
+        fingerprint::of_text(format_args!("{title} {reference:?} {:?} {rtol}", WAYS[line]), &[])
     }
 
     fn prepare(&mut self, _limit: Duration, _tell: &mut dyn FnMut(&str)) -> Result<f64, Error> {

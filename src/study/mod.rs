@@ -34,7 +34,7 @@
 //! reaches accuracies below it.
 //!
 //! **Time.** By the clock on the wall, of the whole solution, from the call to the end of the last
-//! phase, without samples: the median of some repetitions (a run of more than two seconds is
+//! phase, without samples: the median of some repetitions (a run of more than half a second is
 //! run once). Runs never overlap. Before and after each of them a fixed piece of arithmetic is timed,
 //! the yardstick: where it takes longer than it did at its best, the machine was busy with other
 //! things, and the row says by how much. Rows have processor times, too, which suffer less.
@@ -54,7 +54,7 @@ mod scenes;
 mod timing;
 mod truth;
 
-pub use fastest::Fastest;
+pub use fastest::{Accuracy, Fastest, time_text};
 pub use findings::{Findings, LineFindings};
 pub use general::General;
 pub use row::Row;
@@ -76,9 +76,9 @@ pub trait Problem {
     /// The ways to solve it.
     fn lines(&self) -> &[Line];
 
-    /// What tells this line of this problem from any other: a result that was kept under the same
+    /// What tells this run of this problem from any other: a result that was kept under the same
     /// fingerprint is not computed again.
-    fn fingerprint(&self, line: usize) -> u64;
+    fn fingerprint(&self, line: usize, point: usize) -> u64;
 
     /// Gets the reference ready and returns its resolution, a relative error. Called once, before
     /// anything is measured; no single run may take more processor time than `limit`.

@@ -51,8 +51,7 @@ pub struct Row {
     pub energy_error: Option<f64>,
     /// Why the run failed.
     pub failure: Option<String>,
-    /// What tells the problem and the line from others: rows with the same one, and the same point, are
-    /// the same run.
+    /// What tells the run from others; [`Problem::fingerprint`](super::Problem::fingerprint).
     pub fingerprint: String,
 }
 

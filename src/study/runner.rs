@@ -161,7 +161,7 @@ fn all_runs(problem: &dyn Problem) -> Vec<Run> {
                 family: line.family.clone(),
                 point: point.name.clone(),
                 rtol: point.rtol,
-                fingerprint: format!("{:016x}", problem.fingerprint(k)),
+                fingerprint: format!("{:016x}", problem.fingerprint(k, number)),
                 ..Row::default()
             };
             runs.push(Run { line: k, point: number, row });

@@ -1,6 +1,5 @@
 //! A scene and its variants as a problem.
 
-use std::collections::BTreeSet;
 use std::time::Duration;
 
 use super::truth::{Probe, Truth, reason, shared_nodes};
@@ -231,15 +230,14 @@ impl Problem for Scenes {
         &self.lines
     }
 
-    fn fingerprint(&self, line: usize) -> u64 {
-        let runs = &self.runs[line];
-        // each once: more tolerances make no other line
-        let scenes: BTreeSet<usize> =
-            runs.iter().map(|run| run.scene).chain([0]).chain(self.check).collect();
-        let fingerprints: Vec<u64> =
-            scenes.into_iter().map(|scene| self.fingerprints[scene]).collect();
-        let solver = runs.first().map(|run| Solver { rtol: 1.0, ..run.solver.clone() });
-        fingerprint::of_text(format_args!("{solver:?} {}", self.alpha), &fingerprints)
+    fn fingerprint(&self, line: usize, point: usize) -> u64 {
+        let Run { scene, solver } = &self.runs[line][point];
+        let scenes = [*scene, 0].into_iter().chain(self.check);
+        let fingerprints: Vec<u64> = scenes.map(|scene| self.fingerprints[scene]).collect();
+        fingerprint::of_text(
+            format_args!("{solver:?} {} {}", self.alpha, self.finest),
+            &fingerprints,
+        )
     }
 
     fn prepare(&mut self, limit: Duration, tell: &mut dyn FnMut(&str)) -> Result<f64, Error> {

@@ -9,7 +9,7 @@ use rustix::time::{ClockId, clock_gettime};
 use super::Failed;
 
 /// A run that takes longer than this (s) is not repeated.
-const LONG: f64 = 2.0;
+const LONG: f64 = 0.5;
 
 /// A fixed piece of arithmetic, timed again and again to see how fast the machine is.
 #[derive(Debug)]

@@ -298,3 +298,35 @@ pub(super) fn reason(error: Error) -> Failed {
         other => Box::new(other),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::{ClampedBeam, clamped_beam};
+
+    #[test]
+    fn distances_are_those_of_nodes() {
+        // two nodes at two times, in two dimensions
+        let motion = |u: [f64; 8]| Motion { dimension: 2, u: u.into() };
+        let one = motion([1.0, 1.0, 2.0, 2.0, 1.0, 1.0, 0.0, 0.0]);
+        let other = motion([4.0, 5.0, 2.0, 2.0, 1.0, 1.0, 6.0, -8.0]);
+        let Distance { mean, largest } = one.distance(&other);
+        assert_eq!((mean, largest), ((125.0_f64 / 4.0).sqrt(), 10.0));
+        assert_eq!(one.mean(), (12.0_f64 / 4.0).sqrt());
+    }
+
+    #[test]
+    fn meshes_share_the_nodes_that_are_at_the_same_places() {
+        let coarse = clamped_beam([3, 2], 0.0).unwrap();
+        let fine = clamped_beam([5, 3], 0.0).unwrap();
+        let cells = crate::Cells::Triangles6;
+        let quadratic = ClampedBeam { nodes: [3, 2], cells, ..ClampedBeam::default() };
+        let quadratic = quadratic.scene().unwrap();
+        let shared = shared_nodes(&[&fine, &quadratic, &coarse]).unwrap();
+        // row by row of the finest: corners and middles of the lower and the upper edge
+        assert_eq!(shared[0], [0, 2, 4, 10, 12, 14]);
+        assert_eq!(shared[2], [0, 1, 2, 3, 4, 5]);
+        let all = shared_nodes(&[&fine, &quadratic]).unwrap();
+        assert_eq!(all[0].len(), 15);
+    }
+}

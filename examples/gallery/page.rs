@@ -1,0 +1,187 @@
+//! The page: tables over all problems, then chart, reading and table of each.
+//!
+//! `readings.md` holds the prose: what stands before the first problem, then a section for each,
+//! headed by its name. Numbers in it come from the findings, by what stands in braces:
+//!
+//! - `{time of LINE at ERROR}`: how long a line takes to reach a relative error;
+//! - `{LINE / LINE at ERROR}`: how many times longer the first one takes;
+//! - `{error of LINE at POINT}`, `{energy of LINE at POINT}`, `{steps of LINE at POINT}`,
+//!   `{seconds of LINE at POINT}`: of a run;
+//! - `{fastest}`, `{auto}`: the tables over all problems.
+
+use std::fmt::Write;
+
+use pliant::study::{Findings, LineFindings, Row, time_text};
+
+use crate::problems::Sample;
+
+const READINGS: &str = include_str!("readings.md");
+
+/// Relative tolerances at which the automatic choice is judged, as points are named.
+const JUDGED: [&str; 3] = ["1e-3", "1e-5", "1e-7"];
+
+/// Times as long as the fastest method that the automatic choice should take at most, and may.
+const TARGETS: [f64; 2] = [1.5, 3.0];
+
+/// A problem and what was found.
+pub struct Section {
+    pub sample: Sample,
+    pub findings: Findings,
+}
+
+/// The page in Markdown.
+pub fn page(sections: &[Section]) -> String {
+    let before = READINGS.split("\n### ").next().unwrap_or_default();
+    let mut page =
+        before.replace("{fastest}", &fastest(sections)).replace("{auto}", &auto(sections));
+    sections.iter().for_each(|section| page += &section.text());
+    page
+}
+
+impl Section {
+    fn text(&self) -> String {
+        let Self { sample, findings } = self;
+        let (title, name) = (sample.title(), sample.name());
+        let reading = filled(reading(&name), findings);
+        let table = findings.fastest().markdown();
+        let notes: String = findings.notes().iter().map(|note| format!("- {note}\n")).collect();
+        format!(
+            "\n### {title}\n\n![{title}: error over time]({name}.svg)\n\n{reading}\n\n{table}\n\
+             <details><summary>Notes</summary>\n\n{notes}\n</details>\n"
+        )
+    }
+}
+
+/// What is said of a problem.
+fn reading(name: &str) -> &'static str {
+    READINGS
+        .split("\n### ")
+        .skip(1)
+        .filter_map(|section| section.split_once('\n'))
+        .find_map(|(heading, text)| (heading == name).then_some(text.trim()))
+        .unwrap_or_else(|| panic!("readings.md has no section {name}"))
+}
+
+/// `text` with numbers for what stands in braces.
+fn filled(text: &str, findings: &Findings) -> String {
+    let mut pieces = text.split(['{', '}']);
+    let mut filled = pieces.next().unwrap_or_default().to_owned();
+    while let (Some(asked), Some(rest)) = (pieces.next(), pieces.next()) {
+        filled += &number(asked, findings).unwrap_or("(none)".into());
+        filled += rest;
+    }
+    filled
+}
+
+/// What is `asked` for; none if no run has it.
+fn number(asked: &str, findings: &Findings) -> Option<String> {
+    let known = |name: &str| findings.lines().iter().find(|line| line.name == name);
+    let line = |name: &str| known(name).unwrap_or_else(|| panic!("{{{asked}}}: no line {name}"));
+    let parts = |text: &'static str| panic!("{{{asked}}}: it lacks \"{text}\"");
+    let (what, at) = asked.rsplit_once(" at ").unwrap_or_else(|| parts("at"));
+    let time = |name: &str| line(name).time_to_reach(at.parse().expect("an error"));
+    if let Some((long, short)) = what.split_once(" / ") {
+        return Some(ratio_text(time(long)? / time(short)?));
+    }
+    let (what, name) = what.split_once(" of ").unwrap_or_else(|| parts("of"));
+    let row = || row(line(name), at);
+    match what {
+        "time" => time(name).map(time_text),
+        "error" => row()?.error.map(part_text),
+        "energy" => row()?.energy_error.map(part_text),
+        "steps" => row()?.steps.map(|steps| steps.to_string()),
+        "seconds" => row().map(|row| time_text(row.seconds)),
+        _ => panic!("{{{asked}}}: there is no {what}"),
+    }
+}
+
+fn row<'a>(line: &'a LineFindings, point: &str) -> Option<&'a Row> {
+    line.rows.iter().find(|row| row.point == point)
+}
+
+/// A part of a whole.
+fn part_text(part: f64) -> String {
+    match part {
+        small if small < 1e-3 => format!("{small:.0e}"),
+        small if small < 0.0995 => format!("{:.1} %", 100.0 * small),
+        large => format!("{:.0} %", 100.0 * large),
+    }
+}
+
+fn ratio_text(ratio: f64) -> String {
+    format!("{ratio:.*}", usize::from(ratio < 9.95))
+}
+
+/// The fastest method for each accuracy, problem by problem, the automatic choice left aside.
+fn fastest(sections: &[Section]) -> String {
+    let digits = 1..=6;
+    let mut table = String::from("| problem |");
+    digits.clone().for_each(|digit| write!(table, " 1e-{digit} |").unwrap());
+    table += "\n| --- |";
+    digits.clone().for_each(|_| table += " --- |");
+    for Section { sample, findings } in methods(sections) {
+        write!(table, "\n| {} |", sample.title()).unwrap();
+        for accuracy in &findings.fastest().accuracies[..*digits.end()] {
+            let cell = match accuracy.reached.iter().find(|(name, _)| name != "auto") {
+                Some((name, time)) => format!("{name}: {}", time_text(*time)),
+                None if accuracy.is_resolved => "none".into(),
+                None => "–".into(),
+            };
+            write!(table, " {cell} |").unwrap();
+        }
+    }
+    table
+}
+
+fn methods(sections: &[Section]) -> impl Iterator<Item = &Section> {
+    sections.iter().filter(|section| section.sample.compares_methods())
+}
+
+/// How much longer than the fastest other method the automatic choice takes for the error that
+/// it has.
+fn auto(sections: &[Section]) -> String {
+    let mut table = format!("| problem | {} |\n| --- |", JUDGED.join(" | "));
+    JUDGED.iter().for_each(|_| table += " --- |");
+    let mut ratios = Vec::new();
+    for Section { sample, findings } in methods(sections) {
+        let Some(auto) = findings.lines().iter().find(|line| line.name == "auto") else { continue };
+        write!(table, "\n| {} |", sample.title()).unwrap();
+        for point in JUDGED {
+            let cell = match compared(auto, point, findings) {
+                Some((ratio, _)) if ratio <= TARGETS[0] => format!("{ratio:.2}"),
+                Some((ratio, best)) => format!("**{ratio:.2}**, {best}"),
+                None => "–".into(),
+            };
+            write!(table, " {cell} |").unwrap();
+            ratios.extend(compared(auto, point, findings).map(|(ratio, _)| ratio));
+        }
+    }
+    let above = |target: f64| ratios.iter().filter(|ratio| **ratio > target).count();
+    let [missed, far] = TARGETS.map(above);
+    let all = ratios.len();
+    write!(
+        table,
+        "\n\nOf {all} ratios {missed} are above {}, {far} above {}.",
+        TARGETS[0], TARGETS[1]
+    )
+    .unwrap();
+    table
+}
+
+/// The time of `auto` at `point`, relative to the least that any other line needs for the same
+/// error, and the name of that line. None if the error is too near to that of the reference.
+fn compared<'a>(
+    auto: &LineFindings,
+    point: &str,
+    findings: &'a Findings,
+) -> Option<(f64, &'a str)> {
+    let row = row(auto, point).filter(|row| row.is_resolved())?;
+    findings
+        .lines()
+        .iter()
+        .filter(|line| line.name != auto.name)
+        .filter_map(|line| {
+            Some((row.seconds / line.time_to_reach(row.error?)?, line.name.as_str()))
+        })
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+}
