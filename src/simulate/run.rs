@@ -302,24 +302,27 @@ impl<'a> Run<'a> {
         if self.standing == STANDING {
             return Err(standing_still(stepper.system().refusal()));
         }
+        // a step that is refused leaves no samples
+        if let Some(t) = event {
+            stepper.interpolate(t, sample)?;
+        }
+        let arrived = if event.is_some() { &*sample } else { stepper.state() };
+        let (system, before) = (stepper.system(), &self.state[..n]);
+        system.check_step(time, before, &arrived[..n]).map_err(into_error)?;
         while let Some(t) = leg.times.get(leg.taken).filter(|&t| t <= time) {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
             self.sample(leg.number, stepper.system_mut(), t, sample)?;
         }
-        let arrived = match event {
-            None => stepper.state(),
-            Some(t) => {
-                stepper.interpolate(t, sample)?;
-                sample
-            }
-        };
-        let (system, before) = (stepper.system(), &self.state[..n]);
-        system.check_step(time, before, &arrived[..n]).map_err(into_error)?;
+        if let Some(t) = event {
+            stepper.interpolate(t, sample)?;
+        }
+        let arrived = if event.is_some() { &*sample } else { stepper.state() };
         let step = time - self.time;
         self.time = time;
         self.steps += 1;
         self.state.copy_from_slice(&arrived[..length]);
+        let system = stepper.system();
         if event.is_some() {
             leg.events.pass(system, time, &self.state[..n], step);
         }
