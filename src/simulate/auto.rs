@@ -153,9 +153,12 @@ fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
 
 fn choose(spectrum: &Spectrum) -> (Method, String) {
     let ratio = spectrum.lowest_damping_ratio;
+    // the ratio that the fastest motions would give it, were the damping that of the material
+    let of_material = 0.5 * spectrum.damping_rate * spectrum.lowest_frequency.unwrap_or(0.0)
+        / spectrum.highest_frequency.powi(2);
     let (method, how) = match ratio {
-        // what only creeps, as a body on a floor that damps, tells nothing of what vibrates in it
-        1.0.. => (Method::Arkode, "overdamped"),
+        // a body that creeps on a floor that damps tells nothing of what vibrates in it
+        1.0.. if of_material < 1.0 => (Method::Arkode, "overdamped from outside"),
         STRONG_DAMPING.. => (Method::CvodeBdf, "strongly damped"),
         _ => (Method::Arkode, "lightly damped"),
     };
