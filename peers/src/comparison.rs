@@ -192,8 +192,8 @@ impl Problem for Comparison {
         &self.lines
     }
 
-    fn fingerprint(&self, line: usize) -> u64 {
-        line as u64
+    fn fingerprint(&self, line: usize, point: usize) -> u64 {
+        (1000 * line + point) as u64
     }
 
     fn prepare(&mut self, _limit: Duration, tell: &mut dyn FnMut(&str)) -> Result<f64, Error> {

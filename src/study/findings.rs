@@ -58,6 +58,14 @@ impl Findings {
         self.is_processor_time
     }
 
+    /// These findings and the lines of others, in one table and chart: of the same problem against a
+    /// reference of its own, say.
+    #[must_use]
+    pub fn and(mut self, others: Self) -> Self {
+        self.lines.extend(others.lines);
+        self
+    }
+
     /// Title of the problem.
     #[must_use]
     pub fn title(&self) -> &str {
