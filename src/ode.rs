@@ -25,6 +25,16 @@ pub enum Failure {
     Fatal(Box<dyn Error + Send + Sync>),
 }
 
+impl Failure {
+    /// What it has to say, as an error, where there is nothing left to retry.
+    pub(crate) fn into_error(self) -> Box<dyn Error + Send + Sync> {
+        match self {
+            Self::Recoverable(message) => message.into(),
+            Self::Fatal(error) => error,
+        }
+    }
+}
+
 impl<E: Error + Send + Sync + 'static> From<E> for Failure {
     fn from(error: E) -> Self {
         Self::Fatal(Box::new(error))

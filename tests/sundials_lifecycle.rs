@@ -31,18 +31,25 @@ fn linear_solvers() -> [LinearSolver; 4] {
     ]
 }
 
+/// A solver of this type for each linear solver: started, started anew, stopped, looked back on.
+macro_rules! each_linear_solver {
+    ($solver:ident, $options:ident) => {
+        for solver in linear_solvers() {
+            let options = $options::new(1e-4, ATOL).newton(solver);
+            let mut solver = $solver::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
+            solver.solve_to(0.4).unwrap();
+            solver.reinit(0.0, &Robertson::Y0).unwrap();
+            solver.set_stop_time(Some(0.05)).unwrap();
+            solver.solve_to(0.1).unwrap();
+            let (start, _) = solver.last_step();
+            solver.interpolate(start, 0, &mut [0.0; 3]).unwrap();
+            drop(black_box(solver.into_system()));
+        }
+    };
+}
+
 fn cvode_solvers() {
-    for solver in linear_solvers() {
-        let options = CvodeOptions::new(1e-4, ATOL).newton(solver);
-        let mut solver = Cvode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
-        solver.solve_to(0.4).unwrap();
-        solver.reinit(0.0, &Robertson::Y0).unwrap();
-        solver.set_stop_time(Some(0.05)).unwrap();
-        solver.solve_to(0.1).unwrap();
-        let (start, _) = solver.last_step();
-        solver.interpolate(start, 0, &mut [0.0; 3]).unwrap();
-        drop(black_box(solver.into_system()));
-    }
+    each_linear_solver!(Cvode, CvodeOptions);
     let options = CvodeOptions::new(1e-4, ATOL).newton(LinearSolver::Custom);
     let system = OwnSolver::new(Robertson::new(), 3);
     let mut solver = Cvode::new(system, 0.0, &Robertson::Y0, &options).unwrap();
@@ -54,17 +61,7 @@ fn cvode_solvers() {
 }
 
 fn arkode_solvers() {
-    for solver in linear_solvers() {
-        let options = ArkodeOptions::new(1e-4, ATOL).newton(solver);
-        let mut solver = Arkode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
-        solver.solve_to(0.4).unwrap();
-        solver.reinit(0.0, &Robertson::Y0).unwrap();
-        solver.set_stop_time(Some(0.05)).unwrap();
-        solver.solve_to(0.1).unwrap();
-        let (start, _) = solver.last_step();
-        solver.interpolate(start, 0, &mut [0.0; 3]).unwrap();
-        drop(black_box(solver.into_system()));
-    }
+    each_linear_solver!(Arkode, ArkodeOptions);
     let options = ArkodeOptions::new(1e-4, 1e-6).table(Table::explicit(5).unwrap());
     let mut solver = Arkode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
     solver.solve_to(1e-3).unwrap();

@@ -35,8 +35,8 @@ impl Shares {
             let all: usize = shares.cells.iter().flatten().map(Range::len).sum();
             all as f64 <= (1.0 + TWICE) * cells.len() as f64
         };
-        let divided = NUMBERS.map(|number| Self::divided(cells, nodes.div_ceil(number), nodes));
-        divided.into_iter().find(few_twice).unwrap_or(whole)
+        let divided = |number| Self::divided(cells, nodes.div_ceil(number), nodes);
+        NUMBERS.into_iter().map(divided).find(few_twice).unwrap_or(whole)
     }
 
     /// Calls `work` with each share's number and its rows of two matrices, on threads if there are

@@ -123,9 +123,9 @@ impl CentralDifference {
         let n = system.dofs();
         let (u, v) = (&y[..n], &y[n..2 * n]);
         let mut force = vec![0.0; n];
-        system.forces(t, u, v, &mut force).map_err(into_error)?;
+        system.forces(t, u, v, &mut force).map_err(Failure::into_error)?;
         let powers = system.force_powers(v);
-        let guide = Guide::new(&system, t, u, v).map_err(into_error)?;
+        let guide = Guide::new(&system, t, u, v).map_err(Failure::into_error)?;
         let mut stability = Stability::new(&mut system);
         let limit = stability.limit(&mut system, t, y);
         let zeros = vec![0.0; n];
@@ -315,7 +315,7 @@ impl CentralDifference {
         for i in 2 * n..y.len() {
             y[i] = before[i] + s * (after[i] - before[i]);
         }
-        self.guide.aim(&self.system, t).map_err(into_error)?;
+        self.guide.aim(&self.system, t).map_err(Failure::into_error)?;
         let (u, v) = y.split_at_mut(n);
         self.guide.place(&self.system, u, v);
         Ok(())
@@ -367,12 +367,5 @@ impl Hermite {
     fn at(&self, y0: f64, slope0: f64, y1: f64, slope1: f64) -> f64 {
         let ([v0, v1], [s0, s1]) = (self.values, self.slopes);
         v0 * y0 + v1 * y1 + s0 * slope0 + s1 * slope1
-    }
-}
-
-fn into_error(failure: Failure) -> Failed {
-    match failure {
-        Failure::Recoverable(reason) => reason.into(),
-        Failure::Fatal(error) => error,
     }
 }

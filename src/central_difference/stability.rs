@@ -39,7 +39,7 @@ struct Balance {
 
 impl Rates {
     /// Longest stable step (s): see the stability of [`central_difference`](super).
-    fn longest_step(&self) -> f64 {
+    pub(crate) fn longest_step(&self) -> f64 {
         let Self { frequency, decay } = *self;
         2.0 / (decay + decay.hypot(frequency))
     }

@@ -7,7 +7,7 @@
 //! lumped inertia a step of central differences costs so little that they lead well before that.
 
 use super::{Method, Solver};
-use crate::system::{Spectrum, System};
+use crate::system::{Rates, Spectrum, System};
 
 /// How a phase is integrated from now on.
 pub(super) struct Plan {
@@ -171,7 +171,7 @@ fn choose(spectrum: &Spectrum) -> (Method, String) {
 /// Longest step (s) with which central differences are stable.
 fn central_step(spectrum: &Spectrum) -> f64 {
     let Spectrum { highest_frequency, damping_rate, .. } = *spectrum;
-    2.0 / (damping_rate + damping_rate.hypot(highest_frequency))
+    Rates { frequency: highest_frequency, decay: damping_rate }.longest_step()
 }
 
 /// Longest step (s) with which explicit Runge-Kutta is stable.

@@ -4,7 +4,6 @@ use std::fmt;
 
 use super::stepper::Failed;
 use super::{Counts, Method};
-use crate::ode::Failure;
 use crate::trajectory::Trajectory;
 
 /// An integration that gave up or was stopped: where, why, and what was computed until then.
@@ -77,11 +76,4 @@ pub(super) fn standing_still(refusal: &str) -> Failed {
 pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
     let reason = counts.notice.as_deref().unwrap_or("loosen rtol, or choose another method");
     format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
-}
-
-pub(super) fn into_error(failure: Failure) -> Failed {
-    match failure {
-        Failure::Recoverable(message) => message.into(),
-        Failure::Fatal(error) => error,
-    }
 }

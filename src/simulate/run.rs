@@ -4,15 +4,14 @@ use std::time::Instant;
 
 use super::auto::{Plan, TRIAL};
 use super::events::Events;
-use super::failure::{
-    IntegrationFailure, Interrupted, STANDING, into_error, standing_still, too_many_steps,
-};
+use super::failure::{IntegrationFailure, Interrupted, STANDING, standing_still, too_many_steps};
 use super::progress::{Observer, Progress};
 use super::solver::Tolerances;
 use super::stepper::{Failed, Stepper};
 use super::{ContactEvents, Counts, Method, Sampling, Schedule, Solver};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
+use crate::ode::Failure;
 use crate::scene::{Forces, Phase, Scene};
 use crate::system::{ENERGIES, System};
 use crate::trajectory::{PhaseReport, Report, Sample, Trajectory};
@@ -303,26 +302,19 @@ impl<'a> Run<'a> {
             return Err(standing_still(stepper.system().refusal()));
         }
         // a step that is refused leaves no samples
-        if let Some(t) = event {
-            stepper.interpolate(t, sample)?;
-        }
-        let arrived = if event.is_some() { &*sample } else { stepper.state() };
-        let (system, before) = (stepper.system(), &self.state[..n]);
-        system.check_step(time, before, &arrived[..n]).map_err(into_error)?;
+        let (system, arrived) = arrival(stepper, event, sample)?;
+        let before = &self.state[..n];
+        system.check_step(time, before, &arrived[..n]).map_err(Failure::into_error)?;
         while let Some(t) = leg.times.get(leg.taken).filter(|&t| t <= time) {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
             self.sample(leg.number, stepper.system_mut(), t, sample)?;
         }
-        if let Some(t) = event {
-            stepper.interpolate(t, sample)?;
-        }
-        let arrived = if event.is_some() { &*sample } else { stepper.state() };
+        let (system, arrived) = arrival(stepper, event, sample)?;
         let step = time - self.time;
         self.time = time;
         self.steps += 1;
         self.state.copy_from_slice(&arrived[..length]);
-        let system = stepper.system();
         if event.is_some() {
             leg.events.pass(system, time, &self.state[..n], step);
         }
@@ -351,7 +343,7 @@ impl<'a> Run<'a> {
     ) -> Result<(), Failed> {
         let n = system.dofs();
         let (u, v) = (&state[..n], &state[n..2 * n]);
-        let multipliers = system.multipliers(time, u, v).map_err(into_error)?.to_vec();
+        let multipliers = system.multipliers(time, u, v).map_err(Failure::into_error)?.to_vec();
         let mut energy = system.energy(time, u, v);
         energy.dissipated = state[2 * n];
         energy.supplied = state[2 * n + 1];
@@ -378,4 +370,15 @@ impl<'a> Run<'a> {
         })
         .into()
     }
+}
+
+/// Where a step has led, by its event or else by itself.
+fn arrival<'s>(
+    stepper: &'s mut Stepper,
+    event: Option<f64>,
+    sample: &'s mut [f64],
+) -> Result<(&'s System, &'s [f64]), Failed> {
+    let Some(t) = event else { return Ok((stepper.system(), stepper.state())) };
+    stepper.interpolate(t, sample)?;
+    Ok((stepper.system(), sample))
 }

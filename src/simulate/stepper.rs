@@ -276,10 +276,7 @@ fn ida(
 ) -> Result<Stepper, Failed> {
     let motion = 2 * system.dofs();
     let mut equations = IndexOne::new(system);
-    let (y, yp) = equations.consistent(t, state).map_err(|failure| match failure {
-        Failure::Recoverable(message) => message.into(),
-        Failure::Fatal(error) => error,
-    })?;
+    let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
     // What is not marked as differential stays out of the error test: energies and multipliers.
     let differential: Vec<bool> = (0..y.len()).map(|i| i < motion).collect();
     let linear_solver = match solver.method {

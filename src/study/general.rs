@@ -206,7 +206,7 @@ impl<S: Ode> Run<'_, S> {
     fn ida(mut self, options: &IdaOptions) -> Result<Solved, Failed> {
         let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
         let mut slope = vec![0.0; self.y0.len()];
-        self.system.rhs(0.0, self.y0, &mut slope).map_err(into_error)?;
+        self.system.rhs(0.0, self.y0, &mut slope).map_err(Failure::into_error)?;
         let mut ida = Ida::new(Implicit(self.system), 0.0, self.y0, &slope, options)?;
         ida.set_stop_time(Some(end))?;
         while ida.t() < end {
@@ -281,12 +281,5 @@ impl<S: Ode> Dae for Implicit<S> {
         self.0.dense_jacobian(t, y, yp, jacobian.rb_mut())?;
         (0..y.len()).for_each(|i| jacobian[(i, i)] -= cj);
         Ok(())
-    }
-}
-
-fn into_error(failure: Failure) -> Failed {
-    match failure {
-        Failure::Recoverable(message) => message.into(),
-        Failure::Fatal(error) => error,
     }
 }

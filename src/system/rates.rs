@@ -58,7 +58,7 @@ struct Bound {
 impl RatesBound {
     pub(crate) fn new(system: &mut System) -> Self {
         let Model { inertia, dimension, .. } = &*system.model.clone();
-        let factor = if inertia.is_diagonal() { 1.0 } else { system.inertia_factor() };
+        let factor = if system.is_lumped() { 1.0 } else { system.inertia_factor() };
         let dofs = system.dofs();
         let mass = |dof: usize| inertia.get(dof / dimension, dof / dimension) / factor;
         let mut free = vec![1.0; dofs];

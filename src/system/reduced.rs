@@ -111,7 +111,9 @@ impl Reduced {
                 }
             }
         };
-        let order = model.dissection.as_ref().map(of_nodes);
+        // a diagonal fills in no order
+        let dissection = model.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
+        let order = dissection.map(of_nodes);
         Self {
             values: vec![0.0; sources.len()],
             border_values: vec![0.0; border.len()],
