@@ -116,6 +116,6 @@ impl Equations {
     /// Solves (I - gamma J) x = r, with J the Jacobian of (u', v') = (v, M^-1 f) and the factor last made:
     /// `ru` and `rv` hold r and become x. Prescribed components get xv = rv and xu = ru + gamma xv.
     pub fn solve(&mut self, ru: &mut [f64], rv: &mut [f64]) {
-        self.system.solve_newton_ode(ru, rv);
+        self.system.solve_newton_ode(0.0, ru, rv);
     }
 }

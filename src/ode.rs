@@ -169,8 +169,21 @@ pub trait Ode {
     }
 
     /// Replaces the right-hand side `r` by the solution x of the system last set up.
-    fn newton_solve(&mut self, _r: &mut [f64]) -> Result<(), Failure> {
+    ///
+    /// `gamma` is the step parameter by now, which may have changed a little since then. It matters
+    /// to systems with a [`newton_rhs`](Self::newton_rhs) of their own.
+    fn newton_solve(&mut self, _gamma: f64, _r: &mut [f64]) -> Result<(), Failure> {
         Err(missing("newton_solve"))
+    }
+
+    /// As [`rhs`](Self::rhs), for the residual y - y0 - gamma f(t, y) of an implicit step, if
+    /// [`newton_solve`](Self::newton_solve) solves its linear systems.
+    ///
+    /// What is left out here, `newton_solve` has to add to its right-hand side, times `gamma`. So M y' = f
+    /// need not be solved for y' in each iteration, only for M x = M r + gamma f where M is a part
+    /// of the matrix anyway. Default: all of `rhs`.
+    fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.rhs(t, y, ydot)
     }
 
     /// Number of root functions (events); 0 means none.
@@ -421,8 +434,12 @@ impl<S: Ode + ?Sized> Ode for Borrowed<'_, S> {
         self.0.newton_setup(t, y, ydot, gamma, reuse)
     }
 
-    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
-        self.0.newton_solve(r)
+    fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
+        self.0.newton_solve(gamma, r)
+    }
+
+    fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.0.newton_rhs(t, y, ydot)
     }
 
     fn root_count(&self) -> usize {

@@ -62,7 +62,7 @@ impl Ode for Saboteur {
         Ok(true)
     }
 
-    fn newton_solve(&mut self, _r: &mut [f64]) -> Result<(), Failure> {
+    fn newton_solve(&mut self, _gamma: f64, _r: &mut [f64]) -> Result<(), Failure> {
         self.at(Callback::NewtonSolve, 1.0)
     }
 

@@ -71,6 +71,8 @@ pub(super) struct Functions {
     /// Codes of `get_dky` for a time outside the last step, and for too high a derivative.
     pub(super) bad_time: i32,
     pub(super) bad_derivative: i32,
+    /// gamma of y - gamma f(t, y), or cj of IDA.
+    pub(super) get_step_parameter: Get<f64>,
     pub(super) get_linear_flag: Get<i64>,
     pub(super) get_integrator_stats: GetIntegratorStats,
     pub(super) get_nonlinear_stats: unsafe extern "C" fn(*mut c_void, *mut i64, *mut i64) -> i32,

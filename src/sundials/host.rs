@@ -14,6 +14,7 @@ use std::{
 
 use super::{
     error::{Callback, Cause, Error},
+    functions::Get,
     linear::LinearSolver,
 };
 use crate::ode::Failure;
@@ -23,8 +24,16 @@ pub(super) const RETRY: i32 = 1;
 /// Return value of a callback that asks SUNDIALS to stop.
 pub(super) const STOP: i32 = -1;
 
-/// `newton_solve` of an `Ode` or a `Dae`.
-pub(super) type NewtonSolve<S> = fn(&mut S, &mut [f64]) -> Result<(), Failure>;
+/// `newton_solve` of an `Ode` or a `Dae`: (system, step parameter, right-hand side and solution).
+pub(super) type NewtonSolve<S> = fn(&mut S, f64, &mut [f64]) -> Result<(), Failure>;
+
+/// How a user-supplied linear solver is called.
+pub(super) struct Newton<S> {
+    pub(super) solve: NewtonSolve<S>,
+    /// Reads the step parameter of the integrator that `memory` belongs to.
+    pub(super) step_parameter: Get<f64>,
+    pub(super) memory: *mut c_void,
+}
 
 /// The user's system and what happened in its callbacks.
 pub(super) struct Host<S> {
@@ -34,8 +43,8 @@ pub(super) struct Host<S> {
     pub(super) root_count: usize,
     /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
-    /// The system's `newton_solve`; none for a fixed-point iteration.
-    pub(super) newton_solve: Option<NewtonSolve<S>>,
+    /// None for a fixed-point iteration.
+    pub(super) newton: Option<Newton<S>>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
     pub(super) troubles: Troubles,
@@ -115,15 +124,7 @@ impl<S> Host<S> {
         linear_solver: Option<LinearSolver>,
     ) -> Self {
         let troubles = Troubles::default();
-        Self {
-            system,
-            n,
-            root_count,
-            linear_solver,
-            newton_solve: None,
-            setup_time: f64::NAN,
-            troubles,
-        }
+        Self { system, n, root_count, linear_solver, newton: None, setup_time: f64::NAN, troubles }
     }
 
     /// Runs user code of a callback and translates its outcome for SUNDIALS.

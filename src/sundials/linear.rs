@@ -190,9 +190,13 @@ unsafe extern "C" fn solve<S>(
         x.copy_from_slice(slice(b, n));
         (host, x)
     };
-    let Some(newton_solve) = host.newton_solve else { return ffi::SUNLS_PACKAGE_FAIL_UNREC };
+    let Some(newton) = &host.newton else { return ffi::SUNLS_PACKAGE_FAIL_UNREC };
+    let (newton_solve, mut parameter) = (newton.solve, f64::NAN);
+    // SAFETY: the memory is that of the integrator which is calling; it only reads a number.
+    unsafe { (newton.step_parameter)(newton.memory, &raw mut parameter) };
+    let call = |system: &mut S, x: &mut [f64]| newton_solve(system, parameter, x);
     // SUNDIALS takes codes that it does not know from a linear solver for success.
-    match host.guard_output(Callback::NewtonSolve, host.setup_time, x, newton_solve) {
+    match host.guard_output(Callback::NewtonSolve, host.setup_time, x, call) {
         RETRY => ffi::SUNLS_PACKAGE_FAIL_REC as i32,
         STOP => ffi::SUNLS_PACKAGE_FAIL_UNREC,
         _ => 0,

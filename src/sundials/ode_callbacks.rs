@@ -30,6 +30,22 @@ pub(super) unsafe extern "C" fn rhs<S: Ode>(
     host.guard_output(Callback::Rhs, t, ydot, |system, ydot| system.rhs(t, y, ydot))
 }
 
+/// `CVRhsFn`, within the Newton iteration of a user-supplied solver.
+pub(super) unsafe extern "C" fn newton_rhs<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    ydot: ffi::N_Vector,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module; `y` and `ydot` are different vectors.
+    let (host, y, ydot) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let n = host.n;
+        (host, slice(y, n), slice_mut(ydot, n))
+    };
+    host.guard_output(Callback::Rhs, t, ydot, |system, ydot| system.newton_rhs(t, y, ydot))
+}
+
 /// `CVRootFn`
 pub(super) unsafe extern "C" fn roots<S: Ode>(
     t: f64,

@@ -7,7 +7,7 @@ use super::{
     error::{Cause, Error, IntegrationError},
     ffi,
     functions::{Functions, Set},
-    host::{Host, HostBox, NewtonSolve, keep_message},
+    host::{Host, HostBox, Newton, NewtonSolve, keep_message},
     linear::{Linear, LinearSolver},
     nonlinear::FixedPoint,
     options::{
@@ -199,9 +199,11 @@ impl<S> Session<S> {
     pub(super) fn use_newton(
         &mut self,
         solver: &LinearSolver,
-        newton_solve: NewtonSolve<S>,
+        solve: NewtonSolve<S>,
     ) -> Result<(), Error> {
-        self.host.get_mut().newton_solve = Some(newton_solve);
+        let Memory { raw: memory, functions } = self.memory;
+        let step_parameter = functions.get_step_parameter;
+        self.host.get_mut().newton = Some(Newton { solve, step_parameter, memory });
         let data = self.host.as_ptr();
         // SAFETY: the data is the host, which outlives the solver.
         let linear = unsafe { Linear::new::<S>(solver, &self.y, &self.context, data)? };

@@ -11,6 +11,9 @@
 //! ```
 //!
 //! One sparse symmetric matrix N of half the size; alpha costs nothing, however large.
+//!
+//! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
+//! M rv is M cv + gamma f, and no iteration solves a system with M.
 
 use std::sync::Arc;
 
@@ -29,6 +32,8 @@ pub(super) struct Newton {
     /// Whether the tangents follow the state, and have been evaluated.
     follows: bool,
     is_set: bool,
+    /// Whether D is not all zeros.
+    is_damped: bool,
     gamma: f64,
     tangent_evaluations: usize,
     factorizations: usize,
@@ -88,6 +93,7 @@ impl Newton {
             damping: Tangent::new(model, &model.damping, follows),
             follows,
             is_set: false,
+            is_damped: model.damping.is_some(),
             gamma: f64::NAN,
             tangent_evaluations: 0,
             factorizations: 0,
@@ -136,7 +142,7 @@ impl System {
     /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
     /// current.
     pub(crate) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
-        let Newton { stiffness, damping, follows, is_set, tangent_evaluations, .. } =
+        let Newton { stiffness, damping, follows, is_set, is_damped, tangent_evaluations, .. } =
             &mut self.newton;
         if !*follows {
             return true;
@@ -151,6 +157,7 @@ impl System {
             }
         }
         *is_set = true;
+        *is_damped = damping.get().values.iter().any(|&value| value != 0.0);
         *tangent_evaluations += 1;
         true
     }
@@ -159,7 +166,7 @@ impl System {
     pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
         self.newton.factorizations += 1;
-        let Newton { solver, stiffness, damping, .. } = &mut self.newton;
+        let Newton { solver, stiffness, damping, is_damped, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.model.inertia;
         let factorized = solver.factorize(|source| {
@@ -167,7 +174,8 @@ impl System {
             let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
             // the symmetric part: tangents of viscosity and contact need not be symmetric
             let part = |matrix: &BlockMatrix| matrix.symmetric(entry, transposed, axes);
-            mass + gamma * (part(damping) + gamma * part(stiffness))
+            let damped = if *is_damped { part(damping) } else { 0.0 };
+            mass + gamma * (damped + gamma * part(stiffness))
         });
         if factorized.is_ok() {
             return Ok(());
@@ -180,15 +188,14 @@ impl System {
         })
     }
 
-    /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds M rv and
-    /// `self.newton.demands` holds A^T rv. Leaves xv and, complete with those of nodal rows, mu
-    /// (which is gamma times the change of lambda).
+    /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds
+    /// M rv - gamma Kt ru and `self.newton.demands` holds A^T rv. Leaves xv and, complete with those
+    /// of nodal rows, mu.
     fn solve_newton(&mut self, ru: &mut [f64]) {
         let (gamma, alpha) = (self.newton.gamma, self.alpha);
         let decay = 1.0 + alpha * gamma;
         let Newton { solver, stiffness, damping, right, xv, demands, mu, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
-        stiffness.add_product(-gamma, ru, right);
         for (demand, row) in demands.iter_mut().zip(&self.rows) {
             *demand = (*demand - gamma * alpha * alpha * row.apply(ru)) / (decay * decay);
         }
@@ -201,12 +208,20 @@ impl System {
         ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
     }
 
-    /// The Newton system of the ODE form: `ru`, `rv` become xu, xv.
-    pub(crate) fn solve_newton_ode(&mut self, ru: &mut [f64], rv: &mut [f64]) {
-        let Newton { right, demands, .. } = &mut self.newton;
-        right.fill(0.0);
+    /// The Newton system of the ODE form: `ru`, `rv` become xu, xv. `share` times the accelerations that
+    /// follow from the forces and demands last evaluated is added to `rv` first. Leaves in mu
+    /// gamma times the change of lambda, or with those accelerations all of `share` times lambda.
+    pub(crate) fn solve_newton_ode(&mut self, share: f64, ru: &mut [f64], rv: &mut [f64]) {
+        let Newton { stiffness, right, demands, gamma, .. } = &mut self.newton;
+        right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
         self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
-        demands.iter_mut().zip(&self.rows).for_each(|(demand, row)| *demand = row.apply(rv));
+        for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
+            *demand = row.apply(rv) + share * of_forces;
+        }
+        // u' = v is linear: from the second iteration on, round-off is all that ru holds
+        if largest(ru) > 1e-12 * *gamma * largest(rv) {
+            stiffness.get().add_product(-*gamma, ru, right);
+        }
         self.solve_newton(ru);
         rv.copy_from_slice(&self.newton.xv);
     }
@@ -216,8 +231,10 @@ impl System {
     pub(super) fn solve_newton_dae(&mut self, r1: &mut [f64], r2: &mut [f64], r3: &mut [f64]) {
         let gamma = self.newton.gamma;
         r1.iter_mut().for_each(|r| *r *= gamma);
-        self.newton.right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
-        self.newton.demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
+        let Newton { stiffness, right, demands, .. } = &mut self.newton;
+        right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
+        stiffness.get().add_product(-gamma, r1, right);
+        demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
         self.solve_newton(r1);
         r2.copy_from_slice(&self.newton.xv);
         r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
@@ -225,19 +242,26 @@ impl System {
 
     /// How the powers dissipated and supplied change along the last solution of the Newton
     /// system: where forces are linear, exactly, for powers are quadratic then. So one iteration
-    /// settles the energies, too.
+    /// settles the energies, too. Multipliers that the evaluation left at 0 are all in mu.
     pub(super) fn power_changes(&mut self) -> (f64, f64) {
-        let Newton { damping, right, xv, mu, gamma, .. } = &mut self.newton;
-        right.fill(0.0);
-        damping.get().add_product(1.0, xv, right);
-        let (dissipated, mut supplied) = self.at.nodal.work(xv);
+        let Newton { damping, is_damped, right, xv, mu, gamma, .. } = &mut self.newton;
+        let (mut dissipated, mut supplied) = self.at.nodal.work(xv);
+        if *is_damped {
+            right.fill(0.0);
+            damping.get().add_product(1.0, xv, right);
+            // damping forces are proportional to velocity
+            dissipated = 2.0 * dissipated + dot(right, xv);
+        }
         for ((row, mu), (multiplier, rate)) in
             self.rows.iter().zip(mu).zip(self.at.multipliers.iter().zip(&self.at.rates))
         {
             let change = row.apply(xv);
             supplied += multiplier * change + *mu / *gamma * (rate + change);
         }
-        // damping forces are proportional to velocity
-        (2.0 * dissipated + dot(right, xv), supplied)
+        (dissipated, supplied)
     }
+}
+
+fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }

@@ -31,10 +31,24 @@ impl Ode for System {
         Ok(current)
     }
 
-    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
+    /// Leaves the accelerations to [`newton_solve`](Self::newton_solve), and with them the
+    /// power of the constraints.
+    fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let n = self.dofs();
+        let (u, v) = (&y[..n], &y[n..2 * n]);
+        self.evaluate_forces(t, u, v)?;
+        self.evaluate_rows(t, u, v)?;
+        self.at.multipliers.fill(0.0);
+        ydot[..n].copy_from_slice(v);
+        ydot[n..2 * n].fill(0.0);
+        (ydot[2 * n], ydot[2 * n + 1]) = self.at.nodal.powers(v);
+        Ok(())
+    }
+
+    fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
         let (motion, energies) = r.split_at_mut(2 * self.dofs());
         let (ru, rv) = motion.split_at_mut(self.dofs());
-        self.solve_newton_ode(ru, rv);
+        self.solve_newton_ode(gamma, ru, rv);
         let (dissipated, supplied) = self.power_changes();
         energies[0] += self.gamma() * dissipated;
         energies[1] += self.gamma() * supplied;

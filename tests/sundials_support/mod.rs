@@ -59,7 +59,7 @@ impl<S: Ode> Ode for OwnSolver<S> {
         Ok(!reuse)
     }
 
-    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
+    fn newton_solve(&mut self, _gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
         self.solve(r);
         Ok(())
     }

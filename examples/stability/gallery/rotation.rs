@@ -24,12 +24,14 @@ pub struct Square {
     pub c: f64,
     /// Part by which it is stretched along x at the start, so that it vibrates.
     pub stretch: f64,
+    /// Relative tolerance of the integration.
+    pub rtol: f64,
 }
 
 impl Square {
     /// Undamped, spinning and no more.
     pub fn undamped(strain: Strain) -> Self {
-        Self { strain, viscosity: Viscosity::Objective, c: 0.0, stretch: 0.0 }
+        Self { strain, viscosity: Viscosity::Objective, c: 0.0, stretch: 0.0, rtol: 1e-6 }
     }
 
     /// The body.
@@ -50,7 +52,7 @@ impl Square {
             .initial_displacement(|x| vec![stretch * (x[0] - 0.15), 0.0])
             .initial_velocity(|x| vec![-SPIN * (x[1] - 0.15), SPIN * (x[0] - 0.15)])
             .phase(Phase::until(until));
-        let solver = Solver { method: Method::Arkode, rtol: 1e-6, ..Solver::default() };
+        let solver = Solver { method: Method::Arkode, rtol: self.rtol, ..Solver::default() };
         scene.simulate(&solver, &Sampling::every(0.01))
     }
 }

@@ -11,7 +11,7 @@ use crate::{
         functions::Functions,
         linear::LinearSolver,
         nonlinear::NonlinearSolver,
-        ode_callbacks::{jacobian, newton_setup_with_mass, rhs, roots},
+        ode_callbacks::{jacobian, newton_rhs, newton_setup_with_mass, rhs, roots},
         options::check_start,
         session::{Session, Start},
     },
@@ -48,6 +48,7 @@ impl<S: Ode> Arkode<S> {
         get_dky: ("ARKStepGetDky", ffi::ARKStepGetDky),
         bad_time: ffi::ARK_BAD_T,
         bad_derivative: ffi::ARK_BAD_K,
+        get_step_parameter: ffi::ARKStepGetCurrentGamma,
         get_linear_flag: ffi::ARKStepGetLastLinFlag,
         get_integrator_stats,
         get_nonlinear_stats: ffi::ARKStepGetNonlinSolvStats,
@@ -185,6 +186,8 @@ fn solve_stages<S: Ode>(session: &mut Session<S>, options: &ArkodeOptions) -> Re
                 if matches!(solver, LinearSolver::Custom) {
                     let callback = Some(newton_setup_with_mass::<S> as _);
                     session.set(("ARKStepSetLinSysFn", ffi::ARKStepSetLinSysFn), callback)?;
+                    let callback = Some(newton_rhs::<S> as _);
+                    session.set(("ARKStepSetNlsRhsFn", ffi::ARKStepSetNlsRhsFn), callback)?;
                 } else if solver.has_jacobian_callback() {
                     let callback = Some(jacobian::<S> as _);
                     session.set(("ARKStepSetJacFn", ffi::ARKStepSetJacFn), callback)?;

@@ -12,7 +12,7 @@ use crate::{
         functions::Functions,
         linear::LinearSolver,
         nonlinear::NonlinearSolver,
-        ode_callbacks::{jacobian, newton_setup, rhs, roots},
+        ode_callbacks::{jacobian, newton_rhs, newton_setup, rhs, roots},
         options::check_start,
         session::{Session, Start},
     },
@@ -47,6 +47,7 @@ static FUNCTIONS: Functions = Functions {
     get_dky: ("CVodeGetDky", ffi::CVodeGetDky),
     bad_time: ffi::CV_BAD_T,
     bad_derivative: ffi::CV_BAD_K,
+    get_step_parameter: ffi::CVodeGetCurrentGamma,
     get_linear_flag: ffi::CVodeGetLastLinFlag,
     get_integrator_stats: ffi::CVodeGetIntegratorStats,
     get_nonlinear_stats: ffi::CVodeGetNonlinSolvStats,
@@ -104,6 +105,8 @@ pub(super) fn new<S: Ode>(
                 if matches!(solver, LinearSolver::Custom) {
                     let callback = Some(newton_setup::<S> as _);
                     session.set(("CVodeSetLinSysFn", ffi::CVodeSetLinSysFn), callback)?;
+                    let callback = Some(newton_rhs::<S> as _);
+                    session.set(("CVodeSetNlsRhsFn", ffi::CVodeSetNlsRhsFn), callback)?;
                 } else if solver.has_jacobian_callback() {
                     let callback = Some(jacobian::<S> as _);
                     session.set(("CVodeSetJacFn", ffi::CVodeSetJacFn), callback)?;

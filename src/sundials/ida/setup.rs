@@ -43,6 +43,7 @@ static FUNCTIONS: Functions = Functions {
     get_dky: ("IDAGetDky", ffi::IDAGetDky),
     bad_time: ffi::IDA_BAD_T,
     bad_derivative: ffi::IDA_BAD_K,
+    get_step_parameter: ffi::IDAGetCurrentCj,
     get_linear_flag: ffi::IDAGetLastLinFlag,
     get_integrator_stats: ffi::IDAGetIntegratorStats,
     get_nonlinear_stats: ffi::IDAGetNonlinSolvStats,
@@ -81,7 +82,7 @@ pub(super) fn new<S: Dae>(
         session.host.accept("IDAInit", code)?;
         session.configure(&options.tolerances, &options.steps)?;
         session.watch_roots(("IDARootInit", ffi::IDARootInit), Some(roots::<S>))?;
-        session.use_newton(solver, S::newton_solve)?;
+        session.use_newton(solver, |system, _, r| system.newton_solve(r))?;
         if solver.has_jacobian_callback() {
             session.set(("IDASetJacFn", ffi::IDASetJacFn), Some(jacobian::<S> as _))?;
         }
