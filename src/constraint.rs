@@ -134,6 +134,18 @@ impl Row {
         }
     }
 
+    /// Mean of b' from time `t` on over a time `h`.
+    pub(crate) fn mean_velocity(&self, t: f64, h: f64) -> f64 {
+        match self.motion {
+            RowMotion::Linear { velocity, .. } => velocity,
+            RowMotion::Path(_) | RowMotion::Spline(_) => {
+                let velocity = |s: f64| self.prescribed(t + s * h).velocity;
+                // Simpson's rule
+                (velocity(0.0) + 4.0 * velocity(0.5) + velocity(1.0)) / 6.0
+            }
+        }
+    }
+
     /// A^T x for this row.
     pub(crate) fn apply(&self, x: &[f64]) -> f64 {
         self.terms.iter().map(|&(dof, coefficient)| coefficient * x[dof]).sum()

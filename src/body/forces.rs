@@ -43,28 +43,37 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Shared<'_, 
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let NodalForces { conservative, dissipative, .. } = forces;
         let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
-        let add_share = |number: usize, conservative: &mut [f64], dissipative: &mut [f64]| {
-            let first = number * self.shares.nodes;
-            for run in &self.shares.cells[number] {
-                if law.green {
-                    let forces = conservative.as_chunks_mut::<D>().0;
-                    self.add_elastic(run, regions, u, first, forces)?;
-                }
-                if law.objective {
-                    self.add_viscous(run, regions, u, v, first, dissipative.as_chunks_mut::<D>().0);
-                }
-            }
-            Ok(())
+        if law.green {
+            self.share_out(&mut forces.conservative, |run, first, forces| {
+                self.add_elastic(run, regions, u, first, forces)
+            })?;
+        }
+        if law.objective {
+            self.share_out(&mut forces.dissipative, |run, first, forces| {
+                self.add_viscous(run, regions, u, v, first, forces);
+                Ok(())
+            })?;
+        }
+        Ok(())
+    }
+
+    /// Calls `add` for all runs of cells with the forces on each share of the nodes and the first of
+    /// these, on threads if there are several shares.
+    fn share_out(
+        &self,
+        forces: &mut [f64],
+        add: impl Fn(&Range<usize>, usize, &mut [[f64; D]]) -> Result<(), Failure> + Sync,
+    ) -> Result<(), Failure> {
+        let add_share = |number: usize, forces: &mut [f64]| {
+            let (first, forces) = (number * self.shares.nodes, forces.as_chunks_mut::<D>().0);
+            self.shares.cells[number].iter().try_for_each(|run| add(run, first, forces))
         };
         if self.shares.cells.len() == 1 {
-            return add_share(0, conservative, dissipative);
+            return add_share(0, forces);
         }
-        let length = D * self.shares.nodes;
-        let shares = conservative.par_chunks_mut(length).zip(dissipative.par_chunks_mut(length));
-        let failed =
-            shares.enumerate().find_map_first(|(number, (c, d))| add_share(number, c, d).err());
+        let shares = forces.par_chunks_mut(D * self.shares.nodes).enumerate();
+        let failed = shares.find_map_first(|(number, forces)| add_share(number, forces).err());
         failed.map_or(Ok(()), Err)
     }
 

@@ -1,7 +1,7 @@
 //! Kicks: what a force does to velocities in some time under the constraints,
 //!
 //! ```text
-//! M (w - v) = tau (f + A lambda),   A^T w = rates
+//! M a = f + A lambda,   w = v + tau a,   A^T w = rates
 //! ```
 
 use crate::constraint::Row;
@@ -50,32 +50,24 @@ impl Mobility {
         Self::Diagonal { inverse, rows: rows.into_iter().map(row).collect() }
     }
 
-    /// The velocities `after` a kick that began with `before`, and the accelerations, 0 where a nodal
-    /// row prescribes. Returns the work of the constraint forces (J).
-    pub(super) fn kick(
+    /// Whether accelerations are those of the force alone, whatever the velocities.
+    pub(super) fn is_diagonal(&self) -> bool {
+        matches!(self, Self::Diagonal { .. })
+    }
+
+    /// The accelerations in a kick that begins with the velocities `before`, 0 where a nodal row prescribes.
+    pub(super) fn accelerations(
         &mut self,
         system: &mut System,
         kick: &Kick,
         before: &[f64],
         accelerations: &mut [f64],
-        after: &mut [f64],
-    ) -> f64 {
+    ) {
         let Kick { duration, force, rates } = *kick;
         match self {
-            Self::Diagonal { inverse, rows } => {
-                let inputs = inverse.iter().zip(force).zip(before);
-                let outputs = accelerations.iter_mut().zip(&mut *after);
-                for (((inverse, f), v), (a, w)) in inputs.zip(outputs) {
-                    *a = inverse * f;
-                    *w = v + duration * *a;
-                }
-                let mut work = 0.0;
-                for (&NodalRow { dof, coefficient, mass }, rate) in rows.iter().zip(rates) {
-                    after[dof] = rate / coefficient;
-                    let momentum = mass * (after[dof] - before[dof]) - duration * force[dof];
-                    work += 0.5 * momentum * (before[dof] + after[dof]);
-                }
-                work
+            Self::Diagonal { inverse, .. } => {
+                let of_force = inverse.iter().zip(force).map(|(inverse, f)| inverse * f);
+                accelerations.iter_mut().zip(of_force).for_each(|(a, of_force)| *a = of_force);
             }
             Self::Coupled { demands, multipliers } => {
                 let rows = system.rows().iter().zip(rates);
@@ -84,17 +76,40 @@ impl Mobility {
                     .zip(rows)
                     .for_each(|(d, (row, rate))| *d = (rate - row.apply(before)) / duration);
                 system.accelerations(force, demands, accelerations, multipliers);
-                let velocities = before.iter().zip(&*accelerations);
-                after.iter_mut().zip(velocities).for_each(|(w, (v, a))| *w = v + duration * a);
-                let mut work = 0.0;
-                for ((row, rate), multiplier) in system.rows().iter().zip(rates).zip(multipliers) {
-                    work += 0.5 * duration * *multiplier * (row.apply(before) + rate);
-                    if let Some((dof, _)) = row.nodal() {
-                        accelerations[dof] = 0.0;
-                    }
-                }
-                work
+                let rows = system.rows().iter().filter_map(Row::nodal);
+                rows.for_each(|(dof, _)| accelerations[dof] = 0.0);
             }
         }
+    }
+
+    /// Leads the velocities `after` the kick last asked about, which are v + tau a so far, where nodal
+    /// rows prescribe. Returns the work of the constraint forces (J).
+    pub(super) fn lead(
+        &self,
+        system: &System,
+        kick: &Kick,
+        before: &[f64],
+        after: &mut [f64],
+    ) -> f64 {
+        let Kick { duration, force, rates } = *kick;
+        let mut work = 0.0;
+        match self {
+            Self::Diagonal { rows, .. } => {
+                for (&NodalRow { dof, coefficient, mass }, rate) in rows.iter().zip(rates) {
+                    after[dof] = rate / coefficient;
+                    let momentum = mass * (after[dof] - before[dof]) - duration * force[dof];
+                    work += 0.5 * momentum * (before[dof] + after[dof]);
+                }
+            }
+            Self::Coupled { multipliers, .. } => {
+                for ((row, rate), multiplier) in system.rows().iter().zip(rates).zip(multipliers) {
+                    work += 0.5 * duration * multiplier * (row.apply(before) + rate);
+                    if let Some((dof, coefficient)) = row.nodal() {
+                        after[dof] = rate / coefficient;
+                    }
+                }
+            }
+        }
+        work
     }
 }

@@ -126,12 +126,18 @@ impl CentralDifference {
         system.forces(t, u, v, &mut force).map_err(Failure::into_error)?;
         let powers = system.force_powers(v);
         let guide = Guide::new(&system, t, u, v).map_err(Failure::into_error)?;
+        let mut mobility = Mobility::new(&system);
         let mut stability = Stability::new(&mut system);
         let limit = stability.limit(&mut system, t, y);
         let zeros = vec![0.0; n];
+        let mut second = zeros.clone();
+        if mobility.is_diagonal() {
+            let kick = Kick { duration: limit, force: &force, rates: &guide.rates };
+            mobility.accelerations(&mut system, &kick, v, &mut second);
+        }
         let mut started = Self {
             guide,
-            mobility: Mobility::new(&system),
+            mobility,
             control: Control::new(t, end, limit),
             stability,
             t,
@@ -144,7 +150,7 @@ impl CentralDifference {
             trial_powers: powers,
             earlier: zeros.clone(),
             first: zeros.clone(),
-            second: zeros.clone(),
+            second,
             step_before: None,
             middle: zeros.clone(),
             extrapolated: zeros,
@@ -170,6 +176,7 @@ impl CentralDifference {
         }
         self.step_before = (step > 0.0).then_some(step);
         swap(&mut self.earlier, &mut self.first);
+        swap(&mut self.first, &mut self.second);
         let mut setback = None;
         loop {
             let (t, next) = (self.t, self.control.next());
@@ -209,20 +216,30 @@ impl CentralDifference {
         let (v_next, energies) = rest.split_at_mut(n);
         guide.aim(system, next)?;
 
-        let rates = guide.mean_rates(system, self.t, h)?;
-        let kick = Kick { duration: 0.5 * h, force: &self.force, rates };
-        let mut supplied = mobility.kick(system, &kick, v, &mut self.first, middle);
-        let outputs = u_next.iter_mut().zip(&mut *extrapolated);
-        for ((u_next, extrapolated), ((u, v), w)) in outputs.zip(u.iter().zip(v).zip(&*middle)) {
-            *u_next = u + h * w;
-            *extrapolated = 2.0 * w - v;
+        let half = 0.5 * h;
+        let rates = guide.mean_rates(system, self.t, h);
+        let kick = Kick { duration: half, force: &self.force, rates };
+        if !mobility.is_diagonal() {
+            mobility.accelerations(system, &kick, v, &mut self.first);
         }
+        let outputs = u_next.iter_mut().zip(&mut *middle).zip(&mut *extrapolated);
+        for (((u_next, w), extrapolated), ((u, v), a)) in
+            outputs.zip(u.iter().zip(v).zip(&self.first))
+        {
+            *w = v + half * a;
+            *u_next = u + h * *w;
+            *extrapolated = 2.0 * *w - v;
+        }
+        let mut supplied = mobility.lead(system, &kick, v, middle);
         guide.place(system, u_next, extrapolated);
 
         self.statistics.evaluations += 1;
         system.forces(next, u_next, extrapolated, &mut self.trial_force)?;
-        let kick = Kick { duration: 0.5 * h, force: &self.trial_force, rates: &guide.rates };
-        supplied += mobility.kick(system, &kick, middle, &mut self.second, v_next);
+        let kick = Kick { duration: half, force: &self.trial_force, rates: &guide.rates };
+        mobility.accelerations(system, &kick, middle, &mut self.second);
+        let velocities = middle.iter().zip(&self.second);
+        v_next.iter_mut().zip(velocities).for_each(|(v_next, (w, a))| *v_next = w + half * a);
+        supplied += mobility.lead(system, &kick, middle, v_next);
 
         let powers = system.force_powers(v_next);
         energies[0] = self.y[2 * n] + 0.5 * h * (self.powers.0 + powers.0);

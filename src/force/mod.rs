@@ -22,6 +22,8 @@ pub use shape::Shape;
 pub(crate) use signal::{Signal, Table, VectorSignal};
 pub use spring::Spring;
 
+use std::ops::{Deref, DerefMut};
+
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
@@ -29,11 +31,11 @@ use crate::sparse::BlockMatrix;
 #[derive(Debug, Clone)]
 pub struct NodalForces {
     /// Forces with a potential: -dU/du.
-    pub conservative: Vec<f64>,
+    pub conservative: ForceVector,
     /// Forces that turn motion into heat: their power -f.v is dissipated.
-    pub dissipative: Vec<f64>,
+    pub dissipative: ForceVector,
     /// Forces from outside: their power f.v is supplied.
-    pub applied: Vec<f64>,
+    pub applied: ForceVector,
     /// Power (W) that obstacles in motion add to the heat: their own velocity times the
     /// dissipative forces on the body.
     pub carried_heat: f64,
@@ -44,11 +46,11 @@ pub struct NodalForces {
 impl NodalForces {
     /// No forces on `dofs` degrees of freedom.
     pub fn zeros(dofs: usize) -> Self {
-        let zeros = vec![0.0; dofs];
+        let none = ForceVector { values: vec![0.0; dofs], is_zero: true };
         Self {
-            conservative: zeros.clone(),
-            dissipative: zeros.clone(),
-            applied: zeros,
+            conservative: none.clone(),
+            dissipative: none.clone(),
+            applied: none,
             carried_heat: 0.0,
             carried_power: 0.0,
         }
@@ -56,16 +58,20 @@ impl NodalForces {
 
     /// Sets all forces to 0.
     pub fn clear(&mut self) {
-        self.conservative.fill(0.0);
-        self.dissipative.fill(0.0);
-        self.applied.fill(0.0);
+        self.conservative.clear();
+        self.dissipative.clear();
+        self.applied.clear();
         (self.carried_heat, self.carried_power) = (0.0, 0.0);
     }
 
     /// Writes the sum of all forces.
     pub(crate) fn add_up(&self, total: &mut [f64]) {
-        let parts = self.conservative.iter().zip(&self.dissipative).zip(&self.applied);
-        total.iter_mut().zip(parts).for_each(|(f, ((c, d), a))| *f = c + d + a);
+        total.copy_from_slice(&self.conservative);
+        for part in [&self.dissipative, &self.applied] {
+            if !part.is_zero {
+                total.iter_mut().zip(part.iter()).for_each(|(f, part)| *f += part);
+            }
+        }
     }
 
     /// Power that is dissipated and power that is supplied (W) at the velocities `v`.
@@ -76,7 +82,44 @@ impl NodalForces {
 
     /// Energy that is dissipated and energy that is supplied (J) along the displacements `x`.
     pub(crate) fn work(&self, x: &[f64]) -> (f64, f64) {
-        (-dot(&self.dissipative, x), dot(&self.applied, x))
+        (-self.dissipative.work(x), self.applied.work(x))
+    }
+}
+
+/// Nodal forces (N) of one kind: a slice that knows when nothing was added, and then costs nothing.
+#[derive(Debug, Clone)]
+pub struct ForceVector {
+    values: Vec<f64>,
+    /// Whether nobody could change it since it was cleared.
+    is_zero: bool,
+}
+
+impl ForceVector {
+    fn clear(&mut self) {
+        if !self.is_zero {
+            self.values.fill(0.0);
+            self.is_zero = true;
+        }
+    }
+
+    /// Work (J) along the displacements `x`.
+    fn work(&self, x: &[f64]) -> f64 {
+        if self.is_zero { 0.0 } else { dot(&self.values, x) }
+    }
+}
+
+impl Deref for ForceVector {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+impl DerefMut for ForceVector {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        self.is_zero = false;
+        &mut self.values
     }
 }
 
