@@ -80,4 +80,7 @@ fn a_rolling_ring_passes_its_events() {
     assert!(events > 2, "{events}");
     // the motion is some centimetres; 100 rtol of it
     assert!((located - over).abs() < 1e-6, "{located} {over}");
+    // where nothing was said, fine tolerances have them located
+    assert_eq!(end(ContactEvents::Auto, 1e-7), (located, events));
+    assert_eq!(end(ContactEvents::Auto, 1e-5).1, 0);
 }

@@ -95,6 +95,7 @@ fn in_space() {
         atol_velocity: Some(1e-5),
         alpha: 500.0,
         max_order: Some(4),
+        stability_limit_detection: true,
         contact_events: ContactEvents::Locate,
         max_steps: 5000,
     };

@@ -50,7 +50,7 @@
 //! | `load` | { `nodes`, `force` (N on each) }, { `nodes`, `total` (N on all together) } or { `nodes`, `times` (s), `forces` (N on each) } |
 //! | `pressure` | { `chamber`, `value` (Pa) } or { `chamber`, `times` (s), `values` (Pa) } |
 //! | `actuate` | { `springs`, `force` (N) } or { `springs`, `times` (s), `forces` (N) } |
-//! | `[solver]` | as [`Solver`]; `contact_events`: `"step-over"` or `"locate"` |
+//! | `[solver]` | as [`Solver`]; `contact_events`: `"auto"`, `"step-over"` or `"locate"`; `stability_limit_detection`: `true` or `false` |
 //! | `[output]` | as [`OutputRequest`] |
 //!
 //! - **Nodes** are the name of a set, a number (from 1) or a list of them, or { `box` = [min, max] }.

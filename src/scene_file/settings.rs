@@ -14,6 +14,7 @@ const SOLVER: &[&str] = &[
     "atol_velocity",
     "alpha",
     "max_order",
+    "stability_limit_detection",
     "contact_events",
     "max_steps",
 ];
@@ -29,6 +30,8 @@ pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
     let position = "the absolute tolerance of displacements (m)";
     let velocity = "the absolute tolerance of velocities (m/s)";
     let max_order = table.optional("max_order", "the highest order", Value::count)?;
+    let detection = "whether unstable orders are looked out for";
+    let detection = table.optional("stability_limit_detection", detection, Value::flag)?;
     let max_steps = table.optional("max_steps", "the most steps of a phase", Value::count)?;
     let events = table.optional("contact_events", "how contact events are met", |value| {
         value.word(&ContactEvents::ALL.map(|way| (way.name(), way)))
@@ -40,6 +43,7 @@ pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
         atol_velocity: table.optional("atol_velocity", velocity, Value::number)?,
         alpha: alpha.unwrap_or(default.alpha),
         max_order: max_order.map(|order| u32::try_from(order).unwrap_or(u32::MAX)),
+        stability_limit_detection: detection.unwrap_or(default.stability_limit_detection),
         contact_events: events.unwrap_or(default.contact_events),
         max_steps: max_steps.unwrap_or(default.max_steps),
     };

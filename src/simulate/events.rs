@@ -8,6 +8,7 @@ use crate::system::System;
 ///
 /// Held, the force is smooth within a step: a node that leaves an obstacle is still pulled by it, as
 /// if glued, until the event is found and the step cut off there.
+#[derive(Default)]
 pub(super) struct Events {
     on: Vec<bool>,
     values: Vec<f64>,
@@ -23,13 +24,12 @@ const STANDING: usize = 20;
 const PRECISION: f64 = 1e-12;
 
 impl Events {
-    /// Holds the switches of `system` as they are at `t` and `u`; none if they are not `located`.
-    pub(super) fn new(system: &System, t: f64, u: &[f64], located: bool) -> Self {
+    /// From now on holds the switches of `system`, as they are at `t` and `u`, if they are `located`.
+    pub(super) fn begin(&mut self, system: &System, t: f64, u: &[f64], located: bool) {
         let count = if located { system.switches() } else { 0 };
-        let mut events =
-            Self { on: vec![false; count], values: vec![0.0; count], count: 0, standing: 0 };
-        events.set(system, t, u);
-        events
+        (self.on, self.values) = (vec![false; count], vec![0.0; count]);
+        system.hold_switches(None);
+        self.set(system, t, u);
     }
 
     /// The time of the first event in the last step, from `start` (s) to `end` (s). `work` has room

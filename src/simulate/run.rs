@@ -8,7 +8,7 @@ use super::failure::{IntegrationFailure, Interrupted, STANDING, standing_still, 
 use super::progress::{Observer, Progress};
 use super::solver::Tolerances;
 use super::stepper::{Failed, Stepper};
-use super::{ContactEvents, Counts, Method, Sampling, Schedule, Solver};
+use super::{Counts, Method, Sampling, Schedule, Solver};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
 use crate::ode::Failure;
@@ -116,7 +116,8 @@ impl<'a> Run<'a> {
             let start = Start { time: self.time, u: &u };
             let mut system = self.scene.system(&model, phase, forces, &start, self.solver.alpha)?;
             rows = system.rows().to_vec();
-            if phase.projects_velocity {
+            // an equation for velocities allows no others
+            if phase.projects_velocity || self.solver.method == Method::IdaIndexTwo {
                 self.project(&mut system);
             }
             if let Err((source, step)) = self.phase(number, phase, system, sampling, observer) {
@@ -153,9 +154,8 @@ impl<'a> Run<'a> {
         }
         let times = sampling.within(self.time, phase.until);
         let mut plan = Plan::new(self.solver, &mut system, self.time, &self.state);
-        let located = plan.solver.contact_events == ContactEvents::Locate;
-        let events = Events::new(&system, self.time, &self.state[..system.dofs()], located);
-        let steps = self.solver.max_steps;
+        let (steps, mut events) = (self.solver.max_steps, Events::default());
+        events.begin(&system, self.time, &self.state[..system.dofs()], plan.locates());
         let mut leg = Leg { number, times: &times, taken: 0, stop: 0.0, steps, events };
         let (mut counts, mut states) = (Counts::default(), 0);
         let mut stops = self.scene.breaks(number).into_iter().chain([phase.until]);
@@ -172,11 +172,15 @@ impl<'a> Run<'a> {
                 Ok(Ending::Better(other)) => {
                     plan = other;
                     counts.notice = None;
+                    let u = &self.state[..system.dofs()];
+                    leg.events.begin(&system, self.time, u, plan.locates());
                 }
                 Ok(Ending::Doubtful { instead }) => {
                     plan = instead;
+                    counts.notice = None;
                     self.go_back(&mut leg);
-                    leg.events.set(&system, self.time, &self.state[..system.dofs()]);
+                    let u = &self.state[..system.dofs()];
+                    leg.events.begin(&system, self.time, u, plan.locates());
                 }
             }
             system.forget_counts();

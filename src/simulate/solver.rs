@@ -24,6 +24,9 @@ pub enum Method {
     Ida,
     /// IDA on the index-1 form, with KLU on the sparse Jacobian of the whole system.
     IdaKlu,
+    /// IDA on the stabilized index-2 form (Gear, Gupta, Leimkuhler): positions and velocities meet the
+    /// constraints at each step, without alpha, and jump to what they allow where a phase begins.
+    IdaIndexTwo,
     /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that
     /// steps may go over. `max_order` is their order; default: 4.
     Arkode,
@@ -37,19 +40,20 @@ pub enum Method {
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Auto,
         Self::CvodeBdf,
         Self::CvodeAdams,
         Self::Ida,
         Self::IdaKlu,
+        Self::IdaIndexTwo,
         Self::Arkode,
         Self::Rk,
         Self::CentralDifference,
     ];
 
-    /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`, `arkode`,
-    /// `rk`, `central-difference`.
+    /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`,
+    /// `ida-index-2`, `arkode`, `rk`, `central-difference`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -57,6 +61,7 @@ impl Method {
             Self::CvodeAdams => "cvode-adams",
             Self::Ida => "ida",
             Self::IdaKlu => "ida-klu",
+            Self::IdaIndexTwo => "ida-index-2",
             Self::Arkode => "arkode",
             Self::Rk => "rk",
             Self::CentralDifference => "central-difference",
@@ -80,6 +85,9 @@ impl Method {
             }
             Self::IdaKlu => {
                 "a check of the structured linear solver: IDA with KLU on the whole Jacobian"
+            }
+            Self::IdaIndexTwo => {
+                "constraints met at each step, without alpha (IDA on the stabilized index-2 form)"
             }
             Self::Arkode => {
                 "bodies that vibrate with little damping (ARKODE, diagonally implicit, order 2 to 5)"
@@ -122,20 +130,24 @@ impl FromStr for Method {
 /// How contact events are met: nodes that touch an obstacle or leave it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactEvents {
-    /// Steps go over them; the error control makes those steps small.
+    /// As pays: [`Method::Auto`] locates them while it is explicit Runge-Kutta, and with implicit methods
+    /// if `rtol` is below 1e-6; where a method was asked for, they are stepped over.
     #[default]
+    Auto,
+    /// Steps go over them; the error control makes those steps small.
     StepOver,
     /// Each is located, a step ends there, and the integration starts anew.
     Locate,
 }
 
 impl ContactEvents {
-    /// Both.
-    pub const ALL: [Self; 2] = [Self::StepOver, Self::Locate];
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::StepOver, Self::Locate];
 
-    /// `step-over` or `locate`.
+    /// `auto`, `step-over` or `locate`.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::StepOver => "step-over",
             Self::Locate => "locate",
         }
@@ -153,8 +165,8 @@ impl FromStr for ContactEvents {
 
     fn from_str(name: &str) -> Result<Self, Error> {
         Self::ALL.into_iter().find(|way| way.name() == name).ok_or_else(|| {
-            let known = Self::ALL.map(Self::name).join(" or ");
-            Error::input("contact_events", format!("\"{name}\""), format!("it is {known}"))
+            let known = Self::ALL.map(Self::name).join(", ");
+            Error::input("contact_events", format!("\"{name}\""), format!("it is one of {known}"))
         })
     }
 }
@@ -179,7 +191,11 @@ pub struct Solver {
     pub alpha: f64,
     /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's (default: 4).
     pub max_order: Option<u32>,
-    /// Whether contact events are located. Default: stepped over.
+    /// Whether CVODE's BDF looks out for steps that its orders above 2 make unstable, and lowers the
+    /// order then (`CVodeSetStabLimDet`). It helps some lightly damped vibrations, not undamped
+    /// ones. Default: no.
+    pub stability_limit_detection: bool,
+    /// Whether contact events are located. Default: where it pays.
     pub contact_events: ContactEvents,
     /// Steps that one phase may take. Default: 10 million, a guard against waiting for ever.
     pub max_steps: usize,
@@ -194,6 +210,7 @@ impl Default for Solver {
             atol_velocity: None,
             alpha: 1e3,
             max_order: None,
+            stability_limit_detection: false,
             contact_events: ContactEvents::default(),
             max_steps: 10_000_000,
         }
@@ -224,6 +241,12 @@ impl Solver {
                 let mend = format!("{} has the orders {lowest} to {highest}", self.method);
                 Err(Error::input("max_order", order, mend))
             }
+            _ if self.stability_limit_detection
+                && !matches!(self.method, Method::Auto | Method::CvodeBdf) =>
+            {
+                let mend = format!("{} has no such limits: leave it out", self.method);
+                Err(Error::input("stability_limit_detection", true, mend))
+            }
             _ if self.max_steps == 0 => {
                 Err(Error::input("max_steps", 0, "allow one step at least"))
             }
@@ -243,6 +266,7 @@ impl Solver {
             velocity: self.atol_velocity.unwrap_or(velocity),
             energy: self.rtol * young * volume,
             force: self.rtol * young * volume / size,
+            momentum: self.rtol * young * volume / body.material().wave_speed(),
         }
     }
 }
@@ -261,4 +285,6 @@ pub struct Tolerances {
     pub(crate) energy: f64,
     /// Multipliers (N).
     pub(crate) force: f64,
+    /// Multipliers of positions in the form of index 2 (kg m/s).
+    pub(crate) momentum: f64,
 }

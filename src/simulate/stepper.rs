@@ -9,7 +9,7 @@ use crate::sundials::{
     Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern,
     Statistics, Table,
 };
-use crate::system::{ENERGIES, IndexOne, System};
+use crate::system::{DaeForm, ENERGIES, Index, System};
 
 pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -17,7 +17,7 @@ pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 pub(super) enum Stepper {
     Arkode(Arkode<System>),
     Cvode(Cvode<System>),
-    Ida(Ida<IndexOne>),
+    Ida(Ida<DaeForm>),
     Rk(Box<DormandPrince<System>>),
     CentralDifference(Box<CentralDifference>),
 }
@@ -45,8 +45,12 @@ impl Stepper {
                 cvode(system, solver, Multistep::Adams, tolerances, t, end, state)
             }
             Method::Arkode => arkode(system, solver, tolerances, t, end, state),
-            Method::Ida | Method::IdaKlu => {
-                tolerances.resize(2 * n + ENERGIES + system.rows().len(), atol.force);
+            Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
+                let rows = system.rows().len();
+                tolerances.resize(2 * n + ENERGIES + rows, atol.force);
+                if solver.method == Method::IdaIndexTwo {
+                    tolerances.resize(2 * n + ENERGIES + 2 * rows, atol.momentum);
+                }
                 ida(system, solver, tolerances, t, end, state)
             }
             Method::Rk => {
@@ -235,6 +239,9 @@ fn cvode(
     if let Some(order) = solver.max_order {
         options = options.max_order(order);
     }
+    if method == Multistep::Bdf {
+        options = options.stability_limit_detection(solver.stability_limit_detection);
+    }
     let mut cvode = Cvode::new(system, t, state, &options)?;
     cvode.set_stop_time(Some(end))?;
     Ok(Stepper::Cvode(cvode))
@@ -275,7 +282,11 @@ fn ida(
     state: &[f64],
 ) -> Result<Stepper, Failed> {
     let motion = 2 * system.dofs();
-    let mut equations = IndexOne::new(system);
+    let index = match solver.method {
+        Method::IdaIndexTwo => Index::Two,
+        _ => Index::One,
+    };
+    let mut equations = DaeForm::new(system, index);
     let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
     // What is not marked as differential stays out of the error test: energies and multipliers.
     let differential: Vec<bool> = (0..y.len()).map(|i| i < motion).collect();
@@ -295,7 +306,7 @@ fn ida(
     Ok(Stepper::Ida(ida))
 }
 
-fn jacobian_pattern(equations: &IndexOne) -> Result<Pattern, Failed> {
+fn jacobian_pattern(equations: &DaeForm) -> Result<Pattern, Failed> {
     let size = equations.size();
     let (mut offsets, mut row_indices) = (vec![0; size + 1], Vec::new());
     equations.visit_jacobian(1.0, |row, column, _| {

@@ -91,7 +91,7 @@ impl Scenes {
     #[must_use]
     pub fn solver(self, name: impl Into<String>, solver: Solver) -> Self {
         let family = match solver.method {
-            Method::IdaKlu => Method::Ida,
+            Method::IdaKlu | Method::IdaIndexTwo => Method::Ida,
             method => method,
         };
         self.by_tolerance(name.into(), family.name(), 0, solver)
@@ -200,7 +200,8 @@ impl Scenes {
 }
 
 /// Name and solver of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up
-/// to 2 only, which can do with motion that is hardly damped, and for ARKODE one for each of the
+/// to 2 only, which can do with motion that is hardly damped, and one that detects the stability limits
+/// of higher orders; for ARKODE one for each of the
 /// orders 3 and 5 beside 4.
 #[must_use]
 pub fn all_solvers() -> Vec<(String, Solver)> {
@@ -216,6 +217,10 @@ pub fn all_solvers() -> Vec<(String, Solver)> {
         for order in orders {
             let solver = Solver { max_order: Some(*order), ..solver.clone() };
             solvers.push((format!("{method}, order {order}"), solver));
+        }
+        if method == Method::CvodeBdf {
+            let solver = Solver { stability_limit_detection: true, ..solver };
+            solvers.push((format!("{method}, limit detection"), solver));
         }
     }
     solvers

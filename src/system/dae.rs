@@ -1,4 +1,5 @@
-//! The index-1 form: y = (u, v, energy dissipated, energy supplied, lambda), with the residuals
+//! The differential-algebraic forms. Of index 1: y = (u, v, energy dissipated, energy supplied, lambda),
+//! with the residuals
 //!
 //! ```text
 //! u' - v
@@ -6,32 +7,61 @@
 //! (two energy rates)
 //! A^T v' + 2 alpha (A^T v - b') + alpha^2 (A^T u - b) - b''
 //! ```
+//!
+//! Of index 2, stabilized by second multipliers eta (C. W. Gear, G. K. Gupta, B. Leimkuhler, "Automatic
+//! integration of Euler-Lagrange equations with constraints", J. Comput. Appl. Math. 12-13 (1985) 77-90):
+//! y = (u, v, energies, lambda, eta), with
+//!
+//! ```text
+//! M (u' - v) - A eta
+//! M v' - f - A lambda
+//! (two energy rates)
+//! A^T v - b'
+//! A^T u - b
+//! ```
 
 use super::System;
 use super::ode::ENERGIES;
+use crate::constraint::Prescribed;
 use crate::ode::{Dae, Failure};
 
+/// What the constraints enter as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Index {
+    /// Stabilized accelerations.
+    One,
+    /// Velocities and positions.
+    Two,
+}
+
 /// The equations of a phase with the multipliers as unknowns.
-pub(crate) struct IndexOne {
+pub(crate) struct DaeForm {
     pub(crate) system: System,
+    index: Index,
+    /// u' - v
+    slip: Vec<f64>,
     /// For each degree of freedom, the constraint rows it is in and its coefficients there.
     constraints_of: Vec<Vec<(usize, f64)>>,
 }
 
-impl IndexOne {
-    pub(crate) fn new(system: System) -> Self {
+impl DaeForm {
+    pub(crate) fn new(system: System, index: Index) -> Self {
         let mut constraints_of = vec![Vec::new(); system.dofs()];
         for (k, row) in system.rows.iter().enumerate() {
             row.terms
                 .iter()
                 .for_each(|&(dof, coefficient)| constraints_of[dof].push((k, coefficient)));
         }
-        Self { system, constraints_of }
+        Self { slip: vec![0.0; system.dofs()], system, index, constraints_of }
     }
 
     /// Number of unknowns.
     pub(crate) fn size(&self) -> usize {
-        2 * self.system.dofs() + ENERGIES + self.system.rows.len()
+        let multipliers = match self.index {
+            Index::One => self.system.rows.len(),
+            Index::Two => 2 * self.system.rows.len(),
+        };
+        2 * self.system.dofs() + ENERGIES + multipliers
     }
 
     /// y and y' with which the residual vanishes, from (u, v) and the energies in the front of
@@ -45,13 +75,14 @@ impl IndexOne {
         let (u, v) = (&state[..n], &state[n..2 * n]);
         self.system.evaluate(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, &self.system.at.multipliers);
-        let y = [state, &self.system.at.multipliers].concat();
+        let mut y = [state, &self.system.at.multipliers].concat();
+        y.resize(self.size(), 0.0);
         let mut yp = [v, &self.system.at.acceleration, &[dissipated, supplied]].concat();
         yp.resize(self.size(), 0.0);
         Ok((y, yp))
     }
 
-    /// Visits all entries of dF/dy + cj dF/dy' as (row, column, value), column by column, rows
+    /// Visits all entries of dF/dy + cj dF/dy' of the form of index 1 as (row, column, value), column by column, rows
     /// ascending; the same entries at every call.
     pub(crate) fn visit_jacobian(&self, cj: f64, mut visit: impl FnMut(usize, usize, f64)) {
         let System { model, rows, alpha, .. } = &self.system;
@@ -94,7 +125,7 @@ impl IndexOne {
     }
 }
 
-impl Dae for IndexOne {
+impl Dae for DaeForm {
     fn residual(
         &mut self,
         t: f64,
@@ -103,7 +134,8 @@ impl Dae for IndexOne {
         residual: &mut [f64],
     ) -> Result<(), Failure> {
         let n = self.system.dofs();
-        let (u, v, multipliers) = (&y[..n], &y[n..2 * n], &y[2 * n + ENERGIES..]);
+        let (u, v, lambda) = (&y[..n], &y[n..2 * n], 2 * n + ENERGIES);
+        let (multipliers, eta) = y[lambda..].split_at(self.system.rows.len());
         let (up, vp) = (&yp[..n], &yp[n..2 * n]);
         self.system.evaluate_forces(t, u, v)?;
         self.system.evaluate_rows(t, u, v)?;
@@ -111,21 +143,35 @@ impl Dae for IndexOne {
         let System { model, rows, at, .. } = &mut self.system;
         at.multipliers.copy_from_slice(multipliers);
 
+        let subtract_pull = |multipliers: &[f64], momentum: &mut [f64]| {
+            for (row, multiplier) in rows.iter().zip(multipliers) {
+                row.terms.iter().for_each(|&(dof, c)| momentum[dof] -= c * multiplier);
+            }
+        };
         for i in 0..n {
             residual[i] = up[i] - v[i];
             residual[n + i] = -at.total[i];
         }
-        let momentum = &mut residual[n..2 * n];
-        model.inertia.add_product(model.dimension, 1.0, vp, momentum);
-        for (row, multiplier) in rows.iter().zip(multipliers) {
-            row.terms.iter().for_each(|&(dof, c)| momentum[dof] -= c * multiplier);
+        let (kinematic, dynamic) = residual[..2 * n].split_at_mut(n);
+        model.inertia.add_product(model.dimension, 1.0, vp, dynamic);
+        subtract_pull(multipliers, dynamic);
+        if self.index == Index::Two {
+            self.slip.copy_from_slice(kinematic);
+            kinematic.fill(0.0);
+            model.inertia.add_product(model.dimension, 1.0, &self.slip, kinematic);
+            subtract_pull(eta, kinematic);
         }
         residual[2 * n] = yp[2 * n] - dissipated;
         residual[2 * n + 1] = yp[2 * n + 1] - supplied;
-        for ((residual, row), demand) in
-            residual[2 * n + ENERGIES..].iter_mut().zip(rows).zip(&at.demands)
-        {
-            *residual = row.apply(vp) - demand;
+        for (k, row) in rows.iter().enumerate() {
+            match self.index {
+                Index::One => residual[lambda + k] = row.apply(vp) - at.demands[k],
+                Index::Two => {
+                    let Prescribed { displacement, velocity, .. } = row.prescribed(t);
+                    residual[lambda + k] = at.rates[k] - velocity;
+                    residual[lambda + rows.len() + k] = row.apply(u) - displacement;
+                }
+            }
         }
         Ok(())
     }
@@ -158,9 +204,13 @@ impl Dae for IndexOne {
     fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
         let n = self.system.dofs();
         let (motion, rest) = r.split_at_mut(2 * n);
-        let (energies, r3) = rest.split_at_mut(ENERGIES);
+        let (energies, multipliers) = rest.split_at_mut(ENERGIES);
         let (r1, r2) = motion.split_at_mut(n);
-        self.system.solve_newton_dae(r1, r2, r3);
+        let (r3, r4) = multipliers.split_at_mut(self.system.rows.len());
+        match self.index {
+            Index::One => self.system.solve_newton_index_one(r1, r2, r3),
+            Index::Two => self.system.solve_newton_index_two(r1, r2, r3, r4),
+        }
         let (dissipated, supplied) = self.system.power_changes();
         let gamma = self.system.gamma();
         energies[0] = gamma * (energies[0] + dissipated);

@@ -9,8 +9,8 @@
 //! [ -A^T 0 ] [ lambda ] = [ C ],   C = -b'' + 2 alpha (A^T v - b') + alpha^2 (A^T u - b)
 //! ```
 //!
-//! [`System`] is the ODE form, in which v' and lambda are solved for; [`IndexOne`] the
-//! differential-algebraic form, in which lambda is an unknown. Both solve their Newton systems with
+//! [`System`] is the ODE form, in which v' and lambda are solved for; [`DaeForm`] the
+//! differential-algebraic forms, in which lambda is an unknown. All solve their Newton systems with
 //! the one symmetric matrix of [`newton`], half as large as the state.
 //!
 //! Two more unknowns ride along: the energy dissipated and the energy supplied since the phase
@@ -32,7 +32,7 @@ mod tests;
 use std::sync::Arc;
 
 pub(crate) use at_rest::{AtRest, Balance};
-pub(crate) use dae::IndexOne;
+pub(crate) use dae::{DaeForm, Index};
 use newton::Newton;
 pub(crate) use ode::ENERGIES;
 pub(crate) use rates::{Rates, RatesBound};

@@ -189,16 +189,12 @@ impl System {
     }
 
     /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds
-    /// M rv - gamma Kt ru and `self.newton.demands` holds A^T rv. Leaves xv and, complete with those
-    /// of nodal rows, mu.
+    /// M rv - gamma Kt ru and `self.newton.demands` what A^T xv is to be. Leaves xv and, complete with
+    /// those of nodal rows, mu.
     fn solve_newton(&mut self, ru: &mut [f64]) {
-        let (gamma, alpha) = (self.newton.gamma, self.alpha);
-        let decay = 1.0 + alpha * gamma;
+        let gamma = self.newton.gamma;
         let Newton { solver, stiffness, damping, right, xv, demands, mu, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
-        for (demand, row) in demands.iter_mut().zip(&self.rows) {
-            *demand = (*demand - gamma * alpha * alpha * row.apply(ru)) / (decay * decay);
-        }
         solver.solve(&self.rows, right, demands, xv, mu);
         let (inertia, dimension) = (&self.model.inertia, self.model.dimension);
         nodal_multipliers(&self.rows, mu, |dof| {
@@ -206,6 +202,15 @@ impl System {
             inertia.row_product(dimension, dof, xv) + gamma * damped - right[dof]
         });
         ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
+    }
+
+    /// Turns A^T rv in `self.newton.demands` into A^T xv.
+    fn stabilize_demands(&mut self, ru: &[f64]) {
+        let (gamma, alpha) = (self.newton.gamma, self.alpha);
+        let decay = 1.0 + alpha * gamma;
+        for (demand, row) in self.newton.demands.iter_mut().zip(&self.rows) {
+            *demand = (*demand - gamma * alpha * alpha * row.apply(ru)) / (decay * decay);
+        }
     }
 
     /// The Newton system of the ODE form: `ru`, `rv` become xu, xv. `share` times the accelerations that
@@ -222,22 +227,62 @@ impl System {
         if largest(ru) > 1e-12 * *gamma * largest(rv) {
             stiffness.get().add_product(-*gamma, ru, right);
         }
+        self.stabilize_demands(ru);
         self.solve_newton(ru);
         rv.copy_from_slice(&self.newton.xv);
     }
 
     /// The Newton system of the index-1 form, cj dF/dy' + dF/dy with cj = 1/gamma: the residuals
     /// `r1`, `r2`, `r3` become xu, xv and the change of lambda.
-    pub(super) fn solve_newton_dae(&mut self, r1: &mut [f64], r2: &mut [f64], r3: &mut [f64]) {
+    pub(super) fn solve_newton_index_one(
+        &mut self,
+        r1: &mut [f64],
+        r2: &mut [f64],
+        r3: &mut [f64],
+    ) {
         let gamma = self.newton.gamma;
         r1.iter_mut().for_each(|r| *r *= gamma);
         let Newton { stiffness, right, demands, .. } = &mut self.newton;
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
         demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
+        self.stabilize_demands(r1);
         self.solve_newton(r1);
         r2.copy_from_slice(&self.newton.xv);
         r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
+    }
+
+    /// The Newton system of the form of index 2 likewise; `r4` becomes the change of eta. With
+    /// xu = s + gamma xv it falls into
+    ///
+    /// ```text
+    /// M s - gamma A xeta = gamma r1,   A^T s = r4 - gamma r3
+    /// (M + gamma D + gamma^2 Kt) xv - A mu = gamma r2 - gamma Kt s,   A^T xv = r3
+    /// ```
+    pub(super) fn solve_newton_index_two(
+        &mut self,
+        r1: &mut [f64],
+        r2: &mut [f64],
+        r3: &mut [f64],
+        r4: &mut [f64],
+    ) {
+        let gamma = self.newton.gamma;
+        let Newton { stiffness, right, demands, .. } = &mut self.newton;
+        right.iter_mut().zip(&*r1).for_each(|(f, r)| *f = gamma * r);
+        let of_slip = r4.iter().zip(&*r3).map(|(r4, r3)| r4 - gamma * r3);
+        demands.iter_mut().zip(of_slip).for_each(|(d, of_slip)| *d = of_slip);
+        self.inertia.solve(&self.rows, right, demands, r1, r4);
+        let Model { inertia, dimension, .. } = &*self.model;
+        nodal_multipliers(&self.rows, r4, |dof| {
+            inertia.row_product(*dimension, dof, r1) - right[dof]
+        });
+        right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
+        stiffness.get().add_product(-gamma, r1, right);
+        demands.copy_from_slice(r3);
+        self.solve_newton(r1);
+        r2.copy_from_slice(&self.newton.xv);
+        r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
+        r4.iter_mut().for_each(|x| *x /= gamma);
     }
 
     /// How the powers dissipated and supplied change along the last solution of the Newton

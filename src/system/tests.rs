@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::prelude::Solve;
 
-use super::{ENERGIES, IndexOne, System};
+use super::{DaeForm, ENERGIES, Index, System};
 use crate::constraint::{Axis, Start};
 use crate::ode::{Dae, Ode};
 use crate::samples::SQUARE_MATERIAL;
@@ -125,7 +125,7 @@ fn structured_solve_is_that_of_the_ode_jacobian() {
 
 #[test]
 fn structured_solve_is_that_of_the_index_one_jacobian() {
-    let mut equations = IndexOne::new(system());
+    let mut equations = DaeForm::new(system(), Index::One);
     let n = equations.system.dofs();
     let state = state(&equations.system);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
@@ -144,8 +144,40 @@ fn structured_solve_is_that_of_the_index_one_jacobian() {
 }
 
 #[test]
+fn structured_solve_is_that_of_the_index_two_jacobian() {
+    let mut equations = DaeForm::new(system(), Index::Two);
+    let n = equations.system.dofs();
+    let (y, yp) = {
+        let state = state(&equations.system);
+        equations.consistent(0.1, &state).unwrap()
+    };
+    let mut residual = |y: &[f64], yp: &[f64]| {
+        let mut residual = vec![0.0; y.len()];
+        equations.residual(0.1, y, yp, &mut residual).unwrap();
+        residual
+    };
+    let by_y = derivative(&y, 1e-5, |y| residual(y, &yp));
+    let by_yp = derivative(&yp, 1.0, |yp| residual(&y, yp));
+    // energies have their own test, and nothing depends on them
+    let lambda = 2 * n + ENERGIES;
+    let kept: Vec<usize> = (0..2 * n).chain(lambda..y.len()).collect();
+    let blocks = [n, 2 * n, 2 * n + equations.system.rows.len(), kept.len()];
+    for cj in [100.0, 1e4] {
+        let entry = |i: usize, j: usize| by_y[(i, j)] + cj * by_yp[(i, j)];
+        let jacobian = Mat::from_fn(kept.len(), kept.len(), |i, j| entry(kept[i], kept[j]));
+        equations.newton_setup(0.1, cj, &y, &yp).unwrap();
+        let r = noise(y.len(), 3);
+        let mut x = r.clone();
+        equations.newton_solve(&mut x).unwrap();
+        let [x, r] = [x, r].map(|all| kept.iter().map(|&i| all[i]).collect::<Vec<_>>());
+        // some digits are lost to the differences
+        assert_close(&x, &solve(&jacobian, &r), 1e-6, &blocks);
+    }
+}
+
+#[test]
 fn index_one_jacobian_is_the_derivative_of_the_residual() {
-    let mut equations = IndexOne::new(system());
+    let mut equations = DaeForm::new(system(), Index::One);
     let n = equations.system.dofs();
     let state = state(&equations.system);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
@@ -171,7 +203,7 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
 
 #[test]
 fn consistent_start_satisfies_the_residual() {
-    let mut equations = IndexOne::new(system());
+    let mut equations = DaeForm::new(system(), Index::One);
     let state = state(&equations.system);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
     let mut residual = vec![0.0; y.len()];

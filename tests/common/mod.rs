@@ -38,6 +38,11 @@ impl Table {
     }
 }
 
+/// The methods on forms of the equations that know alpha.
+pub fn methods_with_alpha() -> impl Iterator<Item = Method> {
+    Method::ALL.into_iter().filter(|&method| method != Method::IdaIndexTwo)
+}
+
 /// Runs `scene` and samples it at `times`.
 pub fn run(scene: &Scene, solver: &Solver, times: &[f64]) -> Trajectory {
     scene.simulate(solver, &Sampling::at(times)).unwrap()
