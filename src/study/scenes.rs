@@ -220,7 +220,7 @@ pub fn all_solvers() -> Vec<(String, Solver)> {
         }
         if method == Method::CvodeBdf {
             let solver = Solver { stability_limit_detection: true, ..solver };
-            solvers.push((format!("{method}, limit detection"), solver));
+            solvers.push((format!("{method}, stability limit"), solver));
         }
     }
     solvers

@@ -119,7 +119,8 @@ pub fn section(page: &mut Page) -> Outcome<()> {
                 let untold = pulse(false).momentum(method, rtol)?;
                 told_error = told_error.max((told - 1.0).abs());
                 untold_error = untold_error.max((untold - 1.0).abs());
-                row.push(format!("{untold:.4}"));
+                // rounded, so that nothing is -0
+                row.push(format!("{:.4}", (1e4 * untold).round() / 1e4 + 0.0));
             }
             row.push(few(told_error));
             met.push((width, told_error.max(1e-16)));
