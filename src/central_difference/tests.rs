@@ -4,7 +4,10 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::constraint::Start;
-use crate::{Body, Cells, Inertia, Material, Mesh, Obstacle, Phase, Scene, Strain, Viscosity};
+use crate::{
+    Axis, Body, Cells, Inertia, Material, Mesh, Method, Obstacle, Phase, Prescribed, Sampling,
+    Scene, Solver, Strain, Viscosity,
+};
 
 /// So fast that a held node told to move does so within the first step.
 const ALPHA: f64 = 1e12;
@@ -234,4 +237,28 @@ fn contacts_count_before_they_touch() {
     assert!((far.frequency / 2e4f64.sqrt() - 1.0).abs() < 1e-3, "{far:?}");
     assert!((far.decay / 60.0 - 1.0).abs() < 1e-3, "{far:?}");
     assert!((touching.frequency / far.frequency - 1.0).abs() < 1e-3, "{touching:?}");
+}
+
+/// The work of a force that leads a node along a path is that of the mean rates: energies balance to
+/// the order of the method.
+#[test]
+fn work_along_a_path_is_booked() {
+    let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 };
+    let body = Body::new(Mesh::bar(1.0, 41).unwrap(), material);
+    let body = body.area(1.0).inertia(Inertia::Lumped).build().unwrap();
+    let wave = |t: f64| Prescribed {
+        displacement: 0.01 * (1.0 - (PI * t).cos()),
+        velocity: 0.01 * PI * (PI * t).sin(),
+        acceleration: 0.01 * PI * PI * (PI * t).cos(),
+    };
+    let scene = Scene::new(body).phase(Phase::until(3.3).follow("left", Axis::X, wave));
+    let method = Method::CentralDifference;
+    let solver = Solver { method, rtol: 1e-2, ..Solver::default() };
+    let motion = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
+    let report = motion.report();
+    let supplied = motion.last().energy.supplied;
+    println!("{:e} of {:e}, {supplied:e} J supplied", report.energy_error, report.energy_scale);
+    // 80 steps per period: (2 pi / 80)^2 / 12 of the largest energy, and twice that for room
+    assert!(supplied > 0.1 * report.energy_scale);
+    assert!(report.energy_error < 1e-3 * report.energy_scale, "{:e}", report.energy_error);
 }

@@ -1,6 +1,8 @@
 //! c. BDF near the imaginary axis. That a cap of 3 runs away, that the report says so, and that the
 //! automatic choice does not: `tests/auto.rs`.
 
+use pliant::{Method, Sampling, Solver};
+
 use crate::gallery::orders::{CRITICAL, LinearBeam, bdf, beam, reference};
 
 /// The border of stability of BDF of order k is z = sum (1 - e^-ia)^j / j, j = 1 to k; damping ratios
@@ -52,4 +54,19 @@ fn stability_limit_detection_does_not_replace_the_cap() {
     let strong = LinearBeam::new([21, 2], 0.03).unwrap();
     let [with, without] = [true, false].map(|on| strong.bdf(5, on, 1e-4).unwrap().unwrap());
     assert_eq!((with.0, with.2), (without.0, 0));
+}
+
+/// What a scene's solver asks for reaches CVODE, which finds something to do where damping is next to
+/// none, and nothing where there is more.
+#[test]
+fn scenes_are_integrated_with_the_detection() {
+    let steps = |ratio: f64, stability_limit_detection: bool| {
+        let (method, rtol) = (Method::CvodeBdf, 1e-4);
+        let solver = Solver { method, rtol, stability_limit_detection, ..Solver::default() };
+        let scene = beam([22, 3], ratio, 0.2).unwrap();
+        scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps()
+    };
+    let [light, strong] = [1e-4, 0.03].map(|ratio| [true, false].map(|on| steps(ratio, on)));
+    println!("{light:?} {strong:?}");
+    assert!(light[0] != light[1] && strong[0] == strong[1], "{light:?} {strong:?}");
 }
