@@ -189,9 +189,16 @@ impl fmt::Display for Report {
             "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
              {energy_error:.1e} of {energy_scale:.1e} J"
         )?;
-        for PhaseReport { name, reason, .. } in &self.phases {
-            if let Some(reason) = reason {
-                write!(f, "\nphase \"{name}\": {reason}")?;
+        for PhaseReport { name, reason, counts, .. } in &self.phases {
+            let events = match counts.contact_events {
+                0 => None,
+                1 => Some("1 contact event located".to_owned()),
+                count => Some(format!("{count} contact events located")),
+            };
+            let remarks: Vec<&str> =
+                reason.as_deref().into_iter().chain(events.as_deref()).collect();
+            if !remarks.is_empty() {
+                write!(f, "\nphase \"{name}\": {}", remarks.join("; "))?;
             }
         }
         self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))

@@ -72,6 +72,8 @@ fn a_rolling_ring_passes_its_events() {
         let solver = Solver { contact_events, rtol, ..Solver::default() };
         let motion = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
         let events = motion.report().phases[0].counts.contact_events;
+        let told = format!("{events} contact events located");
+        assert_eq!(motion.report().to_string().contains(&told), events > 1);
         (motion.centre_of_mass(motion.last())[0], events)
     };
     let (over, none) = end(ContactEvents::StepOver, 1e-7);

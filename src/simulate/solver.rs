@@ -25,7 +25,8 @@ pub enum Method {
     /// IDA on the index-1 form, with KLU on the sparse Jacobian of the whole system.
     IdaKlu,
     /// IDA on the stabilized index-2 form (Gear, Gupta, Leimkuhler): positions and velocities meet the
-    /// constraints at each step, without alpha, and jump to what they allow where a phase begins.
+    /// constraints at each step, within the tolerances, without alpha; velocities jump to what they allow
+    /// where a phase begins.
     IdaIndexTwo,
     /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that
     /// steps may go over. `max_order` is their order; default: 4.
