@@ -134,15 +134,11 @@ impl Row {
         }
     }
 
-    /// Mean of b' from time `t` on over a time `h`.
-    pub(crate) fn mean_velocity(&self, t: f64, h: f64) -> f64 {
+    /// b', if it never changes.
+    pub(crate) fn constant_velocity(&self) -> Option<f64> {
         match self.motion {
-            RowMotion::Linear { velocity, .. } => velocity,
-            RowMotion::Path(_) | RowMotion::Spline(_) => {
-                let velocity = |s: f64| self.prescribed(t + s * h).velocity;
-                // Simpson's rule
-                (velocity(0.0) + 4.0 * velocity(0.5) + velocity(1.0)) / 6.0
-            }
+            RowMotion::Linear { velocity, .. } => Some(velocity),
+            RowMotion::Path(_) | RowMotion::Spline(_) => None,
         }
     }
 

@@ -61,16 +61,27 @@ impl Guide {
     }
 
     /// Mean rates from `t` on over a time `h`, free of the round-off in differences of positions.
-    pub(super) fn mean_rates(&mut self, system: &System, t: f64, h: f64) -> &[f64] {
+    pub(super) fn mean_rates(
+        &mut self,
+        system: &System,
+        t: f64,
+        h: f64,
+    ) -> Result<&[f64], Failure> {
         let Self { since, alpha, remainders, means, .. } = self;
         let elapsed = t - *since;
         let decay = (-*alpha * elapsed).exp();
         let [ahead, change] = [(-*alpha * h).exp(), (-*alpha * h).exp_m1() / h];
         for (k, (row, &(off, slope))) in system.rows().iter().zip(&*remainders).enumerate() {
+            let velocity = |s: f64| system.prescribed(row, t + s * h).map(|motion| motion.velocity);
+            let prescribed = match row.constant_velocity() {
+                Some(velocity) => velocity,
+                // Simpson's rule
+                None => (velocity(0.0)? + 4.0 * velocity(0.5)? + velocity(1.0)?) / 6.0,
+            };
             let remainder = (off + slope * elapsed) * change + slope * ahead;
-            means[k] = row.mean_velocity(t, h) + remainder * decay;
+            means[k] = prescribed + remainder * decay;
         }
-        means
+        Ok(means)
     }
 
     /// Puts the components that nodal rows prescribe where they were found to be.

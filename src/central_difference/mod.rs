@@ -126,18 +126,12 @@ impl CentralDifference {
         system.forces(t, u, v, &mut force).map_err(Failure::into_error)?;
         let powers = system.force_powers(v);
         let guide = Guide::new(&system, t, u, v).map_err(Failure::into_error)?;
-        let mut mobility = Mobility::new(&system);
         let mut stability = Stability::new(&mut system);
         let limit = stability.limit(&mut system, t, y);
         let zeros = vec![0.0; n];
-        let mut second = zeros.clone();
-        if mobility.is_diagonal() {
-            let kick = Kick { duration: limit, force: &force, rates: &guide.rates };
-            mobility.accelerations(&mut system, &kick, v, &mut second);
-        }
         let mut started = Self {
             guide,
-            mobility,
+            mobility: Mobility::new(&system),
             control: Control::new(t, end, limit),
             stability,
             t,
@@ -150,7 +144,7 @@ impl CentralDifference {
             trial_powers: powers,
             earlier: zeros.clone(),
             first: zeros.clone(),
-            second,
+            second: zeros.clone(),
             step_before: None,
             middle: zeros.clone(),
             extrapolated: zeros,
@@ -217,9 +211,10 @@ impl CentralDifference {
         guide.aim(system, next)?;
 
         let half = 0.5 * h;
-        let rates = guide.mean_rates(system, self.t, h);
+        let rates = guide.mean_rates(system, self.t, h)?;
         let kick = Kick { duration: half, force: &self.force, rates };
-        if !mobility.is_diagonal() {
+        // else those at the end of the step before
+        if self.step_before.is_none() || !mobility.is_diagonal() {
             mobility.accelerations(system, &kick, v, &mut self.first);
         }
         let outputs = u_next.iter_mut().zip(&mut *middle).zip(&mut *extrapolated);

@@ -262,3 +262,16 @@ fn work_along_a_path_is_booked() {
     assert!(supplied > 0.1 * report.energy_scale);
     assert!(report.energy_error < 1e-3 * report.energy_scale, "{:e}", report.energy_error);
 }
+
+#[test]
+fn a_path_without_numbers_within_a_step_is_an_error() {
+    let path = |t: f64| {
+        let velocity = if (0.004..0.006).contains(&t) { f64::NAN } else { 0.0 };
+        Prescribed { displacement: 0.0, velocity, acceleration: 0.0 }
+    };
+    let body = Body::new(Mesh::bar(1.0, 5).unwrap(), crate::samples::SQUARE_MATERIAL).area(1.0);
+    let scene = Scene::new(body.inertia(Inertia::Lumped).build().unwrap())
+        .phase(Phase::until(1.0).follow("left", Axis::X, path));
+    let error = fixed(&scene, 0.01).step().unwrap_err().to_string();
+    assert!(error.contains("b' = NaN"), "{error}");
+}

@@ -123,6 +123,11 @@ impl DerefMut for ForceVector {
     }
 }
 
+/// Largest size of a component; 0 of none.
+pub(crate) fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
+}
+
 /// a . b, summed up in interleaved parts, for speed.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());

@@ -176,11 +176,9 @@ impl<'a> Run<'a> {
                     leg.events.begin(&system, self.time, u, plan.locates());
                 }
                 Ok(Ending::Doubtful { instead }) => {
-                    plan = instead;
-                    counts.notice = None;
                     self.go_back(&mut leg);
-                    let u = &self.state[..system.dofs()];
-                    leg.events.begin(&system, self.time, u, plan.locates());
+                    ended = Ok(Ending::Better(instead));
+                    continue;
                 }
             }
             system.forget_counts();

@@ -234,13 +234,12 @@ fn cvode(
     end: f64,
     state: &[f64],
 ) -> Result<Stepper, Failed> {
-    let mut options =
-        CvodeOptions::new(solver.rtol, tolerances).method(method).newton(LinearSolver::Custom);
+    let mut options = CvodeOptions::new(solver.rtol, tolerances)
+        .method(method)
+        .newton(LinearSolver::Custom)
+        .stability_limit_detection(solver.stability_limit_detection);
     if let Some(order) = solver.max_order {
         options = options.max_order(order);
-    }
-    if method == Multistep::Bdf {
-        options = options.stability_limit_detection(solver.stability_limit_detection);
     }
     let mut cvode = Cvode::new(system, t, state, &options)?;
     cvode.set_stop_time(Some(end))?;

@@ -1,7 +1,7 @@
 //! The search for an equilibrium: Newton's method downhill, load step by load step.
 
 use super::{Stability, Statics};
-use crate::force::dot;
+use crate::force::{dot, largest};
 use crate::ode::Failure;
 use crate::system::{AtRest, Balance};
 
@@ -120,7 +120,6 @@ impl<'a> Search<'a> {
             self.rest.lacking(self.tried, &self.u, &mut self.d);
             self.rest.solve(&self.at.total, &self.d, &mut self.x, &mut self.mu);
             self.residual = self.rest.residual(&self.at.total, &self.mu, &mut self.work);
-            let largest = |x: &[f64]| x.iter().fold(0.0, |most, x| f64::max(most, x.abs()));
             let (lacking, length) = (largest(&self.d), largest(&self.x));
             if !length.is_finite() {
                 return Err(self.stuck("the displacements grow without bound".into()));
@@ -218,7 +217,7 @@ impl<'a> Search<'a> {
     /// Largest |A^T u - b| (m).
     pub(super) fn drift(&mut self) -> f64 {
         self.rest.lacking(self.fraction, &self.u, &mut self.d);
-        self.d.iter().fold(0.0, |most, d| f64::max(most, d.abs()))
+        largest(&self.d)
     }
 
     fn stuck(&self, cause: String) -> Stuck {

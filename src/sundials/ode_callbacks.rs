@@ -12,7 +12,7 @@ use super::{
     matrix::{self, Entries},
     vector::{slice, slice_mut},
 };
-use crate::ode::Ode;
+use crate::ode::{Failure, Ode};
 
 /// `CVRhsFn`
 pub(super) unsafe extern "C" fn rhs<S: Ode>(
@@ -21,13 +21,8 @@ pub(super) unsafe extern "C" fn rhs<S: Ode>(
     ydot: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; `y` and `ydot` are different vectors.
-    let (host, y, ydot) = unsafe {
-        let host = &mut *data.cast::<Host<S>>();
-        let n = host.n;
-        (host, slice(y, n), slice_mut(ydot, n))
-    };
-    host.guard_output(Callback::Rhs, t, ydot, |system, ydot| system.rhs(t, y, ydot))
+    // SAFETY: both have the same contract.
+    unsafe { evaluate(t, y, ydot, data, S::rhs) }
 }
 
 /// `CVRhsFn`, within the Newton iteration of a user-supplied solver.
@@ -37,13 +32,31 @@ pub(super) unsafe extern "C" fn newton_rhs<S: Ode>(
     ydot: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
+    // SAFETY: both have the same contract.
+    unsafe { evaluate(t, y, ydot, data, S::newton_rhs) }
+}
+
+/// A method of [`Ode`] that writes a right-hand side.
+type Rhs<S> = fn(&mut S, f64, &[f64], &mut [f64]) -> Result<(), Failure>;
+
+/// What both have in common: `call` writes into `ydot`.
+///
+/// # Safety
+/// That of `CVRhsFn`; see the module.
+unsafe fn evaluate<S>(
+    t: f64,
+    y: ffi::N_Vector,
+    ydot: ffi::N_Vector,
+    data: *mut c_void,
+    call: Rhs<S>,
+) -> i32 {
     // SAFETY: see the module; `y` and `ydot` are different vectors.
     let (host, y, ydot) = unsafe {
         let host = &mut *data.cast::<Host<S>>();
         let n = host.n;
         (host, slice(y, n), slice_mut(ydot, n))
     };
-    host.guard_output(Callback::Rhs, t, ydot, |system, ydot| system.newton_rhs(t, y, ydot))
+    host.guard_output(Callback::Rhs, t, ydot, |system, ydot| call(system, t, y, ydot))
 }
 
 /// `CVRootFn`

@@ -12,7 +12,7 @@ use super::reduced::Source;
 use super::{System, nodal_multipliers};
 use crate::constraint::Prescribed;
 use crate::error::Error;
-use crate::force::{Force, NodalForces, Reservoir, dot};
+use crate::force::{Force, NodalForces, Reservoir, dot, largest};
 use crate::ode::Failure;
 use crate::sparse::{BlockMatrix, NodeMatrix};
 use crate::system::Energy;
@@ -211,7 +211,7 @@ impl AtRest {
         for (row, mu) in self.system.rows.iter().zip(mu) {
             row.terms.iter().for_each(|&(dof, c)| work[dof] += c * mu);
         }
-        work.iter().fold(0.0, |largest, f| f64::max(largest, f.abs()))
+        largest(work)
     }
 
     /// Lowest eigenvalue (1/s^2) of K x = eigenvalue M x among the motions that the constraints

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use super::reduced::{Coupling, Reduced, Source};
 use super::{System, nodal_multipliers};
 use crate::constraint::Row;
-use crate::force::dot;
+use crate::force::{dot, largest};
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -305,8 +305,4 @@ impl System {
         }
         (dissipated, supplied)
     }
-}
-
-fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }

@@ -19,6 +19,7 @@
 //! and tetrahedra. Constraints only lower the eigenvalues of symmetric K.
 
 use super::System;
+use crate::force::largest;
 use crate::model::Model;
 use crate::sparse::BlockMatrix;
 
@@ -99,11 +100,11 @@ impl System {
         let mut x: Vec<f64> = (0..dofs).map(|i| (12.9898 * (i as f64 + 1.0)).sin()).collect();
         let (mut image, mut factor) = (vec![0.0; dofs], f64::NAN);
         for _ in 0..FIRST {
-            let largest = x.iter().fold(0.0, |largest, x| f64::max(largest, x.abs()));
+            let scale = largest(&x);
             for (dof, (image, x)) in image.iter_mut().zip(&x).enumerate() {
-                *image = inertia.get(dof / dimension, dof / dimension) * x / largest;
+                *image = inertia.get(dof / dimension, dof / dimension) * x / scale;
             }
-            let before: f64 = x.iter().map(|x| (x / largest).powi(2)).sum();
+            let before: f64 = x.iter().map(|x| (x / scale).powi(2)).sum();
             self.inertia.solve(&self.rows, &image, &nowhere, &mut x, &mut multipliers);
             let after: f64 = x.iter().map(|x| x * x).sum();
             factor = (after / before).sqrt();

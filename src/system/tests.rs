@@ -143,21 +143,24 @@ fn structured_solve_is_that_of_the_index_one_jacobian() {
     }
 }
 
-#[test]
-fn structured_solve_is_that_of_the_index_two_jacobian() {
-    let mut equations = DaeForm::new(system(), Index::Two);
-    let n = equations.system.dofs();
-    let (y, yp) = {
-        let state = state(&equations.system);
-        equations.consistent(0.1, &state).unwrap()
-    };
+/// dF/dy and dF/dy' at t = 0.1.
+fn residual_derivatives(equations: &mut DaeForm, y: &[f64], yp: &[f64]) -> [Mat<f64>; 2] {
     let mut residual = |y: &[f64], yp: &[f64]| {
         let mut residual = vec![0.0; y.len()];
         equations.residual(0.1, y, yp, &mut residual).unwrap();
         residual
     };
-    let by_y = derivative(&y, 1e-5, |y| residual(y, &yp));
-    let by_yp = derivative(&yp, 1.0, |yp| residual(&y, yp));
+    let by_y = derivative(y, 1e-5, |y| residual(y, yp));
+    [by_y, derivative(yp, 1.0, |yp| residual(y, yp))]
+}
+
+#[test]
+fn structured_solve_is_that_of_the_index_two_jacobian() {
+    let mut equations = DaeForm::new(system(), Index::Two);
+    let n = equations.system.dofs();
+    let state = state(&equations.system);
+    let (y, yp) = equations.consistent(0.1, &state).unwrap();
+    let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp);
     // energies have their own test, and nothing depends on them
     let lambda = 2 * n + ENERGIES;
     let kept: Vec<usize> = (0..2 * n).chain(lambda..y.len()).collect();
@@ -181,13 +184,7 @@ fn index_one_jacobian_is_the_derivative_of_the_residual() {
     let n = equations.system.dofs();
     let state = state(&equations.system);
     let (y, yp) = equations.consistent(0.1, &state).unwrap();
-    let mut residual = |y: &[f64], yp: &[f64]| {
-        let mut residual = vec![0.0; y.len()];
-        equations.residual(0.1, y, yp, &mut residual).unwrap();
-        residual
-    };
-    let by_y = derivative(&y, 1e-5, |y| residual(y, &yp));
-    let by_yp = derivative(&yp, 1.0, |yp| residual(&y, yp));
+    let [by_y, by_yp] = residual_derivatives(&mut equations, &y, &yp);
     let cj = 50.0;
     let mut jacobian = Mat::<f64>::zeros(y.len(), y.len());
     equations.sparse_jacobian(0.1, cj, &y, &yp, &mut []).unwrap();
