@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example problem_4`
 //!
-//! What to look for: with the documents' viscosity the ring creeps, does not slip, and B_t from 2 to
+//! What to look for: with Hirai's viscosity the ring creeps, does not slip, and B_t from 2 to
 //! 200 N s/m hardly matters. With objective viscosity it rolls fast, and slips the more the less B_t
 //! is: at 0.02 N s/m it turns almost on the spot, about its centre of mass.
 

@@ -3,7 +3,7 @@
 //! `cargo run --release --example ring_roll -- --viscosity objective`
 //!
 //! What to look for: the ring rolls clockwise, to the right, and comes to rest with its heavy half
-//! down. The documents' viscosity -B v brakes every rotation: the ring creeps (67 degrees in the
+//! down. Hirai's viscosity -B v brakes every rotation: the ring creeps (67 degrees in the
 //! first second, 76 in two) and stops at 90. Viscosity on the rate of Green's strain, which a rigid
 //! rotation leaves alone, lets it roll through and swing.
 

@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example ring_springs`, or with `-- --jump`, or with `-- --force 5`
 //!
-//! What to look for: with 1 N the ring walks 11 cm to the right in 12 s. With the 5 N of the documents
+//! What to look for: with 1 N the ring walks 11 cm to the right in 12 s. With Hirai's 5 N
 //! A2 is pulled to length zero 10 ms after it was told to shrink: the run ends, and says so. With
 //! `--jump` the ring crouches (A1 and A5 shrink by up to 1 N within 0.1 s), and its centre of mass
 //! jumps to 7.1 cm at 0.2 s.

@@ -3,9 +3,9 @@
 //!
 //! `cargo run --release --example square_jump -- --nodes 10 --method ida`
 //!
-//! What to look for: the square leaves the floor after 65 ms and flies on (the documents have no
+//! What to look for: the square leaves the floor after 65 ms and flies on (Hirai has no
 //! gravity). It turns while it flies, for no reason but the triangles, whose diagonals all lean the
-//! same way: 21 degrees on 4 x 4 nodes, 5 on 10 x 10. With `--gravity 9.8` the documents' soft
+//! same way: 21 degrees on 4 x 4 nodes, 5 on 10 x 10. With `--gravity 9.8` Hirai's soft
 //! floor hardly lets it jump; with a hard one, `--floor 4e6 --until 3`, it flies 3 m high.
 //! With `--cells rectangles` (Fig. 4.7) it keeps its symmetry, as it does with any other division
 //! that is symmetric itself, such as `--cells crossed --nodes 5`.

@@ -5,7 +5,7 @@
 //!
 //! What to look for: after the release the square swings about its natural shape and calms down.
 //! The constraint forces (`forces.svg`) are what a probe that presses it would read. They begin
-//! and end with a jump: the square is told to move at once.
+//! and end with a jump: the square has to move at once.
 
 mod common;
 

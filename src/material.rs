@@ -33,7 +33,7 @@ pub struct Lame {
 /// What a two-dimensional body assumes about the third dimension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Plane {
-    /// No strain across the plane (the sources' choice): lambda as it is.
+    /// No strain across the plane (Hirai's choice): lambda as it is.
     #[default]
     Strain,
     /// No stress across the plane: lambda becomes 2 lambda mu / (lambda + 2 mu).

@@ -27,7 +27,7 @@ fn the_ring_jumps() {
     assert!((x + 0.77).abs() < 0.006 && (y - 4.95).abs() < 0.006, "{x} {y}");
 }
 
-/// With 1 N the ring walks to the right: some 11.1 cm in 12 s, turning by -2.34 rad, as the sources'
+/// With 1 N the ring walks to the right: some 11.1 cm in 12 s, turning by -2.34 rad, as Hirai's
 /// own programs found at their tolerance of 1e-3.
 #[test]
 fn the_ring_walks() {
@@ -41,7 +41,7 @@ fn the_ring_walks() {
     assert!(report.energy_error < 1e-4 * report.energy_scale, "{:e}", report.energy_error);
 }
 
-/// The documents' 5 N pull A2 or A6 to length zero about 10 ms after they begin: every method says
+/// Hirai's 5 N pull A2 or A6 to length zero about 10 ms after they begin: every method says
 /// so, and keeps what it has.
 #[test]
 fn five_newton_collapse_a_spring() {

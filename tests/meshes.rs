@@ -124,7 +124,7 @@ fn mid_nodes_are_in_the_middle() {
     }
 }
 
-/// The numbering of the documents: node (station) radial + k + 1, triangles (inner i, outer i,
+/// Hirai's numbering: node (station) radial + k + 1, triangles (inner i, outer i,
 /// outer i + 1) and (inner i, outer i + 1, inner i + 1).
 #[test]
 fn rings_are_numbered_by_station() {

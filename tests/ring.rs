@@ -19,7 +19,7 @@ fn degrees(trajectory: &Trajectory, time: f64) -> f64 {
     trajectory.rotation(sample).unwrap().to_degrees()
 }
 
-/// With the documents' viscosity the ring creeps clockwise, and comes to rest with its heavy half
+/// With Hirai's viscosity the ring creeps clockwise, and comes to rest with its heavy half
 /// down: by 67 degrees at 1 s and 76 at 2 s, as an independent program found.
 #[test]
 fn the_ring_comes_to_rest_with_its_heavy_half_down() {
@@ -69,7 +69,7 @@ fn the_ring_swells_under_cauchy_strain() {
 
 /// A stretched, spinning ring of Green strain in free flight keeps its momentum and its angular
 /// momentum, and its energy balance closes. Objective viscosity leaves the spin alone; the natural
-/// one of the documents, -B v, brakes it.
+/// one of Hirai, -B v, brakes it.
 #[test]
 fn a_flying_ring_keeps_its_spin() {
     let spin = |viscosity, method| {

@@ -86,7 +86,7 @@ motions! {
         samples::bending_actuator(Mesh::read_gmsh(path("scenes/meshes/bending-actuator.msh")).unwrap());
 }
 
-/// The 5 N of the documents are too much: the run ends where it should, and says so.
+/// Hirai's 5 N are too much: the run ends where it should, and says so.
 #[test]
 fn ring_springs_collapse() {
     let file = SceneFile::read(path("scenes/ring-springs-5N.toml")).unwrap();

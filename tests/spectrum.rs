@@ -72,7 +72,7 @@ fn a_body_of_two_materials_and_one_in_a_line() {
     compare(&beam, &in_the_air(&beam).spectrum().unwrap()[0], |_| true, 1);
 }
 
-/// The documents' bodies: largest eigenvalues of the equations of motion, found by an independent
+/// Hirai's bodies: largest eigenvalues of the equations of motion, found by an independent
 /// program (two digits).
 #[test]
 fn the_stiffest_rates_are_those_of_the_documents_bodies() {

@@ -91,7 +91,7 @@ fn energy_balance_closes() {
     }
 }
 
-/// The asymmetric mesh makes the square turn, the less the finer it is (the documents' remark on
+/// The asymmetric mesh makes the square turn, the less the finer it is (Hirai's remark on
 /// Figs 4.5 and 4.6).
 #[test]
 fn the_mesh_turns_the_square() {

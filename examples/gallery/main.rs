@@ -1,4 +1,4 @@
-//! The gallery: speed against accuracy of every method on the scenes of the documents, a clamped
+//! The gallery: speed against accuracy of every method on Hirai's scenes, a clamped
 //! beam and standard stiff problems, tolerance by tolerance; and of every kind of cell, mesh by mesh.
 //!
 //! `cargo run --release --example gallery -- square-jump` runs one problem, and without a name

@@ -32,7 +32,8 @@ struct Arguments {
 const INTRODUCTION: &str = "\
 # Stability: where methods and models fail
 
-Every section shows a failure with its numbers, says why, and what works instead. All numbers and
+Every section shows a failure with its numbers, says why, and what works instead. Many take scenes of
+chapter 4 of S. Hirai, *Computing Dynamic Deformation*. All numbers and
 pictures are results of `cargo run --release --example stability`, which writes this page in a few
 minutes; the tests in `tests/stability/` hold its conclusions.
 

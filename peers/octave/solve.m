@@ -1,4 +1,4 @@
-% GNU Octave on the equations of a case, dense, the way the documents' own scripts work: state
+% GNU Octave on the equations of a case, dense, the way Hirai's own scripts work: state
 % [u; v] of the free components, forces in vectorised code, M factorized once.
 %
 % Arguments as src/external.rs says. ode45 and ode15s have their defaults but for the tolerances;

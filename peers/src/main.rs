@@ -148,7 +148,7 @@ fn add_lines(comparison: &mut Comparison, case: &Case, inertia: Inertia, quick: 
     let octave = |method| {
         let options = ["--no-gui", "--no-history", "-q", "--no-init-file", &script[0]];
         match program("octave-cli", &options, method) {
-            // the documents' own kind of scene is worth waiting for
+            // the kind of scene of Hirai's scripts is worth waiting for
             Way::Program(program) if case.has_floor() && !quick && method == "ode45" => {
                 Way::Program(Program { patience: 20.0, ..program })
             }

@@ -127,7 +127,7 @@ impl Obstacle {
         self
     }
 
-    /// Whether damping may pull a node back while it separates (default: true, the sources' law).
+    /// Whether damping may pull a node back while it separates (default: true, Hirai's law).
     /// With `false` the normal force is never negative.
     pub fn adhesion(mut self, adhesion: bool) -> Self {
         self.adhesion = adhesion;

@@ -66,7 +66,7 @@ fn spring_ring() -> Result<Scene, Error> {
 
 /// Fig. 4.12: the ring settles for 0.2 s, then pairs of opposite springs shrink with `force` (N) one
 /// after the other: A2 and A6 until 2 s, A3 and A7 from 2.1 to 6.9 s, A4 and A8 from 7 to 12 s.
-/// With 1 N the ring walks to the right. The 5 N of the documents pull springs to length zero.
+/// With 1 N the ring walks to the right. Hirai's 5 N pull springs to length zero.
 ///
 /// # Errors
 /// None; the signature is that of its kind.

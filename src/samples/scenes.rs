@@ -50,9 +50,9 @@ pub struct SquareJump {
     /// Default: consistent.
     pub inertia: Inertia,
     /// Stiffness of the floor under all nodes of the bottom together (N/m). Default: 400, the
-    /// 100 N/m per node of the documents on 4 nodes and 40 on 10.
+    /// Hirai's 100 N/m per node on 4 nodes and 40 on 10.
     pub floor: f64,
-    /// Acceleration of gravity downward (m/s^2). Default: 0, as in the documents.
+    /// Acceleration of gravity downward (m/s^2). Default: 0, as in Hirai.
     pub gravity: f64,
     /// End of the jump (s), after 1. Default: 1.5.
     pub until: f64,
@@ -100,7 +100,7 @@ pub fn beam_jump() -> Result<Scene, Error> {
 /// The jumping beam with other numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BeamJump {
-    /// Acceleration of gravity downward (m/s^2). Default: 0, as in the documents.
+    /// Acceleration of gravity downward (m/s^2). Default: 0, as in Hirai.
     pub gravity: f64,
     /// End of the jump (s), after 0.2. Default: 0.6.
     pub until: f64,
@@ -133,7 +133,7 @@ impl BeamJump {
 
 /// Figs 4.9 and 4.10: an elastic beam of 10 x 2 cm (11 x 3 nodes), 1 cm thick, its left end fixed.
 /// The middle of its right end, node 22, is pushed down by 5 cm within 5 s, its horizontal component
-/// held too if `holds_tip`; then it is released until 6 s. Viscosity is natural, as in the documents.
+/// held too if `holds_tip`; then it is released until 6 s. Viscosity is natural, as in Hirai.
 ///
 /// # Errors
 /// None; the signature is that of its kind.
@@ -158,7 +158,7 @@ pub fn beam_bend(strain: Strain, holds_tip: bool) -> Result<Scene, Error> {
 pub struct RingRoll {
     /// Default: Green.
     pub strain: Strain,
-    /// Default: natural, as in the documents. It brakes the rotation, and the ring creeps to rest;
+    /// Default: natural, as in Hirai. It brakes the rotation, and the ring creeps to rest;
     /// with objective viscosity it rolls through and swings.
     pub viscosity: Viscosity,
     /// Tangential damping B_t (N s/m per node). Default: 20.

@@ -1,6 +1,6 @@
 //! Which method integrates a phase, and why.
 //!
-//! The rules come from charts of speed against accuracy over the documents' scenes: diagonally
+//! The rules come from charts of speed against accuracy over Hirai's scenes: diagonally
 //! implicit Runge-Kutta methods lead where vibrations are lightly damped, for they are L-stable and
 //! may step over them; BDF leads where damping is strong, for a step costs it one stage; explicit
 //! Runge-Kutta leads where accuracy asks for steps not much longer than those of its stability. With
@@ -24,7 +24,7 @@ pub(super) struct Plan {
     patience: usize,
 }
 
-/// Damping ratio of the lowest vibration from which BDF is chosen. The documents' bodies lie well
+/// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well
 /// to both sides: squares and bent beams below 0.004, membranes and rings above 0.01.
 const STRONG_DAMPING: f64 = 0.006;
 
@@ -43,7 +43,7 @@ const SHORT: f64 = 0.1;
 const EXPLICIT_REACH: f64 = 3.3;
 const EXPLICIT_REACH_UNDAMPED: f64 = 1.0;
 
-/// Relative tolerance below which implicit methods locate contact events: on the documents' scenes that
+/// Relative tolerance below which implicit methods locate contact events: on Hirai's scenes that
 /// takes a quarter less time there, and at 1e-5 a quarter more.
 const FINE: f64 = 1e-6;
 

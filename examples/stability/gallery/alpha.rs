@@ -12,7 +12,7 @@ use super::page::{Page, count, few};
 /// Speed at which nodes of the square are told to move at once (m/s).
 pub const SPEED: f64 = 0.16;
 
-/// The first 0.1 s of the pressed square of the documents. It starts at rest, so that the rate R' of
+/// The first 0.1 s of Hirai's pressed square. It starts at rest, so that the rate R' of
 /// the constraints is wrong by [`SPEED`]; unless velocities are projected.
 pub fn pressed(projected: bool) -> Result<Scene, Error> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
@@ -116,7 +116,7 @@ fn unstabilized(page: &mut Page) -> Outcome<()> {
 
 fn inconsistent(page: &mut Page) -> Outcome<()> {
     page.say(format!(
-        "**A start with R' not 0.** The pressed square starts at rest, and is told to move with v = \
+        "**A start with R' not 0.** The pressed square starts at rest, and has to move with v = \
          {SPEED} m/s at once. Then R(t) = v t exp(-alpha t), v/(e alpha) at most. Projecting the velocity \
          at the start of the phase (`Phase::project_velocity`, an inelastic impact) leaves no R' to work \
          off."

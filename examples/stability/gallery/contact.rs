@@ -16,7 +16,7 @@ use super::page::{Page, count, few};
 const HEIGHT: f64 = 0.05;
 const GRAVITY: f64 = 9.8;
 
-/// The square of 30 cm of the documents falls on a floor with this stiffness per node (N/m).
+/// Hirai's square of 30 cm falls on a floor with this stiffness per node (N/m).
 pub fn falling(stiffness: f64) -> Result<Scene, Error> {
     let mesh =
         Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Rectangles)?.translated(&[0.0, HEIGHT])?;
@@ -237,7 +237,7 @@ fn damping(page: &mut Page) -> Outcome<()> {
     page.say(
         "**Damping.** B_p makes a bounce inelastic. A bar that bounces as one mass m leaves with a part e of \
          its speed; with zeta = B_p / (2 sqrt(K_p m)), e = exp(-zeta phi / sqrt(1 - zeta^2)), phi = pi if the \
-         floor may pull until d = 0 (the documents' law), and pi - atan(2 zeta sqrt(1 - zeta^2) / (1 - 2 \
+         floor may pull until d = 0 (Hirai's law), and pi - atan(2 zeta sqrt(1 - zeta^2) / (1 - 2 \
          zeta^2)) if it may not (`adhesion(false)`).",
     );
     page.table(["zeta", "e", "closed form", "e, no pull", "closed form"], &rows);

@@ -14,7 +14,7 @@ pub const LIMIT: f64 = 3.3066;
 /// Time that the square is given to come to rest (s).
 pub const UNTIL: f64 = 0.05;
 
-/// The square of 30 cm of the documents, with a viscosity (Pa s).
+/// Hirai's square of 30 cm, with a viscosity (Pa s).
 pub fn square(nodes: usize, viscosity: f64, inertia: Inertia) -> Result<Body, Error> {
     let mesh = Mesh::rectangle([0.3, 0.3], [nodes, nodes], Cells::Triangles)?;
     let material = Material { viscosity, ..SQUARE_MATERIAL };
@@ -82,7 +82,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
         chart = chart.series(name, sizes.iter().enumerate().map(|(k, size)| (k as f64, *size)));
     }
     page.say(format!(
-        "**Just beyond the limit it blows up.** The 4 x 4 square of the documents with c = 4000 Pa s \
+        "**Just beyond the limit it blows up.** Hirai's 4 x 4 square with c = 4000 Pa s \
          has rho(J) = {} 1/s. From displacements of 1 m the largest one after 300 steps is {} m at \
          0.99 of the limit, {} m at 1.01, {} m at 1.02 and {} m at 1.05 of it.",
         few(body.spectral_radius()?),

@@ -130,7 +130,7 @@ pub fn path(t: f64) -> Prescribed {
     }
 }
 
-/// The square of the documents.
+/// Hirai's square.
 pub fn square_body() -> Result<Body, Error> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
     Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()

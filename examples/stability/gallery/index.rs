@@ -77,7 +77,7 @@ impl Run {
     }
 }
 
-/// The pressed square of the documents with the smooth [`path`], as its scene has it: the reference.
+/// Hirai's pressed square with the smooth [`path`], as its scene has it: the reference.
 pub fn pressed() -> Result<Trajectory, Error> {
     let push = Phase::until(PRESS[0]).hold("bottom").hold_axes([14, 15], [Axis::X]);
     let scene = Scene::new(square_body()?).phase(push.follow([14, 15], Axis::Y, path));
@@ -163,7 +163,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
     for (name, of) in [
         ("A pendulum of 1 m, 10 periods of 2 s:", None),
         (
-            "The square of the documents (4 x 4 nodes, 12 rows, 76 unknowns), pressed by 4 cm in 0.25 s:",
+            "Hirai's square (4 x 4 nodes, 12 rows, 76 unknowns), pressed by 4 cm in 0.25 s:",
             Some(&exact),
         ),
     ] {

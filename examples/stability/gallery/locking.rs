@@ -109,9 +109,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
             quadratic?,
         ]);
     }
-    page.say(
-        "**Refinement** at nu = 0.48, the documents' rubber: deflection over the converged one.",
-    );
+    page.say("**Refinement** at nu = 0.48, Hirai's rubber: deflection over the converged one.");
     page.table(["nodes of the grid", names[0], names[1], names[2], names[3]], &rows);
     page.say(
         "**Why.** As nu goes to 1/2, lambda = nu E/((1 + nu)(1 - 2 nu)) grows without bound and forbids any \

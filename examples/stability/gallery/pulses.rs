@@ -35,7 +35,7 @@ fn pulse_at(width: f64) -> impl Fn(f64) -> f64 {
 pub struct Pulse {
     /// Its width (s).
     pub width: f64,
-    /// Whether the scene is told of it by a table, whose points end steps, or by a function of time.
+    /// Whether the scene has it as a table, whose points end steps, or as a function of time.
     pub told: bool,
     /// Whether the bar vibrates before, so that steps are short, or rests.
     pub vibrates: bool,

@@ -1,4 +1,4 @@
-//! Mesh generators, with the numbering of the sources.
+//! Mesh generators, with the numbering of Hirai.
 
 mod bar;
 mod cuboid;
