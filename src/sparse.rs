@@ -256,7 +256,7 @@ impl BlockMatrix {
         let d = self.dimension;
         let (node, axis) = (dof / d, dof % d);
         let products = self.pattern.row(node).map(|(entry, column)| {
-            crate::force::dot(&self.values[(entry * d + axis) * d..][..d], &x[column * d..][..d])
+            crate::vector::dot(&self.values[(entry * d + axis) * d..][..d], &x[column * d..][..d])
         });
         products.sum()
     }

@@ -1,7 +1,7 @@
 //! The longest stable step, followed along the motion.
 
-use crate::force::dot;
 use crate::system::{Rates, RatesBound, System};
+use crate::vector::dot;
 
 /// Part of the longest stable step that is used: rates may grow until they are bounded anew.
 const SAFETY: f64 = 0.98;

@@ -134,7 +134,7 @@ fn balance(central: &CentralDifference) -> f64 {
     let mut energy = central.system.energy(central.t, u, v);
     (energy.dissipated, energy.supplied) = (central.y[2 * n], central.y[2 * n + 1]);
     let h = central.t - central.t_before;
-    energy.balance() - h * h / 8.0 * crate::force::dot(&central.force, &central.second)
+    energy.balance() - h * h / 8.0 * crate::vector::dot(&central.force, &central.second)
 }
 
 /// A clamped rubber square of 3 x 3 cells, lumped.

@@ -3,7 +3,7 @@
 use super::BENT_BEAM_MATERIAL;
 use crate::body::{Body, Strain, Viscosity};
 use crate::error::Error;
-use crate::force::{Chamber, Obstacle, Spring};
+use crate::external::{Chamber, Obstacle, Spring};
 use crate::material::{Material, Plane};
 use crate::mesh::{Cells, Mesh};
 use crate::scene::{Phase, Scene};

@@ -3,7 +3,7 @@
 use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
 use crate::constraint::Axis;
 use crate::error::Error;
-use crate::force::Obstacle;
+use crate::external::Obstacle;
 use crate::material::Material;
 use crate::mesh::{Cells, Mesh};
 use crate::scene::{Phase, Scene};

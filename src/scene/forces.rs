@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::phase::{Load as PhaseLoad, check_vector, find};
 use super::{Phase, Scene};
 use crate::error::{Error, finite};
-use crate::force::{Chamber, Contact, Force, Gravity, Load, Signal, Spring, VaryingLoad};
+use crate::external::{Chamber, Contact, Gravity, Load, Signal, Spring, VaryingLoad};
+use crate::force::Force;
 
 /// The forces that act in one phase.
 pub(crate) type Forces = Vec<Arc<dyn Force>>;

@@ -14,7 +14,7 @@ pub use summary::PhaseSummary;
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
 use crate::error::{Error, finite};
-use crate::force::{Chamber, Contact, Obstacle, Spring};
+use crate::external::{Chamber, Contact, Obstacle, Spring};
 use crate::model::Model;
 use crate::system::{Spectrum, System};
 

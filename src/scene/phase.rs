@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
 use crate::error::Error;
-use crate::force::{Obstacle, Signal, Table, VectorSignal};
+use crate::external::{Obstacle, Signal, Table, VectorSignal};
 use crate::mesh::Selection;
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities

@@ -3,7 +3,7 @@
 use super::{Phase, Scene};
 use crate::constraint::Start;
 use crate::error::Error;
-use crate::force::Obstacle;
+use crate::external::Obstacle;
 use crate::system::Spectrum;
 
 /// What happens in a phase, and how fast the body can move then.

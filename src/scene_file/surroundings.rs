@@ -4,7 +4,7 @@ use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
 use crate::error::Error;
-use crate::force::{Chamber, Contact, Obstacle, Shape, Spring};
+use crate::external::{Chamber, Contact, Obstacle, Shape, Spring};
 use crate::scene::Scene;
 
 /// The scene with the spring that `value` describes.

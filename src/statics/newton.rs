@@ -1,9 +1,9 @@
 //! The search for an equilibrium: Newton's method downhill, load step by load step.
 
 use super::{Stability, Statics};
-use crate::force::{dot, largest};
 use crate::ode::Failure;
 use crate::system::{AtRest, Balance};
+use crate::vector::{dot, largest};
 
 /// The search stopped: why, and the largest unbalanced force (N).
 pub(super) struct Stuck {

@@ -12,10 +12,11 @@ use super::reduced::Source;
 use super::{System, nodal_multipliers};
 use crate::constraint::Prescribed;
 use crate::error::Error;
-use crate::force::{Force, NodalForces, Reservoir, dot, largest};
+use crate::force::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
 use crate::sparse::{BlockMatrix, NodeMatrix};
 use crate::system::Energy;
+use crate::vector::{dot, largest};
 
 /// The system of a phase at its end, without velocities.
 pub(crate) struct AtRest {

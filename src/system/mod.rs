@@ -41,10 +41,11 @@ pub use spectrum::Spectrum;
 
 use crate::constraint::{Prescribed, Row};
 use crate::error::Error;
-use crate::force::{Force, NodalForces, Reservoir, dot};
+use crate::force::{Force, NodalForces, Reservoir};
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::NodeMatrix;
+use crate::vector::dot;
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {

@@ -20,10 +20,10 @@ use std::sync::Arc;
 use super::reduced::{Coupling, Reduced, Source};
 use super::{System, nodal_multipliers};
 use crate::constraint::Row;
-use crate::force::{dot, largest};
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
+use crate::vector::{dot, largest};
 
 pub(super) struct Newton {
     pub(super) solver: Reduced,

@@ -19,9 +19,9 @@
 //! and tetrahedra. Constraints only lower the eigenvalues of symmetric K.
 
 use super::System;
-use crate::force::largest;
 use crate::model::Model;
 use crate::sparse::BlockMatrix;
+use crate::vector::largest;
 
 /// Iterations for the first bound, and for those after it, which begin where the last one ended.
 const FIRST: usize = 30;

@@ -5,8 +5,8 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use super::System;
 use super::at_rest::shifted;
 use super::reduced::{Coupling, Reduced};
-use crate::force::dot;
 use crate::sparse::BlockMatrix;
+use crate::vector::dot;
 
 /// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
 /// the constraints allow. Contacts and springs count as far as they act in that state.

@@ -8,7 +8,7 @@ use super::geometry::Geometry;
 use super::pack;
 use crate::body::{Body, CellField};
 use crate::error::Error;
-use crate::force::{Shape, ShapeKind, Spring};
+use crate::external::{Shape, ShapeKind, Spring};
 use crate::mesh::{CellKind, Mesh};
 use crate::output::svg::{View, displaced, drawn, positions};
 use crate::scene::{Phase, Role, Scene};

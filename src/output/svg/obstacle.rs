@@ -6,7 +6,7 @@ use svg::node::element::{Group, Path};
 
 use super::layout::{Point, drawn};
 use super::panel::{Data, Panel};
-use crate::force::{Shape, ShapeKind};
+use crate::external::{Shape, ShapeKind};
 use crate::trajectory::Trajectory;
 
 /// Thickness of the hatched band along the surface of a half-plane (px).

@@ -1,11 +1,12 @@
 //! Springs between two nodes, with damping and an actuator.
 
 use super::signal::{self, Signal, finite_at};
-use super::{Force, NodalForces, Reservoir, dot};
 use crate::error::{Error, not_negative, positive};
+use crate::force::{Force, NodalForces, Reservoir};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
+use crate::vector::dot;
 
 /// A spring that is shorter than this fraction of its natural length after a step has collapsed:
 /// its direction, and with it the force, is about to flip.

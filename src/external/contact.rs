@@ -5,11 +5,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::obstacle::{Law, Obstacle};
 use super::shape::Nearest;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
-use super::{Force, NodalForces, Reservoir, dot};
 use crate::body::Body;
 use crate::error::Error;
+use crate::force::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
+use crate::vector::dot;
 
 /// The forces of one obstacle on the boundary of a body.
 pub(crate) struct Contact {

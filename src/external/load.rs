@@ -1,7 +1,7 @@
 //! Loads: given forces on nodes.
 
 use super::signal::{VectorSignal, finite_at};
-use super::{Force, NodalForces, Reservoir};
+use crate::force::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
 
 /// Constant forces on some degrees of freedom.

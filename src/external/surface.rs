@@ -1,7 +1,7 @@
 //! Points of the boundary of a body at which contact is felt.
 
-use super::{cross, dot};
 use crate::body::Body;
+use crate::vector::{cross, dot};
 
 /// A point that moves with some nodes.
 pub(super) struct SurfacePoint {

@@ -5,12 +5,13 @@ mod tests;
 mod walls;
 
 use super::signal::{self, Signal, finite_at};
-use super::{Force, NodalForces, Reservoir, cross, dot};
 use crate::body::Body;
 use crate::error::{Error, positive};
+use crate::force::{Force, NodalForces, Reservoir};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
+use crate::vector::{cross, dot};
 
 /// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart: the force on
 /// its nodes is p h dS/du in the plane, with the area S of the polygon of its nodes and the

@@ -1,31 +1,10 @@
-//! Forces beside elasticity and viscosity: one small trait, one file per kind of force.
-
-mod chamber;
-mod contact;
-mod gravity;
-mod load;
-mod obstacle;
-mod shape;
-mod signal;
-mod spring;
-mod surface;
-#[cfg(test)]
-mod tests;
-
-pub use chamber::Chamber;
-pub(crate) use contact::Contact;
-pub(crate) use gravity::Gravity;
-pub(crate) use load::{Load, VaryingLoad};
-pub use obstacle::Obstacle;
-pub(crate) use shape::Kind as ShapeKind;
-pub use shape::Shape;
-pub(crate) use signal::{Signal, Table, VectorSignal};
-pub use spring::Spring;
+//! Nodal forces, and the trait of what exerts them.
 
 use std::ops::{Deref, DerefMut};
 
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
+use crate::vector::dot;
 
 /// Nodal forces (N), kept apart by what they do to the energy of the system.
 #[derive(Debug, Clone)]
@@ -121,29 +100,6 @@ impl DerefMut for ForceVector {
         self.is_zero = false;
         &mut self.values
     }
-}
-
-/// Largest size of a component; 0 of none.
-pub(crate) fn largest(x: &[f64]) -> f64 {
-    x.iter().fold(0.0, |largest, x| x.abs().max(largest))
-}
-
-/// a . b, summed up in interleaved parts, for speed.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());
-    let mut sums = [0.0; 8];
-    for (a, b) in a.iter().zip(b) {
-        for (k, sum) in sums.iter_mut().enumerate() {
-            *sum += a[k] * b[k];
-        }
-    }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
-}
-
-/// a x b
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// Where the potential energy of a force is accounted for.

@@ -3,8 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::dot;
 use crate::error::{Error, finite, positive};
+use crate::vector::dot;
 
 type Distance = dyn Fn(&[f64], &mut [f64]) -> f64 + Send + Sync;
 

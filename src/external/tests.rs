@@ -4,9 +4,11 @@ use std::sync::Arc;
 
 use super::*;
 use crate::body::Body;
+use crate::force::{Force, NodalForces};
 use crate::mesh::{CellKind, Cells, Mesh};
 use crate::samples::SQUARE_MATERIAL;
-use crate::sparse::NodePattern;
+use crate::sparse::{BlockMatrix, NodePattern};
+use crate::vector::dot;
 
 /// Numbers between -`size` and `size` without a pattern.
 fn noise(length: usize, size: f64, seed: f64) -> Vec<f64> {

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::Chamber;
 use crate::error::Error;
-use crate::force::surface::pieces;
+use crate::external::surface::pieces;
 use crate::mesh::{Mesh, Selection};
 
 impl Chamber {

@@ -1,8 +1,9 @@
 //! Gravity: the consistent nodal forces M g.
 
-use super::{Force, NodalForces, Reservoir, dot};
 use crate::body::Body;
+use crate::force::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
+use crate::vector::dot;
 
 /// Weight of a body.
 pub(crate) struct Gravity {

@@ -1,0 +1,23 @@
+//! Forces on a body from outside: one file per kind of force.
+
+mod chamber;
+mod contact;
+mod gravity;
+mod load;
+mod obstacle;
+mod shape;
+mod signal;
+mod spring;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use chamber::Chamber;
+pub(crate) use contact::Contact;
+pub(crate) use gravity::Gravity;
+pub(crate) use load::{Load, VaryingLoad};
+pub use obstacle::Obstacle;
+pub(crate) use shape::Kind as ShapeKind;
+pub use shape::Shape;
+pub(crate) use signal::{Signal, Table, VectorSignal};
+pub use spring::Spring;
