@@ -7,13 +7,13 @@
 use std::time::Instant;
 
 use pliant::samples::ClampedBeam;
-use pliant::{Error, Inertia, Method, Sampling, Scene, Solver};
+use pliant::{Error, Inertia, InputError, Method, Sampling, Scene, Solver};
 
 /// Cells along the beam; a seventeenth of it across.
 const CELLS: [usize; 6] = [34, 68, 136, 272, 544, 1088];
 const REPETITIONS: usize = 5;
 
-fn scene(cells: usize, inertia: Inertia, until: f64) -> Result<Scene, Error> {
+fn scene(cells: usize, inertia: Inertia, until: f64) -> Result<Scene, InputError> {
     ClampedBeam { nodes: [cells + 1, cells / 17 + 1], inertia, until, ..ClampedBeam::default() }
         .scene()
 }

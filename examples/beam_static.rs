@@ -12,7 +12,8 @@ use std::path::PathBuf;
 use clap::Parser;
 use pliant::output::Snapshots;
 use pliant::{
-    Axis, Body, Cells, Equilibrium, Error, Material, Mesh, Phase, Scene, Statics, Strain,
+    Axis, Body, Cells, Equilibrium, Error, InputError, Material, Mesh, Phase, Scene, Statics,
+    Strain,
 };
 
 /// The bent beam: force, tip and the area of its last cells, for both measures of strain.
@@ -42,7 +43,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let tip = columns * (rows / 2 + 1);
     println!("Bent beam, {columns} x {rows} nodes, tip node {tip}");
     for strain in [Strain::Cauchy, Strain::Green] {
-        let beam = || -> Result<Body, Error> {
+        let beam = || -> Result<Body, InputError> {
             let mesh = Mesh::rectangle([0.10, 0.02], [columns, rows], Cells::Triangles)?;
             let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 4.0 };
             Body::new(mesh, rubber).thickness(0.01).strain(strain).build()

@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 pub(crate) use spline::Spline;
 
-use crate::error::Error;
+use crate::input::InputError;
 use crate::mesh::{Mesh, Selection};
 
 /// An axis of space.
@@ -193,7 +193,7 @@ pub(crate) fn rows(
     mesh: &Mesh,
     phase: &str,
     start: &Start,
-) -> Result<Vec<Row>, Error> {
+) -> Result<Vec<Row>, InputError> {
     let dimension = mesh.dimension();
     let mut rows: Vec<Row> = Vec::new();
     for Constraint { what, how } in constraints {
@@ -244,80 +244,85 @@ fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &Star
     Row { terms, motion }
 }
 
-fn check_axes(axes: &[Axis], dimension: usize) -> Result<(), Error> {
+fn check_axes(axes: &[Axis], dimension: usize) -> Result<(), InputError> {
     match axes.iter().find(|axis| axis.index() >= dimension) {
         Some(axis) => {
             let mend = format!("the body has {dimension} dimension(s)");
-            Err(Error::input("axis of a constraint", format!("{axis:?}"), mend))
+            Err(InputError::new("axis of a constraint", format!("{axis:?}"), mend))
         }
         None => Ok(()),
     }
 }
 
-fn check_velocity(motion: &Motion, components: usize) -> Result<(), Error> {
+fn check_velocity(motion: &Motion, components: usize) -> Result<(), InputError> {
     let Motion::Velocity(velocity) = motion else { return Ok(()) };
     if velocity.len() != components {
-        return Err(Error::input(
+        return Err(InputError::new(
             "velocity of moved nodes",
             format!("{velocity:?}"),
             format!("it needs {components} component(s) (m/s)"),
         ));
     }
-    crate::error::finite("the velocity of moved nodes", velocity)
+    crate::input::finite("the velocity of moved nodes", velocity)
 }
 
-fn general_terms(terms: &[(usize, Axis, f64)], mesh: &Mesh) -> Result<Vec<(usize, f64)>, Error> {
+fn general_terms(
+    terms: &[(usize, Axis, f64)],
+    mesh: &Mesh,
+) -> Result<Vec<(usize, f64)>, InputError> {
     let dimension = mesh.dimension();
     let mut resolved: Vec<(usize, f64)> = Vec::new();
     for &(number, axis, coefficient) in terms {
         check_axes(&[axis], dimension)?;
         if !coefficient.is_finite() || coefficient == 0.0 {
             let mend = "it must be a finite number other than 0";
-            return Err(Error::input("coefficient of a constraint row", coefficient, mend));
+            return Err(InputError::new("coefficient of a constraint row", coefficient, mend));
         }
         let node = mesh.select(&[number].into())?[0];
         let dof = node * dimension + axis.index();
         if resolved.iter().any(|&(other, _)| other == dof) {
             let mend = "it appears twice in one row; add its coefficients";
-            return Err(Error::input("node of a constraint row", number, mend));
+            return Err(InputError::new("node of a constraint row", number, mend));
         }
         resolved.push((dof, coefficient));
     }
     if resolved.is_empty() {
-        return Err(Error::input("constraint row", "[]", "it needs one term at least"));
+        return Err(InputError::new("constraint row", "[]", "it needs one term at least"));
     }
     resolved.sort_unstable_by_key(|&(dof, _)| dof);
     Ok(resolved)
 }
 
-fn check_path(row: &Row, phase: &str, dimension: usize, t: f64) -> Result<(), Error> {
+fn check_path(row: &Row, phase: &str, dimension: usize, t: f64) -> Result<(), InputError> {
     let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
     if [displacement, velocity, acceleration].iter().all(|number| number.is_finite()) {
         return Ok(());
     }
-    Err(Error::Constraint {
-        phase: phase.into(),
-        nodes: row.label(dimension),
-        problem: format!(
-            "prescribe b = {displacement}, b' = {velocity}, b'' = {acceleration} at t = {t} s: \
-             the path must give finite numbers"
-        ),
-    })
+    Err(InputError::new(
+        format!("path of {} in phase \"{phase}\"", row.label(dimension)),
+        format!("(b, b', b'') = ({displacement}, {velocity}, {acceleration}) at t = {t} s"),
+        "it must give finite numbers",
+    ))
 }
 
-fn reject_double_rows(rows: &[Row], dimension: usize, phase: &str, t: f64) -> Result<(), Error> {
+fn reject_double_rows(
+    rows: &[Row],
+    dimension: usize,
+    phase: &str,
+    t: f64,
+) -> Result<(), InputError> {
     let mut nodal: Vec<&Row> = rows.iter().filter(|row| row.nodal().is_some()).collect();
     nodal.sort_by_key(|row| row.terms[0].0);
     let doubles = || nodal.windows(2).filter(|pair| pair[0].terms[0].0 == pair[1].terms[0].0);
     let contradicts = |pair: &&[&Row]| pair[0].prescribed(t) != pair[1].prescribed(t);
-    let (pair, problem) = match (doubles().find(contradicts), doubles().next()) {
-        (Some(pair), _) => (pair, "contradict each other (two different motions)"),
-        (None, Some(pair)) => (pair, "are given twice"),
+    let (pair, value, mend) = match (doubles().find(contradicts), doubles().next()) {
+        (Some(pair), _) => (pair, "two different motions", "they contradict each other: "),
+        (None, Some(pair)) => (pair, "the same motion twice", ""),
         (None, None) => return Ok(()),
     };
-    Err(Error::Constraint {
-        phase: phase.into(),
-        nodes: pair[0].label(dimension),
-        problem: format!("{problem}: leave one of them out"),
-    })
+    Err(InputError::new(
+        format!("constraints on {} in phase \"{phase}\"", pair[0].label(dimension)),
+        value,
+        format!("{mend}leave one of them out"),
+    ))
 }

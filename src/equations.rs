@@ -17,7 +17,7 @@
 use std::fmt;
 
 use crate::constraint::{Prescribed, Row, Start};
-use crate::error::Error;
+use crate::input::InputError;
 use crate::ode::Failure;
 use crate::scene::Scene;
 use crate::sparse::{BlockMatrix, NodeMatrix};
@@ -39,28 +39,32 @@ impl Scene {
     /// # Errors
     /// As [`validate`](Self::validate); a phase that the scene does not have; displacements of
     /// the wrong number; constraints that tie several components together.
-    pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, Error> {
+    pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, InputError> {
         let forces = self.forces()?;
         let model = self.model(&forces);
         let (Some(own), Some(forces)) = (self.phases().get(phase), forces.into_iter().nth(phase))
         else {
             let mend = format!("the scene has {}, counted from 0", self.phases().len());
-            return Err(Error::input("number of the phase", phase, mend));
+            return Err(InputError::new("number of the phase", phase, mend));
         };
         if u.len() != self.body().dofs() {
             let mend = format!("it needs {} numbers, one for each component", self.body().dofs());
-            return Err(Error::input("start of the phase", format!("{} numbers", u.len()), mend));
+            return Err(InputError::new(
+                "start of the phase",
+                format!("{} numbers", u.len()),
+                mend,
+            ));
         }
         let time = phase.checked_sub(1).map_or(0.0, |before| self.phases()[before].end());
         // positions follow b(t) exactly here, so that no stabilization is needed
         let system = self.system(&model, own, forces, &Start { time, u }, 0.0)?;
         match system.rows().iter().find(|row| row.nodal().is_none()) {
             None => Ok(Equations { system }),
-            Some(row) => Err(Error::Constraint {
-                phase: own.name().into(),
-                nodes: row.label(self.body().dimension()),
-                problem: "are tied together: equations are given for single components".into(),
-            }),
+            Some(row) => Err(InputError::new(
+                format!("constraints of phase \"{}\"", own.name()),
+                format!("{}, tied together", row.label(self.body().dimension())),
+                "equations are given for constraints on single components",
+            )),
         }
     }
 }

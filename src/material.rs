@@ -1,6 +1,6 @@
 //! Isotropic viscoelastic material: what a body is made of.
 
-use crate::error::{Error, not_negative, positive};
+use crate::input::{InputError, not_negative, positive};
 
 /// Isotropic material with linear elasticity and linear viscosity.
 ///
@@ -56,12 +56,12 @@ impl Material {
         (self.young / self.density).sqrt()
     }
 
-    pub(crate) fn validate(&self) -> Result<(), Error> {
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
         positive("material.density", self.density, "kg/m^3")?;
         positive("material.young", self.young, "Pa")?;
         not_negative("material.viscosity", self.viscosity, "Pa s")?;
         if !(self.poisson > -1.0 && self.poisson < 0.5) {
-            return Err(Error::input(
+            return Err(InputError::new(
                 "material.poisson",
                 self.poisson,
                 "Poisson's ratio must lie above -1 and below 0.5, where lambda is infinite (rubber: 0.48 to 0.499)",

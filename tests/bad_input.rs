@@ -20,9 +20,9 @@ fn simulate(scene: &Scene) -> Result<Trajectory, Error> {
 
 /// The message of the error says all of `parts`.
 #[track_caller]
-fn says<T>(result: Result<T, Error>, parts: &[&str]) {
+fn says<T>(result: Result<T, impl Into<Error>>, parts: &[&str]) {
     let Err(error) = result else { panic!("accepted; expected {parts:?}") };
-    let message = error.to_string();
+    let message = error.into().to_string();
     println!("{message}");
     for part in parts {
         assert!(message.contains(part), "\"{part}\" is missing from: {message}");
@@ -92,7 +92,7 @@ fn constraints() {
     let run = |phase: Phase| simulate(&scene().phase(phase.named("press")));
     let hold = || Phase::until(0.1).hold("bottom");
     says(run(hold().move_nodes([4], [0.0, 0.1])), &["press", "node 4", "contradict"]);
-    says(run(hold().hold([4])), &["press", "node 4", "given twice"]);
+    says(run(hold().hold([4])), &["press", "node 4", "the same motion twice"]);
     says(run(hold().move_nodes([14], [0.1])), &["velocity", "[0.1]", "2 component"]);
     says(run(hold().move_nodes([14], [0.0, f64::NAN])), &["velocity", "NaN"]);
     says(run(hold().hold_axes([14], [Axis::Z])), &["axis", "Z", "2 dimension"]);

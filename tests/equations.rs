@@ -2,7 +2,7 @@
 //! finite differences.
 
 use pliant::samples::{ClampedBeam, SquareJump, square_jump};
-use pliant::{Axis, Body, Cells, Error, Inertia, Material, Mesh, Phase, Scene};
+use pliant::{Axis, Body, Cells, Inertia, InputError, Material, Mesh, Phase, Scene};
 
 /// Displacements (m) that push the square into the floor, and velocities (m/s).
 fn state(dofs: usize) -> [Vec<f64>; 2] {
@@ -102,8 +102,9 @@ fn lumped_inertia_is_diagonal() {
 #[test]
 fn bad_input_is_named() {
     let scene = square_jump(4).unwrap();
-    let message =
-        |error: Result<_, Error>| error.map(|_: pliant::Equations| ()).unwrap_err().to_string();
+    let message = |error: Result<_, InputError>| {
+        error.map(|_: pliant::Equations| ()).unwrap_err().to_string()
+    };
     assert!(message(scene.equations(3, &[0.0; 32])).contains("number of the phase"));
     assert!(message(scene.equations(0, &[0.0; 31])).contains("31 numbers"));
     let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 use pliant::mesh::CellKind;
-use pliant::{Body, Cells, Error, Material, Mesh, SolidCells};
+use pliant::{Body, Cells, InputError, Material, Mesh, SolidCells};
 
 const ALL_CELLS: [Cells; 4] =
     [Cells::Triangles, Cells::Crossed, Cells::Rectangles, Cells::Triangles6];
@@ -395,7 +395,7 @@ fn maps_move_nodes_and_keep_the_rest() {
 
 #[test]
 fn bad_input_is_named() {
-    let says = |mesh: Result<Mesh, Error>, parts: &[&str]| {
+    let says = |mesh: Result<Mesh, InputError>, parts: &[&str]| {
         let message = mesh.unwrap_err().to_string();
         for part in parts {
             assert!(message.contains(part), "\"{part}\" is missing from: {message}");

@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use pliant::{
-    Axis, Body, Cells, Error, Material, Mesh, Obstacle, Phase, Sample, Sampling, Scene, SolidCells,
-    Solver, Statics, Trajectory,
+    Axis, Body, Cells, Error, InputError, Material, Mesh, Obstacle, Phase, Sample, Sampling, Scene,
+    SolidCells, Solver, Statics, Trajectory,
 };
 
 type Outcome = Result<(), Error>;
@@ -13,7 +13,7 @@ type Outcome = Result<(), Error>;
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 
 /// A square of 30 cm, 1 cm thick: 0.9 kg.
-fn square(nodes: usize) -> Result<Body, Error> {
+fn square(nodes: usize) -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.3, 0.3], [nodes, nodes], Cells::Triangles)?;
     Body::new(mesh, RUBBER).thickness(0.01).build()
 }

@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use pliant::samples::{self, ClampedBeam, RingRoll};
 use pliant::study::{General, Problem, Scenes, all_solvers};
-use pliant::{Cells, Error, Inertia, Method, Scene, Solver, Strain};
+use pliant::{Cells, Error, Inertia, InputError, Method, Scene, Solver, Strain};
 
 /// In the order of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -107,7 +107,7 @@ impl Sample {
 
 /// The damped clamped beam on meshes of all kinds, against a fine one of quadratic triangles.
 fn meshes(title: &str) -> Result<Scenes, Error> {
-    let beam = |cells, [along, across]: [usize; 2]| -> Result<Scene, Error> {
+    let beam = |cells, [along, across]: [usize; 2]| -> Result<Scene, InputError> {
         let nodes = [along + 1, across + 1];
         ClampedBeam { nodes, cells, viscosity: LIGHT, ..ClampedBeam::default() }.scene()
     };

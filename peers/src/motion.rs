@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use pliant::{Error, Scene};
+use pliant::{Error, InputError, Scene};
 use rustix::time::{ClockId, clock_gettime};
 
 use crate::stage::Stage;
@@ -55,6 +55,12 @@ impl std::error::Error for GaveUp {}
 
 impl From<Error> for GaveUp {
     fn from(error: Error) -> Self {
+        Self(error.to_string())
+    }
+}
+
+impl From<InputError> for GaveUp {
+    fn from(error: InputError) -> Self {
         Self(error.to_string())
     }
 }

@@ -1,7 +1,7 @@
 //! The scenes that are compared.
 
 use pliant::samples::{ClampedBeam, SquareJump};
-use pliant::{Error, Inertia, Scene};
+use pliant::{Inertia, InputError, Scene};
 
 /// A scene, and what the peers have to know that a [`Scene`] does not tell.
 pub struct Case {
@@ -74,7 +74,7 @@ impl Case {
     ///
     /// # Errors
     /// None for the cases above.
-    pub fn scene(&self, inertia: Inertia) -> Result<Scene, Error> {
+    pub fn scene(&self, inertia: Inertia) -> Result<Scene, InputError> {
         let &Self { nodes, viscosity, .. } = self;
         match self.has_floor() {
             true => SquareJump { nodes: nodes[0], inertia, ..SquareJump::default() }.scene(),

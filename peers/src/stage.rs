@@ -7,7 +7,7 @@
 //! distance from the path and its rate then. That is put into the equations of the others.
 
 use pliant::ode::Failure;
-use pliant::{Equations, Error, Prescribed, Scene, Solver};
+use pliant::{Equations, InputError, Prescribed, Scene, Solver};
 
 /// Equations of one phase, in its free components.
 pub struct Stage {
@@ -64,7 +64,7 @@ impl Stage {
     ///
     /// # Errors
     /// As [`Scene::equations`].
-    pub fn new(scene: &Scene, phase: usize, u: &[f64], v: &[f64]) -> Result<Self, Error> {
+    pub fn new(scene: &Scene, phase: usize, u: &[f64], v: &[f64]) -> Result<Self, InputError> {
         let equations = scene.equations(phase, u)?;
         let start = phase.checked_sub(1).map_or(0.0, |before| scene.phases()[before].end());
         let mut held: Vec<Held> = equations

@@ -22,8 +22,8 @@ use crate::element::{
     Hexahedron, MassPoint, Quadrilateral, ReferenceCell, Segment, StrainPoint, Tetrahedron,
     Tetrahedron10, Triangle, Triangle6, mass_points, strain_points,
 };
-use crate::error::Error;
 use crate::force::NodalForces;
+use crate::input::InputError;
 use crate::material::Lame;
 use crate::mesh::{CellKind, Mesh};
 use crate::ode::Failure;
@@ -84,7 +84,7 @@ pub(crate) struct Law {
 }
 
 /// The cells of `mesh`; `section` is the area or thickness of the body.
-pub(super) fn cells(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
+pub(super) fn cells(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, InputError> {
     let of = match (mesh.kind(), mesh.dimension()) {
         (CellKind::Segment, 1) => CellsOf::<2, 1, 1, 1>::boxed::<Segment>,
         (CellKind::Segment, 2) => CellsOf::<2, 1, 2, 1>::boxed::<Segment>,
@@ -114,7 +114,10 @@ struct CellsOf<const N: usize, const M: usize, const D: usize, const Q: usize> {
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> CellsOf<N, M, D, Q> {
-    fn boxed<C: ReferenceCell<N, M>>(mesh: &Mesh, section: f64) -> Result<Box<dyn Cells>, Error> {
+    fn boxed<C: ReferenceCell<N, M>>(
+        mesh: &Mesh,
+        section: f64,
+    ) -> Result<Box<dyn Cells>, InputError> {
         const { assert!(C::STIFFNESS_RULE.len() == Q) };
         let positions = mesh.positions().as_chunks::<D>().0;
         let (mut nodes, mut points, mut products) = (Vec::new(), Vec::new(), Vec::new());
@@ -377,15 +380,16 @@ fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
     (0..N).flat_map(|a| (0..N).map(move |b| (a, b)))
 }
 
-fn bad_cell(number: usize, cell: &[usize], volume: f64) -> Error {
-    Error::Cell {
-        cell: number + 1,
-        nodes: cell.iter().map(|node| node + 1).collect(),
-        volume,
-        mend: if volume < 0.0 {
-            "its nodes run the wrong way round (clockwise, in two dimensions): reverse them".into()
-        } else {
-            "it is flat: move its nodes apart or leave the cell out".into()
-        },
-    }
+fn bad_cell(number: usize, cell: &[usize], volume: f64) -> InputError {
+    let nodes: Vec<usize> = cell.iter().map(|node| node + 1).collect();
+    let mend = if volume < 0.0 {
+        "its nodes run the wrong way round (clockwise, in two dimensions): reverse them"
+    } else {
+        "it is flat: move its nodes apart or leave the cell out"
+    };
+    InputError::new(
+        format!("signed volume of cell {} (nodes {nodes:?})", number + 1),
+        format!("{volume:.3e}"),
+        format!("{mend} (numbers count from 1)"),
+    )
 }

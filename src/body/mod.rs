@@ -23,8 +23,8 @@ pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;
 use regions::Regions;
 
-use crate::error::{Error, positive};
 use crate::force::NodalForces;
+use crate::input::{InputError, positive};
 use crate::material::{Lame, Material, Plane};
 use crate::mesh::Mesh;
 use crate::ode::Failure;
@@ -182,7 +182,7 @@ impl BodyBuilder {
     /// # Errors
     /// A material out of range, a missing or misplaced thickness or area, an inverted or flat cell,
     /// a node without a cell.
-    pub fn build(self) -> Result<Body, Error> {
+    pub fn build(self) -> Result<Body, InputError> {
         let section = self.section()?;
         let Self { mut mesh, material, strain, plane, .. } = self;
         let viscosity = self.viscosity.unwrap_or(match strain {
@@ -223,7 +223,7 @@ impl BodyBuilder {
         // not the nodal masses: those of quadratic cells are 0 and below at corners
         let mut nodes = 0..body.mesh.node_count();
         match nodes.find(|&node| body.inertia.get(node, node) == 0.0) {
-            Some(node) => Err(Error::input(
+            Some(node) => Err(InputError::new(
                 "node",
                 node + 1,
                 "it belongs to no cell, so that nothing holds it: leave it out of the mesh",
@@ -232,10 +232,10 @@ impl BodyBuilder {
         }
     }
 
-    fn section(&self) -> Result<f64, Error> {
+    fn section(&self) -> Result<f64, InputError> {
         let kind = self.mesh.kind();
         let misplaced = |name: &str, value: f64| {
-            Err(Error::input(name, value, format!("a body of {kind:?} cells has no {name}")))
+            Err(InputError::new(name, value, format!("a body of {kind:?} cells has no {name}")))
         };
         match (kind.dimension(), self.area, self.thickness) {
             (1, Some(area), None) => positive("area", area, "m^2"),
@@ -249,8 +249,8 @@ impl BodyBuilder {
     }
 }
 
-fn missing(input: &str, mend: &str) -> Error {
-    Error::input(input, "(missing)", mend)
+fn missing(input: &str, mend: &str) -> InputError {
+    InputError::new(input, "(missing)", mend)
 }
 
 impl Body {

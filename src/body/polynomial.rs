@@ -17,7 +17,7 @@ use std::sync::Arc;
 use faer::Mat;
 
 use super::Body;
-use crate::error::Error;
+use crate::input::InputError;
 use crate::mesh::CellKind;
 use crate::sparse::BlockMatrix;
 
@@ -121,18 +121,18 @@ impl GreenPolynomial {
     ///
     /// # Errors
     /// A body that is not made of triangles in the plane, or of more than 2,097,150 nodes.
-    pub fn new(body: &Body) -> Result<Self, Error> {
+    pub fn new(body: &Body) -> Result<Self, InputError> {
         let mesh = body.mesh();
         if (mesh.kind(), mesh.dimension()) != (CellKind::Triangle, 2) {
             let value = format!("{:?} in {} dimensions", mesh.kind(), mesh.dimension());
             let mend = "the polynomials are those of triangles in the plane: add the forces up \
                         cell by cell";
-            return Err(Error::input("cells of the body", value, mend));
+            return Err(InputError::new("cells of the body", value, mend));
         }
         let nodes = mesh.node_count();
         if nodes > MOST_NODES {
             let mend = format!("products of three are numbered for {MOST_NODES} at most");
-            return Err(Error::input("number of nodes", nodes, mend));
+            return Err(InputError::new("number of nodes", nodes, mend));
         }
         let cells: Vec<[usize; 3]> = mesh.cells().map(|cell| [cell[0], cell[1], cell[2]]).collect();
 
@@ -205,11 +205,11 @@ impl GreenPolynomial {
     ///
     /// # Errors
     /// A length other than that of the body's degrees of freedom.
-    pub fn forces(&mut self, u: &[f64], forces: &mut [f64]) -> Result<(), Error> {
+    pub fn forces(&mut self, u: &[f64], forces: &mut [f64]) -> Result<(), InputError> {
         let dofs = 2 * self.linear.pattern().nodes();
         for (input, length) in [("length of u", u.len()), ("length of forces", forces.len())] {
             if length != dofs {
-                return Err(Error::input(input, length, format!("the body has {dofs}")));
+                return Err(InputError::new(input, length, format!("the body has {dofs}")));
             }
         }
         forces.fill(0.0);

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::error::Error;
+use crate::input::InputError;
 use crate::material::{Lame, Material, Plane};
 use crate::mesh::Mesh;
 
@@ -47,7 +47,7 @@ impl CellSelection {
     }
 
     /// The cells, counted from 0.
-    pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, Error> {
+    pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
         let cells = match self {
             Self::Group(name) => mesh.cell_groups().get(name).cloned().ok_or_else(|| {
                 let known: Vec<&str> = mesh.cell_groups().keys().map(String::as_str).collect();
@@ -55,13 +55,13 @@ impl CellSelection {
                     true => "the mesh has no groups of cells".into(),
                     false => format!("the mesh has the groups {}", known.join(", ")),
                 };
-                Error::input("group of cells", format!("\"{name}\""), mend)
+                InputError::new("group of cells", format!("\"{name}\""), mend)
             })?,
             Self::Numbers(numbers) => {
                 let count = mesh.cell_count();
                 if let Some(number) = numbers.iter().find(|n| !(1..=count).contains(*n)) {
                     let mend = format!("the mesh has the cells 1 to {count}");
-                    return Err(Error::input("cell of a region", number, mend));
+                    return Err(InputError::new("cell of a region", number, mend));
                 }
                 numbers.iter().map(|number| number - 1).collect()
             }
@@ -70,7 +70,7 @@ impl CellSelection {
                 for (name, corner) in [("region box min", min), ("region box max", max)] {
                     if corner.len() != d || corner.iter().any(|x| x.is_nan()) {
                         let mend = format!("it needs {d} numbers (m)");
-                        return Err(Error::input(name, format!("{corner:?}"), mend));
+                        return Err(InputError::new(name, format!("{corner:?}"), mend));
                     }
                 }
                 let inside = |cell: &[usize]| {
@@ -85,7 +85,7 @@ impl CellSelection {
         };
         if cells.is_empty() {
             let mend = "it contains no cell of the mesh";
-            return Err(Error::input("region", self, mend));
+            return Err(InputError::new("region", self, mend));
         }
         Ok(cells)
     }
@@ -114,8 +114,8 @@ impl Regions {
         plane: Plane,
         base: &Material,
         regions: &[(CellSelection, Material)],
-    ) -> Result<Self, Error> {
-        let moduli = |material: &Material| -> Result<Moduli, Error> {
+    ) -> Result<Self, InputError> {
+        let moduli = |material: &Material| -> Result<Moduli, InputError> {
             material.validate()?;
             let reduced = |lame: Lame| lame.reduced(mesh.kind().dimension(), plane);
             Ok(Moduli {
@@ -126,7 +126,7 @@ impl Regions {
         };
         let mut all = Self { moduli: vec![moduli(base)?], of_cell: Vec::new() };
         if regions.len() >= usize::from(u16::MAX) {
-            return Err(Error::input("number of regions", regions.len(), "65,534 are the most"));
+            return Err(InputError::new("number of regions", regions.len(), "65,534 are the most"));
         }
         for (number, (cells, material)) in (1_u16..).zip(regions) {
             all.moduli.push(moduli(material)?);

@@ -1,7 +1,7 @@
 //! Smooth paths through points.
 
 use super::Prescribed;
-use crate::error::{Error, finite};
+use crate::input::{InputError, finite};
 
 /// A displacement that runs smoothly through given points: a cubic spline. It starts and ends with
 /// velocity 0, and rests before the first time and after the last. Between them b, b' and b'' are
@@ -31,22 +31,22 @@ impl Spline {
     /// # Errors
     /// Fewer than 2 points, times that do not ascend, numbers that are not finite, not one
     /// displacement per time.
-    pub(super) fn validate(&self) -> Result<(), Error> {
+    pub(super) fn validate(&self) -> Result<(), InputError> {
         let Self { times, displacements, .. } = self;
         finite("the times of a path", times)?;
         finite("the displacements of a path", displacements)?;
         if times.len() < 2 {
             let mend = "a path needs two points at least (s)";
-            return Err(Error::input("times of a path", format!("{times:?}"), mend));
+            return Err(InputError::new("times of a path", format!("{times:?}"), mend));
         }
         if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
             let mend = format!("times must ascend: it must lie after {} s", pair[0]);
-            return Err(Error::input("times of a path", format!("{} s", pair[1]), mend));
+            return Err(InputError::new("times of a path", format!("{} s", pair[1]), mend));
         }
         if displacements.len() != times.len() {
             let mend = format!("one is needed for each of the {} times (m)", times.len());
             let input = "displacements of a path";
-            return Err(Error::input(input, format!("{displacements:?}"), mend));
+            return Err(InputError::new(input, format!("{displacements:?}"), mend));
         }
         Ok(())
     }

@@ -6,8 +6,8 @@ mod walls;
 
 use super::signal::{self, Signal, finite_at};
 use crate::body::Body;
-use crate::error::{Error, positive};
 use crate::force::{Force, NodalForces, Reservoir};
+use crate::input::{InputError, positive};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -75,7 +75,11 @@ impl Chamber {
     /// # Errors
     /// Walls on a line, triangles outside space; nodes that do not exist, make no chain or enclose
     /// nothing, a surface with holes, a missing thickness.
-    pub(crate) fn force(&self, body: &Body, pressure: Vec<Signal>) -> Result<ChamberForce, Error> {
+    pub(crate) fn force(
+        &self,
+        body: &Body,
+        pressure: Vec<Signal>,
+    ) -> Result<ChamberForce, InputError> {
         let geometry = match (&self.walls, body.dimension()) {
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
             (Walls::Nodes(nodes), 3) => {
@@ -98,13 +102,13 @@ impl Chamber {
                     Walls::Nodes(_) => "nodes enclose a chamber in 2 or 3 dimensions only",
                     Walls::Triangles(_) => "a surface encloses a chamber in 3 dimensions only",
                 };
-                return Err(Error::input(self.input("in dimension"), dimension, mend));
+                return Err(InputError::new(self.input("in dimension"), dimension, mend));
             }
         };
         Ok(ChamberForce { name: self.name.clone(), geometry, pressure })
     }
 
-    fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, Error> {
+    fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {
         let mesh = body.mesh();
         let polygon = Polygon::new(mesh, self.edges(mesh, selection)?);
         let area = polygon.area(&vec![0.0; body.dofs()]);
@@ -123,7 +127,7 @@ impl Chamber {
     }
 
     /// 1 or -1, so that pressure enlarges the volume.
-    fn surface_sign(&self, body: &Body, surface: &Surface) -> Result<f64, Error> {
+    fn surface_sign(&self, body: &Body, surface: &Surface) -> Result<f64, InputError> {
         let volume = surface.volume(&vec![0.0; body.dofs()]);
         orientation(volume, body).ok_or_else(|| self.encloses_nothing("volume (m^3)", volume))
     }
@@ -132,20 +136,20 @@ impl Chamber {
         format!("chamber \"{}\" {key}", self.name)
     }
 
-    fn height(&self, body: &Body) -> Result<f64, Error> {
+    fn height(&self, body: &Body) -> Result<f64, InputError> {
         match (self.thickness, body.mesh().kind().dimension()) {
             (Some(thickness), _) => positive(&self.input("thickness"), thickness, "m"),
             (None, 2) => Ok(body.section()),
             (None, _) => {
                 let mend = "the body has no thickness of its own: give that of the chamber (m)";
-                Err(Error::input(self.input("thickness"), "(missing)", mend))
+                Err(InputError::new(self.input("thickness"), "(missing)", mend))
             }
         }
     }
 
-    fn encloses_nothing(&self, measure: &str, enclosed: f64) -> Error {
+    fn encloses_nothing(&self, measure: &str, enclosed: f64) -> InputError {
         let mend = "its walls enclose nothing: give its nodes in their order around";
-        Error::input(self.input(measure), format!("{enclosed:.1e}"), mend)
+        InputError::new(self.input(measure), format!("{enclosed:.1e}"), mend)
     }
 }
 

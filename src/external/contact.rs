@@ -6,8 +6,8 @@ use super::obstacle::{Law, Obstacle};
 use super::shape::Nearest;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
 use crate::body::Body;
-use crate::error::Error;
 use crate::force::{Force, NodalForces, Reservoir};
+use crate::input::InputError;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 use crate::vector::dot;
@@ -68,7 +68,7 @@ impl Touch<'_> {
 impl Contact {
     /// # Errors
     /// Numbers out of range; a stiffness per area for a body whose boundary has none.
-    pub(crate) fn new(body: &Body, obstacle: &Obstacle) -> Result<Self, Error> {
+    pub(crate) fn new(body: &Body, obstacle: &Obstacle) -> Result<Self, InputError> {
         let dimension = body.dimension();
         let obstacle = obstacle.validated(dimension)?;
         let points = match obstacle.is_per_area() {
@@ -76,7 +76,7 @@ impl Contact {
             true => gauss_points(body).ok_or_else(|| {
                 let input = format!("obstacle \"{}\" stiffness_density", obstacle.name());
                 let mend = "a string has no surface: give a stiffness per node";
-                Error::input(input, "given", mend)
+                InputError::new(input, "given", mend)
             })?,
         };
         let positions = body.mesh().positions();

@@ -1,7 +1,7 @@
 //! Obstacles: a shape, how it moves, and the law of its force.
 
 use super::shape::{Nearest, Shape};
-use crate::error::{Error, finite, not_negative, positive};
+use crate::input::{InputError, finite, not_negative, positive};
 
 /// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force on each
 /// boundary node of a body with d <= 0 (or point of a face, see
@@ -147,7 +147,7 @@ impl Obstacle {
     }
 
     /// The obstacle with a normal of length 1, if all its numbers make sense.
-    pub(crate) fn validated(&self, dimension: usize) -> Result<Self, Error> {
+    pub(crate) fn validated(&self, dimension: usize) -> Result<Self, InputError> {
         let input = |key: &str| format!("obstacle \"{}\" {key}", self.name);
         let shape = self.shape.validated(dimension, &input)?;
         let (rate, area) = match self.stiffness {
@@ -165,7 +165,7 @@ impl Obstacle {
         if let Some(velocity) = &self.velocity {
             if velocity.len() != dimension {
                 let mend = format!("it needs {dimension} component(s) (m/s)");
-                return Err(Error::input(input("velocity"), format!("{velocity:?}"), mend));
+                return Err(InputError::new(input("velocity"), format!("{velocity:?}"), mend));
             }
             finite(&input("velocity"), velocity)?;
         }

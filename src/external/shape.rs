@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::{Error, finite, positive};
+use crate::input::{InputError, finite, positive};
 use crate::vector::dot;
 
 type Distance = dyn Fn(&[f64], &mut [f64]) -> f64 + Send + Sync;
@@ -178,11 +178,11 @@ impl Shape {
         &self,
         dimension: usize,
         input: &dyn Fn(&str) -> String,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, InputError> {
         let vector = |key: &str, vector: &[f64]| {
             if vector.len() != dimension {
                 let mend = format!("it needs {dimension} component(s)");
-                return Err(Error::input(input(key), format!("{vector:?}"), mend));
+                return Err(InputError::new(input(key), format!("{vector:?}"), mend));
             }
             finite(&input(key), vector)
         };
@@ -194,7 +194,7 @@ impl Shape {
                 let length = dot(normal, normal).sqrt();
                 if length == 0.0 {
                     let value = format!("{normal:?}");
-                    return Err(Error::input(input("normal"), value, "it must not be zero"));
+                    return Err(InputError::new(input("normal"), value, "it must not be zero"));
                 }
                 normal.iter_mut().for_each(|x| *x /= length);
             }
@@ -207,7 +207,7 @@ impl Shape {
                 vector("max", max)?;
                 if min.iter().zip(&*max).any(|(min, max)| min >= max) {
                     let mend = format!("it must lie above min, {min:?}, in all components");
-                    return Err(Error::input(input("max"), format!("{max:?}"), mend));
+                    return Err(InputError::new(input("max"), format!("{max:?}"), mend));
                 }
             }
             Kind::Capsule { from, to, radius } => {
@@ -216,17 +216,17 @@ impl Shape {
                 positive(&input("radius"), *radius, "m")?;
                 if dimension == 1 {
                     let mend = "in one dimension use a box";
-                    return Err(Error::input(input("kind"), "capsule", mend));
+                    return Err(InputError::new(input("kind"), "capsule", mend));
                 }
                 if from == to {
                     let mend = "it must not be where the capsule begins: use a disc";
-                    return Err(Error::input(input("to"), format!("{to:?}"), mend));
+                    return Err(InputError::new(input("to"), format!("{to:?}"), mend));
                 }
             }
             Kind::Union(parts) => {
                 if parts.is_empty() {
                     let mend = "it needs one part at least";
-                    return Err(Error::input(input("number of parts"), 0, mend));
+                    return Err(InputError::new(input("number of parts"), 0, mend));
                 }
                 for (k, part) in parts.iter_mut().enumerate() {
                     *part =

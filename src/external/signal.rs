@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::{Error, finite};
+use crate::input::{InputError, finite};
 use crate::ode::Failure;
 
 /// Vectors at given times (s). In between they change along straight lines; before the first time
@@ -40,25 +40,25 @@ impl Table {
     }
 
     /// Checks that there are vectors of `dimension` at ascending times.
-    fn validate(&self, input: &str, dimension: usize) -> Result<(), Error> {
+    fn validate(&self, input: &str, dimension: usize) -> Result<(), InputError> {
         let Self { times, values } = self;
         let input_times = format!("times of {input}");
         finite(&input_times, times)?;
         if times.is_empty() || values.len() != times.len() {
             let mend = format!("one value is needed for each time, there are {}", values.len());
-            return Err(Error::input(input_times, format!("{times:?}"), mend));
+            return Err(InputError::new(input_times, format!("{times:?}"), mend));
         }
         if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
             let mend = format!(
                 "times must ascend: it must lie after {} s (for a jump, begin another phase)",
                 pair[0]
             );
-            return Err(Error::input(input_times, format!("{} s", pair[1]), mend));
+            return Err(InputError::new(input_times, format!("{} s", pair[1]), mend));
         }
         for value in values {
             if value.len() != dimension {
                 let mend = format!("it needs {dimension} component(s)");
-                return Err(Error::input(input, format!("{value:?}"), mend));
+                return Err(InputError::new(input, format!("{value:?}"), mend));
             }
             finite(input, value)?;
         }
@@ -96,7 +96,7 @@ impl Signal {
     }
 
     /// Checks what can be known beforehand.
-    pub(crate) fn validate(&self, input: &str) -> Result<(), Error> {
+    pub(crate) fn validate(&self, input: &str) -> Result<(), InputError> {
         match self {
             Self::Constant(value) => finite(input, &[*value]),
             Self::Function(_) => Ok(()),
@@ -167,9 +167,9 @@ impl VectorSignal {
     }
 
     /// Checks what can be known beforehand.
-    pub(crate) fn validate(&self, input: &str, needed: usize) -> Result<(), Error> {
+    pub(crate) fn validate(&self, input: &str, needed: usize) -> Result<(), InputError> {
         match self {
-            Self::Function { dimension, .. } if *dimension != needed => Err(Error::input(
+            Self::Function { dimension, .. } if *dimension != needed => Err(InputError::new(
                 format!("number of components of {input}"),
                 dimension,
                 format!("it must give {needed} component(s) (N)"),

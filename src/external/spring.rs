@@ -1,8 +1,8 @@
 //! Springs between two nodes, with damping and an actuator.
 
 use super::signal::{self, Signal, finite_at};
-use crate::error::{Error, not_negative, positive};
 use crate::force::{Force, NodalForces, Reservoir};
+use crate::input::{InputError, not_negative, positive};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -104,11 +104,15 @@ impl Spring {
     ///
     /// # Errors
     /// Ends that are not one node each, or the same; numbers out of range.
-    pub(crate) fn force(&self, mesh: &Mesh, actuation: Vec<Signal>) -> Result<SpringForce, Error> {
+    pub(crate) fn force(
+        &self,
+        mesh: &Mesh,
+        actuation: Vec<Signal>,
+    ) -> Result<SpringForce, InputError> {
         let input = |key: &str| format!("spring \"{}\" {key}", self.name);
         let end = |which: &str, selection: &Selection| match mesh.select(selection)?[..] {
             [node] => Ok(node),
-            ref nodes => Err(Error::input(
+            ref nodes => Err(InputError::new(
                 input(which),
                 selection,
                 format!("it selects {} nodes: an end is one node", nodes.len()),
@@ -129,7 +133,11 @@ impl Spring {
         if distance <= COLLAPSED * length {
             let mend =
                 "its ends are in the same place, so that it has no direction: move them apart";
-            return Err(Error::input(input("distance of its ends"), format!("{distance} m"), mend));
+            return Err(InputError::new(
+                input("distance of its ends"),
+                format!("{distance} m"),
+                mend,
+            ));
         }
         Ok(SpringForce {
             name: self.name.clone(),

@@ -11,7 +11,7 @@ use mshio::ElementType;
 use nalgebra::{Matrix3, Vector3};
 
 use super::{CellKind, Mesh};
-use crate::error::Error;
+use crate::input::InputError;
 
 impl Mesh {
     /// Reads a mesh from a file of Gmsh: format MSH 4.1, text or binary. Coordinates are taken as
@@ -39,15 +39,15 @@ impl Mesh {
     /// (`Mesh.SaveParametric`) cannot be read.
     ///
     /// # Errors
-    /// [`Error::MeshFile`]: a file that cannot be read, is empty, broken, partitioned or of another
+    /// A file that cannot be read, is empty, broken, partitioned or of another
     /// version, element types that do not exist here, cells of several kinds, a physical group that
     /// is called `all` or `boundary` and is not that.
-    pub fn read_gmsh(path: impl AsRef<Path>) -> Result<Self, Error> {
+    pub fn read_gmsh(path: impl AsRef<Path>) -> Result<Self, InputError> {
         let path = path.as_ref();
-        let file = fs::read(path).map_err(|error| error.to_string());
+        let file = fs::read(path).map_err(|error| format!("it cannot be read: {error}"));
         file.and_then(Contents::read)
             .and_then(|contents| build(&contents))
-            .map_err(|problem| Error::MeshFile { path: path.into(), problem })
+            .map_err(|problem| InputError::new("mesh file", path.display(), problem))
     }
 }
 
@@ -91,7 +91,7 @@ fn build(contents: &Contents) -> Result<Mesh, String> {
     }
     let coordinates = positions.iter().flat_map(|position| &position[..dimension]).copied();
     let mut mesh = Mesh::new(dimension, coordinates.collect(), kind, connectivity)
-        .map_err(|error| error.to_string())?;
+        .map_err(|error| format!("it cannot be read: {error}"))?;
     mesh.cell_groups = cell_groups;
     for (name, nodes) in node_sets(&contents.blocks, &numbers) {
         if mesh.sets.get(name).is_some_and(|own| *own != nodes) {

@@ -16,7 +16,7 @@ pub use cell::CellKind;
 pub use generate::{Cells, SolidCells};
 pub use select::Selection;
 
-use crate::error::{Error, finite};
+use crate::input::{InputError, finite};
 
 /// A finite element mesh in its natural shape: cells of one kind, in a space of their dimension or
 /// of a higher one (a string in the plane or in space, a membrane in space).
@@ -46,10 +46,10 @@ impl Mesh {
         positions: Vec<f64>,
         kind: CellKind,
         connectivity: Vec<usize>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, InputError> {
         check_dimension(dimension, kind)?;
         if positions.is_empty() || !positions.len().is_multiple_of(dimension) {
-            return Err(Error::input(
+            return Err(InputError::new(
                 "number of mesh coordinates",
                 positions.len(),
                 format!("it must be {dimension} per node, for one node at least"),
@@ -57,7 +57,7 @@ impl Mesh {
         }
         finite("mesh.positions", &positions)?;
         if connectivity.is_empty() || !connectivity.len().is_multiple_of(kind.nodes()) {
-            return Err(Error::input(
+            return Err(InputError::new(
                 "length of mesh.connectivity",
                 connectivity.len(),
                 format!("it must be {} nodes per cell, for one cell at least", kind.nodes()),
@@ -65,7 +65,7 @@ impl Mesh {
         }
         let nodes = positions.len() / dimension;
         if let Some(at) = connectivity.iter().position(|&node| node >= nodes) {
-            return Err(Error::input(
+            return Err(InputError::new(
                 format!("node of cell {}", at / kind.nodes() + 1),
                 connectivity[at] + 1,
                 format!("the mesh has the nodes 1 to {nodes}"),
@@ -86,23 +86,23 @@ impl Mesh {
         mut self,
         name: impl Into<String>,
         nodes: impl Into<Selection>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, InputError> {
         let nodes = self.select(&nodes.into())?;
         self.sets.insert(name.into(), nodes);
         Ok(self)
     }
 
     /// Adds a node that belongs to no cell, alone in the node set `name`.
-    pub(crate) fn push_node(&mut self, name: &str, position: &[f64]) -> Result<(), Error> {
+    pub(crate) fn push_node(&mut self, name: &str, position: &[f64]) -> Result<(), InputError> {
         if position.len() != self.dimension {
             let mend = format!("it needs {} coordinates (m)", self.dimension);
             let input = format!("position of point \"{name}\"");
-            return Err(Error::input(input, format!("{position:?}"), mend));
+            return Err(InputError::new(input, format!("{position:?}"), mend));
         }
         finite(&format!("the position of point \"{name}\""), position)?;
         if self.sets.contains_key(name) {
             let mend = "a node set has that name already: choose another one";
-            return Err(Error::input("name of a point", format!("\"{name}\""), mend));
+            return Err(InputError::new("name of a point", format!("\"{name}\""), mend));
         }
         let node = self.node_count();
         self.positions.extend_from_slice(position);
@@ -114,9 +114,9 @@ impl Mesh {
     ///
     /// # Errors
     /// An offset of the wrong length, or not finite.
-    pub fn translated(mut self, offset: &[f64]) -> Result<Self, Error> {
+    pub fn translated(mut self, offset: &[f64]) -> Result<Self, InputError> {
         if offset.len() != self.dimension {
-            return Err(Error::input(
+            return Err(InputError::new(
                 "length of the offset",
                 offset.len(),
                 format!("the mesh has dimension {}", self.dimension),
@@ -147,7 +147,7 @@ impl Mesh {
     pub fn mapped<const D: usize>(
         mut self,
         mut map: impl FnMut(&[f64]) -> [f64; D],
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, InputError> {
         check_dimension(D, self.kind)?;
         let mut moved = Vec::with_capacity(D * self.node_count());
         for (node, from) in self.positions.chunks_exact(self.dimension).enumerate() {
@@ -155,7 +155,7 @@ impl Mesh {
             if to.iter().any(|x| !x.is_finite()) {
                 let mend = format!("the map must give finite coordinates (m) for {from:?}");
                 let input = format!("mapped position of node {}", node + 1);
-                return Err(Error::input(input, format!("{to:?}"), mend));
+                return Err(InputError::new(input, format!("{to:?}"), mend));
             }
             moved.extend(to);
         }
@@ -238,12 +238,12 @@ impl Mesh {
     }
 }
 
-fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), Error> {
+fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {
     let least = kind.dimension();
     if (least..=3).contains(&dimension) {
         return Ok(());
     }
     let allowed = if least == 3 { "3".into() } else { format!("{least} to 3") };
     let mend = format!("{kind:?} cells need a space of dimension {allowed}");
-    Err(Error::input("mesh.dimension", dimension, mend))
+    Err(InputError::new("mesh.dimension", dimension, mend))
 }

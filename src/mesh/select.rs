@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Mesh;
-use crate::error::Error;
+use crate::input::InputError;
 
 /// Nodes, by the name of a set, by number, or by a box around their natural positions.
 ///
@@ -58,18 +58,18 @@ impl Mesh {
     ///
     /// # Errors
     /// An unknown set, a number out of range or given twice, an empty selection.
-    pub fn select(&self, selection: &Selection) -> Result<Vec<usize>, Error> {
+    pub fn select(&self, selection: &Selection) -> Result<Vec<usize>, InputError> {
         let nodes = match selection {
             Selection::Set(name) => self.sets.get(name).cloned().ok_or_else(|| {
                 let known: Vec<&str> = self.sets.keys().map(String::as_str).collect();
                 let mend = format!("the mesh has the node sets {}", known.join(", "));
-                Error::input("node set", format!("\"{name}\""), mend)
+                InputError::new("node set", format!("\"{name}\""), mend)
             })?,
             Selection::Numbers(numbers) => self.by_number(numbers)?,
             Selection::Box { min, max } => self.in_box(min, max)?,
         };
         if nodes.is_empty() {
-            return Err(Error::input(
+            return Err(InputError::new(
                 "node selection",
                 selection,
                 "it contains no node of the mesh; name at least one",
@@ -78,26 +78,26 @@ impl Mesh {
         Ok(nodes)
     }
 
-    fn by_number(&self, numbers: &[usize]) -> Result<Vec<usize>, Error> {
+    fn by_number(&self, numbers: &[usize]) -> Result<Vec<usize>, InputError> {
         let count = self.node_count();
         let mut seen = vec![false; count];
         for &number in numbers {
             if !(1..=count).contains(&number) {
                 let mend = format!("the mesh has the nodes 1 to {count} (numbers count from 1)");
-                return Err(Error::input("node", number, mend));
+                return Err(InputError::new("node", number, mend));
             }
             if std::mem::replace(&mut seen[number - 1], true) {
-                return Err(Error::input("node", number, "it is named twice in one selection"));
+                return Err(InputError::new("node", number, "it is named twice in one selection"));
             }
         }
         Ok(numbers.iter().map(|number| number - 1).collect())
     }
 
-    fn in_box(&self, min: &[f64], max: &[f64]) -> Result<Vec<usize>, Error> {
+    fn in_box(&self, min: &[f64], max: &[f64]) -> Result<Vec<usize>, InputError> {
         for (name, corner) in [("box min", min), ("box max", max)] {
             if corner.len() != self.dimension || corner.iter().any(|x| x.is_nan()) {
                 let mend = format!("it needs {} numbers (m)", self.dimension);
-                return Err(Error::input(name, format!("{corner:?}"), mend));
+                return Err(InputError::new(name, format!("{corner:?}"), mend));
             }
         }
         let inside = |node: &usize| {

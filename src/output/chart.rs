@@ -13,6 +13,7 @@ use plotters::prelude::*;
 use super::decades::{power_text, ticks};
 use super::{FONT, write_file};
 use crate::error::Error;
+use crate::input::InputError;
 
 /// Size of a chart (px).
 const SIZE: [u32; 2] = [800, 440];
@@ -142,13 +143,18 @@ impl Chart {
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let count: usize = self.series.iter().map(|series| series.points.len()).sum();
         if count == 0 {
-            return Err(Error::input("number of points of a chart", 0, "add a series with points"));
+            return Err(InputError::new(
+                "number of points of a chart",
+                0,
+                "add a series with points",
+            )
+            .into());
         }
         let [log_x, log_y] = self.logarithmic;
         for Series { name, points, .. } in &self.series {
             let refuse = |point: &(f64, f64), mend: &str| {
                 let (input, value) = (format!("point of series \"{name}\""), format!("{point:?}"));
-                Err(Error::input(input, value, mend))
+                Err(InputError::new(input, value, mend).into())
             };
             if let Some(point) = points.iter().find(|(x, y)| !(x.is_finite() && y.is_finite())) {
                 return refuse(point, "it must be a pair of finite numbers");

@@ -11,6 +11,7 @@ use vtkio::model::{
 use super::write_file;
 use crate::body::CellField;
 use crate::error::Error;
+use crate::input::InputError;
 use crate::mesh::CellKind;
 use crate::trajectory::{Sample, Trajectory};
 
@@ -56,7 +57,7 @@ pub fn write_vtk(
     let plain = |c: char| c.is_ascii_alphanumeric() || ".-_".contains(c);
     if name.is_empty() || !name.chars().all(plain) {
         let mend = "file names are made of letters, digits, '.', '-' and '_'";
-        return Err(Error::input("name of the VTK files", format!("\"{name}\""), mend));
+        return Err(InputError::new("name of the VTK files", format!("\"{name}\""), mend).into());
     }
     let directory = directory.as_ref();
     let file_name = |number: usize| format!("{name}_{number:04}.vtu");

@@ -2,8 +2,8 @@
 
 use super::BENT_BEAM_MATERIAL;
 use crate::body::{Body, Strain, Viscosity};
-use crate::error::Error;
 use crate::external::{Chamber, Obstacle, Spring};
+use crate::input::InputError;
 use crate::material::{Material, Plane};
 use crate::mesh::{Cells, Mesh};
 use crate::scene::{Phase, Scene};
@@ -16,7 +16,7 @@ pub const MEMBRANE_MATERIAL: Material = Material { viscosity: 40.0, ..BENT_BEAM_
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn membrane() -> Result<Scene, Error> {
+pub fn membrane() -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([0.10, 0.01], [11, 2], Cells::Triangles)?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).build()?;
     let bottom: Vec<usize> = (1..=11).rev().collect();
@@ -32,7 +32,7 @@ pub fn membrane() -> Result<Scene, Error> {
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn membrane_arch() -> Result<Scene, Error> {
+pub fn membrane_arch() -> Result<Scene, InputError> {
     let mesh = Mesh::half_ring(0.04, 0.05, [21, 3], Cells::Triangles)?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).strain(Strain::Green).build()?;
     let inner: Vec<usize> = (0..21).map(|station| 3 * station + 1).collect();
@@ -46,7 +46,7 @@ pub fn membrane_arch() -> Result<Scene, Error> {
 /// Fig. 4.12 without its timeline: an elastic ring of radii 4 and 5 cm (32 x 3 nodes, 1 cm thick, Green
 /// strain, natural viscosity) on a floor; eight springs `A1` to `A8` of 20 N/m and 4 cm join a
 /// mass of 1 g at its centre with its inner side, `A1` straight below, then counter-clockwise.
-fn spring_ring() -> Result<Scene, Error> {
+fn spring_ring() -> Result<Scene, InputError> {
     let mesh = Mesh::ring(0.04, 0.05, [32, 3], Cells::Triangles)?.translated(&[0.0, 0.05])?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL)
         .thickness(0.01)
@@ -70,7 +70,7 @@ fn spring_ring() -> Result<Scene, Error> {
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn ring_springs(force: f64) -> Result<Scene, Error> {
+pub fn ring_springs(force: f64) -> Result<Scene, InputError> {
     Ok(spring_ring()?
         .phase(Phase::until(0.2).named("settle"))
         .phase(Phase::until(2.0).named("A2 and A6").actuate(["A2", "A6"], -force))
@@ -85,7 +85,7 @@ pub fn ring_springs(force: f64) -> Result<Scene, Error> {
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn ring_jump() -> Result<Scene, Error> {
+pub fn ring_jump() -> Result<Scene, InputError> {
     let crouch = Phase::until(0.1).named("crouch");
     Ok(spring_ring()?
         .phase(crouch.actuate_table(["A1", "A5"], [0.0, 0.1], [0.0, -1.0]))
@@ -98,7 +98,7 @@ pub fn ring_jump() -> Result<Scene, Error> {
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn report_8() -> Result<Scene, Error> {
+pub fn report_8() -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([0.06, 0.09], [7, 10], Cells::Triangles)?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).strain(Strain::Green).build()?;
     let press = Phase::until(0.5).named("pressed").hold("bottom");
@@ -113,7 +113,7 @@ pub fn report_8() -> Result<Scene, Error> {
 ///
 /// # Errors
 /// Another mesh.
-pub fn bending_actuator(mesh: Mesh) -> Result<Scene, Error> {
+pub fn bending_actuator(mesh: Mesh) -> Result<Scene, InputError> {
     let rubber = Material { density: 1100.0, young: 5e5, poisson: 0.45, viscosity: 1e4 };
     let layer = Material { young: 1e7, viscosity: 2e5, ..rubber };
     let body = Body::new(mesh, rubber)

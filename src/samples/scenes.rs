@@ -2,8 +2,8 @@
 
 use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
 use crate::constraint::Axis;
-use crate::error::Error;
 use crate::external::Obstacle;
+use crate::input::InputError;
 use crate::material::Material;
 use crate::mesh::{Cells, Mesh};
 use crate::scene::{Phase, Scene};
@@ -26,7 +26,7 @@ pub const BENT_BEAM_MATERIAL: Material =
 ///
 /// # Errors
 /// Fewer than 4 nodes: the top has no middle third then.
-pub fn square_press(nodes: usize) -> Result<Scene, Error> {
+pub fn square_press(nodes: usize) -> Result<Scene, InputError> {
     let scene = Scene::new(square(nodes, Cells::Triangles)?.build()?);
     Ok(press(scene, nodes).phase(Phase::until(2.0).named("released").hold("bottom")))
 }
@@ -36,7 +36,7 @@ pub fn square_press(nodes: usize) -> Result<Scene, Error> {
 ///
 /// # Errors
 /// As [`square_press`].
-pub fn square_jump(nodes: usize) -> Result<Scene, Error> {
+pub fn square_jump(nodes: usize) -> Result<Scene, InputError> {
     SquareJump { nodes, ..SquareJump::default() }.scene()
 }
 
@@ -76,7 +76,7 @@ impl SquareJump {
     ///
     /// # Errors
     /// Fewer than 4 nodes.
-    pub fn scene(&self) -> Result<Scene, Error> {
+    pub fn scene(&self) -> Result<Scene, InputError> {
         let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
         let body = square(self.nodes, self.cells)?.inertia(self.inertia).build()?;
         let mut scene = Scene::new(body).obstacle(floor.stiffness(self.floor / self.nodes as f64));
@@ -93,7 +93,7 @@ impl SquareJump {
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn beam_jump() -> Result<Scene, Error> {
+pub fn beam_jump() -> Result<Scene, InputError> {
     BeamJump::default().scene()
 }
 
@@ -117,7 +117,7 @@ impl BeamJump {
     ///
     /// # Errors
     /// None; the signature is that of its kind.
-    pub fn scene(&self) -> Result<Scene, Error> {
+    pub fn scene(&self) -> Result<Scene, InputError> {
         let body = Body::new(Mesh::bar(0.10, 6)?, BEAM_MATERIAL).area(2e-4).build()?;
         let push = Phase::until(0.2).named("push").hold("left").load("right", [-2.0]);
         let mut scene = Scene::new(body)
@@ -137,7 +137,7 @@ impl BeamJump {
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn beam_bend(strain: Strain, holds_tip: bool) -> Result<Scene, Error> {
+pub fn beam_bend(strain: Strain, holds_tip: bool) -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([0.10, 0.02], [11, 3], Cells::Triangles)?;
     let body = Body::new(mesh, BENT_BEAM_MATERIAL)
         .thickness(0.01)
@@ -179,7 +179,7 @@ impl RingRoll {
     ///
     /// # Errors
     /// Friction or end out of range.
-    pub fn scene(&self) -> Result<Scene, Error> {
+    pub fn scene(&self) -> Result<Scene, InputError> {
         let light = Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 40.0 };
         let heavy = Material { density: 10_000.0, ..light };
         let mesh = Mesh::ring(0.02, 0.04, [16, 3], Cells::Triangles)?.translated(&[0.0, 0.04])?;
@@ -242,7 +242,7 @@ impl ClampedBeam {
     ///
     /// # Errors
     /// Fewer than 2 x 2 nodes; viscosity or end out of range.
-    pub fn scene(&self) -> Result<Scene, Error> {
+    pub fn scene(&self) -> Result<Scene, InputError> {
         let &Self { nodes, cells, viscosity, inertia, until } = self;
         let mesh = Mesh::rectangle([0.35, 0.02], nodes, cells)?;
         let material = Material { viscosity, ..FLAG_MATERIAL };
@@ -259,7 +259,7 @@ impl ClampedBeam {
 ///
 /// # Errors
 /// As [`ClampedBeam::scene`].
-pub fn clamped_beam(nodes: [usize; 2], viscosity: f64) -> Result<Scene, Error> {
+pub fn clamped_beam(nodes: [usize; 2], viscosity: f64) -> Result<Scene, InputError> {
     ClampedBeam { nodes, viscosity, ..ClampedBeam::default() }.scene()
 }
 
@@ -269,9 +269,13 @@ pub fn pushed_nodes(nodes: usize) -> Vec<usize> {
     (first + nodes / 3 + 1..=first + nodes - nodes / 3).collect()
 }
 
-fn square(nodes: usize, cells: Cells) -> Result<BodyBuilder, Error> {
+fn square(nodes: usize, cells: Cells) -> Result<BodyBuilder, InputError> {
     if nodes < 4 {
-        return Err(Error::input("nodes", nodes, "the square needs 4 nodes along a side at least"));
+        return Err(InputError::new(
+            "nodes",
+            nodes,
+            "the square needs 4 nodes along a side at least",
+        ));
     }
     let mesh = Mesh::rectangle([0.30, 0.30], [nodes, nodes], cells)?;
     Ok(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01))

@@ -2,7 +2,7 @@
 
 use super::BENT_BEAM_MATERIAL;
 use crate::body::{Body, Strain};
-use crate::error::Error;
+use crate::input::InputError;
 use crate::material::Material;
 use crate::mesh::{Cells, Mesh};
 use crate::scene::{Phase, Scene};
@@ -12,7 +12,7 @@ use crate::scene::{Phase, Scene};
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn static_square(strain: Strain) -> Result<Scene, Error> {
+pub fn static_square(strain: Strain) -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([3.0, 3.0], [4, 4], Cells::Triangles)?;
     let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
     let body = Body::new(mesh, rubber).thickness(1.0).strain(strain).build()?;
@@ -25,7 +25,7 @@ pub fn static_square(strain: Strain) -> Result<Scene, Error> {
 ///
 /// # Errors
 /// None; the signature is that of its kind.
-pub fn beam_static(strain: Strain) -> Result<Scene, Error> {
+pub fn beam_static(strain: Strain) -> Result<Scene, InputError> {
     let force = match strain {
         Strain::Cauchy => 0.63754,
         Strain::Green => 0.71228,

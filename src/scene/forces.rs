@@ -4,16 +4,16 @@ use std::sync::Arc;
 
 use super::phase::{Load as PhaseLoad, check_vector, find};
 use super::{Phase, Scene};
-use crate::error::{Error, finite};
 use crate::external::{Chamber, Contact, Gravity, Load, Signal, Spring, VaryingLoad};
 use crate::force::Force;
+use crate::input::{InputError, finite};
 
 /// The forces that act in one phase.
 pub(crate) type Forces = Vec<Arc<dyn Force>>;
 
 impl Scene {
     /// The forces in one phase, all but those of constant matrices.
-    pub(super) fn forces_in(&self, phase: &Phase) -> Result<Forces, Error> {
+    pub(super) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
         if let Some(elastic) = self.body.elastic() {
@@ -34,12 +34,12 @@ impl Scene {
     }
 
     /// The contact forces among them.
-    pub(crate) fn contacts(&self, phase: &Phase) -> Result<Vec<Contact>, Error> {
+    pub(crate) fn contacts(&self, phase: &Phase) -> Result<Vec<Contact>, InputError> {
         let obstacles = phase.contacts(&self.obstacles)?.into_iter();
         obstacles.map(|obstacle| Contact::new(&self.body, obstacle)).collect()
     }
 
-    fn add_loads(&self, phase: &Phase, forces: &mut Forces) -> Result<(), Error> {
+    fn add_loads(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         let dimension = self.body.dimension();
         let mut constant = Vec::new();
         for (selection, load) in &phase.loads {
@@ -66,7 +66,7 @@ impl Scene {
         Ok(())
     }
 
-    fn add_springs(&self, phase: &Phase, forces: &mut Forces) -> Result<(), Error> {
+    fn add_springs(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         for (spring, actuation) in self.springs.iter().zip(self.actuation_signals(phase)?) {
             forces.push(Arc::new(spring.force(self.body.mesh(), actuation)?));
         }
@@ -74,13 +74,13 @@ impl Scene {
     }
 
     /// Forces (N) of the actuators of all springs at time `t` (s) in `phase`.
-    pub(crate) fn actuations(&self, phase: &Phase, t: f64) -> Result<Vec<f64>, Error> {
+    pub(crate) fn actuations(&self, phase: &Phase, t: f64) -> Result<Vec<f64>, InputError> {
         let signals = self.actuation_signals(phase)?.into_iter();
         Ok(signals.map(|signals| signals.iter().map(|signal| signal.at(t)).sum()).collect())
     }
 
     /// What actuates each spring in `phase`.
-    fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, Error> {
+    fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
         let known: Vec<&str> = self.springs.iter().map(Spring::name).collect();
         let input = format!("actuation of phase \"{}\"", phase.name);
         let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); known.len()];
@@ -93,7 +93,7 @@ impl Scene {
         Ok(actuations)
     }
 
-    fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), Error> {
+    fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
         let known: Vec<&str> = self.chambers.iter().map(Chamber::name).collect();
         let input = format!("pressure of phase \"{}\"", phase.name);
         let mut pressures: Vec<Vec<Signal>> = vec![Vec::new(); known.len()];

@@ -13,8 +13,8 @@ pub use summary::PhaseSummary;
 
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
-use crate::error::{Error, finite};
 use crate::external::{Chamber, Contact, Obstacle, Spring};
+use crate::input::{InputError, finite};
 use crate::model::Model;
 use crate::system::{Spectrum, System};
 
@@ -130,7 +130,10 @@ impl Scene {
     }
 
     /// The nodes that a phase constrains, with what it makes them do.
-    pub(crate) fn constrained_nodes(&self, phase: &Phase) -> Result<Vec<(usize, Role)>, Error> {
+    pub(crate) fn constrained_nodes(
+        &self,
+        phase: &Phase,
+    ) -> Result<Vec<(usize, Role)>, InputError> {
         let mut nodes = Vec::new();
         for Constraint { what, how } in &phase.constraints {
             let role = match how {
@@ -192,15 +195,15 @@ impl Scene {
     /// # Errors
     /// The first input that cannot be used: no phases, phases out of order, unknown nodes, springs,
     /// chambers or obstacles, numbers out of range, constraints that contradict each other.
-    pub fn validate(&self) -> Result<(), Error> {
+    pub fn validate(&self) -> Result<(), InputError> {
         self.forces().map(|_| ())
     }
 
     /// The forces of each phase, all but those of constant matrices, after the checks of
     /// [`validate`](Self::validate).
-    pub(crate) fn forces(&self) -> Result<Vec<Forces>, Error> {
+    pub(crate) fn forces(&self) -> Result<Vec<Forces>, InputError> {
         if self.phases.is_empty() {
-            return Err(Error::input("number of phases", 0, "a scene needs one phase at least"));
+            return Err(InputError::new("number of phases", 0, "a scene needs one phase at least"));
         }
         for (name, vector) in
             ["initial displacement", "initial velocity"].into_iter().zip(&self.start)
@@ -208,7 +211,7 @@ impl Scene {
             if vector.len() != self.body.dofs() {
                 let mend = format!("it needs {} components at each node", self.body.dimension());
                 let value = format!("{} numbers in all", vector.len());
-                return Err(Error::input(name, value, mend));
+                return Err(InputError::new(name, value, mend));
             }
             finite(name, vector)?;
         }
@@ -216,11 +219,11 @@ impl Scene {
         for phase in &self.phases {
             let input = format!("end of phase \"{}\"", phase.name);
             if !phase.until.is_finite() {
-                return Err(Error::input(input, phase.until, "it must be a finite time (s)"));
+                return Err(InputError::new(input, phase.until, "it must be a finite time (s)"));
             }
             if phase.until <= start {
                 let mend = format!("phases run one after the other: it must lie after {start} s");
-                return Err(Error::input(input, format!("{} s", phase.until), mend));
+                return Err(InputError::new(input, format!("{} s", phase.until), mend));
             }
             start = phase.until;
         }
@@ -255,7 +258,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`validate`](Self::validate).
-    pub fn spectrum(&self) -> Result<Vec<Spectrum>, Error> {
+    pub fn spectrum(&self) -> Result<Vec<Spectrum>, InputError> {
         let forces = self.forces()?;
         let model = self.model(&forces);
         let rest = vec![0.0; self.body.dofs()];
@@ -289,22 +292,22 @@ impl Scene {
         forces: Forces,
         start: &Start,
         alpha: f64,
-    ) -> Result<System, Error> {
+    ) -> Result<System, InputError> {
         System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
     }
 
     /// The rows of its constraints.
-    pub(crate) fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, Error> {
+    pub(crate) fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, InputError> {
         rows(&phase.constraints, self.body.mesh(), &phase.name, start)
     }
 }
 
-fn unique<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), Error> {
+fn unique<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), InputError> {
     let mut seen = BTreeSet::new();
     for name in names {
         if !seen.insert(name) {
             let value = format!("\"{name}\"");
-            return Err(Error::input(
+            return Err(InputError::new(
                 format!("{what} name"),
                 value,
                 "it is taken: name it otherwise",

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
-use crate::error::Error;
 use crate::external::{Obstacle, Signal, Table, VectorSignal};
+use crate::input::InputError;
 use crate::mesh::Selection;
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
@@ -269,7 +269,7 @@ impl Phase {
     pub(super) fn contacts<'a>(
         &self,
         obstacles: &'a [Obstacle],
-    ) -> Result<Vec<&'a Obstacle>, Error> {
+    ) -> Result<Vec<&'a Obstacle>, InputError> {
         let ContactWith::These(names) = &self.contact else {
             return Ok(obstacles.iter().collect());
         };
@@ -304,17 +304,22 @@ pub(super) fn check_vector(
     vector: &[f64],
     dimension: usize,
     unit: &str,
-) -> Result<(), Error> {
+) -> Result<(), InputError> {
     if vector.len() == dimension {
         return Ok(());
     }
     let mend = format!("it needs {dimension} component(s) ({unit})");
-    Err(Error::input(input, format!("{vector:?}"), mend))
+    Err(InputError::new(input, format!("{vector:?}"), mend))
 }
 
 /// Position of `name` among the names that are `known`.
-pub(super) fn find(name: &str, known: &[&str], input: &str, what: &str) -> Result<usize, Error> {
+pub(super) fn find(
+    name: &str,
+    known: &[&str],
+    input: &str,
+    what: &str,
+) -> Result<usize, InputError> {
     known.iter().position(|other| *other == name).ok_or_else(|| {
-        Error::input(input, format!("\"{name}\""), format!("the scene has the {what} {known:?}"))
+        InputError::new(input, format!("\"{name}\""), format!("the scene has the {what} {known:?}"))
     })
 }

@@ -2,8 +2,8 @@
 
 use super::{Phase, Scene};
 use crate::constraint::Start;
-use crate::error::Error;
 use crate::external::Obstacle;
+use crate::input::InputError;
 use crate::system::Spectrum;
 
 /// What happens in a phase, and how fast the body can move then.
@@ -34,7 +34,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`validate`](Self::validate).
-    pub fn summary(&self) -> Result<Vec<PhaseSummary>, Error> {
+    pub fn summary(&self) -> Result<Vec<PhaseSummary>, InputError> {
         let spectra = self.spectrum()?;
         let starts = [0.0].into_iter().chain(self.phases.iter().map(Phase::end));
         let phases = self.phases.iter().zip(starts).zip(spectra);
@@ -46,7 +46,7 @@ impl Scene {
         phase: &Phase,
         start: f64,
         spectrum: Spectrum,
-    ) -> Result<PhaseSummary, Error> {
+    ) -> Result<PhaseSummary, InputError> {
         let rows = self.rows(phase, &Start { time: start, u: self.start()[0] })?;
         let mut loaded_nodes = 0;
         for (selection, _) in &phase.loads {

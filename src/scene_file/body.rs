@@ -3,7 +3,8 @@
 use super::selection::{BOX, corners};
 use super::value::Value;
 use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
-use crate::error::{Error, positive};
+use crate::error::Error;
+use crate::input::positive;
 use crate::material::{Material, Plane};
 use crate::mesh::Mesh;
 

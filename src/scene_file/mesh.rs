@@ -45,16 +45,16 @@ pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Err
 }
 
 fn generate(kind: Kind, table: &Table) -> Result<Mesh, Error> {
-    match kind {
+    Ok(match kind {
         Kind::Bar => Mesh::bar(
             table.required("length", "the length (m)", Value::number)?,
             table.required("nodes", "the number of nodes", Value::count)?,
-        ),
+        )?,
         Kind::Rectangle => Mesh::rectangle(
             table.required("size", "width and height (m)", Value::array)?,
             table.required("nodes", "corner nodes along x and y", Value::counts)?,
             table.required("cells", "how the grid is divided", cells)?,
-        ),
+        )?,
         Kind::Ring | Kind::HalfRing => {
             let inner = table.required("inner", "the inner radius (m)", Value::number)?;
             let outer = table.required("outer", "the outer radius (m)", Value::number)?;
@@ -62,20 +62,20 @@ fn generate(kind: Kind, table: &Table) -> Result<Mesh, Error> {
             let nodes = table.required("nodes", meaning, Value::counts)?;
             let cells = table.required("cells", "how the grid is divided", cells)?;
             match kind {
-                Kind::Ring => Mesh::ring(inner, outer, nodes, cells),
-                _ => Mesh::half_ring(inner, outer, nodes, cells),
+                Kind::Ring => Mesh::ring(inner, outer, nodes, cells)?,
+                _ => Mesh::half_ring(inner, outer, nodes, cells)?,
             }
         }
         Kind::Cuboid => Mesh::cuboid(
             table.required("size", "lengths along x, y and z (m)", Value::array)?,
             table.required("nodes", "corner nodes along x, y and z", Value::counts)?,
             table.required("cells", "how the grid is divided", solid_cells)?,
-        ),
+        )?,
         Kind::Gmsh => table.required("file", "the path of a Gmsh mesh", |value| {
             let file = value.source.beside(value.string()?);
             Mesh::read_gmsh(file).map_err(|error| value.error(error))
-        }),
-    }
+        })?,
+    })
 }
 
 fn cells(value: &Value) -> Result<Cells, Error> {
@@ -92,14 +92,14 @@ fn solid_cells(value: &Value) -> Result<SolidCells, Error> {
 
 /// The mesh in a space of `dimension`: along its first axes, where the mesh has fewer of its own.
 fn placed(mesh: Mesh, dimension: &Value) -> Result<Mesh, Error> {
-    match (mesh.dimension(), dimension.count()?) {
-        (own, wanted) if own == wanted => Ok(mesh),
-        (1, 2) => mesh.mapped(|x| [x[0], 0.0]),
-        (1, 3) => mesh.mapped(|x| [x[0], 0.0, 0.0]),
-        (2, 3) => mesh.mapped(|x| [x[0], x[1], 0.0]),
+    Ok(match (mesh.dimension(), dimension.count()?) {
+        (own, wanted) if own == wanted => mesh,
+        (1, 2) => mesh.mapped(|x| [x[0], 0.0])?,
+        (1, 3) => mesh.mapped(|x| [x[0], 0.0, 0.0])?,
+        (2, 3) => mesh.mapped(|x| [x[0], x[1], 0.0])?,
         (own, _) => {
             let allowed = ["1, 2 or 3", "2 or 3", "3"][own - 1];
-            Err(dimension.unexpected(format!("{allowed} for this mesh")))
+            return Err(dimension.unexpected(format!("{allowed} for this mesh")));
         }
-    }
+    })
 }

@@ -7,6 +7,7 @@ use super::table::Table;
 use super::value::{Value, number_of};
 use crate::constraint::Axis;
 use crate::error::Error;
+use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::scene::{Phase, Scene};
 
@@ -66,7 +67,7 @@ pub(super) fn add_phase(scene: Scene, value: &Value) -> Result<Scene, Error> {
 }
 
 /// Whether `phase` may follow those of the scene.
-fn check(scene: &Scene, phase: &Phase) -> Result<(), Error> {
+fn check(scene: &Scene, phase: &Phase) -> Result<(), InputError> {
     scene.clone().phase(phase.clone()).validate()
 }
 

@@ -3,7 +3,8 @@
 use super::selection::selection;
 use super::value::Value;
 use super::{Format, OutputRequest};
-use crate::error::{Error, positive};
+use crate::error::Error;
+use crate::input::positive;
 use crate::mesh::Mesh;
 use crate::simulate::{ContactEvents, Method, Solver};
 

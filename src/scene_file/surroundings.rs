@@ -5,6 +5,7 @@ use super::table::Table;
 use super::value::Value;
 use crate::error::Error;
 use crate::external::{Chamber, Contact, Obstacle, Shape, Spring};
+use crate::input::InputError;
 use crate::scene::Scene;
 
 /// The scene with the spring that `value` describes.
@@ -127,7 +128,7 @@ fn unique<'a>(
         false => Ok(()),
         true => {
             let mend = "another one has it already: give each a name of its own";
-            Err(table.blame(Error::input("name", format!("\"{name}\""), mend)))
+            Err(table.blame(InputError::new("name", format!("\"{name}\""), mend)))
         }
     }
 }

@@ -10,6 +10,7 @@ use super::nearest::{list, unknown};
 use super::source::Source;
 use super::value::Value;
 use crate::error::Error;
+use crate::input::InputError;
 
 /// A table all of whose keys are known.
 pub(super) struct Table<'a> {
@@ -101,9 +102,10 @@ impl<'a> Table<'a> {
 
     /// Puts an error about what was made of this table on the line of the key it is about, if that
     /// can be told, or else on that of the table. One that has its line already is left alone.
-    pub(super) fn blame(&self, error: Error) -> Error {
+    pub(super) fn blame(&self, error: impl Into<Error>) -> Error {
+        let error = error.into();
         let (input, value, mend) = match &error {
-            Error::Input { input, value, mend } => (input, value, mend),
+            Error::Input(InputError { input, value, mend }) => (input, value, mend),
             Error::SceneFile { .. } => return error,
             _ => return self.error(error),
         };

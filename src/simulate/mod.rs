@@ -16,7 +16,8 @@ pub use progress::Progress;
 use run::Run;
 pub use solver::{ContactEvents, Method, Solver, Tolerances};
 
-use crate::error::{Error, positive};
+use crate::error::Error;
+use crate::input::{InputError, positive};
 use crate::scene::Scene;
 use crate::trajectory::Trajectory;
 
@@ -50,14 +51,14 @@ impl Sampling {
         Self(Times::At(times.into()))
     }
 
-    fn validate(&self, end: f64) -> Result<(), Error> {
+    fn validate(&self, end: f64) -> Result<(), InputError> {
         match &self.0 {
             Times::PhaseEnds => Ok(()),
             Times::Every(step) => positive("sampling step", *step, "s").map(|_| ()),
             Times::At(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
                 Some(t) => {
                     let mend = format!("samples lie between 0 and the end of the scene, {end} s");
-                    Err(Error::input("sampling time", t, mend))
+                    Err(InputError::new("sampling time", t, mend))
                 }
                 None => Ok(()),
             },

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use crate::body::Body;
-use crate::error::{Error, positive};
+use crate::input::{InputError, positive};
 
 /// An integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -118,12 +118,12 @@ impl fmt::Display for Method {
 }
 
 impl FromStr for Method {
-    type Err = Error;
+    type Err = InputError;
 
-    fn from_str(name: &str) -> Result<Self, Error> {
+    fn from_str(name: &str) -> Result<Self, InputError> {
         Self::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
             let known = Self::ALL.map(Self::name).join(", ");
-            Error::input("method", format!("\"{name}\""), format!("it is one of {known}"))
+            InputError::new("method", format!("\"{name}\""), format!("it is one of {known}"))
         })
     }
 }
@@ -162,12 +162,16 @@ impl fmt::Display for ContactEvents {
 }
 
 impl FromStr for ContactEvents {
-    type Err = Error;
+    type Err = InputError;
 
-    fn from_str(name: &str) -> Result<Self, Error> {
+    fn from_str(name: &str) -> Result<Self, InputError> {
         Self::ALL.into_iter().find(|way| way.name() == name).ok_or_else(|| {
             let known = Self::ALL.map(Self::name).join(", ");
-            Error::input("contact_events", format!("\"{name}\""), format!("it is one of {known}"))
+            InputError::new(
+                "contact_events",
+                format!("\"{name}\""),
+                format!("it is one of {known}"),
+            )
         })
     }
 }
@@ -223,10 +227,10 @@ impl Solver {
     ///
     /// # Errors
     /// The first number out of its range.
-    pub fn validate(&self) -> Result<(), Error> {
+    pub fn validate(&self) -> Result<(), InputError> {
         if !(self.rtol > 0.0 && self.rtol < 1.0) {
             let mend = "it must lie above 0 and below 1 (1e-3 is rough, 1e-8 fine)";
-            return Err(Error::input("rtol", self.rtol, mend));
+            return Err(InputError::new("rtol", self.rtol, mend));
         }
         positive("alpha", self.alpha, "1/s")?;
         self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
@@ -235,21 +239,21 @@ impl Solver {
         match self.max_order {
             Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {
                 let mend = format!("{} has one order only: leave it out", self.method);
-                Err(Error::input("max_order", order, mend))
+                Err(InputError::new("max_order", order, mend))
             }
             Some(order) if !orders.contains(&order) => {
                 let (lowest, highest) = (orders.start(), orders.end());
                 let mend = format!("{} has the orders {lowest} to {highest}", self.method);
-                Err(Error::input("max_order", order, mend))
+                Err(InputError::new("max_order", order, mend))
             }
             _ if self.stability_limit_detection
                 && !matches!(self.method, Method::Auto | Method::CvodeBdf) =>
             {
                 let mend = format!("{} has no such limits: leave it out", self.method);
-                Err(Error::input("stability_limit_detection", true, mend))
+                Err(InputError::new("stability_limit_detection", true, mend))
             }
             _ if self.max_steps == 0 => {
-                Err(Error::input("max_steps", 0, "allow one step at least"))
+                Err(InputError::new("max_steps", 0, "allow one step at least"))
             }
             _ => Ok(()),
         }

@@ -20,7 +20,8 @@ use std::time::Instant;
 use newton::{Search, Stuck};
 
 use crate::constraint::Start;
-use crate::error::{Error, positive};
+use crate::error::Error;
+use crate::input::{InputError, positive};
 use crate::scene::Scene;
 use crate::system::{AtRest, Energy};
 use crate::trajectory::{Report, Sample, Trajectory};
@@ -47,7 +48,7 @@ impl Default for Statics {
 }
 
 impl Statics {
-    fn validate(&self) -> Result<(), Error> {
+    fn validate(&self) -> Result<(), InputError> {
         positive("statics.rtol", self.rtol, "")?;
         positive("statics.min_load_step", self.min_load_step, "")?;
         for (input, number) in [
@@ -55,7 +56,7 @@ impl Statics {
             ("statics.load_steps", self.load_steps),
         ] {
             if number == 0 {
-                return Err(Error::input(input, number, "it must be 1 at least"));
+                return Err(InputError::new(input, number, "it must be 1 at least"));
             }
         }
         Ok(())
@@ -193,7 +194,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// Bad input; [`Error::Constraint`] if a linear body is held so that it can still move as a
+    /// Bad input; [`Error::Input`] if a linear body is held so that it can still move as a
     /// whole; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
     pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
         let clock = Instant::now();
@@ -206,15 +207,14 @@ impl Scene {
         let free =
             rigid::free_motions(self.body().mesh(), self.body().inertia().pattern(), system.rows());
         let rest = AtRest::new(system, phase.end(), phase.name())?;
-        let loose = |problem: String| Error::Constraint {
-            phase: phase.name().into(),
-            nodes: "the body".into(),
-            problem,
+        let loose = |freedom: &str| {
+            let input = format!("constraints of phase \"{}\"", phase.name());
+            let value = format!("leaving the body free {freedom}");
+            Error::from(InputError::new(input, value, "hold more of its nodes"))
         };
         let linear = rest.is_linear();
         if linear && !free.is_empty() {
-            let motions = free.join(", ");
-            return Err(loose(format!("leave it free for {motions}: hold more of its nodes")));
+            return Err(loose(&format!("for {}", free.join(", "))));
         }
         let mut search = Search::new(rest, statics, self.body().mesh().size(), !free.is_empty());
         let result = search.all();
@@ -247,9 +247,7 @@ impl Scene {
         }
         let stability = search.stability();
         if linear && stability == Stability::Neutral {
-            return Err(loose(
-                "leave it free to deform without force: hold more of its nodes".into(),
-            ));
+            return Err(loose("to deform without force"));
         }
         Ok(Equilibrium {
             trajectory,

@@ -10,6 +10,7 @@ use svg::node::element::{Circle, Group, Line, Path as Outline, Polyline, Rectang
 use super::fastest::time_text;
 use super::{Findings, LineFindings};
 use crate::error::Error;
+use crate::input::InputError;
 use crate::output::{FONT, INK, png, power_text, ticks, write_file};
 
 /// Left, top, right and bottom of the field in which lines are drawn (px).
@@ -55,7 +56,7 @@ impl<'a> Chart<'a> {
             findings.lines().iter().flat_map(LineFindings::points).flatten().collect();
         if points.is_empty() {
             let mend = "a chart needs one at least: its notes say why they failed";
-            return Err(Error::input("number of successful runs", 0, mend));
+            return Err(InputError::new("number of successful runs", 0, mend).into());
         }
         let range = |values: &mut dyn Iterator<Item = f64>| {
             let [low, high] = values
@@ -83,7 +84,7 @@ impl<'a> Chart<'a> {
             }),
             _ => {
                 let mend = "its name must end in .svg or .png";
-                Err(Error::input("file of a chart", path.display(), mend))
+                Err(InputError::new("file of a chart", path.display(), mend).into())
             }
         }
     }

@@ -7,7 +7,8 @@ use std::time::{Duration, Instant};
 use super::row::{Row, read_rows, write_rows};
 use super::timing::{Repetitions, Time, Yardstick};
 use super::{Failed, Findings, Measured, Problem};
-use crate::error::{Error, positive};
+use crate::error::Error;
+use crate::input::{InputError, positive};
 
 /// Measures a problem line by line and point by point.
 pub struct Study<'a> {
@@ -129,13 +130,13 @@ impl<'a> Study<'a> {
 
     fn validate(&self) -> Result<(), Error> {
         if self.repetitions == 0 {
-            return Err(Error::input("repetitions", 0, "each run is timed once at least"));
+            return Err(InputError::new("repetitions", 0, "each run is timed once at least").into());
         }
         positive("patience", self.patience, "")?;
         positive("limit", self.limit, "s")?;
         if self.limit > LONGEST_LIMIT {
             let mend = format!("it is at most {LONGEST_LIMIT:e} s");
-            return Err(Error::input("limit", self.limit, mend));
+            return Err(InputError::new("limit", self.limit, mend).into());
         }
         Ok(())
     }

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use super::truth::{Probe, Truth, reason, shared_nodes};
 use super::{Failed, Line, Measured, Point, Problem, fingerprint};
-use crate::error::{Error, positive};
+use crate::error::Error;
+use crate::input::{InputError, positive};
 use crate::scene::Scene;
 use crate::simulate::{Method, Sampling, Solver};
 
@@ -157,10 +158,10 @@ impl Scenes {
         self
     }
 
-    fn validate(&self) -> Result<(), Error> {
+    fn validate(&self) -> Result<(), InputError> {
         if !(self.finest > 0.0 && self.finest < 1.0) {
             let mend = "a relative error lies above 0 and below 1 (1e-7 is usual)";
-            return Err(Error::input("finest", self.finest, mend));
+            return Err(InputError::new("finest", self.finest, mend));
         }
         positive("alpha", self.alpha, "1/s")?;
         let end = self.scenes[0].end();
@@ -168,13 +169,13 @@ impl Scenes {
             scene.validate()?;
             if scene.end() != end {
                 let mend = format!("all scenes that are compared end together, at {end} s here");
-                return Err(Error::input("end of a scene", format!("{} s", scene.end()), mend));
+                return Err(InputError::new("end of a scene", format!("{} s", scene.end()), mend));
             }
         }
         for (number, line) in self.lines.iter().enumerate() {
             if self.lines[..number].iter().any(|other| other.name == line.name) {
                 let mend = "another line has it: name it otherwise";
-                return Err(Error::input("name of a line", format!("\"{}\"", line.name), mend));
+                return Err(InputError::new("name of a line", format!("\"{}\"", line.name), mend));
             }
         }
         self.runs.iter().flatten().try_for_each(|run| run.solver.validate())

@@ -6,6 +6,7 @@ use std::time::Duration;
 use super::Failed;
 use super::timing::Budget;
 use crate::error::Error;
+use crate::input::InputError;
 use crate::scene::Scene;
 use crate::simulate::{Method, Sampling, Solver};
 use crate::trajectory::Trajectory;
@@ -278,7 +279,7 @@ pub(super) fn shared_nodes(scenes: &[&Scene]) -> Result<Vec<Vec<usize>>, Error> 
     }
     if shared[0].is_empty() {
         let mend = "errors are measured at nodes that all meshes share: let them have some";
-        return Err(Error::input("number of nodes that all meshes share", 0, mend));
+        return Err(InputError::new("number of nodes that all meshes share", 0, mend).into());
     }
     Ok(shared)
 }

@@ -11,8 +11,8 @@
 use super::reduced::Source;
 use super::{System, nodal_multipliers};
 use crate::constraint::Prescribed;
-use crate::error::Error;
 use crate::force::{Force, NodalForces, Reservoir};
+use crate::input::InputError;
 use crate::ode::Failure;
 use crate::sparse::{BlockMatrix, NodeMatrix};
 use crate::system::Energy;
@@ -88,14 +88,14 @@ impl Balance {
 impl AtRest {
     /// # Errors
     /// A path of a constraint that gives no finite displacement at `time` (s).
-    pub(crate) fn new(system: System, time: f64, phase: &str) -> Result<Self, Error> {
+    pub(crate) fn new(system: System, time: f64, phase: &str) -> Result<Self, InputError> {
         let lost = |prescribed: Prescribed| !prescribed.displacement.is_finite();
         if let Some(row) = system.rows.iter().find(|row| lost(row.prescribed(time))) {
-            return Err(Error::Constraint {
-                phase: phase.into(),
-                nodes: row.label(system.model.dimension),
-                problem: format!("prescribe no finite displacement at t = {time} s"),
-            });
+            return Err(InputError::new(
+                format!("path of {} in phase \"{phase}\"", row.label(system.model.dimension)),
+                format!("{} m at t = {time} s", row.prescribed(time).displacement),
+                "it must give finite numbers",
+            ));
         }
         let dofs = system.dofs();
         let (still, nodal) = (vec![0.0; dofs], NodalForces::zeros(dofs));

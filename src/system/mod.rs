@@ -40,8 +40,8 @@ use reduced::{Coupling, Reduced};
 pub use spectrum::Spectrum;
 
 use crate::constraint::{Prescribed, Row};
-use crate::error::Error;
 use crate::force::{Force, NodalForces, Reservoir};
+use crate::input::InputError;
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::NodeMatrix;
@@ -118,7 +118,7 @@ impl System {
         rows: Vec<Row>,
         alpha: f64,
         phase: &str,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, InputError> {
         let (dimension, dofs) = (model.dimension, model.dofs());
         let coupling = match model.inertia.is_diagonal() {
             true => Coupling::Diagonal,
@@ -128,12 +128,12 @@ impl System {
         let values = &model.inertia.values;
         if inertia.factorize(|source| values[source.entry]).is_err() {
             return Err(match inertia.dependent_row() {
-                Some(row) => Error::Constraint {
-                    phase: phase.into(),
-                    nodes: rows[row].label(dimension),
-                    problem: "follow from the other constraints: leave this row out".into(),
-                },
-                None => Error::input(
+                Some(row) => InputError::new(
+                    format!("constraints of phase \"{phase}\""),
+                    format!("row {}", rows[row].label(dimension)),
+                    "it follows from the other constraints: leave it out",
+                ),
+                None => InputError::new(
                     "material.density",
                     format!("giving {:e} kg on node 1", model.inertia.get(0, 0)),
                     "with this mesh the masses are beyond the range of double precision",

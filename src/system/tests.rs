@@ -7,7 +7,7 @@ use super::{DaeForm, ENERGIES, Index, System};
 use crate::constraint::{Axis, Start};
 use crate::ode::{Dae, Ode};
 use crate::samples::SQUARE_MATERIAL;
-use crate::{Body, Cells, Error, Mesh, Obstacle, Phase, Scene};
+use crate::{Body, Cells, InputError, Mesh, Obstacle, Phase, Scene};
 
 const ALPHA: f64 = 30.0;
 
@@ -32,7 +32,7 @@ fn system() -> System {
     first_phase(&scene, &start).unwrap()
 }
 
-fn first_phase(scene: &Scene, start: &Start) -> Result<System, Error> {
+fn first_phase(scene: &Scene, start: &Start) -> Result<System, InputError> {
     let mut forces = scene.forces()?;
     let model = scene.model(&forces);
     scene.system(&model, &scene.phases()[0], forces.remove(0), start, ALPHA)

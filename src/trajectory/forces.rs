@@ -2,8 +2,8 @@
 
 use super::{Sample, Trajectory};
 use crate::constraint::Start;
-use crate::error::Error;
 use crate::force::{Force, NodalForces};
+use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::ode::Failure;
 use crate::scene::Phase;
@@ -15,7 +15,7 @@ impl Trajectory {
     /// # Errors
     /// A sample that is not of this trajectory; an obstacle of one's own whose distance has changed
     /// since the run and has no meaning any more.
-    pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, Error> {
+    pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
         let phase = self.phase_of(sample)?;
         let mut forces = NodalForces::zeros(self.body().dofs());
         for contact in self.scene.contacts(phase)? {
@@ -32,7 +32,7 @@ impl Trajectory {
     ///
     /// # Errors
     /// A sample that is not of this trajectory.
-    pub fn constraint_forces(&self, sample: &Sample) -> Result<Vec<f64>, Error> {
+    pub fn constraint_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
         let phase = self.phase_of(sample)?;
         let mut forces = vec![0.0; self.body().dofs()];
         // where the rows start from tells what they prescribe, not which components they tie
@@ -70,7 +70,7 @@ impl Trajectory {
         &self,
         sample: &Sample,
         selection: impl Into<Selection>,
-    ) -> Result<Vec<f64>, Error> {
+    ) -> Result<Vec<f64>, InputError> {
         let nodes = self.body().mesh().select(&selection.into())?;
         let forces = self.constraint_forces(sample)?;
         let dimension = self.body().dimension();
@@ -78,7 +78,7 @@ impl Trajectory {
         Ok((0..dimension).map(along).collect())
     }
 
-    fn phase_of(&self, sample: &Sample) -> Result<&Phase, Error> {
+    fn phase_of(&self, sample: &Sample) -> Result<&Phase, InputError> {
         let dofs = self.body().dofs();
         let phase = self.scene.phases().get(sample.phase);
         let fits = sample.u.len() == dofs && sample.v.len() == dofs;
@@ -86,15 +86,15 @@ impl Trajectory {
     }
 }
 
-fn foreign(sample: &Sample) -> Error {
+fn foreign(sample: &Sample) -> InputError {
     let mend = "it is not a sample of this trajectory: take one from Trajectory::samples";
-    Error::input("sample", format!("that at {} s", sample.time), mend)
+    InputError::new("sample", format!("that at {} s", sample.time), mend)
 }
 
-fn refused(sample: &Sample, failure: Failure) -> Error {
+fn refused(sample: &Sample, failure: Failure) -> InputError {
     let reason = match failure {
         Failure::Recoverable(reason) => reason,
         Failure::Fatal(error) => error.to_string(),
     };
-    Error::input("sample", format!("that at {} s", sample.time), reason)
+    InputError::new("sample", format!("that at {} s", sample.time), reason)
 }

@@ -3,7 +3,9 @@
 use pliant::output::Chart;
 use pliant::rk::{DormandPrince, Options};
 use pliant::samples::SQUARE_MATERIAL;
-use pliant::{Body, Cells, Error, Inertia, Material, Mesh, Method, Phase, Sampling, Scene, Solver};
+use pliant::{
+    Body, Cells, Error, Inertia, InputError, Material, Mesh, Method, Phase, Sampling, Scene, Solver,
+};
 
 use super::Outcome;
 use super::linear::{Dense, Linear};
@@ -15,7 +17,7 @@ pub const LIMIT: f64 = 3.3066;
 pub const UNTIL: f64 = 0.05;
 
 /// Hirai's square of 30 cm, with a viscosity (Pa s).
-pub fn square(nodes: usize, viscosity: f64, inertia: Inertia) -> Result<Body, Error> {
+pub fn square(nodes: usize, viscosity: f64, inertia: Inertia) -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.3, 0.3], [nodes, nodes], Cells::Triangles)?;
     let material = Material { viscosity, ..SQUARE_MATERIAL };
     Body::new(mesh, material).thickness(0.01).inertia(inertia).build()

@@ -6,7 +6,7 @@ use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatMut};
 use pliant::ode::{Dae, Failure};
 use pliant::samples::{Pendulum, SQUARE_MATERIAL};
-use pliant::{Body, Cells, Error, Mesh, Prescribed};
+use pliant::{Body, Cells, InputError, Mesh, Prescribed};
 
 use super::Outcome;
 use super::linear::Linear;
@@ -131,7 +131,7 @@ pub fn path(t: f64) -> Prescribed {
 }
 
 /// Hirai's square.
-pub fn square_body() -> Result<Body, Error> {
+pub fn square_body() -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
     Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()
 }

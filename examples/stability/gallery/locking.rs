@@ -1,7 +1,7 @@
 //! Poisson's ratio near 1/2: cells that lock.
 
 use pliant::output::Chart;
-use pliant::{Body, Cells, Error, Material, Mesh, Phase, Scene, Statics};
+use pliant::{Body, Cells, Error, InputError, Material, Mesh, Phase, Scene, Statics};
 
 use super::Outcome;
 use super::linear::Linear;
@@ -11,7 +11,7 @@ use super::page::{Page, few};
 pub const DISTANCES: [f64; 6] = [0.2, 0.1, 0.05, 0.01, 1e-3, 1e-4];
 
 /// A beam of 10 x 2 cm in plane strain, divided into `grid` cells.
-pub fn beam(cells: Cells, [along, across]: [usize; 2], poisson: f64) -> Result<Body, Error> {
+pub fn beam(cells: Cells, [along, across]: [usize; 2], poisson: f64) -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.1, 0.02], [along + 1, across + 1], cells)?;
     let material = Material { density: 1000.0, young: 1e5, poisson, viscosity: 0.0 };
     Body::new(mesh, material).thickness(0.01).build()

@@ -5,7 +5,9 @@ use faer::linalg::solvers::{PartialPivLu, Solve};
 use pliant::output::Chart;
 use pliant::samples::{ClampedBeam, FLAG_MATERIAL};
 use pliant::sundials::{Cvode, CvodeOptions, Jacobian, LinearSolver};
-use pliant::{Body, Cells, Error, Material, Mesh, Method, Sampling, Scene, Solver, Trajectory};
+use pliant::{
+    Body, Cells, Error, InputError, Material, Mesh, Method, Sampling, Scene, Solver, Trajectory,
+};
 
 use super::Outcome;
 use super::heat::{Cell, heat_map};
@@ -19,7 +21,7 @@ pub const CRITICAL: [f64; 3] = [0.0692, 0.2865, 0.6180];
 
 /// The clamped beam under sudden gravity, `nodes` along and across, with this damping ratio of its
 /// lowest vibration; those of the others are larger in proportion to their frequencies.
-pub fn beam(nodes: [usize; 2], damping_ratio: f64, until: f64) -> Result<Scene, Error> {
+pub fn beam(nodes: [usize; 2], damping_ratio: f64, until: f64) -> Result<Scene, InputError> {
     let undamped = ClampedBeam { nodes, until, ..ClampedBeam::default() };
     let omega = undamped.scene()?.spectrum()?[0].lowest_frequency.unwrap_or(f64::NAN);
     let viscosity = 2.0 * damping_ratio * FLAG_MATERIAL.young / omega;

@@ -3,8 +3,8 @@
 use pliant::output::Chart;
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
-    Body, Cells, Error, Material, Mesh, Method, Phase, Sampling, Scene, Solver, Strain, Trajectory,
-    Viscosity,
+    Body, Cells, Error, InputError, Material, Mesh, Method, Phase, Sampling, Scene, Solver, Strain,
+    Trajectory, Viscosity,
 };
 
 use super::Outcome;
@@ -35,7 +35,7 @@ impl Square {
     }
 
     /// The body.
-    pub fn body(&self) -> Result<Body, Error> {
+    pub fn body(&self) -> Result<Body, InputError> {
         let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Rectangles)?;
         let material = Material { viscosity: self.c, ..SQUARE_MATERIAL };
         Body::new(mesh, material)

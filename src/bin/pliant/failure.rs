@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 
-use pliant::Error;
+use pliant::{Error, InputError};
 
 /// Why the command ends without success.
 pub struct Failure {
@@ -39,6 +39,12 @@ impl From<Error> for Failure {
             | Error::Output { .. } => Self::failed(error),
             _ => Self::bad_input(error),
         }
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::bad_input(error)
     }
 }
 

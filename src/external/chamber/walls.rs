@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Chamber;
-use crate::error::Error;
 use crate::external::surface::pieces;
+use crate::input::InputError;
 use crate::mesh::{Mesh, Selection};
 
 impl Chamber {
@@ -13,11 +13,11 @@ impl Chamber {
         &self,
         mesh: &Mesh,
         selection: &Selection,
-    ) -> Result<Vec<[usize; 2]>, Error> {
+    ) -> Result<Vec<[usize; 2]>, InputError> {
         let nodes = mesh.select(selection)?;
         if nodes.len() < 3 {
             let mend = "a polygon needs 3 nodes at least";
-            return Err(Error::input(self.input("number of nodes"), nodes.len(), mend));
+            return Err(InputError::new(self.input("number of nodes"), nodes.len(), mend));
         }
         match selection {
             Selection::Numbers(_) => {
@@ -38,7 +38,7 @@ impl Chamber {
         &self,
         mesh: &Mesh,
         selection: &Selection,
-    ) -> Result<(Vec<[usize; 3]>, f64), Error> {
+    ) -> Result<(Vec<[usize; 3]>, f64), InputError> {
         let nodes = mesh.select(selection)?.into_iter().collect();
         let mut faces = mesh.boundary_faces();
         // the cells of a string are no walls
@@ -62,20 +62,20 @@ impl Chamber {
         &self,
         mesh: &Mesh,
         triangles: &[[usize; 3]],
-    ) -> Result<Vec<[usize; 3]>, Error> {
+    ) -> Result<Vec<[usize; 3]>, InputError> {
         for triangle in triangles {
             mesh.select(&(*triangle).into())?;
         }
         let triangles: Vec<[usize; 3]> =
             triangles.iter().map(|triangle| triangle.map(|number| number - 1)).collect();
         check_closed(triangles.iter().map(<[usize; 3]>::as_slice)).map_err(|problem| {
-            Error::input(self.input("number of triangles"), triangles.len(), problem)
+            InputError::new(self.input("number of triangles"), triangles.len(), problem)
         })?;
         Ok(triangles)
     }
 
-    fn bad_walls(&self, selection: &Selection, problem: &str) -> Error {
-        Error::input(self.input("nodes"), format!("{selection:?}"), problem)
+    fn bad_walls(&self, selection: &Selection, problem: &str) -> InputError {
+        InputError::new(self.input("nodes"), format!("{selection:?}"), problem)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Bars of segments.
 
 use super::{check_nodes, grid_line};
-use crate::error::{Error, positive};
+use crate::input::{InputError, positive};
 use crate::mesh::{CellKind, Mesh};
 
 impl Mesh {
@@ -10,7 +10,7 @@ impl Mesh {
     ///
     /// # Errors
     /// A length that is not above 0, fewer than 2 nodes.
-    pub fn bar(length: f64, nodes: usize) -> Result<Self, Error> {
+    pub fn bar(length: f64, nodes: usize) -> Result<Self, InputError> {
         positive("bar.length", length, "m")?;
         check_nodes("bar", [nodes])?;
         let positions = (0..nodes).map(|i| grid_line(i, nodes - 1, length)).collect();

@@ -2,7 +2,7 @@
 
 use super::grid::Grid;
 use super::{check_nodes, grid_line};
-use crate::error::{Error, positive};
+use crate::input::{InputError, positive};
 use crate::mesh::{CellKind, Mesh};
 
 /// How a three-dimensional grid is divided into cells, row by row along x.
@@ -47,7 +47,11 @@ impl Mesh {
     ///
     /// # Errors
     /// A side that is not above 0, fewer than 2 nodes along a side.
-    pub fn cuboid(size: [f64; 3], nodes: [usize; 3], cells: SolidCells) -> Result<Self, Error> {
+    pub fn cuboid(
+        size: [f64; 3],
+        nodes: [usize; 3],
+        cells: SolidCells,
+    ) -> Result<Self, InputError> {
         for (axis, &length) in size.iter().enumerate() {
             positive(&format!("cuboid.size[{axis}]"), length, "m")?;
         }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::error::Error;
+use crate::input::InputError;
 use crate::mesh::{CellKind, Mesh};
 
 /// How a two-dimensional grid is divided into cells.
@@ -54,12 +54,12 @@ impl fmt::Display for Cells {
 }
 
 impl FromStr for Cells {
-    type Err = Error;
+    type Err = InputError;
 
-    fn from_str(name: &str) -> Result<Self, Error> {
+    fn from_str(name: &str) -> Result<Self, InputError> {
         Self::ALL.into_iter().find(|cells| cells.name() == name).ok_or_else(|| {
             let known = Self::ALL.map(Self::name).join(", ");
-            Error::input("cells", format!("\"{name}\""), format!("they are one of {known}"))
+            InputError::new("cells", format!("\"{name}\""), format!("they are one of {known}"))
         })
     }
 }
@@ -200,7 +200,7 @@ impl<const N: usize> Grid<N> {
         name: &str,
         axis: usize,
         greatest: bool,
-    ) -> Result<Mesh, Error> {
+    ) -> Result<Mesh, InputError> {
         let at = if greatest { self.steps * self.cells[axis] } else { 0 };
         let on_side = (0..self.numbers.len()).filter(|&index| self.place(index)[axis] == at);
         let numbers: Vec<usize> = on_side.map(|index| self.numbers[index] + 1).collect();
@@ -215,7 +215,7 @@ impl Grid<2> {
         cells: Cells,
         triangles: Diagonal,
         position: impl Fn([usize; 2]) -> [f64; 2],
-    ) -> Result<Mesh, Error> {
+    ) -> Result<Mesh, InputError> {
         let (kind, connectivity) = match cells {
             Cells::Triangles => {
                 (CellKind::Triangle, self.divide(CellKind::Triangle, |_| triangles.division()))

@@ -9,13 +9,13 @@ mod ring;
 pub use cuboid::SolidCells;
 pub use grid::Cells;
 
-use crate::error::Error;
+use crate::input::InputError;
 
 /// Most nodes that a generator makes: beyond it, matrices fit no memory and input is a slip.
 const MOST_NODES: usize = 100_000_000;
 
 /// Checks the numbers of nodes along the axes of a grid.
-fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(), Error> {
+fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(), InputError> {
     for (axis, &count) in nodes.iter().enumerate() {
         if count < 2 {
             let input = match D {
@@ -23,13 +23,13 @@ fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(),
                 _ => format!("{generator}.nodes[{axis}]"),
             };
             let mend = "at least 2 nodes are needed along each side";
-            return Err(Error::input(input, count, mend));
+            return Err(InputError::new(input, count, mend));
         }
     }
     let total = nodes.iter().try_fold(1, |total: usize, &count| total.checked_mul(count));
     if total.is_none_or(|total| total > MOST_NODES) {
         let mend = format!("a mesh has at most {MOST_NODES} nodes: choose fewer");
-        return Err(Error::input(format!("{generator}.nodes"), format!("{nodes:?}"), mend));
+        return Err(InputError::new(format!("{generator}.nodes"), format!("{nodes:?}"), mend));
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use super::grid::{Cells, Diagonal, Grid};
 use super::{check_nodes, grid_line};
-use crate::error::{Error, positive};
+use crate::input::{InputError, positive};
 use crate::mesh::Mesh;
 
 impl Mesh {
@@ -12,7 +12,7 @@ impl Mesh {
     ///
     /// # Errors
     /// A side that is not above 0, fewer than 2 nodes along a side.
-    pub fn rectangle(size: [f64; 2], nodes: [usize; 2], cells: Cells) -> Result<Self, Error> {
+    pub fn rectangle(size: [f64; 2], nodes: [usize; 2], cells: Cells) -> Result<Self, InputError> {
         positive("rectangle.size[0]", size[0], "m")?;
         positive("rectangle.size[1]", size[1], "m")?;
         check_nodes("rectangle", nodes)?;

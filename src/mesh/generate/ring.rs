@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 use super::check_nodes;
 use super::grid::{Cells, Diagonal, Grid};
-use crate::error::{Error, positive};
+use crate::input::{InputError, positive};
 use crate::mesh::Mesh;
 
 impl Mesh {
@@ -20,17 +20,22 @@ impl Mesh {
     /// # Errors
     /// An inner radius that is not above 0 or not below the outer one, fewer than 3 nodes around
     /// or 2 along the radius, an odd number around with [`Cells::Crossed`].
-    pub fn ring(inner: f64, outer: f64, nodes: [usize; 2], cells: Cells) -> Result<Self, Error> {
+    pub fn ring(
+        inner: f64,
+        outer: f64,
+        nodes: [usize; 2],
+        cells: Cells,
+    ) -> Result<Self, InputError> {
         let [around, radial] = nodes;
         check_radii("ring", inner, outer)?;
         check_nodes("ring", nodes)?;
         if around < 3 {
             let mend = "a ring needs at least 3 nodes around";
-            return Err(Error::input("ring.nodes[0]", around, mend));
+            return Err(InputError::new("ring.nodes[0]", around, mend));
         }
         if cells == Cells::Crossed && !around.is_multiple_of(2) {
             let mend = "crossed diagonals alternate around a ring only if the number is even";
-            return Err(Error::input("ring.nodes[0]", around, mend));
+            return Err(InputError::new("ring.nodes[0]", around, mend));
         }
         let grid = Grid::new([radial - 1, around], true, cells == Cells::Triangles6);
         let from_below = |step: usize, steps: usize| direction(4 * step + 3 * steps, steps);
@@ -50,7 +55,7 @@ impl Mesh {
         outer: f64,
         nodes: [usize; 2],
         cells: Cells,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, InputError> {
         let [around, radial] = nodes;
         check_radii("half_ring", inner, outer)?;
         check_nodes("half_ring", nodes)?;
@@ -69,7 +74,7 @@ fn annulus(
     cell_counts: [usize; 2],
     cells: Cells,
     direction: impl Fn(usize, usize) -> [f64; 2],
-) -> Result<Mesh, Error> {
+) -> Result<Mesh, InputError> {
     let [across, along] = cell_counts.map(|count| grid.steps * count);
     let position = |[i, j]: [usize; 2]| {
         let share = i as f64 / across as f64;
@@ -98,12 +103,12 @@ fn direction(count: usize, of: usize) -> [f64; 2] {
     }
 }
 
-fn check_radii(generator: &str, inner: f64, outer: f64) -> Result<(), Error> {
+fn check_radii(generator: &str, inner: f64, outer: f64) -> Result<(), InputError> {
     positive(&format!("{generator}.inner"), inner, "m")?;
     positive(&format!("{generator}.outer"), outer, "m")?;
     if inner >= outer {
         let mend = format!("it must be above the inner radius, {inner} (m)");
-        return Err(Error::input(format!("{generator}.outer"), outer, mend));
+        return Err(InputError::new(format!("{generator}.outer"), outer, mend));
     }
     Ok(())
 }

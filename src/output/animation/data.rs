@@ -9,6 +9,7 @@ use super::pack;
 use crate::body::{Body, CellField};
 use crate::error::Error;
 use crate::external::{Shape, ShapeKind, Spring};
+use crate::input::InputError;
 use crate::mesh::{CellKind, Mesh};
 use crate::output::svg::{View, displaced, drawn, positions};
 use crate::scene::{Phase, Role, Scene};
@@ -230,7 +231,7 @@ fn springs(
 ) -> Result<Value, Error> {
     let forces =
         frames.iter().map(|sample| scene.actuations(&scene.phases()[sample.phase], sample.time));
-    let forces: Vec<Vec<f64>> = forces.collect::<Result<_, Error>>()?;
+    let forces: Vec<Vec<f64>> = forces.collect::<Result<_, InputError>>()?;
     let packed = scene.springs().iter().zip(ends).enumerate().map(|(number, (spring, ends))| {
         json!({
             "name": spring.name(),

@@ -15,7 +15,8 @@ use svg::Document;
 use svg::node::element::{Circle, Definitions, Group, Line, Path as Outline, Pattern, Text};
 
 use super::{FONT, INK, write_file};
-use crate::error::{Error, finite};
+use crate::error::Error;
+use crate::input::{InputError, finite};
 use crate::mesh::Selection;
 use crate::scene::Role;
 use crate::trajectory::{Sample, Trajectory};
@@ -109,11 +110,13 @@ impl Snapshots {
     fn validate(&self) -> Result<(), Error> {
         if self.times.is_empty() {
             let mend = "name one time at least";
-            return Err(Error::input("snapshot times", "[]", mend));
+            return Err(InputError::new("snapshot times", "[]", mend).into());
         }
         finite("the snapshot times", &self.times)?;
         match self.columns {
-            Some(0) => Err(Error::input("snapshot columns", 0, "draw one column at least")),
+            Some(0) => {
+                Err(InputError::new("snapshot columns", 0, "draw one column at least").into())
+            }
             _ => Ok(()),
         }
     }
