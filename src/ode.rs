@@ -1,11 +1,15 @@
-//! What an integrator is given: systems of ordinary differential equations (ODE) and of
-//! differential-algebraic equations (DAE).
+//! What an integrator is given: systems of ordinary differential equations (ODE), of
+//! differential-algebraic equations (DAE), and of [second order](SecondOrder).
 //!
 //! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method `rk`.
 //! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
 //! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian; a struct implements
 //! the trait when it wants to hand over root functions or a linear solver of its own. An
 //! integrator owns its system; [`Borrowed`] lends it one instead.
+
+mod second_order;
+
+pub use second_order::{EnergyBalance, Kick, Rates, SecondOrder};
 
 use std::{
     error::Error,

@@ -45,6 +45,11 @@ impl Control {
         (self.taken, self.worst, self.watched) = (0.0, 0.0, 0);
     }
 
+    #[cfg(test)]
+    pub(super) fn fix_steps(&mut self, t: f64, h: f64) {
+        *self = Self::new(t, self.end, h);
+    }
+
     /// Size of the present steps (s).
     pub(super) fn step(&self) -> f64 {
         (self.end - self.from) / self.count

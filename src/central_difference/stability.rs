@@ -1,6 +1,6 @@
 //! The longest stable step, followed along the motion.
 
-use crate::system::{Rates, RatesBound, System};
+use crate::ode::{EnergyBalance, Rates, SecondOrder};
 use crate::vector::dot;
 
 /// Part of the longest stable step that is used: rates may grow until they are bounded anew.
@@ -18,8 +18,13 @@ const LOOK: usize = 128;
 const CREATED: f64 = 0.05;
 const SHORTENED: f64 = 0.7;
 
+/// Longest step (s) that is stable: 2/(decay + sqrt(decay^2 + frequency^2)).
+pub(crate) fn longest_step(rates: &Rates) -> f64 {
+    let Rates { frequency, decay } = *rates;
+    2.0 / (decay + decay.hypot(frequency))
+}
+
 pub(super) struct Stability {
-    bound: RatesBound,
     rates: Rates,
     /// Part of the bound in use.
     safety: f64,
@@ -27,56 +32,44 @@ pub(super) struct Stability {
     /// Steps since the last bound, and since the last look at the energy.
     since: usize,
     unseen: usize,
-    energy: Balance,
+    /// Lowest energy balance of the scheme so far, and the largest scale of it.
+    lowest_energy: f64,
+    energy_scale: f64,
     notice: Option<String>,
 }
 
-/// The energy balance of the scheme (J).
-struct Balance {
-    lowest: f64,
-    scale: f64,
-}
-
-impl Rates {
-    /// Longest stable step (s): see the stability of [`central_difference`](super).
-    pub(crate) fn longest_step(&self) -> f64 {
-        let Self { frequency, decay } = *self;
-        2.0 / (decay + decay.hypot(frequency))
-    }
-}
-
 impl Stability {
-    pub(super) fn new(system: &mut System) -> Self {
+    pub(super) fn new() -> Self {
         Self {
-            bound: RatesBound::new(system),
             rates: Rates { frequency: 0.0, decay: 0.0 },
             safety: SAFETY,
             interval: FIRST_INTERVAL,
             since: 0,
             unseen: 0,
-            energy: Balance { lowest: f64::INFINITY, scale: 0.0 },
+            lowest_energy: f64::INFINITY,
+            energy_scale: 0.0,
             notice: None,
         }
     }
 
     /// Bounds the longest stable step at the state `y`; infinite if nothing vibrates.
-    pub(super) fn limit(&mut self, system: &mut System, t: f64, y: &[f64]) -> f64 {
-        let n = system.dofs();
-        self.rates = system.rates(t, &y[..n], &y[n..2 * n], &mut self.bound);
+    pub(super) fn limit(&mut self, system: &mut impl SecondOrder, t: f64, y: &[f64]) -> f64 {
+        let (u, v, _) = split(system, y);
+        self.rates = system.rates(t, u, v);
         self.since = 0;
-        self.safety * self.rates.longest_step()
+        self.safety * longest_step(&self.rates)
     }
 
-    /// No more bounds, no more judgement on the energy.
+    /// No more bounds, no more checks of the energy.
     #[cfg(test)]
     pub(super) fn freeze(&mut self) {
-        (self.interval, self.energy.scale) = (usize::MAX, f64::INFINITY);
+        (self.interval, self.energy_scale) = (usize::MAX, f64::INFINITY);
     }
 
-    /// Called at each step; tells a new limit from time to time.
-    pub(super) fn watch(
+    /// Called before each step; from time to time returns a new limit.
+    pub(super) fn update(
         &mut self,
-        system: &mut System,
+        system: &mut impl SecondOrder,
         t: f64,
         y: &[f64],
         force: &[f64],
@@ -98,9 +91,9 @@ impl Stability {
         if !creates && self.since < self.interval {
             return None;
         }
-        let before = self.rates.longest_step();
+        let before = longest_step(&self.rates);
         let limit = self.limit(system, t, y);
-        let change = (self.rates.longest_step() / before - 1.0).abs();
+        let change = (longest_step(&self.rates) / before - 1.0).abs();
         if change > MUCH {
             self.interval = (self.interval / 4).max(FIRST_INTERVAL);
         } else if change < LITTLE {
@@ -113,7 +106,7 @@ impl Stability {
     /// h^2 a.M a/8, which makes the sum constant for linear forces.
     fn creates_energy(
         &mut self,
-        system: &System,
+        system: &impl SecondOrder,
         t: f64,
         y: &[f64],
         force: &[f64],
@@ -121,14 +114,14 @@ impl Stability {
         step: f64,
     ) -> bool {
         self.unseen = 0;
-        let n = system.dofs();
-        let mut energy = system.energy(t, &y[..n], &y[n..2 * n]);
-        (energy.dissipated, energy.supplied) = (y[2 * n], y[2 * n + 1]);
-        let balance = energy.balance() - step * step / 8.0 * dot(force, acceleration);
-        let Balance { lowest, scale } = &mut self.energy;
-        *scale = scale.max(energy.size());
-        let creates = balance > *lowest + CREATED * *scale;
-        *lowest = if creates { balance } else { lowest.min(balance) };
+        let (u, v, integrals) = split(system, y);
+        let Some(EnergyBalance { energy, scale }) = system.balance(t, u, v, integrals) else {
+            return false;
+        };
+        let energy = energy - step * step / 8.0 * dot(force, acceleration);
+        self.energy_scale = self.energy_scale.max(scale);
+        let creates = energy > self.lowest_energy + CREATED * self.energy_scale;
+        self.lowest_energy = if creates { energy } else { self.lowest_energy.min(energy) };
         creates
     }
 
@@ -143,4 +136,10 @@ impl Stability {
         };
         self.notice.clone().or_else(|| (decay > frequency).then(viscous))
     }
+}
+
+/// u, v and the integrals of a state.
+fn split<'y>(system: &impl SecondOrder, y: &'y [f64]) -> (&'y [f64], &'y [f64], &'y [f64]) {
+    let n = (y.len() - system.integrals()) / 2;
+    (&y[..n], &y[n..2 * n], &y[2 * n..])
 }

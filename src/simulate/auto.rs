@@ -7,7 +7,9 @@
 //! lumped inertia a step of central differences costs so little that they lead well before that.
 
 use super::{ContactEvents, Method, Solver};
-use crate::system::{Rates, Spectrum, System};
+use crate::central_difference;
+use crate::ode::Rates;
+use crate::system::{Spectrum, System};
 
 /// How a phase is integrated from now on.
 pub(super) struct Plan {
@@ -190,7 +192,7 @@ fn choose(spectrum: &Spectrum) -> (Method, String) {
 /// Longest step (s) with which central differences are stable.
 fn central_step(spectrum: &Spectrum) -> f64 {
     let Spectrum { highest_frequency, damping_rate, .. } = *spectrum;
-    Rates { frequency: highest_frequency, decay: damping_rate }.longest_step()
+    central_difference::longest_step(&Rates { frequency: highest_frequency, decay: damping_rate })
 }
 
 /// Longest step (s) with which explicit Runge-Kutta is stable.

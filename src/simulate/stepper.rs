@@ -9,7 +9,7 @@ use crate::sundials::{
     Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern,
     Statistics, Table,
 };
-use crate::system::{DaeForm, ENERGIES, Index, System};
+use crate::system::{DaeForm, ENERGIES, Index, SecondOrderForm, System};
 
 pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 
@@ -19,7 +19,7 @@ pub(super) enum Stepper {
     Cvode(Cvode<System>),
     Ida(Ida<DaeForm>),
     Rk(Box<DormandPrince<System>>),
-    CentralDifference(Box<CentralDifference>),
+    CentralDifference(Box<CentralDifference<SecondOrderForm>>),
 }
 
 impl Stepper {
@@ -59,8 +59,8 @@ impl Stepper {
                 Ok(Self::Rk(Box::new(DormandPrince::new(system, t, state, &options)?)))
             }
             Method::CentralDifference => {
-                let started =
-                    CentralDifference::new(system, t, end, state, solver.rtol, tolerances)?;
+                let form = SecondOrderForm::new(system);
+                let started = CentralDifference::new(form, t, end, state, solver.rtol, tolerances)?;
                 Ok(Self::CentralDifference(Box::new(started)))
             }
         }
@@ -130,7 +130,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.system(),
             Self::Ida(ida) => &ida.system().system,
             Self::Rk(rk) => rk.system(),
-            Self::CentralDifference(central) => central.system(),
+            Self::CentralDifference(central) => &central.system().system,
         }
     }
 
@@ -140,7 +140,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.system_mut(),
             Self::Ida(ida) => &mut ida.system_mut().system,
             Self::Rk(rk) => rk.system_mut(),
-            Self::CentralDifference(central) => central.system_mut(),
+            Self::CentralDifference(central) => &mut central.system_mut().system,
         }
     }
 
@@ -151,7 +151,7 @@ impl Stepper {
             Self::Cvode(cvode) => cvode.into_system(),
             Self::Ida(ida) => ida.into_system().system,
             Self::Rk(rk) => rk.into_system(),
-            Self::CentralDifference(central) => central.into_system(),
+            Self::CentralDifference(central) => central.into_system().system,
         }
     }
 
@@ -201,7 +201,7 @@ impl Stepper {
                 Counts {
                     steps: s.steps,
                     evaluations: s.evaluations,
-                    jacobian_evaluations: central.system().tangent_evaluations(),
+                    jacobian_evaluations: central.system().system.tangent_evaluations(),
                     factorizations: 0,
                     error_test_failures: s.rejected_steps,
                     convergence_failures: s.refused_steps,

@@ -10,7 +10,8 @@
 //! ```
 //!
 //! [`System`] is the ODE form, in which v' and lambda are solved for; [`DaeForm`] the
-//! differential-algebraic forms, in which lambda is an unknown. All solve their Newton systems with
+//! differential-algebraic forms, in which lambda is an unknown, and [`SecondOrderForm`] the form in
+//! which the constraints are motion that is known. The first two solve their Newton systems with
 //! the one symmetric matrix of [`newton`], half as large as the state.
 //!
 //! Two more unknowns ride along: the energy dissipated and the energy supplied since the phase
@@ -20,11 +21,13 @@
 mod at_rest;
 mod cholesky;
 mod dae;
-mod explicit;
+mod guide;
+mod mobility;
 mod newton;
 mod ode;
 mod rates;
 mod reduced;
+mod second_order;
 mod spectrum;
 #[cfg(test)]
 mod tests;
@@ -35,8 +38,9 @@ pub(crate) use at_rest::{AtRest, Balance};
 pub(crate) use dae::{DaeForm, Index};
 use newton::Newton;
 pub(crate) use ode::ENERGIES;
-pub(crate) use rates::{Rates, RatesBound};
+use rates::RatesBound;
 use reduced::{Coupling, Reduced};
+pub(crate) use second_order::SecondOrderForm;
 pub use spectrum::Spectrum;
 
 use crate::constraint::{Prescribed, Row};

@@ -20,6 +20,7 @@
 
 use super::System;
 use crate::model::Model;
+use crate::ode::Rates;
 use crate::sparse::BlockMatrix;
 use crate::vector::largest;
 
@@ -29,17 +30,8 @@ const NEXT: usize = 4;
 /// What keeps x above 0.
 const SMALLEST: f64 = 1e-6;
 
-/// Upper bounds on how fast the stiffest motions are, at one state.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Rates {
-    /// Highest angular frequency (rad/s): Kt x = omega^2 M x.
-    pub(crate) frequency: f64,
-    /// Highest rate of decay (1/s): D x = rate M x.
-    pub(crate) decay: f64,
-}
-
 /// Room to bound them in, again and again.
-pub(crate) struct RatesBound {
+pub(super) struct RatesBound {
     /// Diagonal of M over lambda(M^-1 diag(M)) (kg).
     masses: Vec<f64>,
     /// 1, or 0 where a nodal row prescribes.
@@ -57,7 +49,7 @@ struct Bound {
 }
 
 impl RatesBound {
-    pub(crate) fn new(system: &mut System) -> Self {
+    pub(super) fn new(system: &mut System) -> Self {
         let Model { inertia, dimension, .. } = &*system.model.clone();
         let factor = if system.is_lumped() { 1.0 } else { system.inertia_factor() };
         let dofs = system.dofs();
@@ -77,7 +69,7 @@ impl RatesBound {
 
 impl System {
     /// The rates at (t, u, v), contacts that do not touch counted as if they did.
-    pub(crate) fn rates(&mut self, t: f64, u: &[f64], v: &[f64], bound: &mut RatesBound) -> Rates {
+    pub(super) fn rates(&mut self, t: f64, u: &[f64], v: &[f64], bound: &mut RatesBound) -> Rates {
         self.update_tangents(t, u, v, false);
         let RatesBound { masses, free, stiffness, damping } = bound;
         stiffness.reserve.fill(0.0);

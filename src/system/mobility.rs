@@ -1,13 +1,14 @@
-//! Kicks: what a force does to velocities in some time under the constraints,
+//! How velocities follow from forces under the constraints,
 //!
 //! ```text
 //! M a = f + A lambda,   w = v + tau a,   A^T w = rates
 //! ```
 
+use super::{System, nodal_multipliers};
 use crate::constraint::Row;
-use crate::system::System;
+use crate::model::Model;
+use crate::ode::Kick;
 
-/// How velocities follow from forces.
 pub(super) enum Mobility {
     /// Lumped inertia, one component per row: nothing is to be solved.
     Diagonal {
@@ -29,24 +30,18 @@ pub(super) struct NodalRow {
     mass: f64,
 }
 
-/// A force at work for some time.
-pub(super) struct Kick<'a> {
-    pub(super) duration: f64,
-    pub(super) force: &'a [f64],
-    /// A^T w at its end, row by row.
-    pub(super) rates: &'a [f64],
-}
-
 impl Mobility {
     pub(super) fn new(system: &System) -> Self {
-        let rows: Option<Vec<_>> = system.rows().iter().map(Row::nodal).collect();
-        let Some((rows, masses)) = rows.zip(system.lumped_masses()) else {
-            let none = vec![0.0; system.rows().len()];
+        let Model { inertia, dimension, .. } = &*system.model;
+        let rows: Option<Vec<_>> = system.rows.iter().map(Row::nodal).collect();
+        let Some(rows) = rows.filter(|_| system.is_lumped()) else {
+            let none = vec![0.0; system.rows.len()];
             return Self::Coupled { demands: none.clone(), multipliers: none };
         };
-        let mut inverse: Vec<f64> = masses.iter().map(|mass| 1.0 / mass).collect();
+        let mass = |dof: usize| inertia.get(dof / dimension, dof / dimension);
+        let mut inverse: Vec<f64> = (0..system.dofs()).map(|dof| 1.0 / mass(dof)).collect();
         rows.iter().for_each(|&(dof, _)| inverse[dof] = 0.0);
-        let row = |(dof, coefficient)| NodalRow { dof, coefficient, mass: masses[dof] };
+        let row = |(dof, coefficient)| NodalRow { dof, coefficient, mass: mass(dof) };
         Self::Diagonal { inverse, rows: rows.into_iter().map(row).collect() }
     }
 
@@ -55,28 +50,28 @@ impl Mobility {
         matches!(self, Self::Diagonal { .. })
     }
 
-    /// The accelerations in a kick that begins with the velocities `before`, 0 where a nodal row prescribes.
+    /// The accelerations in a kick, 0 where a nodal row prescribes.
     pub(super) fn accelerations(
         &mut self,
         system: &mut System,
-        kick: &Kick,
-        before: &[f64],
+        kick: &Kick<'_>,
+        rates: &[f64],
         accelerations: &mut [f64],
     ) {
-        let Kick { duration, force, rates } = *kick;
+        let Kick { duration, force, before } = *kick;
         match self {
             Self::Diagonal { inverse, .. } => {
                 let of_force = inverse.iter().zip(force).map(|(inverse, f)| inverse * f);
                 accelerations.iter_mut().zip(of_force).for_each(|(a, of_force)| *a = of_force);
             }
             Self::Coupled { demands, multipliers } => {
-                let rows = system.rows().iter().zip(rates);
+                let rows = system.rows.iter().zip(rates);
                 demands
                     .iter_mut()
                     .zip(rows)
                     .for_each(|(d, (row, rate))| *d = (rate - row.apply(before)) / duration);
                 system.accelerations(force, demands, accelerations, multipliers);
-                let rows = system.rows().iter().filter_map(Row::nodal);
+                let rows = system.rows.iter().filter_map(Row::nodal);
                 rows.for_each(|(dof, _)| accelerations[dof] = 0.0);
             }
         }
@@ -87,11 +82,11 @@ impl Mobility {
     pub(super) fn lead(
         &self,
         system: &System,
-        kick: &Kick,
-        before: &[f64],
+        kick: &Kick<'_>,
+        rates: &[f64],
         after: &mut [f64],
     ) -> f64 {
-        let Kick { duration, force, rates } = *kick;
+        let Kick { duration, force, before } = *kick;
         let mut work = 0.0;
         match self {
             Self::Diagonal { rows, .. } => {
@@ -102,7 +97,7 @@ impl Mobility {
                 }
             }
             Self::Coupled { multipliers, .. } => {
-                for ((row, rate), multiplier) in system.rows().iter().zip(rates).zip(multipliers) {
+                for ((row, rate), multiplier) in system.rows.iter().zip(rates).zip(multipliers) {
                     work += 0.5 * duration * multiplier * (row.apply(before) + rate);
                     if let Some((dof, coefficient)) = row.nodal() {
                         after[dof] = rate / coefficient;
@@ -111,5 +106,16 @@ impl Mobility {
             }
         }
         work
+    }
+}
+
+impl System {
+    /// Accelerations a and multipliers lambda with M a - A lambda = f, A^T a = d.
+    fn accelerations(&mut self, f: &[f64], d: &[f64], a: &mut [f64], multipliers: &mut [f64]) {
+        self.inertia.solve(&self.rows, f, d, a, multipliers);
+        let Model { inertia, dimension, .. } = &*self.model;
+        nodal_multipliers(&self.rows, multipliers, |dof| {
+            inertia.row_product(*dimension, dof, a) - f[dof]
+        });
     }
 }

@@ -1,9 +1,11 @@
-//! The scheme itself, at fixed steps, against what is known of it in closed form.
+//! Central differences on bodies, at fixed steps, against what is known of the scheme in closed form.
 
 use std::f64::consts::PI;
 
 use super::*;
+use crate::central_difference::CentralDifference;
 use crate::constraint::Start;
+use crate::vector::dot;
 use crate::{
     Axis, Body, Cells, Inertia, Material, Mesh, Method, Obstacle, Phase, Prescribed, Sampling,
     Scene, Solver, Strain, Viscosity,
@@ -12,33 +14,32 @@ use crate::{
 /// So fast that a held node told to move does so within the first step.
 const ALPHA: f64 = 1e12;
 
-fn system(scene: &Scene) -> System {
+fn form(scene: &Scene) -> SecondOrderForm {
     let natural = vec![0.0; scene.body().dofs()];
     let start = Start { time: 0.0, u: &natural };
     let forces = scene.forces().unwrap();
     let model = scene.model(&forces);
     let of_phase = forces.into_iter().next().unwrap();
-    scene.system(&model, &scene.phases()[0], of_phase, &start, ALPHA).unwrap()
+    SecondOrderForm::new(scene.system(&model, &scene.phases()[0], of_phase, &start, ALPHA).unwrap())
 }
 
 /// The method on the first phase of a scene, with steps of a given size: no error test, no
 /// other step sizes.
-fn fixed(scene: &Scene, h: f64) -> CentralDifference {
+fn fixed(scene: &Scene, h: f64) -> CentralDifference<SecondOrderForm> {
     let [u, v] = scene.start();
     let (y, end) = ([u, v, &[0.0; 2]].concat(), scene.phases()[0].until);
     let atol = vec![f64::INFINITY; y.len()];
-    let mut central = CentralDifference::new(system(scene), 0.0, end, &y, 0.5, atol).unwrap();
-    central.control = Control::new(0.0, end, h);
-    central.stability.freeze();
+    let mut central = CentralDifference::new(form(scene), 0.0, end, &y, 0.5, atol).unwrap();
+    central.fix_steps(h);
     central
 }
 
 /// Displacements after `steps` steps.
-fn after(central: &mut CentralDifference, steps: usize) -> &[f64] {
+fn after(central: &mut CentralDifference<SecondOrderForm>, steps: usize) -> &[f64] {
     for _ in 0..steps {
         central.step().unwrap();
     }
-    &central.y()[..central.system().dofs()]
+    &central.y()[..central.system().system.dofs()]
 }
 
 /// A bar of 1 m whose left end is held, with lumped inertia and waves of 1 m/s; `viscosity` is the
@@ -94,10 +95,8 @@ fn stability_ends_where_it_should() {
 fn rates_of_a_bar() {
     for cells in [1, 2, 10, 100] {
         let scene = bar(cells, 0.01);
-        let mut system = system(&scene);
-        let mut bound = crate::system::RatesBound::new(&mut system);
-        let still = vec![0.0; system.dofs()];
-        let rates = system.rates(0.0, &still, &still, &mut bound);
+        let still = vec![0.0; scene.body().dofs()];
+        let rates = form(&scene).rates(0.0, &still, &still);
         let omega = frequency(cells, cells);
         for (found, exact) in [(rates.frequency, omega), (rates.decay, 0.01 * omega * omega)] {
             println!("{cells} cells: {found} {exact}");
@@ -128,13 +127,15 @@ fn order_two() {
 }
 
 /// kinetic + potential + dissipated - supplied, less h^2 a.M a/8.
-fn balance(central: &CentralDifference) -> f64 {
-    let n = central.system.dofs();
-    let (u, v) = (&central.y[..n], &central.y[n..2 * n]);
-    let mut energy = central.system.energy(central.t, u, v);
-    (energy.dissipated, energy.supplied) = (central.y[2 * n], central.y[2 * n + 1]);
-    let h = central.t - central.t_before;
-    energy.balance() - h * h / 8.0 * crate::vector::dot(&central.force, &central.second)
+fn balance(central: &mut CentralDifference<SecondOrderForm>, h: f64) -> f64 {
+    let (t, y) = (central.t(), central.y().to_vec());
+    let (n, form) = (y.len() / 2 - 1, central.system_mut());
+    let (u, v) = (&y[..n], &y[n..2 * n]);
+    let energy = form.balance(t, u, v, &y[2 * n..]).unwrap().energy;
+    let (mut f, mut a) = (vec![0.0; n], vec![0.0; n]);
+    form.forces(t, u, v, &mut f).unwrap();
+    form.accelerations(&Kick { duration: h, force: &f, before: v }, &mut a);
+    energy - h * h / 8.0 * dot(&f, &a)
 }
 
 /// A clamped rubber square of 3 x 3 cells, lumped.
@@ -158,7 +159,7 @@ fn linear_forces_keep_the_energy_of_the_scheme() {
         let mut worst = 0.0_f64;
         for _ in 0..20 {
             after(&mut central, 1000);
-            worst = worst.max(balance(&central).abs() / scale);
+            worst = worst.max(balance(&mut central, h).abs() / scale);
         }
         println!("h {h:e}: balance {worst:.1e} of the energy supplied, {scale:.3} J");
         // 20,000 sums of numbers of the size of the energy
@@ -173,10 +174,11 @@ fn heat_is_second_order() {
         let phase = Phase::until(1e9).load([16], [20.0, 50.0]);
         let scene = square(strain, 200.0, phase);
         let errors = [400, 800, 1600].map(|steps| {
-            let mut central = fixed(&scene, 0.04 / steps as f64);
+            let h = 0.04 / steps as f64;
+            let mut central = fixed(&scene, h);
             after(&mut central, steps);
             let dissipated = central.y()[central.y().len() - 2];
-            (dissipated, balance(&central).abs() / dissipated)
+            (dissipated, balance(&mut central, h).abs() / dissipated)
         });
         println!("{strain:?}: heat (J) and error of the balance {errors:?}");
         for pair in errors.windows(2) {
@@ -194,21 +196,20 @@ fn energy_does_not_drift() {
     let body = Body::new(mesh, material).thickness(0.1).strain(Strain::Green);
     let scene = Scene::new(body.inertia(Inertia::Lumped).build().unwrap());
     let scene = scene.gravity([0.0, -2.0]).phase(Phase::until(1e9).hold("left"));
-    let mut system = system(&scene);
-    let mut bound = crate::system::RatesBound::new(&mut system);
-    let still = vec![0.0; system.dofs()];
-    let omega = system.rates(0.0, &still, &still, &mut bound).frequency;
-    let mut central = fixed(&scene, 0.8 * 2.0 / omega);
-    let start = balance(&central);
+    let still = vec![0.0; scene.body().dofs()];
+    let omega = form(&scene).rates(0.0, &still, &still).frequency;
+    let h = 0.8 * 2.0 / omega;
+    let mut central = fixed(&scene, h);
+    let start = balance(&mut central, 0.0);
     let mut scale = 0.0_f64;
     let stretches = [(); 10].map(|()| {
         let mut worst = 0.0_f64;
         for _ in 0..1000 {
             after(&mut central, 10);
-            worst = worst.max((balance(&central) - start).abs());
-            scale = scale.max(
-                central.system.energy(central.t, &central.y[..44], &central.y[44..88]).kinetic,
-            );
+            worst = worst.max((balance(&mut central, h) - start).abs());
+            let (t, y) = (central.t(), central.y());
+            let energy = central.system().system.energy(t, &y[..44], &y[44..88]);
+            scale = scale.max(energy.kinetic);
         }
         worst
     });
@@ -228,11 +229,9 @@ fn contacts_count_before_they_touch() {
         body.area(1.0).inertia(Inertia::Lumped).viscosity(Viscosity::Natural).build().unwrap();
     let floor = Obstacle::half_plane([-1.0], [1.0]).stiffness(1e4).damping(30.0);
     let scene = Scene::new(body).obstacle(floor).phase(Phase::until(1.0));
-    let mut system = system(&scene);
-    let mut bound = crate::system::RatesBound::new(&mut system);
-    let still = vec![0.0; 2];
-    let far = system.rates(0.0, &still, &still, &mut bound);
-    let touching = system.rates(0.0, &[-1.5, -2.5], &still, &mut bound);
+    let (mut form, still) = (form(&scene), [0.0; 2]);
+    let far = form.rates(0.0, &still, &still);
+    let touching = form.rates(0.0, &[-1.5, -2.5], &still);
     // on half a kilogramme, beside springs of 1 N/m
     assert!((far.frequency / 2e4f64.sqrt() - 1.0).abs() < 1e-3, "{far:?}");
     assert!((far.decay / 60.0 - 1.0).abs() < 1e-3, "{far:?}");

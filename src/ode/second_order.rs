@@ -1,0 +1,108 @@
+//! Systems of second order, M u'' = f(t, u, u').
+
+use super::Failure;
+
+/// M u'' = f(t, u, u') with n displacements u, velocities v = u', and M symmetric and positive definite.
+///
+/// [`forces`](Self::forces), [`accelerations`](Self::accelerations) and [`rates`](Self::rates) make a
+/// system. [`integrals`](Self::integrals) and the two methods after it add integrals over time and a
+/// check of the energy. The last four are for constrained systems, where part of the motion is known
+/// beforehand.
+pub trait SecondOrder {
+    /// Writes the forces f(t, u, v), those of constraints left out.
+    ///
+    /// # Errors
+    /// [`Failure::Recoverable`] where they have no meaning: the step is repeated with a smaller size.
+    fn forces(&mut self, t: f64, u: &[f64], v: &[f64], f: &mut [f64]) -> Result<(), Failure>;
+
+    /// Writes the accelerations M^-1 f under the force of a kick; 0 in components that are
+    /// [known](Self::prescribe).
+    fn accelerations(&mut self, kick: &Kick<'_>, a: &mut [f64]);
+
+    /// Upper bounds on how fast the stiffest motions near (t, u, v) are: they bound the step.
+    fn rates(&mut self, t: f64, u: &[f64], v: &[f64]) -> Rates;
+
+    /// Number of integrals over time that follow u and v in the state, such as the energy dissipated.
+    fn integrals(&self) -> usize {
+        0
+    }
+
+    /// Writes the time derivatives of the integrals at the forces last evaluated and the velocities `v`.
+    fn powers(&self, _v: &[f64], _powers: &mut [f64]) {}
+
+    /// The energy balance of a state, to find out steps that create energy; `None` (the default) leaves
+    /// that check out.
+    fn balance(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        _integrals: &[f64],
+    ) -> Option<EnergyBalance> {
+        None
+    }
+
+    /// Called where an integration starts, at (t, u, v).
+    ///
+    /// # Errors
+    /// Constraints that have no meaning there.
+    fn start(&mut self, _t: f64, _u: &[f64], _v: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Has [`accelerations`](Self::accelerations) and [`lead`](Self::lead) aim at the mean rates of the
+    /// known motion from `t` to `t + h`. Returns whether accelerations depend on that aim, as they
+    /// do where constraints couple components.
+    ///
+    /// # Errors
+    /// Constraints that have no meaning.
+    fn aim_at_mean_rates(&mut self, _t: f64, _h: f64) -> Result<bool, Failure> {
+        Ok(false)
+    }
+
+    /// Writes the components of `u` and `v` that are known at time `t`, and has
+    /// [`accelerations`](Self::accelerations) and [`lead`](Self::lead) aim at the rates known for that
+    /// time.
+    ///
+    /// # Errors
+    /// Constraints that have no meaning.
+    fn prescribe(&mut self, _t: f64, _u: &mut [f64], _v: &mut [f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Puts known components of the velocities `after` a kick, which are v + duration a, to the rates
+    /// that are aimed at. Adds what the constraint forces contribute to the integrals.
+    fn lead(&mut self, _kick: &Kick<'_>, _after: &mut [f64], _work: &mut [f64]) {}
+}
+
+/// Forces that change velocities for some time: half a step of
+/// central differences.
+#[derive(Debug, Clone, Copy)]
+pub struct Kick<'a> {
+    /// How long it lasts.
+    pub duration: f64,
+    /// The forces f.
+    pub force: &'a [f64],
+    /// Velocities v that it begins with.
+    pub before: &'a [f64],
+}
+
+/// Upper bounds on how fast the stiffest motions are, at one state.
+///
+/// K and D are -df/du and -df/dv, or their symmetric parts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rates {
+    /// Highest angular frequency (rad/s): K x = frequency^2 M x.
+    pub frequency: f64,
+    /// Highest rate of decay (1/s): D x = decay M x.
+    pub decay: f64,
+}
+
+/// The energy balance of a state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EnergyBalance {
+    /// Kinetic + potential + dissipated - supplied energy: constant along an exact motion.
+    pub energy: f64,
+    /// Size of the energies in it, to measure errors by.
+    pub scale: f64,
+}
