@@ -2,7 +2,7 @@
 
 use divan::Bencher;
 use pliant::samples::{beam_jump, square_jump};
-use pliant::{Method, Sampling, Solver};
+use pliant::{Method, Sampling, Settings};
 
 fn main() {
     divan::main();
@@ -12,7 +12,7 @@ fn main() {
 #[divan::bench(args = Method::ALL, consts = [4, 10], sample_count = 10)]
 fn square_jump_by_method<const NODES: usize>(bencher: Bencher, method: &Method) {
     let scene = square_jump(NODES).unwrap();
-    let solver = Solver { method: *method, rtol: 1e-6, ..Solver::default() };
+    let solver = Settings { method: *method, rtol: 1e-6, ..Settings::default() };
     bencher.bench(|| scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps());
 }
 
@@ -20,7 +20,7 @@ fn square_jump_by_method<const NODES: usize>(bencher: Bencher, method: &Method) 
 #[divan::bench(args = [4, 7, 10, 19, 37], sample_count = 3)]
 fn square_jump_by_mesh(bencher: Bencher, nodes: usize) {
     let scene = square_jump(nodes).unwrap();
-    let solver = Solver { rtol: 1e-4, ..Solver::default() };
+    let solver = Settings { rtol: 1e-4, ..Settings::default() };
     bencher.bench(|| scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps());
 }
 
@@ -28,6 +28,6 @@ fn square_jump_by_mesh(bencher: Bencher, nodes: usize) {
 #[divan::bench(args = [1e-4, 1e-6, 1e-8], sample_count = 30)]
 fn beam_jump_by_rtol(bencher: Bencher, rtol: f64) {
     let scene = beam_jump().unwrap();
-    let solver = Solver { rtol, ..Solver::default() };
+    let solver = Settings { rtol, ..Settings::default() };
     bencher.bench(|| scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps());
 }

@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use pliant::samples::ClampedBeam;
-use pliant::{Error, Inertia, InputError, Method, Sampling, Scene, Solver};
+use pliant::{Error, Inertia, InputError, Method, Sampling, Scene, Settings};
 
 /// Cells along the beam; a seventeenth of it across.
 const CELLS: [usize; 6] = [34, 68, 136, 272, 544, 1088];
@@ -60,7 +60,7 @@ fn step(cells: usize, method: Method, rtol: f64, until: f64) -> Result<f64, Erro
     };
     // no vibration is damped: order 2 for BDF
     let max_order = (method == Method::CvodeBdf).then_some(2);
-    let solver = Solver { method, rtol, max_order, ..Solver::default() };
+    let solver = Settings { method, rtol, max_order, ..Settings::default() };
     let run = |until: f64| -> Result<(f64, f64), Error> {
         let scene = scene(cells, inertia, until)?;
         let clock = Instant::now();

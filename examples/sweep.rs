@@ -14,7 +14,7 @@ use std::time::Instant;
 use common::finish;
 use indicatif::{ParallelProgressIterator, ProgressStyle};
 use pliant::samples::SquareJump;
-use pliant::{Error, Sampling, Solver};
+use pliant::{Error, Sampling, Settings};
 use rayon::prelude::*;
 
 /// Nodes along a side.
@@ -25,7 +25,7 @@ const PER_DECADE: i32 = 4;
 /// Speed (m/s) at which the square rises in the end.
 fn speed(nodes: usize, floor: f64) -> Result<f64, Error> {
     let scene = SquareJump { nodes, floor, ..SquareJump::default() }.scene()?;
-    let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
     Ok(trajectory.mean_velocity(trajectory.last())[1])
 }
 

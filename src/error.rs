@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::equilibrium::NoEquilibrium;
 use crate::input::InputError;
-use crate::simulate::IntegrationFailure;
-use crate::statics::NoEquilibrium;
+use crate::trajectory::IntegrationFailure;
 
 /// What went wrong, with which input, and how to mend it.
 #[derive(Debug, thiserror::Error)]

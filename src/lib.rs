@@ -5,7 +5,7 @@
 //! [`Trajectory`], which [`output`] writes to tables, pictures and files for ParaView.
 //!
 //! ```
-//! use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Solver};
+//! use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings};
 //!
 //! let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
 //! let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
@@ -14,7 +14,7 @@
 //!     .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0))
 //!     .phase(press.without_contact())
 //!     .phase(Phase::until(0.7).named("free"));
-//! let trajectory = scene.simulate(&Solver::default(), &Sampling::every(0.01))?;
+//! let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
 //! assert!(trajectory.mean_velocity(trajectory.last())[1] > 0.5); // it jumps
 //! # Ok::<(), pliant::Error>(())
 //! ```
@@ -30,6 +30,7 @@ mod central_difference;
 pub mod constraint;
 mod element;
 pub mod equations;
+mod equilibrium;
 pub mod error;
 mod external;
 pub mod force;
@@ -39,10 +40,12 @@ pub mod mesh;
 mod model;
 pub mod ode;
 pub mod output;
+mod report;
 pub mod rk;
 pub mod samples;
 pub mod scene;
 pub mod scene_file;
+mod settings;
 pub mod simulate;
 pub mod sparse;
 pub mod statics;
@@ -56,17 +59,20 @@ mod vector;
 pub use body::{Body, CellField, CellSelection, Inertia, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use equations::Equations;
+pub use equilibrium::{Equilibrium, NoEquilibrium, Stability};
 pub use error::Error;
 pub use external::{Chamber, Obstacle, Shape, Spring};
 pub use input::InputError;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
+pub use report::{Counts, PhaseReport, Report};
 pub use scene::{Phase, PhaseSummary, Scene};
 pub use scene_file::{OutputRequest, SceneFile};
-pub use simulate::{ContactEvents, Method, Sampling, Solver};
-pub use statics::{Equilibrium, Stability, Statics};
+pub use settings::{ContactEvents, Method, Settings, Tolerances};
+pub use simulate::Sampling;
+pub use statics::Statics;
 pub use system::{Energy, Spectrum};
-pub use trajectory::{Sample, Trajectory};
+pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// Compiles the code blocks of the README.
 #[doc = include_str!("../README.md")]

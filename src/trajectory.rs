@@ -1,12 +1,14 @@
-//! What a run leaves behind: sampled states, and how they were obtained.
+//! What a run leaves behind: sampled states, how they were obtained, and why it ended early.
 
 mod forces;
 
+use std::error::Error;
 use std::fmt;
 
 use crate::body::Body;
+use crate::report::Report;
 use crate::scene::Scene;
-use crate::simulate::{Counts, Method};
+use crate::settings::Method;
 use crate::system::Energy;
 
 /// The state of a scene at one time.
@@ -36,173 +38,6 @@ pub struct Trajectory {
     scene: Scene,
     samples: Vec<Sample>,
     pub(crate) report: Report,
-}
-
-/// How a trajectory was computed.
-#[derive(Debug, Clone, Default)]
-pub struct Report {
-    /// Integration method.
-    pub method: Method,
-    /// Relative tolerance.
-    pub rtol: f64,
-    /// Rate of the constraint stabilization (1/s).
-    pub alpha: f64,
-    /// Unknowns of the integrator, in the last phase.
-    pub states: usize,
-    /// Largest |A^T u - b| at the end of a step (m).
-    pub constraint_drift: f64,
-    /// Largest change of the energy balance (J): kinetic + potential + dissipated - supplied.
-    pub energy_error: f64,
-    /// Largest rise of the energy balance (J): energy that the integrator has created.
-    pub energy_created: f64,
-    /// Largest sum of the energies (J), as the scale of `energy_error`.
-    pub energy_scale: f64,
-    /// Wall-clock time of the whole run (s).
-    pub wall_seconds: f64,
-    /// Phase by phase.
-    pub phases: Vec<PhaseReport>,
-}
-
-/// How one phase was computed.
-#[derive(Debug, Clone)]
-pub struct PhaseReport {
-    /// Name of the phase.
-    pub name: String,
-    /// Time reached (s).
-    pub end: f64,
-    /// Unknowns of the integrator.
-    pub states: usize,
-    /// Wall-clock time (s).
-    pub wall_seconds: f64,
-    /// Method at the end of the phase: the one asked for, or the choice of [`Method::Auto`].
-    pub method: Method,
-    /// Why that method, if it was chosen.
-    pub reason: Option<String>,
-    /// Steps, evaluations, factorizations.
-    pub counts: Counts,
-}
-
-impl Report {
-    /// Steps of all phases.
-    pub fn steps(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.steps).sum()
-    }
-
-    /// Evaluations of the right-hand side or residual in all phases.
-    pub fn evaluations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.evaluations).sum()
-    }
-
-    /// Evaluations of the tangents of the forces in all phases.
-    pub fn jacobian_evaluations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.jacobian_evaluations).sum()
-    }
-
-    /// Factorizations of the Newton matrix in all phases.
-    pub fn factorizations(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.factorizations).sum()
-    }
-
-    /// Steps of all phases that were repeated because their error was too large.
-    pub fn error_test_failures(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.error_test_failures).sum()
-    }
-
-    /// Newton iterations of all phases that did not converge.
-    pub fn convergence_failures(&self) -> usize {
-        self.phases.iter().map(|phase| phase.counts.convergence_failures).sum()
-    }
-
-    /// What makes the result doubtful or the run needlessly long: what the integrators noticed, and
-    /// an energy balance that is off by more than a hundredth of the largest energy.
-    pub fn warnings(&self) -> Vec<String> {
-        let notice = |phase: &PhaseReport| {
-            let notice = phase.counts.notice.as_ref()?;
-            Some(format!("phase \"{}\": {notice}", phase.name))
-        };
-        let mut warnings: Vec<String> = self.phases.iter().filter_map(notice).collect();
-        let doubt = self.creation(0.0).or_else(|| {
-            let part = self.energy_error / self.energy_scale;
-            (part > DOUBTFUL).then(|| {
-                format!("the energy balance is off by {:.1} % of the largest energy", 100.0 * part)
-            })
-        });
-        warnings.extend(doubt.map(|doubt| {
-            format!("{doubt}, so the motion may be wrong: lower rtol, or choose another method")
-        }));
-        warnings
-    }
-
-    /// What the integrator has created, if it is more than a hundredth of the largest energy, which
-    /// counts as `least` (J) at least.
-    pub(crate) fn creation(&self, least: f64) -> Option<String> {
-        let part = self.energy_created / self.energy_scale.max(least);
-        (part > DOUBTFUL).then(|| {
-            format!(
-                "the integrator created {:.1e} J, {:.1} % of the largest energy",
-                self.energy_created,
-                100.0 * part
-            )
-        })
-    }
-}
-
-/// Error of the energy balance, as part of the largest energy, from which a result is doubtful.
-const DOUBTFUL: f64 = 0.01;
-
-impl fmt::Display for Report {
-    /// A table of the phases and the sums over them, then what is conserved and what is not.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { method, rtol, alpha, states, .. } = self;
-        writeln!(f, "{method}, rtol {rtol:.0e}, alpha {alpha:.0e} 1/s, {states} unknowns")?;
-        writeln!(
-            f,
-            "{:12} {:>8} {:>8} {:>12} {:>15} {:>9} {:>9}",
-            "phase", "end (s)", "steps", "evaluations", "factorizations", "rejected", "time (s)"
-        )?;
-        let rejected = |c: &Counts| c.error_test_failures + c.convergence_failures;
-        for PhaseReport { name, end, wall_seconds, counts, .. } in &self.phases {
-            let Counts { steps, evaluations, factorizations, .. } = counts;
-            // of a run that ended early it has all digits
-            let mut end_text = end.to_string();
-            if end_text.len() > 8 {
-                end_text = format!("{end:.3e}");
-            }
-            let rejected = rejected(counts);
-            writeln!(
-                f,
-                "{name:12} {end_text:>8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} \
-                 {wall_seconds:9.4}"
-            )?;
-        }
-        let rejected = self.error_test_failures() + self.convergence_failures();
-        let (steps, seconds) = (self.steps(), self.wall_seconds);
-        let (evaluations, factorizations) = (self.evaluations(), self.factorizations());
-        writeln!(
-            f,
-            "{:12} {:8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} {seconds:9.4}",
-            "all", ""
-        )?;
-        let Self { constraint_drift, energy_error, energy_scale, .. } = self;
-        write!(
-            f,
-            "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
-             {energy_error:.1e} of {energy_scale:.1e} J"
-        )?;
-        for PhaseReport { name, reason, counts, .. } in &self.phases {
-            let events = match counts.contact_events {
-                0 => None,
-                1 => Some("1 contact event located".to_owned()),
-                count => Some(format!("{count} contact events located")),
-            };
-            let remarks: Vec<&str> =
-                reason.as_deref().into_iter().chain(events.as_deref()).collect();
-            if !remarks.is_empty() {
-                write!(f, "\nphase \"{name}\": {}", remarks.join("; "))?;
-            }
-        }
-        self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
-    }
 }
 
 impl Trajectory {
@@ -336,3 +171,58 @@ impl Trajectory {
         average
     }
 }
+
+/// An integration that gave up or was stopped: where, why, and what was computed until then.
+#[derive(Debug)]
+pub struct IntegrationFailure {
+    /// Name of the phase.
+    pub phase: String,
+    /// The method.
+    pub method: Method,
+    /// Time reached (s).
+    pub time: f64,
+    /// Last step size (s).
+    pub step: f64,
+    /// What the integrator said, with the likely cause and what to try; [`Interrupted`] if it was
+    /// stopped from outside.
+    pub source: Box<dyn Error + Send + Sync>,
+    /// The motion until then, down to the last step.
+    pub trajectory: Trajectory,
+}
+
+/// The cause of an [`IntegrationFailure`] that is none: the observer of
+/// [`Scene::simulate_with`](crate::Scene::simulate_with) stopped the run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("interrupted")]
+pub struct Interrupted;
+
+impl IntegrationFailure {
+    /// Whether the run was stopped from outside, with nothing wrong with it.
+    pub fn is_interruption(&self) -> bool {
+        self.source.is::<Interrupted>()
+    }
+
+    /// What the integrator said, with all that lies behind it.
+    pub fn cause(&self) -> String {
+        let mut said = self.source.to_string();
+        let mut behind = self.source.source();
+        while let Some(inner) = behind {
+            said = format!("{said}: {inner}");
+            behind = inner.source();
+        }
+        said
+    }
+}
+
+impl fmt::Display for IntegrationFailure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { phase, method, time, step, .. } = self;
+        let cause = self.cause();
+        write!(
+            f,
+            "phase \"{phase}\" ({method}) stopped at t = {time} s, step {step:.3e} s: {cause}"
+        )
+    }
+}
+
+impl Error for IntegrationFailure {}

@@ -5,10 +5,10 @@ mod common;
 
 use common::{difference, run};
 use pliant::samples::{membrane, membrane_arch, report_8, ring_jump, ring_springs};
-use pliant::{Error, Method, Sampling, Scene, Solver, Trajectory};
+use pliant::{Error, Method, Sampling, Scene, Settings, Trajectory};
 
-fn solver(method: Method, rtol: f64) -> Solver {
-    Solver { method, rtol, ..Solver::default() }
+fn solver(method: Method, rtol: f64) -> Settings {
+    Settings { method, rtol, ..Settings::default() }
 }
 
 /// Centre of mass of the ring, with its mass in the middle (cm).

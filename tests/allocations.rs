@@ -2,7 +2,7 @@
 
 use allocation_counter::measure;
 use pliant::samples::square_jump;
-use pliant::{ContactEvents, Method, Sampling, Solver};
+use pliant::{ContactEvents, Method, Sampling, Settings};
 
 #[test]
 fn steps_do_not_allocate() {
@@ -11,7 +11,8 @@ fn steps_do_not_allocate() {
         let run = |rtol: f64| {
             // an event that is located starts the integration anew
             let contact_events = ContactEvents::StepOver;
-            let solver = Solver { method, rtol, alpha: 1e4, contact_events, ..Solver::default() };
+            let solver =
+                Settings { method, rtol, alpha: 1e4, contact_events, ..Settings::default() };
             let mut steps = 0;
             let allocated = measure(|| {
                 let trajectory = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();

@@ -3,16 +3,16 @@
 
 use pliant::samples::{self, ClampedBeam, RingRoll};
 use pliant::{
-    Body, CellSelection, Cells, Inertia, Material, Mesh, Method, Phase, Sampling, Scene, Solver,
+    Body, CellSelection, Cells, Inertia, Material, Mesh, Method, Phase, Sampling, Scene, Settings,
     Strain, Trajectory,
 };
 
-fn run(scene: &Scene, solver: &Solver) -> Trajectory {
+fn run(scene: &Scene, solver: &Settings) -> Trajectory {
     scene.simulate(solver, &Sampling::every(0.05)).unwrap()
 }
 
-fn auto(rtol: f64) -> Solver {
-    Solver { method: Method::Auto, rtol, ..Solver::default() }
+fn auto(rtol: f64) -> Settings {
+    Settings { method: Method::Auto, rtol, ..Settings::default() }
 }
 
 /// Root mean square distance between the last positions of two runs (m).
@@ -46,7 +46,8 @@ fn what_creeps_tells_nothing_of_vibrations() {
     assert_eq!(walks.method, Method::Arkode);
     let reason = walks.reason.as_deref().unwrap();
     assert!(reason.contains("overdamped"), "{reason}");
-    let bdf = run(&scene, &Solver { method: Method::CvodeBdf, rtol: 1e-3, ..Solver::default() });
+    let bdf =
+        run(&scene, &Settings { method: Method::CvodeBdf, rtol: 1e-3, ..Settings::default() });
     let bdf = &bdf.report().phases[1];
     // a step of ARKODE costs about ten of BDF
     assert!(10 * walks.counts.steps < bdf.counts.steps, "{walks:?} {bdf:?}");
@@ -59,7 +60,7 @@ fn it_changes_to_the_explicit_method_in_mid_phase() {
     let (loose, tight) = (run(&scene, &auto(1e-3)), run(&scene, &auto(1e-9)));
     let last = |run: &Trajectory| run.report().phases.last().unwrap().method;
     assert_eq!((last(&loose), last(&tight)), (Method::Arkode, Method::Rk));
-    let reference = Solver { method: Method::CvodeAdams, rtol: 1e-10, ..Solver::default() };
+    let reference = Settings { method: Method::CvodeAdams, rtol: 1e-10, ..Settings::default() };
     // 8 cm of motion: a thousand rtol of it
     assert!(distance(&tight, &run(&scene, &reference)) < 1e3 * 1e-9 * 0.08);
 }
@@ -74,7 +75,7 @@ fn it_changes_to_central_differences_where_inertia_is_lumped() {
     let reasons = |run: &Trajectory| run.report().phases[0].reason.clone().unwrap();
     assert!(!reasons(&loose).contains("central-difference"), "{}", reasons(&loose));
     assert!(reasons(&tight).contains("then central-difference"), "{}", reasons(&tight));
-    let reference = Solver { method: Method::Rk, rtol: 1e-9, ..Solver::default() };
+    let reference = Settings { method: Method::Rk, rtol: 1e-9, ..Settings::default() };
     let reference = run(&scene, &reference);
     // 6 cm of motion; the phase error of central differences at 0.98 of their longest step is
     // (omega h)^2/24, below 1e-6 even in the tenth mode of bending
@@ -86,7 +87,7 @@ fn it_changes_to_central_differences_where_inertia_is_lumped() {
 #[test]
 fn errors_shrink_with_rtol() {
     let scene = samples::square_press(4).unwrap();
-    let reference = Solver { method: Method::Rk, rtol: 1e-11, ..Solver::default() };
+    let reference = Settings { method: Method::Rk, rtol: 1e-11, ..Settings::default() };
     let reference = run(&scene, &reference);
     let errors = [1e-3, 1e-5, 1e-7].map(|rtol| distance(&run(&scene, &auto(rtol)), &reference));
     // 8 cm of motion; a factor 100 in rtol gains a factor 10 at least
@@ -118,7 +119,7 @@ fn a_choice_that_creates_energy_is_revoked() {
     let reason = motion.report().phases[0].reason.as_deref().unwrap();
     assert!(reason.contains("created"), "{reason}");
     assert_eq!(motion.report().warnings(), Vec::<String>::new());
-    let reference = Solver { method: Method::Rk, rtol: 1e-9, ..Solver::default() };
+    let reference = Settings { method: Method::Rk, rtol: 1e-9, ..Settings::default() };
     let apart = distance(&motion, &run(&scene, &reference));
     assert!(apart < 1e-3, "{apart}");
 }
@@ -127,8 +128,8 @@ fn a_choice_that_creates_energy_is_revoked() {
 #[test]
 fn energy_out_of_nothing_is_told() {
     let scene = undamped();
-    let bdf = Solver { max_order: Some(3), rtol: 1e-3, max_steps: 20_000, ..Solver::default() };
-    let bdf = Solver { method: Method::CvodeBdf, ..bdf };
+    let bdf = Settings { max_order: Some(3), rtol: 1e-3, max_steps: 20_000, ..Settings::default() };
+    let bdf = Settings { method: Method::CvodeBdf, ..bdf };
     let warnings = match scene.simulate(&bdf, &Sampling::every(0.05)) {
         Ok(motion) => motion.report().warnings(),
         Err(pliant::Error::Integration(end)) => end.trajectory.report().warnings(),

@@ -3,7 +3,7 @@
 use pliant::samples::{SQUARE_MATERIAL, square_press};
 use pliant::{
     Axis, Body, Cells, Chamber, Error, Material, Mesh, Method, Obstacle, Phase, Plane, Prescribed,
-    Sampling, Scene, Selection, Shape, SolidCells, Solver, Spring, Trajectory,
+    Sampling, Scene, Selection, Settings, Shape, SolidCells, Spring, Trajectory,
 };
 
 fn grid() -> Mesh {
@@ -15,7 +15,7 @@ fn scene() -> Scene {
 }
 
 fn simulate(scene: &Scene) -> Result<Trajectory, Error> {
-    scene.simulate(&Solver::default(), &Sampling::every(0.1))
+    scene.simulate(&Settings::default(), &Sampling::every(0.1))
 }
 
 /// The message of the error says all of `parts`.
@@ -123,7 +123,7 @@ fn nan_in_a_path() {
     };
     says(simulate(&scene(0.0)), &["probe", "node 14 y", "b = NaN", "t = 0 s"]);
     for method in Method::ALL {
-        let solver = Solver { method, ..Solver::default() };
+        let solver = Settings { method, ..Settings::default() };
         let result = scene(0.25).simulate(&solver, &Sampling::every(0.1));
         let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
         // the last sample before 0.25 s is kept
@@ -282,20 +282,23 @@ fn closed_surfaces() {
 #[test]
 fn solvers_and_samplings() {
     let scene = square_press(4).unwrap();
-    let with = |solver: Solver| scene.simulate(&solver, &Sampling::phase_ends());
-    let good = Solver::default;
-    says(with(Solver { rtol: 0.0, ..good() }), &["rtol = 0", "above 0"]);
-    says(with(Solver { rtol: f64::NAN, ..good() }), &["rtol = NaN"]);
-    says(with(Solver { rtol: 1.0, ..good() }), &["rtol = 1", "below 1"]);
-    says(with(Solver { alpha: 0.0, ..good() }), &["alpha = 0", "1/s"]);
-    says(with(Solver { atol_position: Some(-1e-9), ..good() }), &["atol_position = -0.000000001"]);
-    says(with(Solver { max_order: Some(6), ..good() }), &["max_order = 6", "1 to 5"]);
-    assert!(with(Solver { max_order: Some(12), method: Method::CvodeAdams, ..good() }).is_ok());
+    let with = |solver: Settings| scene.simulate(&solver, &Sampling::phase_ends());
+    let good = Settings::default;
+    says(with(Settings { rtol: 0.0, ..good() }), &["rtol = 0", "above 0"]);
+    says(with(Settings { rtol: f64::NAN, ..good() }), &["rtol = NaN"]);
+    says(with(Settings { rtol: 1.0, ..good() }), &["rtol = 1", "below 1"]);
+    says(with(Settings { alpha: 0.0, ..good() }), &["alpha = 0", "1/s"]);
     says(
-        with(Solver { max_order: Some(2), method: Method::Rk, ..good() }),
+        with(Settings { atol_position: Some(-1e-9), ..good() }),
+        &["atol_position = -0.000000001"],
+    );
+    says(with(Settings { max_order: Some(6), ..good() }), &["max_order = 6", "1 to 5"]);
+    assert!(with(Settings { max_order: Some(12), method: Method::CvodeAdams, ..good() }).is_ok());
+    says(
+        with(Settings { max_order: Some(2), method: Method::Rk, ..good() }),
         &["max_order", "leave it out"],
     );
-    says(with(Solver { max_steps: 0, ..good() }), &["max_steps = 0"]);
+    says(with(Settings { max_steps: 0, ..good() }), &["max_steps = 0"]);
     let sampled = |sampling| scene.simulate(&good(), &sampling);
     says(sampled(Sampling::every(0.0)), &["sampling step = 0"]);
     says(sampled(Sampling::at([0.1, 3.0])), &["sampling time = 3", "2 s"]);
@@ -308,7 +311,7 @@ fn solvers_and_samplings() {
 fn step_limits() {
     let scene = square_press(4).unwrap();
     for method in Method::ALL {
-        let solver = Solver { method, max_steps: 100, alpha: 1e4, ..Solver::default() };
+        let solver = Settings { method, max_steps: 100, alpha: 1e4, ..Settings::default() };
         let result = scene.simulate(&solver, &Sampling::every(1e-3));
         let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
         assert!(failure.trajectory.samples().len() > 1, "{method}");

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Table, run};
 use pliant::samples::beam_bend;
-use pliant::{Method, Solver, Strain, Trajectory};
+use pliant::{Method, Settings, Strain, Trajectory};
 
 /// Largest distance of centre of mass and nodes 11, 17, 22 and 33 from the reference, relative to
 /// the push (5 cm).
@@ -35,7 +35,7 @@ fn green_beam_meets_the_reference() {
     let scene = beam_bend(Strain::Green, false).unwrap();
     for method in [Method::CvodeBdf, Method::Ida] {
         let [coarse, fine] = [1e-5, 1e-7].map(|rtol| {
-            let solver = Solver { method, rtol, alpha: 1e6, ..Solver::default() };
+            let solver = Settings { method, rtol, alpha: 1e6, ..Settings::default() };
             let trajectory = run(&scene, &solver, &reference.get("t"));
             let report = trajectory.report();
             println!(
@@ -58,7 +58,7 @@ fn green_beam_meets_the_reference() {
 fn the_tip_swells_under_cauchy_strain_only() {
     let tip = |strain| {
         let scene = beam_bend(strain, false).unwrap();
-        let trajectory = run(&scene, &Solver { rtol: 1e-5, ..Solver::default() }, &[5.0]);
+        let trajectory = run(&scene, &Settings { rtol: 1e-5, ..Settings::default() }, &[5.0]);
         let bent = trajectory.samples().iter().find(|sample| sample.time == 5.0).unwrap();
         let ratios = trajectory.body().volume_ratios(&bent.u);
         let mesh = trajectory.body().mesh();

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Table, difference, global_error, run, tolerances};
 use pliant::samples::{BEAM_MATERIAL, BeamJump, beam_jump};
-use pliant::{Body, Mesh, Method, Phase, Sampling, Scene, Solver, Trajectory};
+use pliant::{Body, Mesh, Method, Phase, Sampling, Scene, Settings, Trajectory};
 
 const ALPHAS: [f64; 4] = [10.0, 1e2, 1e4, 1e6];
 
@@ -34,7 +34,7 @@ fn every_method_meets_the_reference_whatever_alpha() {
     for method in Method::ALL {
         for alpha in ALPHAS.into_iter().filter(|&alpha| method != Method::Rk || alpha < 1e6) {
             let [coarse, fine] = tolerances(method).map(|rtol| {
-                let solver = Solver { method, rtol, alpha, ..Solver::default() };
+                let solver = Settings { method, rtol, alpha, ..Settings::default() };
                 error(&run(&scene, &solver, &reference.get("t")), &reference)
             });
             println!("{method} alpha {alpha:e}: {coarse:.1e}, at a hundredth of rtol {fine:.1e}");
@@ -53,7 +53,7 @@ fn every_method_meets_the_reference_whatever_alpha() {
 fn static_shortening() {
     let body = Body::new(Mesh::bar(0.10, 6).unwrap(), BEAM_MATERIAL).area(2e-4).build().unwrap();
     let push = Phase::until(5.0).hold("left").load("right", [-2.0]);
-    let solver = Solver { rtol: 1e-9, ..Solver::default() };
+    let solver = Settings { rtol: 1e-9, ..Settings::default() };
     let trajectory =
         Scene::new(body).phase(push).simulate(&solver, &Sampling::phase_ends()).unwrap();
     let last = trajectory.last();
@@ -69,7 +69,7 @@ fn static_shortening() {
 fn jump_under_gravity() {
     let scene = BeamJump { gravity: 9.8, until: 0.3021208 }.scene().unwrap();
     for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
-        let solver = Solver { method, rtol: 1e-9, ..Solver::default() };
+        let solver = Settings { method, rtol: 1e-9, ..Settings::default() };
         let trajectory = run(&scene, &solver, &[0.2144264711]);
         let [_, _, leaving, apex] = trajectory.samples() else { panic!("four samples") };
         let velocity = trajectory.mean_velocity(leaving)[0];
@@ -92,7 +92,7 @@ fn jump_under_gravity() {
 fn samples_do_not_change_the_motion() {
     let scene = beam_jump().unwrap();
     for method in Method::ALL {
-        let solver = Solver { method, ..Solver::default() };
+        let solver = Settings { method, ..Settings::default() };
         let few = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
         let many = scene.simulate(&solver, &Sampling::every(1e-4)).unwrap();
         assert_eq!(few.last().u, many.last().u, "{method}");
@@ -109,7 +109,7 @@ fn dense_output_is_as_accurate_as_the_steps() {
     let times: Vec<f64> = (1..600).map(|k| 1e-3 * f64::from(k) + 1.234e-4).collect();
     for method in Method::ALL {
         let [coarse, fine] = [1e-6, 1e-8]
-            .map(|rtol| run(&scene, &Solver { method, rtol, ..Solver::default() }, &times));
+            .map(|rtol| run(&scene, &Settings { method, rtol, ..Settings::default() }, &times));
         let apart = difference(&coarse, &fine);
         assert!(apart < 100.0 * 1e-6, "{method}: {apart:e}");
     }

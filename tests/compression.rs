@@ -2,7 +2,7 @@
 //! Newton matrix loses its positive definiteness, and is factorized all the same.
 
 use pliant::{
-    Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Solver, Strain, Trajectory,
+    Body, Cells, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Strain, Trajectory,
 };
 
 fn squeezed(method: Method) -> Trajectory {
@@ -10,7 +10,7 @@ fn squeezed(method: Method) -> Trajectory {
     let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.4, viscosity: 40.0 };
     let body = Body::new(mesh, rubber).thickness(0.01).strain(Strain::Green).build().unwrap();
     let squeeze = Phase::until(200.0).hold("left").move_nodes("right", [-0.03 / 200.0, 0.0]);
-    let solver = Solver { method, rtol: 1e-4, ..Solver::default() };
+    let solver = Settings { method, rtol: 1e-4, ..Settings::default() };
     Scene::new(body).phase(squeeze).simulate(&solver, &Sampling::every(20.0)).unwrap()
 }
 

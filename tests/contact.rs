@@ -2,7 +2,7 @@
 
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
-    Axis, Body, Cells, Mesh, Method, Obstacle, Phase, Sampling, Scene, Shape, Solver, Strain,
+    Axis, Body, Cells, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings, Shape, Strain,
     Trajectory,
 };
 
@@ -19,7 +19,7 @@ fn the_floor_carries_the_weight() {
     let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(2000.0).damping(40.0);
     let scene = square().gravity([0.0, -9.8]).obstacle(floor).phase(Phase::until(6.0));
     for method in [Method::CvodeBdf, Method::Ida] {
-        let solver = Solver { method, rtol: 1e-7, ..Solver::default() };
+        let solver = Settings { method, rtol: 1e-7, ..Settings::default() };
         let trajectory = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
         let last = trajectory.last();
         let depths: Vec<f64> = (0..4).map(|node| -last.u[2 * node + 1]).collect();
@@ -50,7 +50,7 @@ fn friction_slows_a_sliding_square() {
         // a sledge: the lower nodes stay at their depth
         .phase(Phase::until(2.1).named("slides").hold_axes("bottom", [Axis::Y]));
     for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
-        let solver = Solver { method, rtol: 1e-8, ..Solver::default() };
+        let solver = Settings { method, rtol: 1e-8, ..Settings::default() };
         let trajectory = scene.simulate(&solver, &Sampling::at([1.1])).unwrap();
         for sample in trajectory.samples().iter().filter(|s| s.phase == 1) {
             let expected = (-4.0 * 0.05 * (sample.time - 0.1) / MASS).exp();
@@ -67,7 +67,7 @@ fn an_obstacle_out_of_reach_changes_nothing() {
     let phase = || Phase::until(0.2).hold("bottom").load([15], [3.0, 1.0]);
     let far = Obstacle::half_plane([0.0, -1.0], [0.0, 1.0]).stiffness(1e5);
     // (not with ARKODE, which is told that a phase without contact is linear)
-    let solver = Solver { method: Method::CvodeBdf, ..Solver::default() };
+    let solver = Settings { method: Method::CvodeBdf, ..Settings::default() };
     let alone = square().phase(phase()).simulate(&solver, &Sampling::every(0.05));
     let near = square().obstacle(far).phase(phase());
     let near = near.simulate(&solver, &Sampling::every(0.05));
@@ -104,7 +104,7 @@ fn a_stiffness_per_area_suits_all_meshes() {
             .gravity([0.0, -9.8])
             .obstacle(floor.damping(1e5))
             .phase(Phase::until(3.0));
-        let solver = Solver { rtol: 1e-6, ..Solver::default() };
+        let solver = Settings { rtol: 1e-6, ..Settings::default() };
         let trajectory = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
         let last = trajectory.last();
         let depths: Vec<f64> = bottom.iter().map(|&node| -last.u[2 * node + 1]).collect();
@@ -129,7 +129,7 @@ fn a_belt_carries_a_square_along() {
         .obstacle(belt.named("belt").velocity([w, 0.0]))
         .phase(Phase::until(1.0).hold_axes("bottom", [Axis::Y]));
     for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
-        let solver = Solver { method, rtol: 1e-7, ..Solver::default() };
+        let solver = Settings { method, rtol: 1e-7, ..Settings::default() };
         let trajectory = scene.simulate(&solver, &Sampling::every(0.1)).unwrap();
         for sample in trajectory.samples() {
             let expected = w * (1.0 - (-4.0 * friction * sample.time / MASS).exp());
@@ -162,7 +162,7 @@ fn a_ram_throws_a_square() {
             .phase(Phase::until(0.2))
             .phase(Phase::until(0.3).without_contact());
         for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
-            let solver = Solver { method, rtol: 1e-7, ..Solver::default() };
+            let solver = Settings { method, rtol: 1e-7, ..Settings::default() };
             let trajectory = scene.simulate(&solver, &Sampling::every(0.02)).unwrap();
             let before = trajectory.samples().iter().rfind(|s| s.time < 0.201).unwrap();
             println!("{strain:?} {method}: {:?}", before.energy);
@@ -180,7 +180,7 @@ fn a_ram_throws_a_square() {
 fn a_square_settles_in_a_bowl() {
     let bowl = Obstacle::cavity([0.2, 0.5], 0.6).stiffness(2000.0).damping(10.0).friction(5.0);
     let scene = square().gravity([0.0, -9.8]).obstacle(bowl).phase(Phase::until(6.0));
-    let solver = Solver { rtol: 1e-6, ..Solver::default() };
+    let solver = Settings { rtol: 1e-6, ..Settings::default() };
     let trajectory = scene.simulate(&solver, &Sampling::every(0.5)).unwrap();
     let last = trajectory.last();
     let centre = trajectory.centre_of_mass(last);
@@ -195,7 +195,7 @@ fn a_distance_of_ones_own_is_as_good_as_a_known_one() {
     let run = |obstacle: Obstacle| {
         let peg = obstacle.stiffness(2000.0).damping(5.0);
         let scene = square().gravity([0.0, -9.8]).obstacle(peg).phase(Phase::until(0.3));
-        let solver = Solver { rtol: 1e-8, ..Solver::default() };
+        let solver = Settings { rtol: 1e-8, ..Settings::default() };
         scene.simulate(&solver, &Sampling::every(0.05)).unwrap()
     };
     let known = run(Obstacle::disc([0.1, -0.2], 0.19));

@@ -1,7 +1,7 @@
 //! Contact events: located, they are where the closed form has them, and steps do not suffer.
 
 use pliant::{
-    Body, ContactEvents, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene, Solver,
+    Body, ContactEvents, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
     Trajectory,
 };
 
@@ -19,7 +19,7 @@ fn bounce() -> Scene {
 }
 
 fn run(method: Method, contact_events: ContactEvents, rtol: f64) -> Trajectory {
-    let solver = Solver { method, rtol, contact_events, ..Solver::default() };
+    let solver = Settings { method, rtol, contact_events, ..Settings::default() };
     bounce().simulate(&solver, &Sampling::phase_ends()).unwrap()
 }
 
@@ -69,7 +69,7 @@ fn located_events_spare_rejected_steps() {
 fn a_rolling_ring_passes_its_events() {
     let scene = pliant::samples::RingRoll { until: 0.5, ..Default::default() }.scene().unwrap();
     let end = |contact_events, rtol| {
-        let solver = Solver { contact_events, rtol, ..Solver::default() };
+        let solver = Settings { contact_events, rtol, ..Settings::default() };
         let motion = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
         let events = motion.report().phases[0].counts.contact_events;
         let told = format!("{events} contact events located");

@@ -2,8 +2,8 @@
 
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
-    Body, Cells, Chamber, Error, Material, Mesh, Method, Phase, Sampling, Scene, Selection, Solver,
-    Spring, Strain, Trajectory,
+    Body, Cells, Chamber, Error, Material, Mesh, Method, Phase, Sampling, Scene, Selection,
+    Settings, Spring, Strain, Trajectory,
 };
 
 /// A square of rubber, 3 cm wide, with point masses of 10 g and 30 g beside it, 4 cm apart.
@@ -14,8 +14,8 @@ fn two_masses() -> Body {
     body.build().unwrap()
 }
 
-fn fine(method: Method) -> Solver {
-    Solver { method, rtol: 1e-9, alpha: 1e4, ..Solver::default() }
+fn fine(method: Method) -> Settings {
+    Settings { method, rtol: 1e-9, alpha: 1e4, ..Settings::default() }
 }
 
 /// The energy balance closes to `tolerance` of all energy there was.
@@ -113,7 +113,7 @@ fn a_collapsed_spring_is_named() {
     let expected = 0.02 + (1.0 + 0.99 * length * k / f).acos() / omega;
     for method in Method::ALL {
         for rtol in [1e-2, 1e-3, 1e-6, 1e-9] {
-            let solver = Solver { method, rtol, ..Solver::default() };
+            let solver = Settings { method, rtol, ..Settings::default() };
             let result = scene.simulate(&solver, &Sampling::every(0.001));
             let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
             let message = failure.to_string();
@@ -154,10 +154,10 @@ fn a_chamber_bulges_a_strip() {
             .phase(phase(0.2).pressure_with("below", |t| 500.0 * (0.2 - t) / 0.1))
             .phase(phase(0.6));
         for method in [Method::CvodeBdf, Method::Ida] {
-            let solver = Solver { method, rtol: 1e-7, ..Solver::default() };
+            let solver = Settings { method, rtol: 1e-7, ..Settings::default() };
             let trajectory = scene.simulate(&solver, &Sampling::every(0.1)).unwrap();
             let height = |time: f64| {
-                let at = |sample: &&pliant::trajectory::Sample| (sample.time - time).abs() < 1e-9;
+                let at = |sample: &&pliant::Sample| (sample.time - time).abs() < 1e-9;
                 trajectory.samples().iter().find(at).unwrap().u[2 * 5 + 1]
             };
             println!("{strain:?} {method}: {} {}", height(0.1), height(0.6));
@@ -199,7 +199,7 @@ fn a_run_that_cannot_go_on_ends() {
         .phase(Phase::until(1.0).named("crush").hold([2, 3, 4]).actuate(["A1"], -5e4));
     for method in Method::ALL {
         for rtol in [1e-3, 1e-6] {
-            let solver = Solver { method, rtol, ..Solver::default() };
+            let solver = Settings { method, rtol, ..Settings::default() };
             let result = scene.simulate(&solver, &Sampling::phase_ends());
             let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
             let message = failure.to_string();

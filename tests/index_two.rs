@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use common::{difference, global_error, run};
 use pliant::samples::SQUARE_MATERIAL;
-use pliant::{Axis, Body, Cells, Mesh, Method, Phase, Prescribed, Scene, Solver, Strain};
+use pliant::{Axis, Body, Cells, Mesh, Method, Phase, Prescribed, Scene, Settings, Strain};
 
 const UNTIL: f64 = 0.6;
 
@@ -39,7 +39,7 @@ fn times() -> Vec<f64> {
 fn the_motion_is_that_of_the_ode_form() {
     let scene = pushed_and_led();
     let by = |method, rtol| {
-        run(&scene, &Solver { method, rtol, alpha: 1e4, ..Solver::default() }, &times())
+        run(&scene, &Settings { method, rtol, alpha: 1e4, ..Settings::default() }, &times())
     };
     let reference = by(Method::CvodeBdf, 1e-9);
     for rtol in [1e-5, 1e-7] {

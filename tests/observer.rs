@@ -4,16 +4,16 @@ use std::ops::ControlFlow;
 
 use pliant::samples::{ring_jump, square_jump};
 use pliant::simulate::Progress;
-use pliant::{Error, Method, Sampling, Scene, Solver, Trajectory};
+use pliant::{Error, Method, Sampling, Scene, Settings, Trajectory};
 
-fn solver(method: Method) -> Solver {
-    Solver { method, rtol: 1e-5, ..Solver::default() }
+fn solver(method: Method) -> Settings {
+    Settings { method, rtol: 1e-5, ..Settings::default() }
 }
 
 /// Runs `scene` until `stop` says so.
 fn run_until(
     scene: &Scene,
-    solver: &Solver,
+    solver: &Settings,
     stop: impl Fn(&Progress) -> bool,
 ) -> Result<Trajectory, Error> {
     scene.simulate_with(solver, &Sampling::every(0.1), |progress| match stop(progress) {
@@ -98,7 +98,7 @@ fn the_last_step_leaves_nothing_to_stop() {
 /// What gave up was not interrupted, and also keeps the state of its last step.
 #[test]
 fn a_failure_is_no_interruption() {
-    let solver = Solver { max_steps: 40, ..solver(Method::CvodeBdf) };
+    let solver = Settings { max_steps: 40, ..solver(Method::CvodeBdf) };
     let failed = square_jump(4).unwrap().simulate(&solver, &Sampling::phase_ends());
     let Err(Error::Integration(end)) = failed else { panic!("no failure") };
     assert!(!end.is_interruption());

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use pliant::output::{Chart, Snapshots, write_csv, write_energies, write_vtk};
 use pliant::{
-    Body, CellField, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Shape, SolidCells,
-    Solver, Trajectory,
+    Body, CellField, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Shape,
+    SolidCells, Trajectory,
 };
 use vtkio::model::{
     Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
@@ -25,7 +25,7 @@ fn square() -> Result<Trajectory, pliant::Error> {
         .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 2.0]).stiffness(100.0))
         .phase(press.hold("bottom").move_nodes([14, 15], [0.0, -0.16]))
         .phase(Phase::until(0.03).named("free"))
-        .simulate(&Solver::default(), &Sampling::every(0.01))
+        .simulate(&Settings::default(), &Sampling::every(0.01))
 }
 
 fn bar() -> Result<Trajectory, pliant::Error> {
@@ -33,7 +33,7 @@ fn bar() -> Result<Trajectory, pliant::Error> {
     Scene::new(Body::new(Mesh::bar(0.1, 6)?, soft).area(2e-4).build()?)
         .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
         .phase(Phase::until(0.01).hold("left").load("right", [-2.0]).without_contact())
-        .simulate(&Solver::default(), &Sampling::every(0.005))
+        .simulate(&Settings::default(), &Sampling::every(0.005))
 }
 
 fn block() -> Result<Trajectory, pliant::Error> {
@@ -41,7 +41,7 @@ fn block() -> Result<Trajectory, pliant::Error> {
     let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
     Scene::new(Body::new(mesh, soft).build()?)
         .phase(Phase::until(0.01).hold("bottom").move_nodes("top", [0.3, -0.2, 0.1]))
-        .simulate(&Solver::default(), &Sampling::phase_ends())
+        .simulate(&Settings::default(), &Sampling::phase_ends())
 }
 
 type Table = (Vec<String>, Vec<Vec<f64>>);
@@ -165,7 +165,7 @@ fn snapshots_show_obstacles() -> Outcome {
         .obstacle(named("pair", Shape::union(pair)))
         .obstacle(Obstacle::custom(|_, _| 1.0).named("own").stiffness(1.0))
         .phase(Phase::until(0.1));
-    let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
     let directory = tempfile::tempdir()?;
     let path = directory.path().join("obstacles.svg");
     Snapshots::at([0.0, 0.1]).write(&trajectory, &path)?;

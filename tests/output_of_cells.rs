@@ -3,7 +3,9 @@
 use std::fs;
 
 use pliant::output::{Snapshots, write_vtk};
-use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, SolidCells, Solver, Trajectory};
+use pliant::{
+    Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, SolidCells, Trajectory,
+};
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
 
@@ -21,7 +23,7 @@ fn pulled(mesh: Mesh) -> Trajectory {
     velocity[0] = 0.5;
     let phase = Phase::until(0.01).hold(still).move_nodes(moving, velocity);
     let scene = Scene::new(body.build().unwrap()).phase(phase);
-    scene.simulate(&Solver::default(), &Sampling::phase_ends()).unwrap()
+    scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap()
 }
 
 /// A body of every kind of cell, the number of its type in VTK files, and the polygons (or lines)

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use pliant::{
     Axis, Body, Cells, Error, InputError, Material, Mesh, Obstacle, Phase, Sample, Sampling, Scene,
-    SolidCells, Solver, Statics, Trajectory,
+    Settings, SolidCells, Statics, Trajectory,
 };
 
 type Outcome = Result<(), Error>;
@@ -30,7 +30,7 @@ fn pressed(sampling: &Sampling) -> Result<Trajectory, Error> {
         .phase(press)
         .phase(Phase::until(0.08).contact_with(["floor"]))
         .phase(Phase::until(0.1).without_contact().hold_axes([5], [Axis::Y]))
-        .simulate(&Solver { rtol: 1e-9, ..Solver::default() }, sampling)
+        .simulate(&Settings { rtol: 1e-9, ..Settings::default() }, sampling)
 }
 
 fn sum(forces: &[f64]) -> [f64; 2] {
@@ -158,7 +158,7 @@ fn angular_momentum_of_a_spinning_block() -> Outcome {
     for cells in [SolidCells::Hexahedra, SolidCells::Tetrahedra, SolidCells::Tetrahedra10] {
         let body = Body::new(Mesh::cuboid([a, b, c], [2, 3, 4], cells)?, RUBBER).build()?;
         let scene = Scene::new(body).initial_velocity(spin).phase(Phase::until(1e-6));
-        let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+        let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
         let found = trajectory.angular_momentum(&trajectory.samples()[0]);
         let mass = 1000.0 * a * b * c;
         let inertia = [b * b + c * c, a * a + c * c, a * a + b * b].map(|x| mass / 12.0 * x);
@@ -176,7 +176,7 @@ fn angular_momentum_of_a_turning_square() -> Outcome {
     let (omega, drift) = (3.0, [1.0, -2.0]);
     let spin = |x: &[f64]| vec![drift[0] - omega * x[1], drift[1] + omega * x[0]];
     let scene = Scene::new(square(4)?).initial_velocity(spin).phase(Phase::until(1e-6));
-    let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
     let found = trajectory.angular_momentum(&trajectory.samples()[0]);
     // m w^2 / 6
     assert!((found[0] / (0.9 * 0.09 / 6.0 * omega) - 1.0).abs() < 1e-12, "{found:?}");
@@ -214,7 +214,7 @@ fn an_obstacle_that_has_lost_its_meaning_is_named() -> Outcome {
     });
     let scene = Scene::new(square(4)?).phase(Phase::until(0.01));
     let scene = scene.obstacle(floor.named("own").stiffness(100.0));
-    let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
     assert!(trajectory.contact_forces(trajectory.last()).is_ok());
     lost.store(true, Ordering::Relaxed);
     let refused = trajectory.contact_forces(trajectory.last()).unwrap_err().to_string();

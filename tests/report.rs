@@ -3,10 +3,10 @@
 use std::fs;
 use std::ops::ControlFlow;
 
+use pliant::IntegrationFailure;
 use pliant::output::{write_report, write_static_report};
 use pliant::samples::{SQUARE_MATERIAL, ring_springs, square_jump};
-use pliant::simulate::IntegrationFailure;
-use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Solver, Statics, Strain};
+use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings, Statics, Strain};
 use pliant::{Trajectory, sundials};
 use serde_json::{Value, json};
 
@@ -41,7 +41,7 @@ fn sum(report: &Value, key: &str) -> f64 {
 
 #[test]
 fn a_finished_run() {
-    let solver = Solver { method: Method::Ida, rtol: 1e-4, alpha: 500.0, ..Solver::default() };
+    let solver = Settings { method: Method::Ida, rtol: 1e-4, alpha: 500.0, ..Settings::default() };
     let run = square_jump(4).unwrap().simulate(&solver, &Sampling::every(0.01)).unwrap();
     let report = written(Ok(&run));
     let rest = ["energy_balance_error", "energy_created", "energy_scale", "max_constraint_drift"];
@@ -80,7 +80,7 @@ fn a_finished_run() {
 
 #[test]
 fn runs_that_end_early() {
-    let failed = ring_springs(5.0).unwrap().simulate(&Solver::default(), &Sampling::every(0.01));
+    let failed = ring_springs(5.0).unwrap().simulate(&Settings::default(), &Sampling::every(0.01));
     let Err(Error::Integration(failure)) = failed else { panic!("no failure") };
     let report = written(Err(&failure));
     assert_eq!(report["status"], "failed");
@@ -92,10 +92,11 @@ fn runs_that_end_early() {
     assert_eq!(report["phases"].as_array().unwrap().len(), 2);
     assert_eq!(report["phases"][1]["end"], report["failure"]["time"]);
 
-    let stopped =
-        square_jump(4)
-            .unwrap()
-            .simulate_with(&Solver::default(), &Sampling::phase_ends(), |_| ControlFlow::Break(()));
+    let stopped = square_jump(4).unwrap().simulate_with(
+        &Settings::default(),
+        &Sampling::phase_ends(),
+        |_| ControlFlow::Break(()),
+    );
     let Err(Error::Integration(end)) = stopped else { panic!("not stopped") };
     let report = written(Err(&end));
     assert_eq!((&report["status"], &report["steps"]), (&json!("interrupted"), &json!(1)));
@@ -111,14 +112,14 @@ fn warnings_are_told() {
     let scene = Scene::new(body)
         .initial_velocity(|x| vec![20.0 * x[0]])
         .phase(Phase::until(0.5).hold("left"));
-    let rough = Solver { method: Method::CvodeBdf, rtol: 0.5, ..Solver::default() };
+    let rough = Settings { method: Method::CvodeBdf, rtol: 0.5, ..Settings::default() };
     let run = scene.simulate(&rough, &Sampling::every(0.01)).unwrap();
     let report = written(Ok(&run));
     let warning = report["warnings"][0].as_str().unwrap();
     assert!(warning.contains("the integrator created"), "{warning}");
     assert!(run.report().to_string().contains(&format!("WARNING: {warning}")));
     // Runge and Kutta's notice that stability bounds the steps
-    let stiff = Solver { method: Method::Rk, alpha: 1e5, ..Solver::default() };
+    let stiff = Settings { method: Method::Rk, alpha: 1e5, ..Settings::default() };
     let run = square_jump(4).unwrap().simulate(&stiff, &Sampling::phase_ends()).unwrap();
     let report = written(Ok(&run));
     let warning = report["warnings"][0].as_str().unwrap();

@@ -5,13 +5,13 @@ mod common;
 use common::{difference, run};
 use pliant::samples::{RingRoll, SQUARE_MATERIAL, SquareJump};
 use pliant::{
-    Body, Cells, Mesh, Method, Phase, Sampling, Scene, Solver, Strain, Trajectory, Viscosity,
+    Body, Cells, Mesh, Method, Phase, Sampling, Scene, Settings, Strain, Trajectory, Viscosity,
 };
 
 fn roll(ring: RingRoll, method: Method, rtol: f64) -> Trajectory {
     let times: Vec<f64> = (0..=50).map(|k| 0.1 * f64::from(k)).collect();
     let times: Vec<f64> = times.into_iter().filter(|&t| t <= ring.until).collect();
-    run(&ring.scene().unwrap(), &Solver { method, rtol, ..Solver::default() }, &times)
+    run(&ring.scene().unwrap(), &Settings { method, rtol, ..Settings::default() }, &times)
 }
 
 fn degrees(trajectory: &Trajectory, time: f64) -> f64 {
@@ -79,7 +79,7 @@ fn a_flying_ring_keeps_its_spin() {
             .initial_displacement(|x| vec![0.2 * x[0], -0.1 * x[1]])
             .initial_velocity(|x| vec![0.3 - 40.0 * x[1], 1.0 + 40.0 * x[0]])
             .phase(Phase::until(0.3));
-        let solver = Solver { method, rtol: 1e-8, ..Solver::default() };
+        let solver = Settings { method, rtol: 1e-8, ..Settings::default() };
         let trajectory = scene.simulate(&solver, &Sampling::every(0.1)).unwrap();
         let (start, end) = (&trajectory.samples()[0], trajectory.last());
         let [before, after] = [start, end].map(|s| trajectory.momentum(s));
@@ -108,7 +108,7 @@ fn a_flying_ring_keeps_its_spin() {
 fn symmetric_meshes_do_not_turn() {
     let turned = |cells, nodes| {
         let scene = SquareJump { cells, nodes, ..SquareJump::default() }.scene().unwrap();
-        let trajectory = run(&scene, &Solver { rtol: 1e-8, ..Solver::default() }, &[]);
+        let trajectory = run(&scene, &Settings { rtol: 1e-8, ..Settings::default() }, &[]);
         trajectory.rotation(trajectory.last()).unwrap().abs()
     };
     let (rectangles, crossed) = (turned(Cells::Rectangles, 4), turned(Cells::Crossed, 5));

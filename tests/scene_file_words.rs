@@ -6,7 +6,7 @@ use std::path::Path;
 use pliant::scene_file::Format;
 use pliant::{
     Axis, Body, CellSelection, Cells, Chamber, ContactEvents, Material, Mesh, Method, Obstacle,
-    OutputRequest, Phase, Scene, SceneFile, Selection, Shape, SolidCells, Solver, Spring, Strain,
+    OutputRequest, Phase, Scene, SceneFile, Selection, Settings, Shape, SolidCells, Spring, Strain,
 };
 
 fn read(name: &str) -> SceneFile {
@@ -50,7 +50,10 @@ fn in_the_plane() {
         .phase(Phase::until(1.0).contact_with(["floor"]));
     agree(&file, &scene);
     assert_eq!(file.title, "A bit of everything");
-    assert_eq!(file.solver, Solver { method: Method::CvodeBdf, rtol: 1e-5, ..Solver::default() });
+    assert_eq!(
+        file.solver,
+        Settings { method: Method::CvodeBdf, rtol: 1e-5, ..Settings::default() }
+    );
     let output = OutputRequest {
         step: Some(0.01),
         track: Some(corners([0.0, 0.2], [0.3, 0.3])),
@@ -88,7 +91,7 @@ fn in_space() {
         .phase(Phase::until(0.02).named("fall").contact_with(["floor", "hull"]))
         .phase(press);
     agree(&file, &scene);
-    let solver = Solver {
+    let solver = Settings {
         method: Method::CvodeBdf,
         rtol: 1e-4,
         atol_position: Some(1e-7),

@@ -5,14 +5,14 @@ mod common;
 
 use common::{difference, global_error, methods_with_alpha, run, tolerances};
 use pliant::samples::square_jump;
-use pliant::{Method, Scene, Solver, Trajectory};
+use pliant::{Method, Scene, Settings, Trajectory};
 
 fn times() -> Vec<f64> {
     (0..=30).map(|k| 0.05 * f64::from(k)).collect()
 }
 
 fn jump(scene: &Scene, method: Method, rtol: f64, alpha: f64) -> Trajectory {
-    run(scene, &Solver { method, rtol, alpha, ..Solver::default() }, &times())
+    run(scene, &Settings { method, rtol, alpha, ..Settings::default() }, &times())
 }
 
 /// All methods come to the same jump, to a few hundred times rtol. Single runs scatter, as it is a

@@ -5,7 +5,7 @@ mod common;
 
 use common::{Table, difference, global_error, methods_with_alpha, run, tolerances};
 use pliant::samples::square_press;
-use pliant::{Method, Solver, Trajectory};
+use pliant::{Method, Settings, Trajectory};
 
 /// Largest distance of centre of mass and nodes 14 to 16 from the reference, relative to the
 /// largest displacement (8 cm).
@@ -31,7 +31,7 @@ fn error(trajectory: &Trajectory, reference: &Table) -> f64 {
 
 fn error_of(method: Method, rtol: f64, alpha: f64) -> (f64, Trajectory) {
     let reference = Table::read("square_press.csv").filter("alpha", alpha);
-    let solver = Solver { method, rtol, alpha, ..Solver::default() };
+    let solver = Settings { method, rtol, alpha, ..Settings::default() };
     let trajectory = run(&square_press(4).unwrap(), &solver, &reference.get("t"));
     (error(&trajectory, &reference), trajectory)
 }
@@ -75,7 +75,7 @@ fn only_the_explicit_method_pays_for_alpha() {
     // Pushing and holding lasts 1 s. (Afterwards the bottom stays at rest exactly, and nothing
     // excites the stabilization.)
     let [low, high] = [1e4, 1e5].map(|alpha| {
-        let solver = Solver { method: Method::Rk, rtol: 1e-5, alpha, ..Solver::default() };
+        let solver = Settings { method: Method::Rk, rtol: 1e-5, alpha, ..Settings::default() };
         let trajectory = run(&square_press(4).unwrap(), &solver, &[]);
         let constrained = &trajectory.report().phases[..2];
         constrained.iter().map(|phase| phase.counts.steps as f64).sum::<f64>()
@@ -108,7 +108,7 @@ fn methods_agree_at_a_small_alpha() {
     let scene = square_press(4).unwrap();
     let times: Vec<f64> = (0..=20).map(|k| 0.1 * f64::from(k)).collect();
     let at = |method, rtol| {
-        run(&scene, &Solver { method, rtol, alpha: 10.0, ..Solver::default() }, &times)
+        run(&scene, &Settings { method, rtol, alpha: 10.0, ..Settings::default() }, &times)
     };
     let truth = at(Method::Rk, 1e-10);
     for method in methods_with_alpha() {
@@ -122,7 +122,7 @@ fn methods_agree_at_a_small_alpha() {
 /// stabilization still has at the end of the push (v t exp(-alpha t) = 0.5 mm) is not handed on.
 #[test]
 fn held_nodes_forget_the_drift_of_the_push() {
-    let solver = Solver { alpha: 10.0, rtol: 1e-8, ..Solver::default() };
+    let solver = Settings { alpha: 10.0, rtol: 1e-8, ..Settings::default() };
     let trajectory = run(&square_press(4).unwrap(), &solver, &[0.6]);
     let [_, pushed, held, ..] = trajectory.samples() else { panic!("five samples") };
     let depth = |sample: &pliant::Sample| sample.u[2 * 13 + 1];

@@ -8,7 +8,7 @@ use pliant::samples::clamped_beam;
 use pliant::study::{
     Failed, Findings, General, Line, Measured, Point, Problem, Row, Scenes, Study,
 };
-use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Solver};
+use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings};
 
 /// Nothing is watched.
 fn run(problem: &mut dyn Problem) -> Findings {
@@ -46,14 +46,14 @@ fn errors_are_distances_from_the_exact_motion() {
     let tolerances = [1e-3, 1e-5, 1e-7];
     let mut scenes = Scenes::new("bar", bar(5)).tolerances(tolerances);
     for method in methods {
-        scenes = scenes.solver(method.name(), Solver { method, ..Solver::default() });
+        scenes = scenes.solver(method.name(), Settings { method, ..Settings::default() });
     }
     let findings = run(&mut scenes);
     assert!(findings.resolution() < 1e-7 / 30.0, "{}", findings.resolution());
     for method in methods {
         let rows = rows(&findings, method.name());
         for (row, rtol) in rows.iter().zip(tolerances) {
-            let solver = Solver { method, rtol, ..Solver::default() };
+            let solver = Settings { method, rtol, ..Settings::default() };
             let times: Vec<f64> = (1..=101).map(|k| 20.0 * (f64::from(k) / 101.0)).collect();
             let trajectory = bar(5).simulate(&solver, &Sampling::at(times)).unwrap();
             let start = &trajectory.samples()[0].u;
@@ -101,7 +101,7 @@ fn dephased(omega: f64, exact: f64) -> f64 {
 /// at the three nodes that all meshes share is what that makes of the motion.
 #[test]
 fn a_mesh_study_finds_the_error_of_the_mesh() {
-    let solver = Solver { method: Method::CvodeAdams, rtol: 1e-8, ..Solver::default() };
+    let solver = Settings { method: Method::CvodeAdams, rtol: 1e-8, ..Settings::default() };
     let meshes = [3, 5, 9, 17].map(|nodes| (format!("{nodes} nodes"), bar(nodes)));
     let mut scenes = Scenes::new("bar", bar(129))
         .finest(1e-3)
@@ -130,8 +130,8 @@ fn a_variant_is_wrong_by_what_it_does_differently() {
         .phase(Phase::until(20.0).hold("left"));
     let mut scenes = Scenes::new("bar", bar(5))
         .tolerances([1e-6])
-        .solver("same", Solver::default())
-        .variant("stiffer", stiffer, Solver::default());
+        .solver("same", Settings::default())
+        .variant("stiffer", stiffer, Settings::default());
     let findings = run(&mut scenes);
     let error = rows(&findings, "stiffer")[0].error.unwrap();
     let exact = dephased(1.1_f64.sqrt() * frequency(5), frequency(5));
@@ -279,16 +279,16 @@ fn a_study_is_resumed_where_it_stopped() {
 
 #[test]
 fn scenes_are_told_apart_by_what_they_are_and_how_they_are_solved() {
-    let solver = Solver::default();
+    let solver = Settings::default();
     let beam = |viscosity| Scenes::new("beam", clamped_beam([6, 2], viscosity).unwrap());
-    let of = |scenes: Scenes, solver: &Solver| {
+    let of = |scenes: Scenes, solver: &Settings| {
         scenes.tolerances([1e-3, 1e-4]).solver("line", solver.clone()).fingerprint(0, 1)
     };
     let same = of(beam(0.0), &solver);
-    assert_eq!(same, of(beam(0.0), &Solver { rtol: 1e-9, ..solver.clone() }));
+    assert_eq!(same, of(beam(0.0), &Settings { rtol: 1e-9, ..solver.clone() }));
     let more = beam(0.0).tolerances([1e-4, 1e-5]).solver("line", solver.clone());
     assert_eq!((same, false), (more.fingerprint(0, 0), same == more.fingerprint(0, 1)));
-    let low = Solver { max_order: Some(2), ..solver.clone() };
+    let low = Settings { max_order: Some(2), ..solver.clone() };
     let variant = clamped_beam([6, 2], 1.0).unwrap();
     let variant = beam(0.0).tolerances([1e-3, 1e-4]).variant("line", variant, solver.clone());
     for other in [
@@ -353,7 +353,8 @@ fn message<T: std::fmt::Debug>(result: Result<T, Error>) -> String {
 
 #[test]
 fn bad_input_is_named() {
-    let scenes = || Scenes::new("bar", bar(3)).tolerances([1e-3]).solver("bdf", Solver::default());
+    let scenes =
+        || Scenes::new("bar", bar(3)).tolerances([1e-3]).solver("bdf", Settings::default());
     let study = |scenes: &mut Scenes| Study::new(scenes).run(&mut |_| ());
     let said = message(Study::new(&mut scenes()).repetitions(0).run(&mut |_| ()));
     assert!(said.starts_with("repetitions = 0"), "{said}");
@@ -366,19 +367,19 @@ fn bad_input_is_named() {
     }
     let said = message(study(&mut scenes().finest(0.0)));
     assert!(said.starts_with("finest = 0"), "{said}");
-    let said = message(study(&mut scenes().tolerances([2.0]).solver("rough", Solver::default())));
+    let said = message(study(&mut scenes().tolerances([2.0]).solver("rough", Settings::default())));
     assert!(said.starts_with("rtol = 2"), "{said}");
-    let said = message(study(&mut scenes().solver("bdf", Solver::default())));
+    let said = message(study(&mut scenes().solver("bdf", Settings::default())));
     assert!(said.starts_with("name of a line = \"bdf\""), "{said}");
     let longer = bar(3).phase(Phase::until(21.0));
-    let said = message(study(&mut scenes().variant("longer", longer, Solver::default())));
+    let said = message(study(&mut scenes().variant("longer", longer, Settings::default())));
     assert!(said.starts_with("end of a scene = 21 s"), "{said}");
     let elsewhere = Body::new(
         Mesh::bar(1.0, 3).unwrap().translated(&[5.0]).unwrap(),
         Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 },
     );
     let elsewhere = Scene::new(elsewhere.area(1.0).build().unwrap()).phase(Phase::until(20.0));
-    let said = message(study(&mut scenes().variant("elsewhere", elsewhere, Solver::default())));
+    let said = message(study(&mut scenes().variant("elsewhere", elsewhere, Settings::default())));
     assert!(said.starts_with("number of nodes that all meshes share = 0"), "{said}");
     let result = Study::new(&mut scenes()).limit(1e-9).run(&mut |_| ());
     assert!(matches!(result, Err(Error::Reference { .. })), "{result:?}");

@@ -3,7 +3,7 @@
 use std::thread;
 
 use pliant::samples::square_jump;
-use pliant::{Error, Method, Sampling, Scene, Solver, Trajectory};
+use pliant::{Error, Method, Sampling, Scene, Settings, Trajectory};
 
 #[test]
 fn scenes_are_shared_and_motions_handed_over() {
@@ -17,7 +17,7 @@ fn scenes_are_shared_and_motions_handed_over() {
 fn threads_do_not_disturb_each_other() {
     let scene = square_jump(4).unwrap();
     let end = |method| {
-        let solver = Solver { method, rtol: 1e-5, ..Solver::default() };
+        let solver = Settings { method, rtol: 1e-5, ..Settings::default() };
         let trajectory = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
         trajectory.last().u.clone()
     };

@@ -5,7 +5,7 @@ mod common;
 use common::{difference, run};
 use pliant::samples::{MEMBRANE_MATERIAL, SQUARE_MATERIAL};
 use pliant::{
-    Axis, Body, Cells, Chamber, Mesh, Phase, Prescribed, Scene, Solver, Spring, Trajectory,
+    Axis, Body, Cells, Chamber, Mesh, Phase, Prescribed, Scene, Settings, Spring, Trajectory,
 };
 
 fn square() -> Scene {
@@ -17,7 +17,7 @@ fn square() -> Scene {
 /// than the bound, a hundred times their tolerance.
 #[track_caller]
 fn alike(a: &Scene, b: &Scene) {
-    let solver = Solver { rtol: 1e-8, ..Solver::default() };
+    let solver = Settings { rtol: 1e-8, ..Settings::default() };
     let motion = |scene| -> Trajectory { run(scene, &solver, &[0.05, 0.1, 0.15, 0.2]) };
     let difference = difference(&motion(a), &motion(b));
     assert!(difference < 1e-6, "{difference}");

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pliant::{Error, Method, Solver};
+use pliant::{Error, Method, Settings};
 
 /// Arguments of every example.
 #[derive(Args)]
@@ -25,9 +25,9 @@ pub struct Common {
 
 impl Common {
     /// The solver they ask for.
-    pub fn solver(&self) -> Solver {
+    pub fn solver(&self) -> Settings {
         let &Self { method, rtol, alpha, .. } = self;
-        Solver { method, rtol, alpha, ..Solver::default() }
+        Settings { method, rtol, alpha, ..Settings::default() }
     }
 }
 

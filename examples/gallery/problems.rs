@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use pliant::samples::{self, ClampedBeam, RingRoll};
 use pliant::study::{General, Problem, Scenes, all_solvers};
-use pliant::{Cells, Error, Inertia, InputError, Method, Scene, Solver, Strain};
+use pliant::{Cells, Error, Inertia, InputError, Method, Scene, Settings, Strain};
 
 /// In the order of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -112,7 +112,7 @@ fn meshes(title: &str) -> Result<Scenes, Error> {
         ClampedBeam { nodes, cells, viscosity: LIGHT, ..ClampedBeam::default() }.scene()
     };
     // The integration is much more precise than any of these meshes.
-    let solver = Solver { rtol: 1e-5, ..Solver::default() };
+    let solver = Settings { rtol: 1e-5, ..Settings::default() };
     let mut scenes = Scenes::new(title, beam(Cells::Triangles6, [140, 8])?)
         .checked_by(beam(Cells::Triangles6, [105, 6])?)
         .finest(1e-3);

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use pliant::study::{Failed, Line, Measured, Point, Problem};
-use pliant::{Error, Inertia, Method, Sampling, Scene, Solver};
+use pliant::{Error, Inertia, Method, Sampling, Scene, Settings};
 
 use crate::external::{Program, Task};
 use crate::implicit;
@@ -42,7 +42,7 @@ pub struct Comparison {
     lines: Vec<Line>,
     ways: Vec<(Way, Vec<f64>)>,
     /// Solvers of the reference.
-    references: [Solver; 2],
+    references: [Settings; 2],
     folder: PathBuf,
     /// Displacements (m), time by time, and what errors are relative to (m).
     truth: Vec<f64>,
@@ -65,7 +65,7 @@ impl Comparison {
     pub fn new(
         case: &'static Case,
         inertia: Inertia,
-        references: [Solver; 2],
+        references: [Settings; 2],
         folder: PathBuf,
     ) -> Result<Self, Failed> {
         let scene = case.scene(inertia)?;
@@ -114,7 +114,7 @@ impl Comparison {
         &self.tips
     }
 
-    fn pliant(&self, solver: &Solver, limit: f64) -> Result<Solved, GaveUp> {
+    fn pliant(&self, solver: &Settings, limit: f64) -> Result<Solved, GaveUp> {
         let clock = Clock::new(limit);
         let patience = |_: &pliant::simulate::Progress| match clock.check() {
             Ok(()) => std::ops::ControlFlow::Continue(()),
@@ -148,7 +148,7 @@ impl Comparison {
         match way {
             Way::Pliant(method, max_order) => {
                 let (method, max_order) = (*method, *max_order);
-                let solver = Solver { method, max_order, rtol: setting, ..Solver::default() };
+                let solver = Settings { method, max_order, rtol: setting, ..Settings::default() };
                 self.pliant(&solver, limit)
             }
             Way::Implicit(rho) => solve(scene, &self.times, limit, |stage, span| {

@@ -18,7 +18,7 @@ use diffsol_la::LinearSolver;
 use faer::sparse::SymbolicSparseColMat;
 
 use pliant::study::Failed;
-use pliant::{Inertia, Solver};
+use pliant::{Inertia, Settings};
 
 use crate::implicit::initial_acceleration;
 use pliant_peers::motion::{ENOUGH, GaveUp, REPETITIONS, Span, solve};
@@ -262,7 +262,7 @@ pub fn main(arguments: &[String]) -> Result<(), Failed> {
     let rtol: f64 = setting.parse()?;
     let times: Vec<f64> =
         fs::read_to_string(times)?.lines().map(str::parse).collect::<Result<_, _>>()?;
-    let tolerances = Solver { rtol, ..Solver::default() }.tolerances(scene.body());
+    let tolerances = Settings { rtol, ..Settings::default() }.tolerances(scene.body());
     let atol = [tolerances.position, tolerances.velocity];
     let mut seconds = Vec::new();
     loop {

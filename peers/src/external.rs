@@ -13,7 +13,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 use pliant::study::Failed;
-use pliant::{Inertia, Scene, Solver};
+use pliant::{Inertia, Scene, Settings};
 
 use pliant_peers::motion::{GaveUp, Solved};
 use pliant_peers::scenes::Case;
@@ -178,7 +178,7 @@ pub fn export(
     let (elastic, viscous) = (body.material().elastic(), body.material().viscous());
     let gravity = scene.acceleration().map_or([0.0; 2], |g| [g[0], g[1]]);
     let is_green = u8::from(body.strain() == pliant::Strain::Green);
-    let unit = Solver { rtol: 1e-3, ..Solver::default() }.tolerances(body);
+    let unit = Settings { rtol: 1e-3, ..Settings::default() }.tolerances(body);
     let thickness = body.volume() / area(scene);
     // lambda, mu, their viscous counterparts, thickness, gravity, Green?, alpha, atol / rtol
     writeln!(
@@ -190,7 +190,7 @@ pub fn export(
         viscous.mu,
         gravity[0],
         gravity[1],
-        Solver::default().alpha,
+        Settings::default().alpha,
         unit.position / 1e-3,
         unit.velocity / 1e-3,
     )?;

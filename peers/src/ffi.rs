@@ -48,7 +48,7 @@ pub unsafe extern "C" fn peers_open(name: *const c_char, lumped: i32) -> *mut Ha
 pub unsafe extern "C" fn peers_tolerances(handle: *const Handle, rtol: f64, atol: *mut f64) {
     // SAFETY: as the caller promises
     let (handle, atol) = unsafe { (&*handle, from_raw_parts_mut(atol, 2)) };
-    let solver = pliant::Solver { rtol, ..pliant::Solver::default() };
+    let solver = pliant::Settings { rtol, ..pliant::Settings::default() };
     let tolerances = solver.tolerances(handle.scene.body());
     atol.copy_from_slice(&[tolerances.position, tolerances.velocity]);
 }

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use comparison::{Comparison, Way};
 use external::Program;
 use pliant::study::{Failed, Findings, Study};
-use pliant::{Inertia, Method, Solver};
+use pliant::{Inertia, Method, Settings};
 use pliant_peers::scenes::{CASES, Case};
 
 /// Processor time (s) that a run may take, in full and quickly.
@@ -84,8 +84,8 @@ fn run(words: &[String]) -> Result<(), Failed> {
 }
 
 /// Two methods of pliant that do not know of each other, at tolerances near what they can do.
-fn references(case: &Case) -> [Solver; 2] {
-    let solver = |method, max_order, rtol| Solver { method, max_order, rtol, ..Solver::default() };
+fn references(case: &Case) -> [Settings; 2] {
+    let solver = |method, max_order, rtol| Settings { method, max_order, rtol, ..Settings::default() };
     match case.name {
         "beam-70x4-damped" => {
             [solver(Method::CvodeBdf, None, 1e-11), solver(Method::Arkode, Some(5), 1e-9)]

@@ -7,7 +7,7 @@
 //! distance from the path and its rate then. That is put into the equations of the others.
 
 use pliant::ode::Failure;
-use pliant::{Equations, InputError, Prescribed, Scene, Solver};
+use pliant::{Equations, InputError, Prescribed, Scene, Settings};
 
 /// Equations of one phase, in its free components.
 pub struct Stage {
@@ -197,7 +197,7 @@ impl Held {
     /// Distance from the path, and its first and second derivative, `s` seconds after the start.
     /// Paths of the cases move at constant speed: the second is the whole acceleration.
     fn relaxed(&self, s: f64) -> [f64; 3] {
-        let alpha = Solver::default().alpha;
+        let alpha = Settings::default().alpha;
         let (p, q, decay) = (self.shift, self.rate, (-alpha * s).exp());
         let slope = q + alpha * p;
         [

@@ -30,7 +30,7 @@ const NO_DIRECTION: f64 = 1e-9;
 /// has no direction there, and no real spring gets so short.
 ///
 /// ```
-/// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Solver, Spring};
+/// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Spring};
 ///
 /// let mesh = Mesh::rectangle([0.02, 0.02], [2, 2], Cells::Triangles)?;
 /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
@@ -38,7 +38,7 @@ const NO_DIRECTION: f64 = 1e-9;
 /// let scene = Scene::new(body.build()?)
 ///     .spring(Spring::between([1], "bob").named("A1").stiffness(20.0))
 ///     .phase(Phase::until(0.05).hold([1, 2, 3, 4]).actuate(["A1"], -0.1));
-/// let trajectory = scene.simulate(&Solver::default(), &Sampling::every(0.01))?;
+/// let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
 /// assert!(trajectory.last().u[2 * 4 + 1] > 0.0); // the bob is pulled up
 /// # Ok::<(), pliant::Error>(())
 /// ```

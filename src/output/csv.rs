@@ -30,14 +30,14 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 ///
 /// ```
 /// use pliant::output::write_csv;
-/// # use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Solver};
+/// # use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings};
 /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
 /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 /// # let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
 /// #     .phase(Phase::until(0.01).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
 /// # let directory = tempfile::tempdir().unwrap();
 /// # let path = directory.path().join("trajectory.csv");
-/// let trajectory = scene.simulate(&Solver::default(), &Sampling::every(0.01))?;
+/// let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
 /// write_csv(&trajectory, &path, Some(&[14, 15].into()))?;
 /// # Ok::<(), pliant::Error>(())
 /// ```

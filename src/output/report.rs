@@ -5,11 +5,12 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::write_file;
+use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
-use crate::simulate::IntegrationFailure;
-use crate::statics::{Equilibrium, NoEquilibrium, Stability};
+use crate::report::{PhaseReport, Report};
 use crate::sundials;
-use crate::trajectory::{PhaseReport, Report, Trajectory};
+use crate::trajectory::IntegrationFailure;
+use crate::trajectory::Trajectory;
 
 /// Writes how a run was computed, whether it was finished, gave up or was interrupted, as JSON:
 ///
@@ -35,14 +36,14 @@ use crate::trajectory::{PhaseReport, Report, Trajectory};
 ///
 /// ```
 /// use pliant::output::write_report;
-/// # use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sampling, Scene, Solver};
+/// # use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sampling, Scene, Settings};
 /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
 /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 /// # let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
 /// #     .phase(Phase::until(0.01).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
 /// # let directory = tempfile::tempdir().unwrap();
 /// # let path = directory.path().join("report.json");
-/// match scene.simulate(&Solver::default(), &Sampling::every(0.01)) {
+/// match scene.simulate(&Settings::default(), &Sampling::every(0.01)) {
 ///     Ok(trajectory) => write_report(Ok(&trajectory), &path)?,
 ///     Err(Error::Integration(failure)) => write_report(Err(&failure), &path)?,
 ///     Err(bad_input) => return Err(bad_input),

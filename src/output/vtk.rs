@@ -39,13 +39,13 @@ use crate::trajectory::{Sample, Trajectory};
 ///
 /// ```
 /// use pliant::output::write_vtk;
-/// # use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Solver};
+/// # use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings};
 /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
 /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 /// # let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
 /// #     .phase(Phase::until(0.01).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
 /// # let directory = tempfile::tempdir().unwrap();
-/// let trajectory = scene.simulate(&Solver::default(), &Sampling::every(0.01))?;
+/// let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
 /// write_vtk(&trajectory, directory.path(), "body")?;
 /// # Ok::<(), pliant::Error>(())
 /// ```

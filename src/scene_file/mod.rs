@@ -50,7 +50,7 @@
 //! | `load` | { `nodes`, `force` (N on each) }, { `nodes`, `total` (N on all together) } or { `nodes`, `times` (s), `forces` (N on each) } |
 //! | `pressure` | { `chamber`, `value` (Pa) } or { `chamber`, `times` (s), `values` (Pa) } |
 //! | `actuate` | { `springs`, `force` (N) } or { `springs`, `times` (s), `forces` (N) } |
-//! | `[solver]` | as [`Solver`]; `contact_events`: `"auto"`, `"step-over"` or `"locate"`; `stability_limit_detection`: `true` or `false` |
+//! | `[solver]` | as [`Settings`]; `contact_events`: `"auto"`, `"step-over"` or `"locate"`; `stability_limit_detection`: `true` or `false` |
 //! | `[output]` | as [`OutputRequest`] |
 //!
 //! - **Nodes** are the name of a set, a number (from 1) or a list of them, or { `box` = [min, max] }.
@@ -84,7 +84,8 @@ use self::value::Value;
 use crate::error::Error;
 use crate::mesh::Selection;
 use crate::scene::Scene;
-use crate::simulate::{Sampling, Solver};
+use crate::settings::Settings;
+use crate::simulate::Sampling;
 
 /// What a scene file says.
 #[derive(Debug, Clone)]
@@ -94,7 +95,7 @@ pub struct SceneFile {
     /// The scene.
     pub scene: Scene,
     /// How it is integrated.
-    pub solver: Solver,
+    pub solver: Settings,
     /// What is to be written.
     pub output: OutputRequest,
 }

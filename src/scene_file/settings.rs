@@ -6,7 +6,7 @@ use super::{Format, OutputRequest};
 use crate::error::Error;
 use crate::input::positive;
 use crate::mesh::Mesh;
-use crate::simulate::{ContactEvents, Method, Solver};
+use crate::settings::{ContactEvents, Method, Settings};
 
 const SOLVER: &[&str] = &[
     "method",
@@ -20,9 +20,9 @@ const SOLVER: &[&str] = &[
     "max_steps",
 ];
 
-pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
+pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
     let table = value.table(SOLVER)?;
-    let default = Solver::default();
+    let default = Settings::default();
     let method = table.optional("method", "the integration method", |value| {
         value.word(&Method::ALL.map(|method| (method.name(), method)))
     })?;
@@ -37,7 +37,7 @@ pub(super) fn solver(value: &Value) -> Result<Solver, Error> {
     let events = table.optional("contact_events", "how contact events are met", |value| {
         value.word(&ContactEvents::ALL.map(|way| (way.name(), way)))
     })?;
-    let solver = Solver {
+    let solver = Settings {
         method: method.unwrap_or(default.method),
         rtol: rtol.unwrap_or(default.rtol),
         atol_position: table.optional("atol_position", position, Value::number)?,

@@ -6,15 +6,15 @@
 //! Runge-Kutta leads where accuracy asks for steps not much longer than those of its stability. With
 //! lumped inertia a step of central differences costs so little that they lead well before that.
 
-use super::{ContactEvents, Method, Solver};
 use crate::central_difference;
 use crate::ode::Rates;
+use crate::settings::{ContactEvents, Method, Settings};
 use crate::system::{Spectrum, System};
 
 /// How a phase is integrated from now on.
 pub(super) struct Plan {
     /// As asked for, with a method of its own in place of [`Method::Auto`].
-    pub(super) solver: Solver,
+    pub(super) solver: Settings,
     /// Highest order that was asked for.
     max_order: Option<u32>,
     /// Why this method, and those before it in the phase, if they were chosen.
@@ -54,7 +54,7 @@ pub(super) const TRIAL: usize = 64;
 
 impl Plan {
     /// The plan for a phase whose equations are `system`, from time `t` and `state` = (u, v, ...).
-    pub(super) fn new(asked: &Solver, system: &mut System, t: f64, state: &[f64]) -> Self {
+    pub(super) fn new(asked: &Settings, system: &mut System, t: f64, state: &[f64]) -> Self {
         if asked.method != Method::Auto {
             let solver = asked.clone();
             return Self {
@@ -71,7 +71,7 @@ impl Plan {
         let (method, reason) = choose(&spectrum);
         let alpha = if system.rows().is_empty() { 0.0 } else { asked.alpha };
         Self {
-            solver: Solver { method, max_order: cap(method, asked.max_order), ..asked.clone() },
+            solver: Settings { method, max_order: cap(method, asked.max_order), ..asked.clone() },
             max_order: asked.max_order,
             reason: Some(reason),
             explicit_step: explicit_step(&spectrum, alpha),
@@ -151,7 +151,7 @@ impl Plan {
         let max_order = cap(method, max_order);
         let before = self.reason.as_deref().unwrap_or_default();
         Self {
-            solver: Solver { method, max_order, ..self.solver.clone() },
+            solver: Settings { method, max_order, ..self.solver.clone() },
             reason: Some(format!("{before}; then {method}, as {reason}")),
             ..*self
         }

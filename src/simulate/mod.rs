@@ -5,20 +5,18 @@ mod events;
 mod failure;
 mod progress;
 mod run;
-mod solver;
 mod stepper;
 
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-pub use failure::{IntegrationFailure, Interrupted};
 pub use progress::Progress;
 use run::Run;
-pub use solver::{ContactEvents, Method, Solver, Tolerances};
 
 use crate::error::Error;
 use crate::input::{InputError, positive};
 use crate::scene::Scene;
+use crate::settings::Settings;
 use crate::trajectory::Trajectory;
 
 /// When the motion is sampled. The start and the end of each phase always are.
@@ -120,59 +118,18 @@ impl Schedule {
     }
 }
 
-/// What the integration of a phase cost.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Counts {
-    /// Steps taken.
-    pub steps: usize,
-    /// Evaluations of the right-hand side or residual.
-    pub evaluations: usize,
-    /// Evaluations of the tangents of the forces, of which the Newton matrix is made; none where
-    /// they are constant.
-    pub jacobian_evaluations: usize,
-    /// Factorizations of the Newton matrix.
-    pub factorizations: usize,
-    /// Steps repeated because their error was too large.
-    pub error_test_failures: usize,
-    /// Newton iterations that did not converge (`rk`: steps refused by the right-hand side).
-    pub convergence_failures: usize,
-    /// Contact events that were located.
-    pub contact_events: usize,
-    /// Size of the last step (s).
-    pub last_step: f64,
-    /// Order of the last step.
-    pub last_order: u32,
-    /// What the integrator noticed: that stability, not accuracy, bounds its steps.
-    pub notice: Option<String>,
-}
-
-impl Counts {
-    /// Adds what a further part of the phase cost.
-    fn add(&mut self, further: Counts) {
-        self.steps += further.steps;
-        self.evaluations += further.evaluations;
-        self.jacobian_evaluations += further.jacobian_evaluations;
-        self.factorizations += further.factorizations;
-        self.error_test_failures += further.error_test_failures;
-        self.convergence_failures += further.convergence_failures;
-        self.contact_events += further.contact_events;
-        (self.last_step, self.last_order) = (further.last_step, further.last_order);
-        self.notice = self.notice.take().or(further.notice);
-    }
-}
-
 impl Scene {
     /// Runs the scene, from rest in its natural shape if nothing else was said.
     ///
     /// ```
-    /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Solver};
+    /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings};
     ///
     /// let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
     /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
     /// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
     /// let scene = Scene::new(body)
     ///     .phase(Phase::until(0.1).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
-    /// let trajectory = scene.simulate(&Solver::default(), &Sampling::every(0.01))?;
+    /// let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
     /// assert!((trajectory.last().u[2 * 13 + 1] - -0.016).abs() < 1e-6);
     /// # Ok::<(), pliant::Error>(())
     /// ```
@@ -180,7 +137,7 @@ impl Scene {
     /// # Errors
     /// Bad input before anything is computed; [`Error::Integration`] with the motion until then
     /// when the integrator gives up.
-    pub fn simulate(&self, solver: &Solver, sampling: &Sampling) -> Result<Trajectory, Error> {
+    pub fn simulate(&self, solver: &Settings, sampling: &Sampling) -> Result<Trajectory, Error> {
         self.simulate_with(solver, sampling, |_| ControlFlow::Continue(()))
     }
 
@@ -189,7 +146,7 @@ impl Scene {
     ///
     /// ```
     /// use std::ops::ControlFlow;
-    /// # use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sampling, Scene, Solver};
+    /// # use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sampling, Scene, Settings};
     /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
     /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
     /// # let body = Body::new(mesh, rubber).thickness(0.01).build()?;
@@ -200,7 +157,7 @@ impl Scene {
     ///     50 => ControlFlow::Break(()),
     ///     _ => ControlFlow::Continue(()),
     /// };
-    /// match scene.simulate_with(&Solver::default(), &Sampling::every(0.01), patience) {
+    /// match scene.simulate_with(&Settings::default(), &Sampling::every(0.01), patience) {
     ///     Err(Error::Integration(end)) if end.is_interruption() => {
     ///         assert_eq!(end.trajectory.report().steps(), 50);
     ///         assert_eq!(end.trajectory.last().time, end.time);
@@ -212,10 +169,10 @@ impl Scene {
     ///
     /// # Errors
     /// As [`simulate`](Self::simulate); a run that was stopped ends with [`Error::Integration`],
-    /// too, which says so: [`IntegrationFailure::is_interruption`].
+    /// too, which says so: [`is_interruption`](crate::IntegrationFailure::is_interruption).
     pub fn simulate_with(
         &self,
-        solver: &Solver,
+        solver: &Settings,
         sampling: &Sampling,
         mut observer: impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Trajectory, Error> {

@@ -4,22 +4,25 @@ use std::time::Instant;
 
 use super::auto::{Plan, TRIAL};
 use super::events::Events;
-use super::failure::{IntegrationFailure, Interrupted, STANDING, standing_still, too_many_steps};
+use super::failure::{STANDING, standing_still, too_many_steps};
 use super::progress::{Observer, Progress};
-use super::solver::Tolerances;
 use super::stepper::{Failed, Stepper};
-use super::{Counts, Method, Sampling, Schedule, Solver};
+use super::{Sampling, Schedule};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
 use crate::ode::Failure;
+use crate::report::Counts;
+use crate::report::{PhaseReport, Report};
 use crate::scene::{Forces, Phase, Scene};
+use crate::settings::Tolerances;
+use crate::settings::{Method, Settings};
 use crate::system::{ENERGIES, System};
-use crate::trajectory::{PhaseReport, Report, Sample, Trajectory};
+use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// A scene on its way.
 pub(super) struct Run<'a> {
     scene: &'a Scene,
-    solver: &'a Solver,
+    solver: &'a Settings,
     atol: Tolerances,
     /// Started with the run.
     clock: Instant,
@@ -78,7 +81,7 @@ struct Leg<'a> {
 }
 
 impl<'a> Run<'a> {
-    pub(super) fn new(scene: &'a Scene, solver: &'a Solver, clock: Instant) -> Self {
+    pub(super) fn new(scene: &'a Scene, solver: &'a Settings, clock: Instant) -> Self {
         let report = Report {
             method: solver.method,
             rtol: solver.rtol,

@@ -2,9 +2,10 @@
 
 use crate::central_difference::{self, CentralDifference};
 use crate::ode::Failure;
+use crate::report::Counts;
 use crate::rk::{self, DormandPrince};
-use crate::simulate::solver::Tolerances;
-use crate::simulate::{Counts, Method, Solver};
+use crate::settings::Tolerances;
+use crate::settings::{Method, Settings};
 use crate::sundials::{
     Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern,
     Statistics, Table,
@@ -26,7 +27,7 @@ impl Stepper {
     /// Starts at `t` with `state` = (u, v, energies) and will stop at `end`.
     pub(super) fn new(
         system: System,
-        solver: &Solver,
+        solver: &Settings,
         atol: &Tolerances,
         t: f64,
         end: f64,
@@ -227,7 +228,7 @@ fn compression(indefinite: usize) -> Option<String> {
 
 fn cvode(
     system: System,
-    solver: &Solver,
+    solver: &Settings,
     method: Multistep,
     tolerances: Vec<f64>,
     t: f64,
@@ -252,7 +253,7 @@ const STEPS_BETWEEN_SETUPS: u32 = 2;
 
 fn arkode(
     system: System,
-    solver: &Solver,
+    solver: &Settings,
     tolerances: Vec<f64>,
     t: f64,
     end: f64,
@@ -274,7 +275,7 @@ fn arkode(
 
 fn ida(
     system: System,
-    solver: &Solver,
+    solver: &Settings,
     tolerances: Vec<f64>,
     t: f64,
     end: f64,

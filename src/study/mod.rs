@@ -7,11 +7,11 @@
 //! ```
 //! use pliant::samples::beam_jump;
 //! use pliant::study::{Scenes, Study};
-//! use pliant::{Method, Solver};
+//! use pliant::{Method, Settings};
 //!
 //! let mut scenes = Scenes::new("Jumping beam", beam_jump()?).tolerances([1e-3, 1e-5]);
 //! for method in [Method::CvodeBdf, Method::Rk] {
-//!     scenes = scenes.solver(method.name(), Solver { method, ..Solver::default() });
+//!     scenes = scenes.solver(method.name(), Settings { method, ..Settings::default() });
 //! }
 //! let findings = Study::new(&mut scenes).run(&mut |stage| println!("{stage}"))?;
 //! println!("{}", findings.fastest());

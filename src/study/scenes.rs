@@ -7,7 +7,8 @@ use super::{Failed, Line, Measured, Point, Problem, fingerprint};
 use crate::error::Error;
 use crate::input::{InputError, positive};
 use crate::scene::Scene;
-use crate::simulate::{Method, Sampling, Solver};
+use crate::settings::{Method, Settings};
+use crate::simulate::Sampling;
 
 /// A scene that is solved in several ways: by several solvers at several tolerances, with another
 /// strain model or other cells, on finer and finer meshes.
@@ -36,7 +37,7 @@ pub struct Scenes {
 struct Run {
     /// Position among the scenes.
     scene: usize,
-    solver: Solver,
+    solver: Settings,
 }
 
 #[derive(Debug)]
@@ -51,7 +52,7 @@ impl Scenes {
     pub fn new(title: impl Into<String>, scene: Scene) -> Self {
         Self {
             title: title.into(),
-            alpha: Solver::default().alpha,
+            alpha: Settings::default().alpha,
             finest: 1e-7,
             tolerances: (2..=8).map(|digits| 10_f64.powi(-digits)).collect(),
             lines: Vec::new(),
@@ -90,7 +91,7 @@ impl Scenes {
 
     /// Adds a line: the scene by `solver`, tolerance by tolerance. Its method is its family.
     #[must_use]
-    pub fn solver(self, name: impl Into<String>, solver: Solver) -> Self {
+    pub fn solver(self, name: impl Into<String>, solver: Settings) -> Self {
         let family = match solver.method {
             Method::IdaKlu | Method::IdaIndexTwo => Method::Ida,
             method => method,
@@ -104,12 +105,12 @@ impl Scenes {
         let alpha = self.alpha;
         all_solvers()
             .into_iter()
-            .fold(self, |scenes, (name, solver)| scenes.solver(name, Solver { alpha, ..solver }))
+            .fold(self, |scenes, (name, solver)| scenes.solver(name, Settings { alpha, ..solver }))
     }
 
     /// Adds a line: another scene by `solver`, tolerance by tolerance. The name is its family.
     #[must_use]
-    pub fn variant(mut self, name: impl Into<String>, scene: Scene, solver: Solver) -> Self {
+    pub fn variant(mut self, name: impl Into<String>, scene: Scene, solver: Settings) -> Self {
         let name = name.into();
         let scene = self.add(scene);
         self.by_tolerance(name.clone(), &name, scene, solver)
@@ -122,7 +123,7 @@ impl Scenes {
         mut self,
         name: impl Into<String>,
         meshes: impl IntoIterator<Item = (N, Scene)>,
-        solver: &Solver,
+        solver: &Settings,
     ) -> Self {
         let name = name.into();
         let (mut points, mut runs) = (Vec::new(), Vec::new());
@@ -149,10 +150,10 @@ impl Scenes {
         self.scenes.len() - 1
     }
 
-    fn by_tolerance(mut self, name: String, family: &str, scene: usize, solver: Solver) -> Self {
+    fn by_tolerance(mut self, name: String, family: &str, scene: usize, solver: Settings) -> Self {
         let point = |&rtol: &f64| Point { name: format!("{rtol:e}"), rtol };
         let points = self.tolerances.iter().map(point).collect();
-        let run = |&rtol: &f64| Run { scene, solver: Solver { rtol, ..solver.clone() } };
+        let run = |&rtol: &f64| Run { scene, solver: Settings { rtol, ..solver.clone() } };
         self.runs.push(self.tolerances.iter().map(run).collect());
         self.lines.push(Line { name, family: family.into(), points });
         self
@@ -205,10 +206,10 @@ impl Scenes {
 /// of higher orders; for ARKODE one for each of the
 /// orders 3 and 5 beside 4.
 #[must_use]
-pub fn all_solvers() -> Vec<(String, Solver)> {
+pub fn all_solvers() -> Vec<(String, Settings)> {
     let mut solvers = Vec::new();
     for method in Method::ALL {
-        let solver = Solver { method, ..Solver::default() };
+        let solver = Settings { method, ..Settings::default() };
         solvers.push((method.name().to_owned(), solver.clone()));
         let orders: &[u32] = match method {
             Method::CvodeBdf => &[2],
@@ -216,11 +217,11 @@ pub fn all_solvers() -> Vec<(String, Solver)> {
             _ => &[],
         };
         for order in orders {
-            let solver = Solver { max_order: Some(*order), ..solver.clone() };
+            let solver = Settings { max_order: Some(*order), ..solver.clone() };
             solvers.push((format!("{method}, order {order}"), solver));
         }
         if method == Method::CvodeBdf {
-            let solver = Solver { stability_limit_detection: true, ..solver };
+            let solver = Settings { stability_limit_detection: true, ..solver };
             solvers.push((format!("{method}, stability limit"), solver));
         }
     }

@@ -8,7 +8,8 @@ use super::timing::Budget;
 use crate::error::Error;
 use crate::input::InputError;
 use crate::scene::Scene;
-use crate::simulate::{Method, Sampling, Solver};
+use crate::settings::{Method, Settings};
+use crate::simulate::Sampling;
 use crate::trajectory::Trajectory;
 
 /// Times at which motions are compared: this many, evenly from the start (without it) to the end.
@@ -50,7 +51,7 @@ impl Probe {
     pub(super) fn run(
         &self,
         scene: &Scene,
-        solver: &Solver,
+        solver: &Settings,
         limit: Duration,
     ) -> Result<(Motion, Trajectory), Error> {
         let mut budget = Budget::new(limit);
@@ -134,8 +135,13 @@ impl Truth {
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, Error> {
         let mut rtol = target.max(LEAST_RTOL);
-        let mut pair =
-            fastest_two(scene, probe, &Solver { rtol, alpha, ..Solver::default() }, limit, tell)?;
+        let mut pair = fastest_two(
+            scene,
+            probe,
+            &Settings { rtol, alpha, ..Settings::default() },
+            limit,
+            tell,
+        )?;
         let mut truth = Self::of(scene, &pair[0], &pair[1]);
         while truth.resolution > target && rtol > 2.0 * LEAST_RTOL {
             rtol = (0.1 * rtol).max(LEAST_RTOL);
@@ -166,7 +172,7 @@ impl Truth {
         if let Some((scene, probe)) = check {
             tell(&format!("reference: the check, {} at rtol {rtol:.0e}", pair[0].solver.method));
             let (motion, _) =
-                probe.run(scene, &Solver { rtol, ..pair[0].solver.clone() }, limit)?;
+                probe.run(scene, &Settings { rtol, ..pair[0].solver.clone() }, limit)?;
             let distance = truth.error(&motion).mean;
             truth.resolution = truth.resolution.max(distance);
         }
@@ -190,7 +196,7 @@ impl Truth {
 /// A solution of the scene by one method.
 #[derive(Debug)]
 struct Way {
-    solver: Solver,
+    solver: Settings,
     motion: Motion,
     /// Processor time.
     time: Duration,
@@ -200,7 +206,7 @@ impl Way {
     fn find(
         scene: &Scene,
         probe: &Probe,
-        solver: Solver,
+        solver: Settings,
         limit: Duration,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, Error> {
@@ -218,7 +224,7 @@ impl Way {
         limit: Duration,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, Error> {
-        Self::find(scene, probe, Solver { rtol, ..self.solver.clone() }, limit, tell)
+        Self::find(scene, probe, Settings { rtol, ..self.solver.clone() }, limit, tell)
     }
 }
 
@@ -226,7 +232,7 @@ impl Way {
 fn fastest_two(
     scene: &Scene,
     probe: &Probe,
-    solver: &Solver,
+    solver: &Settings,
     limit: Duration,
     tell: &mut dyn FnMut(&str),
 ) -> Result<[Way; 2], Error> {
@@ -234,7 +240,7 @@ fn fastest_two(
     for (method, max_order) in METHODS {
         // nobody waits for the third
         let limit = found.get(1).map_or(limit, |second| second.time);
-        let solver = Solver { method, max_order, ..solver.clone() };
+        let solver = Settings { method, max_order, ..solver.clone() };
         match Way::find(scene, probe, solver, limit, tell) {
             Ok(way) => found.push(way),
             Err(error @ Error::Integration(_)) => failures.push(reason(error).to_string()),

@@ -54,11 +54,11 @@ impl Trajectory {
     /// `selection` together: what a probe that holds or moves them reads, with the opposite sign.
     ///
     /// ```
-    /// # use pliant::{Body, Material, Mesh, Phase, Sampling, Scene, Solver};
+    /// # use pliant::{Body, Material, Mesh, Phase, Sampling, Scene, Settings};
     /// # let soft = Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 200.0 };
     /// # let bar = Body::new(Mesh::bar(0.1, 6)?, soft).area(2e-4).build()?;
     /// let scene = Scene::new(bar).phase(Phase::until(1.0).hold("left").load("right", [2.0]));
-    /// let trajectory = scene.simulate(&Solver::default(), &Sampling::phase_ends())?;
+    /// let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
     /// let held = trajectory.constraint_force(trajectory.last(), "left")?;
     /// assert!((held[0] - -2.0).abs() < 1e-3); // it has nearly come to rest
     /// # Ok::<(), pliant::Error>(())

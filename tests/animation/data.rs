@@ -6,7 +6,7 @@ use std::fs;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use pliant::samples::{beam_jump, square_jump};
-use pliant::{CellField, Sample, Sampling, Solver};
+use pliant::{CellField, Sample, Sampling, Settings};
 use serde_json::Value;
 
 use super::Outcome;
@@ -78,12 +78,12 @@ fn the_data_are_those_of_the_samples() -> Outcome {
 #[test]
 fn files_stay_small() -> Outcome {
     let scene = square_jump(10)?;
-    let jump = page(&scene.simulate(&Solver::default(), &Sampling::every(0.005))?, "")?;
+    let jump = page(&scene.simulate(&Settings::default(), &Sampling::every(0.005))?, "")?;
     let size = fs::metadata(&jump.path)?.len();
     assert!(size < 500_000, "{size} bytes for 301 samples of 100 nodes");
     assert_eq!(data(&jump)?["times"].as_array().map(Vec::len), Some(301));
 
-    let long = beam_jump()?.simulate(&Solver::default(), &Sampling::every(5e-4))?;
+    let long = beam_jump()?.simulate(&Settings::default(), &Sampling::every(5e-4))?;
     let times: Vec<f64> = serde_json::from_value(data(&page(&long, "")?)?["times"].take())?;
     assert_eq!((times.len(), times[0], times[799]), (800, 0.0, 0.6));
     let widest = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);

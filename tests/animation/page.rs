@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use pliant::output::write_animation;
 use pliant::{
-    Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Shape, Solver, Spring,
+    Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Shape, Spring,
     Trajectory,
 };
 use tempfile::TempDir;
@@ -37,7 +37,7 @@ pub fn square() -> Result<Trajectory, pliant::Error> {
         .obstacle(Obstacle::custom(|_, _| 1.0).named("own").stiffness(1.0))
         .phase(press.hold("bottom").move_nodes([14, 15], [0.0, -PUSH]).actuate(["\"<b>\""], -1.0))
         .phase(Phase::until(END).named("free").actuate(["\"<b>\""], 1.0))
-        .simulate(&Solver::default(), &Sampling::every(0.01))
+        .simulate(&Settings::default(), &Sampling::every(0.01))
 }
 
 /// An animation in a directory of its own, which goes with it.

@@ -2,7 +2,7 @@
 
 use pliant::samples::beam_jump;
 use pliant::{
-    Body, Cells, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene, SolidCells, Solver,
+    Body, Cells, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings, SolidCells,
     Strain,
 };
 
@@ -68,7 +68,7 @@ pub fn names_are_text(browser: &mut Browser) -> Outcome {
 
 /// What makes a result doubtful stands above the picture.
 pub fn warnings_are_shown(browser: &mut Browser) -> Outcome {
-    let solver = Solver { method: Method::Rk, ..Solver::default() };
+    let solver = Settings { method: Method::Rk, ..Settings::default() };
     let trajectory = beam_jump()?.simulate(&solver, &Sampling::every(0.01))?;
     let warnings = trajectory.report().warnings();
     assert!(!warnings.is_empty(), "the explicit method finds the beam stiff");
@@ -114,7 +114,7 @@ pub fn bodies_of_all_dimensions(browser: &mut Browser) -> Outcome {
         (solid(SolidCells::Tetrahedra10, 2)?, true),
     ];
     for (number, (scene, in_space)) in scenes.into_iter().enumerate() {
-        let page = page(&scene.simulate(&Solver::default(), &sampling)?, "")?;
+        let page = page(&scene.simulate(&Settings::default(), &sampling)?, "")?;
         browser.open(&page.path)?;
         browser.press("End", false)?;
         let [coloured, _] = colours(browser, "#stage")?;
@@ -148,7 +148,7 @@ pub fn the_near_side_of_a_solid_is_seen(browser: &mut Browser) -> Outcome {
     let scene = Scene::new(Body::new(mesh, RUBBER).build()?)
         .phase(Phase::until(0.01).move_nodes("front", still))
         .phase(Phase::until(0.02).move_nodes("back", still));
-    let _page = shown(browser, &scene.simulate(&Solver::default(), &Sampling::every(0.01))?)?;
+    let _page = shown(browser, &scene.simulate(&Settings::default(), &Sampling::every(0.01))?)?;
     assert_eq!(moved_dots(browser)?.len(), 9);
     browser.press("End", false)?;
     assert_eq!(moved_dots(browser)?.len(), 5);
@@ -157,7 +157,7 @@ pub fn the_near_side_of_a_solid_is_seen(browser: &mut Browser) -> Outcome {
 
 /// The page of a long run says that it is thinned.
 pub fn long_runs_are_thinned(browser: &mut Browser) -> Outcome {
-    let trajectory = beam_jump()?.simulate(&Solver::default(), &Sampling::every(5e-4))?;
+    let trajectory = beam_jump()?.simulate(&Settings::default(), &Sampling::every(5e-4))?;
     let _page = shown(browser, &trajectory)?;
     let facts = browser.text("document.querySelector('#facts').textContent")?;
     assert!(facts.contains("800 of 1,201"), "{facts}");

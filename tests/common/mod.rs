@@ -1,7 +1,7 @@
 //! What the tests of whole scenes share.
 #![allow(dead_code)] // each test binary uses its part
 
-use pliant::{Method, Sampling, Scene, Solver, Trajectory};
+use pliant::{Method, Sampling, Scene, Settings, Trajectory};
 
 /// A table of reference values with named columns.
 pub struct Table {
@@ -44,7 +44,7 @@ pub fn methods_with_alpha() -> impl Iterator<Item = Method> {
 }
 
 /// Runs `scene` and samples it at `times`.
-pub fn run(scene: &Scene, solver: &Solver, times: &[f64]) -> Trajectory {
+pub fn run(scene: &Scene, solver: &Settings, times: &[f64]) -> Trajectory {
     scene.simulate(solver, &Sampling::at(times)).unwrap()
 }
 

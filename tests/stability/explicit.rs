@@ -1,6 +1,6 @@
 //! a. Explicit Runge-Kutta methods on viscous bodies.
 
-use pliant::{Inertia, Method, Sampling, Solver};
+use pliant::{Inertia, Method, Sampling, Settings};
 
 use crate::gallery::explicit::{LIMIT, UNTIL, at_fixed_steps, matrices, released, steps};
 
@@ -43,9 +43,9 @@ fn steps_follow_the_spectral_radius() {
 #[test]
 fn the_automatic_choice_is_implicit() {
     let scene = released(4, 2.56e4, Inertia::Consistent).unwrap();
-    let motion = scene.simulate(&Solver::default(), &Sampling::phase_ends()).unwrap();
+    let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap();
     assert_eq!(motion.report().phases[0].method, Method::CvodeBdf);
-    let rk = Solver { method: Method::Rk, ..Solver::default() };
+    let rk = Settings { method: Method::Rk, ..Settings::default() };
     let motion = scene.simulate(&rk, &Sampling::phase_ends()).unwrap();
     let notice = motion.report().phases[0].counts.notice.clone().unwrap();
     assert!(notice.contains("stability"), "{notice}");

@@ -1,7 +1,7 @@
 //! c. BDF near the imaginary axis. That a cap of 3 runs away, that the report says so, and that the
 //! automatic choice does not: `tests/auto.rs`.
 
-use pliant::{Method, Sampling, Solver};
+use pliant::{Method, Sampling, Settings};
 
 use crate::gallery::orders::{CRITICAL, LinearBeam, bdf, beam, reference};
 
@@ -62,7 +62,7 @@ fn stability_limit_detection_does_not_replace_the_cap() {
 fn scenes_are_integrated_with_the_detection() {
     let steps = |ratio: f64, stability_limit_detection: bool| {
         let (method, rtol) = (Method::CvodeBdf, 1e-4);
-        let solver = Solver { method, rtol, stability_limit_detection, ..Solver::default() };
+        let solver = Settings { method, rtol, stability_limit_detection, ..Settings::default() };
         let scene = beam([22, 3], ratio, 0.2).unwrap();
         scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps()
     };

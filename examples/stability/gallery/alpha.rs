@@ -4,7 +4,7 @@ use pliant::ode::Failure;
 use pliant::output::Chart;
 use pliant::rk::{DormandPrince, Options};
 use pliant::samples::{Pendulum, SQUARE_MATERIAL};
-use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Solver};
+use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings};
 
 use super::Outcome;
 use super::page::{Page, count, few};
@@ -24,7 +24,7 @@ pub fn pressed(projected: bool) -> Result<Scene, Error> {
 
 /// Steps taken and largest |R| (m) of the square.
 pub fn square(method: Method, alpha: f64, projected: bool) -> Result<(usize, f64), Error> {
-    let solver = Solver { method, alpha, ..Solver::default() };
+    let solver = Settings { method, alpha, ..Settings::default() };
     let motion = pressed(projected)?.simulate(&solver, &Sampling::phase_ends())?;
     Ok((motion.report().steps(), motion.report().constraint_drift))
 }

@@ -3,8 +3,8 @@
 use pliant::output::Chart;
 use pliant::samples::BEAM_MATERIAL;
 use pliant::{
-    Body, Cells, Error, Material, Mesh, Method, Phase, Sampling, Scene, Solver, Stability, Statics,
-    Strain, Trajectory,
+    Body, Cells, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Stability,
+    Statics, Strain, Trajectory,
 };
 
 use super::Outcome;
@@ -65,7 +65,7 @@ pub fn held_at(stretch: f64) -> Result<(f64, f64), Error> {
 pub fn crushed(strain: Strain, part: f64, method: Method) -> Result<Trajectory, Error> {
     let load = [[0.0], [-part * limit()]];
     let phase = Phase::until(1.0).named("crush").hold("left");
-    let solver = Solver { method, ..Solver::default() };
+    let solver = Settings { method, ..Settings::default() };
     let scene = bar(strain)?.phase(phase.load_table("right", [0.0, 1.0], load));
     scene.simulate(&solver, &Sampling::every(0.01))
 }
@@ -81,7 +81,7 @@ pub fn column(time: f64, method: Method) -> Result<Trajectory, Error> {
     let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.4, viscosity: 40.0 };
     let body = Body::new(mesh, rubber).thickness(0.01).strain(Strain::Green).build()?;
     let squeeze = Phase::until(time).hold("left").move_nodes("right", [-0.03 / time, 0.0]);
-    let solver = Solver { method, rtol: 1e-4, ..Solver::default() };
+    let solver = Settings { method, rtol: 1e-4, ..Settings::default() };
     Scene::new(body).phase(squeeze).simulate(&solver, &Sampling::every(0.05 * time))
 }
 

@@ -6,7 +6,7 @@ use pliant::output::Chart;
 use pliant::samples::{BEAM_MATERIAL, SQUARE_MATERIAL};
 use pliant::{
     Body, Cells, ContactEvents, Error, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene,
-    Solver, Trajectory,
+    Settings, Trajectory,
 };
 
 use super::Outcome;
@@ -34,7 +34,7 @@ pub fn fall(
     contact_events: ContactEvents,
     rtol: f64,
 ) -> Result<Trajectory, Error> {
-    let solver = Solver { method, rtol, contact_events, ..Solver::default() };
+    let solver = Settings { method, rtol, contact_events, ..Settings::default() };
     falling(stiffness)?.simulate(&solver, &Sampling::every(0.001))
 }
 
@@ -73,8 +73,8 @@ pub fn restitution(zeta: f64, adhesion: bool) -> Result<f64, Error> {
         .obstacle(floor.damping(damping).adhesion(adhesion))
         .initial_velocity(|_| vec![-1.0])
         .phase(Phase::until(0.05));
-    let solver = Solver { method: Method::CvodeBdf, rtol: 1e-7, ..Solver::default() };
-    let solver = Solver { contact_events: ContactEvents::Locate, ..solver };
+    let solver = Settings { method: Method::CvodeBdf, rtol: 1e-7, ..Settings::default() };
+    let solver = Settings { contact_events: ContactEvents::Locate, ..solver };
     let motion = scene.simulate(&solver, &Sampling::phase_ends())?;
     Ok(motion.mean_velocity(motion.last())[0])
 }
@@ -108,7 +108,7 @@ pub fn bar(hardness: f64, cells: usize) -> Result<Trajectory, Error> {
         .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(floor(hardness)))
         .initial_velocity(move |_| vec![-speed])
         .phase(Phase::until(until));
-    let solver = Solver { method: Method::Rk, rtol: 1e-6, ..Solver::default() };
+    let solver = Settings { method: Method::Rk, rtol: 1e-6, ..Settings::default() };
     scene.simulate(&solver, &Sampling::every(until / 1000.0))
 }
 

@@ -4,7 +4,8 @@ use pliant::output::Chart;
 use pliant::rk::{DormandPrince, Options};
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
-    Body, Cells, Error, Inertia, InputError, Material, Mesh, Method, Phase, Sampling, Scene, Solver,
+    Body, Cells, Error, Inertia, InputError, Material, Mesh, Method, Phase, Sampling, Scene,
+    Settings,
 };
 
 use super::Outcome;
@@ -33,7 +34,7 @@ pub fn released(nodes: usize, viscosity: f64, inertia: Inertia) -> Result<Scene,
 
 /// Steps that a method takes for it at a tolerance.
 pub fn steps(scene: &Scene, method: Method, rtol: f64) -> Result<usize, Error> {
-    let solver = Solver { method, rtol, ..Solver::default() };
+    let solver = Settings { method, rtol, ..Settings::default() };
     Ok(scene.simulate(&solver, &Sampling::phase_ends())?.report().steps())
 }
 

@@ -4,7 +4,7 @@ use pliant::ode::Dae;
 use pliant::output::Chart;
 use pliant::samples::Pendulum;
 use pliant::sundials::{Ida, IdaOptions, Jacobian, LinearSolver};
-use pliant::{Axis, Error, Method, Phase, Sampling, Scene, Solver, Trajectory};
+use pliant::{Axis, Error, Method, Phase, Sampling, Scene, Settings, Trajectory};
 
 use super::Outcome;
 use super::forms::{Form, PRESS, PendulumForm, SquareForm, path, square_body};
@@ -81,7 +81,7 @@ impl Run {
 pub fn pressed() -> Result<Trajectory, Error> {
     let push = Phase::until(PRESS[0]).hold("bottom").hold_axes([14, 15], [Axis::X]);
     let scene = Scene::new(square_body()?).phase(push.follow([14, 15], Axis::Y, path));
-    let solver = Solver { method: Method::Rk, rtol: 1e-10, ..Solver::default() };
+    let solver = Settings { method: Method::Rk, rtol: 1e-10, ..Settings::default() };
     scene.simulate(&solver, &Sampling::phase_ends())
 }
 

@@ -6,7 +6,7 @@ use pliant::output::Chart;
 use pliant::samples::{ClampedBeam, FLAG_MATERIAL};
 use pliant::sundials::{Cvode, CvodeOptions, Jacobian, LinearSolver};
 use pliant::{
-    Body, Cells, Error, InputError, Material, Mesh, Method, Sampling, Scene, Solver, Trajectory,
+    Body, Cells, Error, InputError, Material, Mesh, Method, Sampling, Scene, Settings, Trajectory,
 };
 
 use super::Outcome;
@@ -41,8 +41,8 @@ pub struct Run {
     pub time: f64,
 }
 
-fn solver(method: Method, max_order: Option<u32>, rtol: f64, max_steps: usize) -> Solver {
-    Solver { method, max_order, rtol, max_steps, ..Solver::default() }
+fn solver(method: Method, max_order: Option<u32>, rtol: f64, max_steps: usize) -> Settings {
+    Settings { method, max_order, rtol, max_steps, ..Settings::default() }
 }
 
 /// What the others are held against: diagonally implicit Runge-Kutta, a thousandth of their tolerance.

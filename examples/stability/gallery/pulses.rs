@@ -4,7 +4,7 @@ use pliant::ode::Failure;
 use pliant::output::Chart;
 use pliant::samples::BEAM_MATERIAL;
 use pliant::sundials::{Cvode, CvodeOptions};
-use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Solver};
+use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings};
 
 use super::Outcome;
 use super::page::{Page, few};
@@ -57,7 +57,7 @@ impl Pulse {
             true => phase.load_table("left", times, forces.map(|force| [force])),
             false => phase.load_with("left", move |t| [force(t)]),
         };
-        let solver = Solver { method, rtol, ..Solver::default() };
+        let solver = Settings { method, rtol, ..Settings::default() };
         let speed = if vibrates { 0.1 } else { 0.0 };
         let scene = Scene::new(body).initial_velocity(|x| vec![speed * (20.0 * x[0] - 1.0)]);
         let motion = scene.phase(phase).simulate(&solver, &Sampling::phase_ends())?;

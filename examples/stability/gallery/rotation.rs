@@ -3,8 +3,8 @@
 use pliant::output::Chart;
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
-    Body, Cells, Error, InputError, Material, Mesh, Method, Phase, Sampling, Scene, Solver, Strain,
-    Trajectory, Viscosity,
+    Body, Cells, Error, InputError, Material, Mesh, Method, Phase, Sampling, Scene, Settings,
+    Strain, Trajectory, Viscosity,
 };
 
 use super::Outcome;
@@ -52,7 +52,7 @@ impl Square {
             .initial_displacement(|x| vec![stretch * (x[0] - 0.15), 0.0])
             .initial_velocity(|x| vec![-SPIN * (x[1] - 0.15), SPIN * (x[0] - 0.15)])
             .phase(Phase::until(until));
-        let solver = Solver { method: Method::Arkode, rtol: self.rtol, ..Solver::default() };
+        let solver = Settings { method: Method::Arkode, rtol: self.rtol, ..Settings::default() };
         scene.simulate(&solver, &Sampling::every(0.01))
     }
 }

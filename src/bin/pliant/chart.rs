@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pliant::simulate::ContactEvents;
+use pliant::ContactEvents;
 use pliant::study::{Scenes, Stage, Study, all_solvers};
-use pliant::{Method, Scene, SceneFile, Solver};
+use pliant::{Method, Scene, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
 use crate::files::Directory;
@@ -125,12 +125,12 @@ fn problem(arguments: &Arguments, title: &str, file: &SceneFile) -> Result<Scene
 }
 
 /// Name and solver of all lines: methods, alpha and contact events combined.
-fn solvers(arguments: &Arguments, file: &Solver) -> Vec<(String, Solver)> {
+fn solvers(arguments: &Arguments, file: &Settings) -> Vec<(String, Settings)> {
     let Arguments { methods, max_order, alpha, contact_events, .. } = arguments;
     let mut solvers = match methods[..] {
         [] => all_solvers(),
         _ => {
-            let solver = |&method: &Method| Solver { method, ..Solver::default() };
+            let solver = |&method: &Method| Settings { method, ..Settings::default() };
             methods.iter().map(|method| (method.to_string(), solver(method))).collect()
         }
     };
@@ -157,11 +157,11 @@ fn or<'a, T>(values: &'a [T], default: &'a T) -> &'a [T] {
 
 /// Each of `solvers` with each of `values`, which its name tells if there are several.
 fn combined<T: Copy>(
-    solvers: Vec<(String, Solver)>,
+    solvers: Vec<(String, Settings)>,
     values: &[T],
-    set: impl Fn(&mut Solver, T) -> String,
-) -> Vec<(String, Solver)> {
-    let with = |(name, solver): &(String, Solver), value: T| {
+    set: impl Fn(&mut Settings, T) -> String,
+) -> Vec<(String, Settings)> {
+    let with = |(name, solver): &(String, Settings), value: T| {
         let mut solver = solver.clone();
         let said = set(&mut solver, value);
         match values {

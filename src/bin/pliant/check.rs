@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use pliant::scene_file::Format;
-use pliant::{PhaseSummary, Scene, SceneFile, Solver};
+use pliant::{PhaseSummary, Scene, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
 
@@ -70,7 +70,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
 
 fn solver(file: &SceneFile) -> Result<(), Failure> {
     let SceneFile { scene, solver, output, .. } = file;
-    let Solver { method, rtol, alpha, max_order, contact_events, max_steps, .. } = solver;
+    let Settings { method, rtol, alpha, max_order, contact_events, max_steps, .. } = solver;
     let atol = solver.tolerances(scene.body());
     line("solver", &format!("{method}, rtol {rtol:e}, alpha {alpha} 1/s"))?;
     let (position, velocity) = (atol.position, atol.velocity);

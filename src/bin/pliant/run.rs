@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use pliant::ContactEvents;
 use pliant::output::write_report;
-use pliant::simulate::ContactEvents;
-use pliant::{Error, InputError, Method, SceneFile, Solver};
+use pliant::{Error, InputError, Method, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
 use crate::files::OutputArguments;
@@ -63,7 +63,7 @@ struct SolverArguments {
 }
 
 impl SolverArguments {
-    fn apply(&self, solver: &mut Solver) -> Result<(), InputError> {
+    fn apply(&self, solver: &mut Settings) -> Result<(), InputError> {
         solver.method = self.method.unwrap_or(solver.method);
         solver.rtol = self.rtol.unwrap_or(solver.rtol);
         solver.atol_position = self.atol_position.or(solver.atol_position);

@@ -8,7 +8,7 @@ use crate::constraint::Start;
 use crate::vector::dot;
 use crate::{
     Axis, Body, Cells, Inertia, Material, Mesh, Method, Obstacle, Phase, Prescribed, Sampling,
-    Scene, Solver, Strain, Viscosity,
+    Scene, Settings, Strain, Viscosity,
 };
 
 /// So fast that a held node told to move does so within the first step.
@@ -252,7 +252,7 @@ fn work_along_a_path_is_booked() {
     };
     let scene = Scene::new(body).phase(Phase::until(3.3).follow("left", Axis::X, wave));
     let method = Method::CentralDifference;
-    let solver = Solver { method, rtol: 1e-2, ..Solver::default() };
+    let solver = Settings { method, rtol: 1e-2, ..Settings::default() };
     let motion = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
     let report = motion.report();
     let supplied = motion.last().energy.supplied;

@@ -178,7 +178,7 @@ impl FromStr for ContactEvents {
 
 /// How a scene is integrated.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solver {
+pub struct Settings {
     /// Integration method. Default: [`Method::Auto`].
     pub method: Method,
     /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
@@ -206,7 +206,7 @@ pub struct Solver {
     pub max_steps: usize,
 }
 
-impl Default for Solver {
+impl Default for Settings {
     fn default() -> Self {
         Self {
             method: Method::default(),
@@ -222,7 +222,7 @@ impl Default for Solver {
     }
 }
 
-impl Solver {
+impl Settings {
     /// Checks what can be known before anything is run.
     ///
     /// # Errors
