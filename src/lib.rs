@@ -66,12 +66,12 @@ pub use input::InputError;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use report::{Counts, PhaseReport, Report};
-pub use scene::{Phase, PhaseSummary, Scene};
+pub use scene::{Phase, Scene};
 pub use scene_file::{OutputRequest, SceneFile};
 pub use settings::{ContactEvents, Method, Settings, Tolerances};
 pub use simulate::Sampling;
 pub use statics::Statics;
-pub use system::{Energy, Spectrum};
+pub use system::{Energy, PhaseSummary, Spectrum};
 pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// Compiles the code blocks of the README.

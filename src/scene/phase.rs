@@ -14,18 +14,18 @@ pub struct Phase {
     pub(crate) name: String,
     pub(crate) until: f64,
     pub(crate) constraints: Vec<Constraint>,
-    pub(super) loads: Vec<(Selection, Load)>,
+    pub(crate) loads: Vec<(Selection, Load)>,
     /// Names of springs, force (N).
-    pub(super) actuations: Vec<(Vec<String>, Signal)>,
+    pub(crate) actuations: Vec<(Vec<String>, Signal)>,
     /// Name of a chamber, pressure (Pa).
-    pub(super) pressures: Vec<(String, Signal)>,
+    pub(crate) pressures: Vec<(String, Signal)>,
     pub(crate) projects_velocity: bool,
     contact: ContactWith,
 }
 
 /// A load on some nodes (N).
 #[derive(Debug, Clone)]
-pub(super) enum Load {
+pub(crate) enum Load {
     /// On each of them.
     Each(Vec<f64>),
     /// On all of them together.
@@ -266,7 +266,7 @@ impl Phase {
     }
 
     /// The obstacles that act in this phase.
-    pub(super) fn contacts<'a>(
+    pub(crate) fn contacts<'a>(
         &self,
         obstacles: &'a [Obstacle],
     ) -> Result<Vec<&'a Obstacle>, InputError> {

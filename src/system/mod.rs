@@ -27,8 +27,10 @@ mod newton;
 mod ode;
 mod rates;
 mod reduced;
+mod scene;
 mod second_order;
 mod spectrum;
+mod summary;
 #[cfg(test)]
 mod tests;
 
@@ -42,6 +44,7 @@ use rates::RatesBound;
 use reduced::{Coupling, Reduced};
 pub(crate) use second_order::SecondOrderForm;
 pub use spectrum::Spectrum;
+pub use summary::PhaseSummary;
 
 use crate::constraint::{Prescribed, Row};
 use crate::force::{Force, NodalForces, Reservoir};

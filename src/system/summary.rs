@@ -1,10 +1,10 @@
 //! What a scene contains, phase by phase.
 
-use super::{Phase, Scene};
+use super::Spectrum;
 use crate::constraint::Start;
 use crate::external::Obstacle;
 use crate::input::InputError;
-use crate::system::Spectrum;
+use crate::scene::{Phase, Scene};
 
 /// What happens in a phase, and how fast the body can move then.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,8 +36,8 @@ impl Scene {
     /// As [`validate`](Self::validate).
     pub fn summary(&self) -> Result<Vec<PhaseSummary>, InputError> {
         let spectra = self.spectrum()?;
-        let starts = [0.0].into_iter().chain(self.phases.iter().map(Phase::end));
-        let phases = self.phases.iter().zip(starts).zip(spectra);
+        let starts = [0.0].into_iter().chain(self.phases().iter().map(Phase::end));
+        let phases = self.phases().iter().zip(starts).zip(spectra);
         phases.map(|((phase, start), spectrum)| self.summary_of(phase, start, spectrum)).collect()
     }
 
@@ -50,11 +50,11 @@ impl Scene {
         let rows = self.rows(phase, &Start { time: start, u: self.start()[0] })?;
         let mut loaded_nodes = 0;
         for (selection, _) in &phase.loads {
-            loaded_nodes += self.body.mesh().select(selection)?.len();
+            loaded_nodes += self.body().mesh().select(selection)?.len();
         }
         let actuated = phase.actuations.iter().flat_map(|(springs, _)| springs);
         let pressurized = phase.pressures.iter().map(|(chamber, _)| chamber);
-        let obstacles = phase.contacts(&self.obstacles)?.into_iter().map(Obstacle::name);
+        let obstacles = phase.contacts(self.obstacles())?.into_iter().map(Obstacle::name);
         Ok(PhaseSummary {
             name: phase.name.clone(),
             start,
