@@ -155,7 +155,7 @@ impl Row {
         }
     }
 
-    /// The nodes and axes of the row, as a person would name them.
+    /// The nodes and axes of the row, nodes counted from 1, for messages.
     pub(crate) fn label(&self, dimension: usize) -> String {
         let name = |&(dof, _): &(usize, f64)| {
             format!("node {} {:?}", dof / dimension + 1, Axis::all(dimension)[dof % dimension])

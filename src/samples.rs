@@ -472,7 +472,7 @@ mod tests {
         });
     }
 
-    /// `shifted(j, h)` moves unknown j by h, and tells the distance between the moves by h and -h.
+    /// `shifted(j, h)` moves unknown j by h, and returns the distance between the moves by h and -h.
     fn check_columns(
         n: usize,
         dense: &Mat<f64>,

@@ -12,7 +12,7 @@ use crate::input::{InputError, positive};
 #[non_exhaustive]
 pub enum Method {
     /// Chooses one of the others for each phase, by what the phase asks for; looks at the energy
-    /// balance while it runs, and goes on with another method if need be. The report tells what
+    /// balance while it runs, and goes on with another method if need be. The report says what
     /// was chosen and why.
     #[default]
     Auto,
@@ -131,7 +131,7 @@ impl FromStr for Method {
 /// How contact events are met: nodes that touch an obstacle or leave it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactEvents {
-    /// As pays: [`Method::Auto`] locates them while it is explicit Runge-Kutta, and with implicit methods
+    /// Where it is faster: [`Method::Auto`] locates them while it is explicit Runge-Kutta, and with implicit methods
     /// if `rtol` is below 1e-6; where a method was asked for, they are stepped over.
     #[default]
     Auto,
@@ -200,9 +200,9 @@ pub struct Settings {
     /// order then (`CVodeSetStabLimDet`). It helps some lightly damped vibrations, not undamped
     /// ones. Default: no.
     pub stability_limit_detection: bool,
-    /// Whether contact events are located. Default: where it pays.
+    /// Whether contact events are located. Default: where that is faster for the accuracy.
     pub contact_events: ContactEvents,
-    /// Steps that one phase may take. Default: 10 million, a guard against waiting for ever.
+    /// Steps that one phase may take. Default: 10 million, a guard against runs without end.
     pub max_steps: usize,
 }
 
@@ -278,7 +278,7 @@ impl Settings {
 
 /// Absolute tolerances in force.
 ///
-/// Those of the energies that ride along and of the multipliers are loose (as if strain were 1):
+/// Those of the energies and of the multipliers are loose (as if strain were 1):
 /// enough that the Newton iteration looks after them, too little for them to rule the steps.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerances {

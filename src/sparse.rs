@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-/// Calls a function that is generic over the dimension of space with the dimension at hand.
+/// Calls a function that is generic over the dimension of space with the given dimension.
 macro_rules! with_dimension {
     ($dimension:expr, $function:ident ( $($argument:expr),* $(,)? )) => {
         match $dimension {

@@ -24,7 +24,7 @@ pub struct Sample {
     pub v: Vec<f64>,
     /// Constraint forces lambda (N) on the body, one per row of the phase's constraints: in the
     /// order in which the phase names them, node by node, axis by axis.
-    /// [`Trajectory::constraint_force`] tells them by nodes.
+    /// [`Trajectory::constraint_force`] gives them by nodes.
     pub multipliers: Vec<f64>,
     /// Energies (J).
     pub energy: Energy,

@@ -153,8 +153,8 @@ mod tests {
     }
 
     /// b, b' and b'' do not jump at inner points: over 2 h they change by 2 h times their slopes, which
-    /// are below 1, 10 and 100 here. And b', b'' are the slopes of b, b', as central differences
-    /// tell, which are off by h^2/6 times the third derivative, and by round-off over h.
+    /// are below 1, 10 and 100 here. And b', b'' are the slopes of b, b', by central
+    /// differences, which are off by h^2/6 times the third derivative, and by round-off over h.
     #[test]
     fn it_is_twice_continuously_differentiable() {
         let (spline, h) = (spline(&TIMES, &POINTS), 1e-5);

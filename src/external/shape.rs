@@ -105,7 +105,7 @@ impl Shape {
         Self(Kind::Union(parts.into_iter().collect()))
     }
 
-    /// A distance of one's own: `distance` returns d at a point (m) and writes its gradient, a
+    /// A shape given by its signed distance: `distance` returns d at a point (m) and writes its gradient, a
     /// vector of length 1. (It need not be right where d is above 0, except for its sign.)
     ///
     /// The curvature of the shape is left out of the Newton matrix: results are the same, but the

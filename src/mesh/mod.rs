@@ -1,7 +1,7 @@
 //! Meshes: nodes, cells, and named sets of nodes.
 //!
-//! Nodes and cells are counted from 0 inside the crate and in slices that it hands out. Where a
-//! person names nodes by number (selections, messages) they count from 1, as in the literature.
+//! Nodes and cells are counted from 0 inside the crate and in slices that it returns. In
+//! selections and messages node numbers count from 1, as in the literature.
 
 mod boundary;
 mod cell;

@@ -12,7 +12,7 @@ use crate::input::InputError;
 #[derive(Debug, Clone, PartialEq)]
 pub enum Selection {
     /// A named set of the mesh (`bottom`, `top`, `left`, `right`, `front`, `back`, `inner`, `outer`
-    /// where the mesh has them, `boundary`, `all`, or one's own).
+    /// where the mesh has them, `boundary`, `all`, or a set that you named).
     Set(String),
     /// Node numbers, counted from 1 as in the literature.
     Numbers(Vec<usize>),

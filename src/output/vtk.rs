@@ -16,7 +16,7 @@ use crate::mesh::CellKind;
 use crate::trajectory::{Sample, Trajectory};
 
 /// Writes one VTK XML file per sample, `<name>_0000.vtu`, ..., and `<name>.pvd`, the collection
-/// that tells their times and is what one opens.
+/// that has their times: open this one.
 ///
 /// The points are the natural positions (m). To see the body as it is, apply the filter "Warp By
 /// Vector" to `displacement`, which is the active vector field.

@@ -227,7 +227,7 @@ impl Phase {
     }
 
     /// Begins with the velocities nearest to the present ones that the constraints allow (an
-    /// inelastic impact). Without it, the default, a jump of b' is worked off by the stabilization
+    /// inelastic impact). Without it, the default, a jump of b' decays by the stabilization
     /// within a time of about 1/alpha.
     pub fn project_velocity(mut self) -> Self {
         self.projects_velocity = true;

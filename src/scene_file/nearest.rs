@@ -2,7 +2,7 @@
 
 use strsim::damerau_levenshtein;
 
-/// What to say about a `word` that is none of the `known` ones.
+/// Message about a `word` that is none of the `known` ones.
 pub(super) fn unknown(word: &str, known: &[&str]) -> String {
     match (nearest(word, known), known) {
         (_, []) => "there are none".into(),
@@ -17,7 +17,7 @@ pub(super) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
 }
 
-/// The known word that begins with `word`, or the one with the fewest slips of the pen between both,
+/// The known word that begins with `word`, or the one with the fewest typing errors between both,
 /// if more of the longer one is right than wrong.
 fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 2
@@ -25,10 +25,10 @@ fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     {
         return Some(whole);
     }
-    let slips = |known: &str| damerau_levenshtein(&word.to_lowercase(), &known.to_lowercase());
-    let best = known.iter().copied().min_by_key(|known| slips(known))?;
+    let errors = |known: &str| damerau_levenshtein(&word.to_lowercase(), &known.to_lowercase());
+    let best = known.iter().copied().min_by_key(|known| errors(known))?;
     let length = word.chars().count().max(best.chars().count());
-    (2 * slips(best) < length).then_some(best)
+    (2 * errors(best) < length).then_some(best)
 }
 
 #[cfg(test)]
@@ -36,7 +36,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slips_of_the_pen_are_understood() {
+    fn typing_errors_are_understood() {
         let known = ["density", "young", "poisson", "viscosity"];
         assert_eq!(nearest("yuong", &known), Some("young"));
         assert_eq!(nearest("Poison", &known), Some("poisson"));

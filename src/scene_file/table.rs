@@ -101,7 +101,7 @@ impl<'a> Table<'a> {
     }
 
     /// Puts an error about what was made of this table on the line of the key it is about, if that
-    /// can be told, or else on that of the table. One that has its line already is left alone.
+    /// is known, or else on that of the table. An error that has its line already stays as it is.
     pub(super) fn blame(&self, error: impl Into<Error>) -> Error {
         let error = error.into();
         let (input, value, mend) = match &error {

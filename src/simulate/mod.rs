@@ -141,8 +141,8 @@ impl Scene {
         self.simulate_with(solver, sampling, |_| ControlFlow::Continue(()))
     }
 
-    /// As [`simulate`](Self::simulate), telling `observer` after each step how far the run has
-    /// come, until it asks to stop by [`ControlFlow::Break`].
+    /// As [`simulate`](Self::simulate), calling `observer` after each step with the progress of the
+    /// run. The observer stops the run by [`ControlFlow::Break`].
     ///
     /// ```
     /// use std::ops::ControlFlow;

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-/// How far a run has come: told after each step to the observer of
+/// How far a run has come: what the observer gets after each step, see
 /// [`Scene::simulate_with`](crate::Scene::simulate_with).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Progress<'a> {

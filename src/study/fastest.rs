@@ -17,7 +17,7 @@ pub struct Fastest {
 pub struct Accuracy {
     /// Relative error.
     pub error: f64,
-    /// Whether the reference is precise enough to tell who reaches it; nobody does if not.
+    /// Whether the reference is precise enough for this error; if not, no line counts as reaching it.
     pub is_resolved: bool,
     /// Names and times (s) of the lines that reach it, the fastest first.
     pub reached: Vec<(String, f64)>,

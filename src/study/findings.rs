@@ -41,7 +41,7 @@ impl Findings {
         }
     }
 
-    /// The same findings with processor times in the place of times by the wall. On a quiet machine
+    /// The same findings with processor times in place of wall-clock times. On a quiet machine
     /// they hardly differ; on a busy one they are disturbed less.
     #[must_use]
     pub fn by_processor_time(mut self) -> Self {
@@ -95,7 +95,7 @@ impl Findings {
         Fastest::of(self)
     }
 
-    /// What a reader has to know before trusting the numbers: how sure the reference is, which runs
+    /// Notes on how far the numbers can be trusted: how sure the reference is, which runs
     /// failed, whether the machine was busy.
     #[must_use]
     pub fn notes(&self) -> Vec<String> {
@@ -171,8 +171,8 @@ impl LineFindings {
     }
 
     /// The time (s) in which the line reaches a relative `error`, interpolated between its points
-    /// on logarithmic scales. None if it does not, or if a finer point is worse again: a lucky
-    /// hit is nothing to rely on.
+    /// on logarithmic scales. None if it does not, or if a finer point is worse again: that
+    /// small error was chance.
     #[must_use]
     pub fn time_to_reach(&self, error: f64) -> Option<f64> {
         let points: Vec<_> = self.points().collect();

@@ -1,4 +1,4 @@
-//! What tells one scene from another.
+//! Hashes that identify a scene.
 
 use std::fmt::{self, Write};
 use std::hash::{DefaultHasher, Hasher};

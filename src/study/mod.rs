@@ -22,7 +22,7 @@
 //! **Error.** That of a scene is the distance of its nodes from where the reference has them, root mean
 //! square over nodes and over 101 times from start to end, relative to the motion: the root mean
 //! square displacement of the same nodes at the same times in the reference. One number thus counts
-//! all of the motion and not a lucky instant, and means the same for large and small bodies. Motion
+//! all of the motion and not one instant, and means the same for large and small bodies. Motion
 //! below a millionth of the body's size counts as that large. Where meshes differ, the nodes are
 //! those that all of them share. The error of a general problem is relative, component by component,
 //! at its end. Beside the mean the table has the largest value.
@@ -30,10 +30,10 @@
 //! **Reference.** It is computed by the two fastest of four methods (Adams, BDF, implicit
 //! and explicit Runge-Kutta), at tolerances that are tightened until both agree to a thirtieth of the least error
 //! to be measured, or agree no better. The distance between them is the *resolution* of the
-//! reference: errors below ten times that are marked as not sure, and nothing is said about who
-//! reaches accuracies below it.
+//! reference: errors below ten times that are marked as not sure, and lines are not
+//! ranked at accuracies below it.
 //!
-//! **Time.** By the clock on the wall, of the whole solution, from the call to the end of the last
+//! **Time.** Wall-clock time of the whole solution, from the call to the end of the last
 //! phase, without samples: the median of some repetitions (a run of more than half a second is
 //! run once). Runs never overlap. Before and after each of them a fixed piece of arithmetic is timed,
 //! the yardstick: where it takes longer than it did at its best, the machine was busy with other
@@ -76,7 +76,7 @@ pub trait Problem {
     /// The ways to solve it.
     fn lines(&self) -> &[Line];
 
-    /// What tells this run of this problem from any other: a result that was kept under the same
+    /// Identifies this run of this problem: a result that was kept under the same
     /// fingerprint is not computed again.
     fn fingerprint(&self, line: usize, point: usize) -> u64;
 

@@ -51,7 +51,7 @@ pub struct Row {
     pub energy_error: Option<f64>,
     /// Why the run failed.
     pub failure: Option<String>,
-    /// What tells the run from others; [`Problem::fingerprint`](super::Problem::fingerprint).
+    /// Identifies the run; [`Problem::fingerprint`](super::Problem::fingerprint).
     pub fingerprint: String,
 }
 
@@ -59,7 +59,7 @@ pub struct Row {
 /// its best by more than this.
 const NOISE: f64 = 0.2;
 
-/// Errors are told from the reference's own from this multiple of its resolution up.
+/// Errors count as sure from this multiple of the reference's resolution on.
 const RESOLVED: f64 = 10.0;
 
 impl Row {

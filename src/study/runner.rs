@@ -87,7 +87,7 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// Runs what is not kept yet. `observer` is told before each run.
+    /// Runs what is not kept yet. Calls `observer` before each run.
     ///
     /// # Errors
     /// Bad input; [`Error::Reference`] if there is nothing to compare with; [`Error::Read`] and

@@ -202,7 +202,7 @@ impl Scenes {
 }
 
 /// Name and solver of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up
-/// to 2 only, which can do with motion that is hardly damped, and one that detects the stability limits
+/// to 2 only, which suits motion that is hardly damped, and one that detects the stability limits
 /// of higher orders; for ARKODE one for each of the
 /// orders 3 and 5 beside 4.
 #[must_use]

@@ -44,14 +44,14 @@ fn arithmetic() -> f64 {
 /// How long a run took (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Time {
-    /// By the clock on the wall.
+    /// Wall-clock time.
     pub(super) wall: f64,
     /// Of the processor, which other programs do not count in.
     pub(super) processor: f64,
 }
 
 impl Time {
-    /// What `run` returns, and its times; `wall` tells the time by the wall from that.
+    /// What `run` returns, and its times; `wall` takes the wall-clock time from that.
     pub(super) fn of<T>(
         run: impl FnOnce() -> Result<T, Failed>,
         wall: impl FnOnce(&T) -> f64,
@@ -98,7 +98,7 @@ impl Budget {
 /// Repetitions of one run.
 #[derive(Debug)]
 pub(super) struct Repetitions {
-    /// Times by the wall (s), ascending.
+    /// Wall-clock times (s), ascending.
     wall: Vec<f64>,
     /// Processor times (s), ascending.
     processor: Vec<f64>,
@@ -132,7 +132,7 @@ impl Repetitions {
         Time { wall: median(&self.wall), processor: median(&self.processor) }
     }
 
-    /// Slowest less fastest by the wall, relative to the median.
+    /// Slowest less fastest wall-clock time, relative to the median.
     pub(super) fn spread(&self) -> f64 {
         (self.wall[self.wall.len() - 1] - self.wall[0]) / median(&self.wall)
     }

@@ -14,7 +14,7 @@
 //! which the constraints are motion that is known. The first two solve their Newton systems with
 //! the one symmetric matrix of [`newton`], half as large as the state.
 //!
-//! Two more unknowns ride along: the energy dissipated and the energy supplied since the phase
+//! Two more unknowns are integrated: the energy dissipated and the energy supplied since the phase
 //! began. They cost two dot products, nothing depends on them, and the error control leaves them
 //! out; they make the energy balance as accurate as the integration itself.
 

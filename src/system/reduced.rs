@@ -126,7 +126,7 @@ impl Reduced {
         }
     }
 
-    /// Factorizes X, positive definite, whose entries `value` tells.
+    /// Factorizes X, positive definite, whose entries `value` gives.
     pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
         self.assemble(value);
         self.cholesky.factorize(&self.values)?;

@@ -13,7 +13,7 @@ impl Trajectory {
     /// contact. A stiffness per area acts between the nodes: its forces are shared out to them.
     ///
     /// # Errors
-    /// A sample that is not of this trajectory; an obstacle of one's own whose distance has changed
+    /// A sample that is not of this trajectory; a distance function of your own that has changed
     /// since the run and has no meaning any more.
     pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
         let phase = self.phase_of(sample)?;

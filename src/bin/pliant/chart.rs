@@ -51,7 +51,7 @@ pub struct Arguments {
     /// Processor time that any run may take (s)
     #[arg(long, value_name = "SECONDS", default_value_t = 120.0)]
     limit: f64,
-    /// Chart processor times, which a busy machine disturbs less than times by the wall
+    /// Chart processor times, which a busy machine disturbs less than wall-clock times
     #[arg(long)]
     processor_time: bool,
     /// Directory for the results [default: out/ and the name of the scene file, with -chart]
@@ -155,7 +155,7 @@ fn or<'a, T>(values: &'a [T], default: &'a T) -> &'a [T] {
     if values.is_empty() { std::slice::from_ref(default) } else { values }
 }
 
-/// Each of `solvers` with each of `values`, which its name tells if there are several.
+/// Each of `solvers` with each of `values`, named after the value if there are several.
 fn combined<T: Copy>(
     solvers: Vec<(String, Settings)>,
     values: &[T],

@@ -9,7 +9,7 @@ use pliant::{Error, InputError};
 pub struct Failure {
     /// Exit code: [`FAILED`] or [`BAD_INPUT`].
     pub code: u8,
-    /// What to say.
+    /// The message.
     pub message: String,
 }
 

@@ -57,7 +57,7 @@ impl Watch {
         Ok(Self { bar, interrupted, end, drawn: Instant::now() })
     }
 
-    /// To be told after each step; asks to stop after Ctrl-C.
+    /// Called after each step; stops the run after Ctrl-C.
     pub fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
         if self.interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(());

@@ -143,7 +143,7 @@ impl<const N: usize> Grid<N> {
             .fold(0, |index, axis| index * self.extent(axis) + place[axis] % self.extent(axis))
     }
 
-    /// Divides each grid cell alike, or as its place tells; all divisions have the same number of
+    /// Divides each grid cell alike, or by its place; all divisions have the same number of
     /// cells. `kind` has the nodes of the division as corners.
     pub(super) fn divide<const CORNERS: usize>(
         &self,

@@ -11,7 +11,7 @@ pub use grid::Cells;
 
 use crate::input::InputError;
 
-/// Most nodes that a generator makes: beyond it, matrices fit no memory and input is a slip.
+/// Most nodes that a generator makes: beyond it, matrices fit no memory, and the input is a typing error.
 const MOST_NODES: usize = 100_000_000;
 
 /// Checks the numbers of nodes along the axes of a grid.

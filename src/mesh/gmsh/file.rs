@@ -73,7 +73,7 @@ impl Contents {
     }
 }
 
-/// Checks the first two lines, and tells whether the rest is binary.
+/// Checks the first two lines, and returns whether the rest is binary.
 fn check_format(file: &[u8]) -> Result<bool, String> {
     let mut lines = file.split(|&byte| byte == b'\n').map(|line| line.trim_ascii());
     match lines.next() {

@@ -1,4 +1,4 @@
-//! What the page is told: the data of a motion as JSON.
+//! The data of a motion as JSON, for the page.
 
 use std::collections::BTreeMap;
 

@@ -157,7 +157,7 @@ fn captions(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<String> {
     samples.iter().map(caption).collect()
 }
 
-/// Decimals that tell the times of all samples: 2, or more where they need it.
+/// Decimals that keep the times of all samples apart: 2 at least.
 fn decimals(samples: &[&Sample]) -> usize {
     let end = samples.iter().map(|sample| sample.time).fold(0.0, f64::max);
     let enough = |decimals: &usize| {
