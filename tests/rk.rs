@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::error::Error as _;
 
-use pliant::ode::Failure;
+use pliant::ode::{Failure, Ode};
 use pliant::rk::{DormandPrince, Error, Options, Tolerance};
 
 type Rhs = Result<(), Failure>;
@@ -52,11 +52,17 @@ fn scattered(count: u32) -> impl Iterator<Item = f64> {
     (1..=count).map(|k| (f64::from(k) * 0.618_033_988_749_895).fract())
 }
 
+/// The solution at time `t`.
+fn at<S: Ode>(solver: &mut DormandPrince<S>, t: f64) -> &[f64] {
+    solver.solve_to(t).unwrap();
+    solver.y()
+}
+
 #[test]
 fn the_order_of_the_solution_is_five() {
     let error = |h: f64| {
         let mut solver = DormandPrince::new(logistic, 0.0, &[0.1], &fixed_step(h)).unwrap();
-        (solver.solve_to(2.0).unwrap()[0] - logistic_exact(2.0)).abs()
+        (at(&mut solver, 2.0)[0] - logistic_exact(2.0)).abs()
     };
     // Observed order between successive halvings; 0.2 is what higher terms leave at these h.
     for h in [0.125, 0.0625] {
@@ -77,8 +83,8 @@ fn the_order_of_dense_output_is_four_and_of_its_derivative_three() {
         scattered(50).fold((0.0_f64, 0.0_f64), |(in_y, in_slope), theta| {
             let t = t0 + theta * h;
             let (mut y, mut slope) = ([0.0], [0.0]);
-            solver.interpolate(t, &mut y).unwrap();
-            solver.interpolate_derivative(t, &mut slope).unwrap();
+            solver.interpolate(t, 0, &mut y).unwrap();
+            solver.interpolate(t, 1, &mut slope).unwrap();
             let exact = logistic_exact(t);
             let exact_slope = exact * (1.0 - exact);
             (in_y.max((y[0] - exact).abs()), in_slope.max((slope[0] - exact_slope).abs()))
@@ -103,8 +109,8 @@ fn dense_output_meets_both_ends_of_the_step() {
     let after = (solver.t(), [solver.y()[0], solver.y()[1]]);
     for (t, y) in [before, after] {
         let (mut value, mut slope, mut f) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-        solver.interpolate(t, &mut value).unwrap();
-        solver.interpolate_derivative(t, &mut slope).unwrap();
+        solver.interpolate(t, 0, &mut value).unwrap();
+        solver.interpolate(t, 1, &mut slope).unwrap();
         pendulum(t, &y, &mut f).unwrap();
         // Same numbers up to the rounding of h = t_new - t_old.
         for i in 0..2 {
@@ -120,15 +126,15 @@ fn the_pendulum_returns_after_its_exact_period() {
     let mut solver = DormandPrince::new(pendulum, 0.0, &[0.0, 0.0], &options).unwrap();
     for period in 1..=5 {
         let t = 2.0 * f64::from(period);
-        let angle = solver.solve_to(t).unwrap()[0];
+        let angle = at(&mut solver, t)[0];
         // The turning point: the angle is flat in t there, the velocity is not.
         assert!(angle.abs() < 1e-10, "angle {angle} at t = {t}");
-        let velocity = solver.solve_to(t).unwrap()[1];
+        let velocity = at(&mut solver, t)[1];
         assert!(velocity.abs() < 1e-9, "velocity {velocity} at t = {t}");
     }
     // Half a period: the other turning point, at -pi.
     solver.reinit(0.0, &[0.0, 0.0]).unwrap();
-    let angle = solver.solve_to(1.0).unwrap()[0];
+    let angle = at(&mut solver, 1.0)[0];
     assert!((angle + std::f64::consts::PI).abs() < 1e-10, "angle {angle}");
 }
 
@@ -137,7 +143,7 @@ fn the_error_shrinks_with_the_tolerance() {
     let error = |rtol: f64| {
         let options = Options::default().rtol(rtol).atol(rtol);
         let mut solver = DormandPrince::new(pendulum, 0.0, &[0.0, 0.0], &options).unwrap();
-        let y = solver.solve_to(4.0).unwrap();
+        let y = at(&mut solver, 4.0);
         y[0].abs().max(y[1].abs())
     };
     let errors: Vec<f64> = [1e-4, 1e-6, 1e-8, 1e-10].map(error).into();
@@ -160,7 +166,7 @@ fn the_relative_tolerance_follows_the_solution() {
     let options = Options::default().rtol(1e-6).atol(1e-30);
     let mut solver = DormandPrince::new(decay, 0.0, &[1.0], &options).unwrap();
     for t in [1.0, 10.0, 30.0] {
-        let relative = solver.solve_to(t).unwrap()[0] / (-t).exp() - 1.0;
+        let relative = at(&mut solver, t)[0] / (-t).exp() - 1.0;
         // Every step adds at most rtol, and there are four of them in a unit of time.
         assert!(relative.abs() < 4.0 * t * 1e-6, "{relative} at t = {t}");
     }
@@ -236,7 +242,7 @@ fn on_a_stiff_problem_stability_limits_the_step_and_the_notice_says_so() {
     for lambda in [1e3, 1e4, 1e5] {
         let options = Options::default().rtol(1e-4).atol(1e-7);
         let mut solver = DormandPrince::new(prothero(lambda), 0.0, &[0.0], &options).unwrap();
-        let y = solver.solve_to(1.5).unwrap()[0];
+        let y = at(&mut solver, 1.5)[0];
         // Slow, but right: rtol 1e-4 on a solution of size at most 1, errors damped.
         let exact = prothero_exact(lambda, 1.5);
         assert!((y - exact).abs() < 1e-4, "y = {y}, exact {exact}");
@@ -285,7 +291,7 @@ fn the_stop_time_is_hit_exactly_and_never_passed() {
         };
         let options = Options::default().stop_time(stop);
         let mut solver = DormandPrince::new(forcing, 0.0, &[1.0], &options).unwrap();
-        let y = solver.solve_to(stop).unwrap()[0];
+        let y = at(&mut solver, stop)[0];
         assert_eq!(solver.t(), stop);
         assert!((y - stop.exp()).abs() < 1e-6);
         for result in [solver.step().map(drop), solver.solve_to(0.5).map(drop)] {
@@ -332,19 +338,19 @@ fn output_times_do_not_change_the_steps() {
 fn reinit_repeats_the_run_bit_for_bit() {
     let options = Options::default().stop_time(1.7);
     let mut solver = DormandPrince::new(pendulum, 0.0, &[0.0, 0.0], &options).unwrap();
-    let first = solver.solve_to(1.7).unwrap().to_vec();
+    let first = at(&mut solver, 1.7).to_vec();
     let statistics = solver.statistics();
     solver.reinit(0.0, &[0.0, 0.0]).unwrap();
     assert_eq!(solver.statistics().rhs_evaluations, 0);
     solver.set_stop_time(Some(1.7)).unwrap();
-    assert_eq!(solver.solve_to(1.7).unwrap(), first);
+    assert_eq!(at(&mut solver, 1.7), first);
     assert_eq!(solver.statistics(), statistics);
 }
 
 #[test]
 fn a_changed_system_is_evaluated_afresh() {
     struct Pull(f64);
-    impl pliant::ode::Ode for Pull {
+    impl Ode for Pull {
         fn rhs(&mut self, _t: f64, _y: &[f64], ydot: &mut [f64]) -> Rhs {
             ydot[0] = self.0;
             Ok(())
@@ -356,7 +362,7 @@ fn a_changed_system_is_evaluated_afresh() {
     solver.system_mut().0 = -2.0;
     solver.set_stop_time(Some(2.0)).unwrap();
     // 1 up, then 2 down; a stale slope at t = 1 would give something else. Rounding only.
-    let y = solver.solve_to(2.0).unwrap()[0];
+    let y = at(&mut solver, 2.0)[0];
     assert!((y + 1.0).abs() < 1e-14, "{y}");
     assert_eq!(solver.into_system().0, -2.0);
 }
@@ -411,7 +417,7 @@ fn a_recoverable_failure_is_retried_with_a_smaller_step() {
     // The first step reaches far beyond t = 2.
     let options = Options::default().initial_step(8.0);
     let mut solver = DormandPrince::new(root, 0.0, &[1.0], &options).unwrap();
-    let y = solver.solve_to(1.9).unwrap()[0];
+    let y = at(&mut solver, 1.9)[0];
     // Tolerance 1e-6 of a value of size 1; errors do not grow.
     assert!((y - 0.0025).abs() < 1e-5, "{y}");
     let refused = solver.statistics().refused_steps;
@@ -505,7 +511,7 @@ fn time_goes_forward_only() {
     let end = solver.t();
     solver.solve_to(2.0).unwrap();
     assert_eq!(solver.t(), end);
-    assert!(solver.interpolate(0.5, &mut [0.0]).is_err());
+    assert!(solver.interpolate(0.5, 0, &mut [0.0]).is_err());
 }
 
 #[test]
@@ -532,7 +538,7 @@ fn bad_input_is_named_with_its_value() {
     }
     let mut solver = DormandPrince::new(logistic, 0.0, &[0.1], &good()).unwrap();
     assert!(solver.reinit(0.0, &[0.1, 0.2]).unwrap_err().to_string().contains("1 components"));
-    assert!(solver.interpolate_derivative(0.0, &mut [0.0]).is_err());
+    assert!(solver.interpolate(0.0, 1, &mut [0.0]).is_err());
 }
 
 thread_local! {
@@ -564,7 +570,7 @@ fn stepping_allocates_nothing() {
     for period in 1..20 {
         solver.solve_to(2.0 * f64::from(period)).unwrap();
         solver.step().unwrap();
-        solver.interpolate(solver.t(), &mut y).unwrap();
+        solver.interpolate(solver.t(), 0, &mut y).unwrap();
     }
     solver.reinit(0.0, &[0.0, 0.0]).unwrap();
     solver.solve_to(2.0).unwrap();
@@ -577,4 +583,24 @@ fn solvers_can_move_between_threads() {
     fn check<T: Send + Sync>() {}
     check::<DormandPrince<fn(f64, &[f64], &mut [f64]) -> Rhs>>();
     check::<Error>();
+}
+
+#[test]
+fn only_the_last_step_is_interpolated() {
+    let (mut y, y0) = ([0.0; 2], [0.3, -0.2]);
+    let mut solver = DormandPrince::new(pendulum, 1.0, &y0, &Options::default()).unwrap();
+    // before the first step the start alone is known, and after a restart none of the run before
+    for (start, state) in [(1.0, y0), (1.05, [0.7, 0.1])] {
+        solver.reinit(start, &state).unwrap();
+        assert_eq!(solver.last_step(), (start, start));
+        solver.interpolate(start, 0, &mut y).unwrap();
+        assert_eq!(y, state);
+        for t in [1.0, 1.01, 1.05, 1.06] {
+            let message = solver.interpolate(t, 1, &mut y).unwrap_err().to_string();
+            assert!(message.contains("step"), "{message}");
+            assert!(t == start || solver.interpolate(t, 0, &mut y).is_err());
+        }
+        solver.solve_to(2.0).unwrap();
+    }
+    assert!(solver.interpolate(2.0, 2, &mut y).unwrap_err().to_string().contains("derivative = 2"));
 }

@@ -96,6 +96,15 @@ pub enum Error {
         /// The error it returned.
         source: Box<dyn StdError + Send + Sync>,
     },
+
+    /// The root functions failed, or one is not finite.
+    #[error("the root functions failed at t = {t}: {source}")]
+    Roots {
+        /// Time at which they were evaluated.
+        t: f64,
+        /// The error they returned, or which of them is not finite.
+        source: Box<dyn StdError + Send + Sync>,
+    },
 }
 
 impl Error {

@@ -18,8 +18,8 @@
 //! let mut solver = DormandPrince::new(oscillator, 0.0, &[1.0, 0.0], &options)?;
 //! for k in 1..=10 {
 //!     let t = 0.1 * f64::from(k);
-//!     let y = solver.solve_to(t)?;
-//!     assert!((y[0] - t.cos()).abs() < 1e-8);
+//!     solver.solve_to(t)?;
+//!     assert!((solver.y()[0] - t.cos()).abs() < 1e-8);
 //! }
 //! # Ok::<(), pliant::rk::Error>(())
 //! ```
@@ -27,6 +27,7 @@
 mod control;
 mod error;
 mod options;
+mod roots;
 mod solver;
 mod stages;
 mod tableau;
@@ -53,6 +54,8 @@ pub struct Statistics {
     pub refused_steps: usize,
     /// Evaluations of the right-hand side.
     pub rhs_evaluations: usize,
+    /// Evaluations of the root functions.
+    pub root_evaluations: usize,
     /// Accepted steps at the border of the stability region.
     pub stability_limited_steps: usize,
     /// Set once such steps are the rule: the system is stiff.

@@ -1,16 +1,21 @@
 //! The integrator: its state, its steps and what a user may ask of it.
 
+use std::mem::take;
+
 use super::control::{Controller, StabilityMonitor};
+use super::roots::Roots;
 use super::stages::Setback;
 use super::tableau::{self, STAGES, advance};
-use super::{Error, Options, Statistics};
+use super::{Error, ORDER, Options, Statistics};
 use crate::ode::Ode;
+use crate::sundials::Reached;
 
 /// Integrates y' = f(t, y) forward in time with the Dormand-Prince pair of order 5(4).
 ///
 /// Steps of automatic size keep the local error within tolerance; six evaluations of the
 /// right-hand side each. Solutions between the ends of a step come from a continuous extension of
-/// order 4, so asking for output does not change the steps. Stepping allocates nothing.
+/// order 4, so asking for output does not change the steps, and there root functions are followed,
+/// as in CVODE. Stepping allocates nothing.
 #[derive(Debug)]
 pub struct DormandPrince<S: Ode> {
     pub(super) system: S,
@@ -32,8 +37,11 @@ pub struct DormandPrince<S: Ode> {
     pub(super) slope_known: bool,
     /// Argument of a stage; stage 6 is the last to use it.
     pub(super) argument: Vec<f64>,
-    /// What `solve_to` returns.
-    pub(super) output: Vec<f64>,
+    /// Time within the last step at which the last call came to rest, unless at its end, and the
+    /// solution there.
+    rest: Option<f64>,
+    output: Vec<f64>,
+    pub(super) roots: Roots,
     /// Size of the next step, once known.
     pub(super) next_step: Option<f64>,
     pub(super) controller: Controller,
@@ -56,7 +64,6 @@ impl<S: Ode> DormandPrince<S> {
         check_state(t, y)?;
         let atol = options.check(n)?;
         let mut solver = Self {
-            system,
             options: options.clone(),
             atol,
             weight: vec![0.0; n],
@@ -68,11 +75,14 @@ impl<S: Ode> DormandPrince<S> {
             k: std::array::from_fn(|_| vec![0.0; n]),
             slope_known: false,
             argument: vec![0.0; n],
+            rest: None,
             output: vec![0.0; n],
+            roots: Roots::new(system.root_count()),
             next_step: options.initial_step,
             controller: Controller::new(),
             monitor: StabilityMonitor::default(),
             statistics: Statistics::default(),
+            system,
         };
         solver.update_weight();
         solver.set_stop_time(options.stop_time)?;
@@ -90,7 +100,9 @@ impl<S: Ode> DormandPrince<S> {
         check_state(t, y)?;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);
+        self.rest = None;
         self.update_weight();
+        self.roots.restart();
         self.stop_time = None;
         self.slope_known = false;
         self.next_step = self.options.initial_step;
@@ -115,15 +127,88 @@ impl<S: Ode> DormandPrince<S> {
         Ok(())
     }
 
-    /// Takes one step of automatic size, shortened only to hit the stop time; returns the new `t()`.
+    /// Integrates to time `t`, or to a root or the stop time if one comes first.
+    ///
+    /// Steps go past `t`, but never past the stop time; so output times do not change the steps.
+    ///
+    /// # Errors
+    /// Any [`Error`]; `BadInput` when `t` lies before the last step or beyond the stop time.
+    pub fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
+        if !(t >= self.t_old && t.is_finite()) {
+            let mend = format!("the last step began at {}: {FORWARD_ONLY}", self.t_old);
+            return Err(Error::bad_input("t", t, mend));
+        }
+        if let Some(stop) = self.stop_time.filter(|stop| t > *stop) {
+            let mend = format!("it lies beyond the stop time {stop}: set a later one");
+            return Err(Error::bad_input("t", t, mend));
+        }
+        if t == self.t() {
+            return Ok(Reached::Time);
+        }
+        self.pass_root()?;
+        let first = self.statistics.steps;
+        loop {
+            if let Some(root) = self.find_root(t.min(self.t))? {
+                self.rest_at(root);
+                return Ok(Reached::Root);
+            }
+            if self.t >= t {
+                self.rest_at(t);
+                return Ok(self.reached());
+            }
+            let steps = self.statistics.steps - first;
+            if steps == self.options.max_steps {
+                return Err(Error::TooManySteps {
+                    t: self.t,
+                    step: self.statistics.last_step,
+                    target: t,
+                    steps,
+                    stability_limited: self.monitor.limit(),
+                });
+            }
+            self.advance()?;
+        }
+    }
+
+    /// Takes one step of automatic size, shortened only to hit the stop time, or stops at a root within
+    /// it. After a call that came to rest within a step, goes on to the end of that step first.
     ///
     /// # Errors
     /// Any [`Error`] but `TooManySteps`; `BadInput` when the stop time has been reached.
-    pub fn step(&mut self) -> Result<f64, Error> {
+    pub fn step(&mut self) -> Result<Reached, Error> {
+        self.pass_root()?;
+        if self.rest.is_none() {
+            self.advance()?;
+        }
+        let root = self.find_root(self.t)?;
+        self.rest_at(root.unwrap_or(self.t));
+        Ok(root.map_or(self.reached(), |_| Reached::Root))
+    }
+
+    fn reached(&self) -> Reached {
+        match self.stop_time == Some(self.t()) {
+            true => Reached::StopTime,
+            false => Reached::Time,
+        }
+    }
+
+    /// Has `t()` and `y()` tell the state at a time within the last step.
+    fn rest_at(&mut self, t: f64) {
+        self.rest = (t != self.t).then_some(t);
+        if self.rest.is_some() {
+            let mut output = take(&mut self.output);
+            self.interpolate_state(t, &mut output);
+            self.output = output;
+        }
+    }
+
+    /// Takes one step.
+    fn advance(&mut self) -> Result<(), Error> {
         if self.stop_time.is_some_and(|stop| self.t >= stop) {
             let mend = "it has been reached: set a later one to go on";
             return Err(Error::bad_input("stop_time", self.t, mend));
         }
+        self.rest = None;
         // Until this step succeeds there is nothing to interpolate in: its stages overwrite the
         // last one's.
         self.t_old = self.t;
@@ -136,6 +221,7 @@ impl<S: Ode> DormandPrince<S> {
         };
         let mut setback = None;
         let mut h = planned.min(self.options.max_step);
+        self.start_roots(self.stop_time.map_or(h, |stop| h.min(stop - self.t)))?;
         loop {
             // A step may stretch by 1 % to hit the stop time rather than leave a sliver.
             let stop = self.stop_time.filter(|stop| self.t + 1.01 * h >= *stop);
@@ -167,54 +253,35 @@ impl<S: Ode> DormandPrince<S> {
             // A step cut short by the stop time says nothing against the one that was planned.
             self.next_step = Some(if stop.is_some() { proposed.max(h) } else { proposed });
             self.accept(t_new, step);
-            return Ok(t_new);
+            return Ok(());
         }
     }
 
-    /// Integrates until `t` lies within the last step and returns y(t) by interpolation.
-    ///
-    /// Steps go past `t`, but never past the stop time; so output times do not change the steps.
-    ///
-    /// # Errors
-    /// Any [`Error`]; `BadInput` when `t` lies before the last step or beyond the stop time.
-    pub fn solve_to(&mut self, t: f64) -> Result<&[f64], Error> {
-        if !(t >= self.t_old && t.is_finite()) {
-            let mend = format!("the last step began at {}: {FORWARD_ONLY}", self.t_old);
-            return Err(Error::bad_input("t", t, mend));
-        }
-        if let Some(stop) = self.stop_time.filter(|stop| t > *stop) {
-            let mend = format!("it lies beyond the stop time {stop}: set a later one");
-            return Err(Error::bad_input("t", t, mend));
-        }
-        let first = self.statistics.steps;
-        while self.t < t {
-            let steps = self.statistics.steps - first;
-            if steps == self.options.max_steps {
-                return Err(Error::TooManySteps {
-                    t: self.t,
-                    step: self.statistics.last_step,
-                    target: t,
-                    steps,
-                    stability_limited: self.monitor.limit(),
-                });
-            }
-            self.step()?;
-        }
-        let mut output = std::mem::take(&mut self.output);
-        let result = self.interpolate(t, &mut output);
-        self.output = output;
-        result.map(|()| self.output.as_slice())
-    }
-
-    /// Writes y(t) into `y` (length n), for t within the last accepted step; order 4.
+    /// Writes the `derivative`-th time derivative of the solution at time `t`, within the
+    /// [last step](Self::last_step), into `out`: 0 for the state itself, of order 4, or 1 for the
+    /// derivative of that, of order 3, which is f(t, y) at both ends of the step.
     ///
     /// L. F. Shampine, Math. Comp. 46 (1986) 135-150; HNW I, section II.6.
     ///
     /// # Errors
-    /// [`Error::BadInput`] when t lies outside the last step, or `y` has another length.
-    pub fn interpolate(&self, t: f64, y: &mut [f64]) -> Result<(), Error> {
-        self.check_length("length of y", y)?;
-        self.check_within_step(t)?;
+    /// [`Error::BadInput`] when t lies outside the last step, when `derivative` is above 1, or 1 before
+    /// the first step, or when `out` has another length.
+    pub fn interpolate(&self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        self.check_length("length of out", out)?;
+        if !(self.t_old <= t && t <= self.t) {
+            let mend = format!("it lies outside the last step, [{}, {}]", self.t_old, self.t);
+            return Err(Error::bad_input("t", t, mend));
+        }
+        match derivative {
+            0 => self.interpolate_state(t, out),
+            1 if self.t_old < self.t => self.interpolate_slope(t, out),
+            1 => return Err(Error::bad_input("derivative", 1, "take a step first")),
+            _ => return Err(Error::bad_input("derivative", derivative, "give 0 or 1")),
+        }
+        Ok(())
+    }
+
+    pub(super) fn interpolate_state(&self, t: f64, y: &mut [f64]) {
         if t == self.t {
             y.copy_from_slice(&self.y);
         } else {
@@ -222,39 +289,41 @@ impl<S: Ode> DormandPrince<S> {
             let weights = tableau::dense_weights((t - self.t_old) / h);
             advance(y, &self.y_old, h, weights, self.last_stages());
         }
-        Ok(())
     }
 
-    /// Writes y'(t) into `ydot` (length n), for t within the last accepted step; order 3.
-    ///
-    /// The derivative of what [`interpolate`](Self::interpolate) gives; exactly f(t, y) at both
-    /// ends of the step.
-    ///
-    /// # Errors
-    /// [`Error::BadInput`] when t lies outside the last step, when there has been none, or when
-    /// `ydot` has another length.
-    pub fn interpolate_derivative(&self, t: f64, ydot: &mut [f64]) -> Result<(), Error> {
-        self.check_length("length of ydot", ydot)?;
-        self.check_within_step(t)?;
-        if self.t == self.t_old {
-            return Err(Error::bad_input("t", t, "take a step first"));
-        }
+    fn interpolate_slope(&self, t: f64, ydot: &mut [f64]) {
         let weights = tableau::dense_derivative_weights((t - self.t_old) / (self.t - self.t_old));
         let k = self.last_stages();
         for (i, slope) in ydot.iter_mut().enumerate() {
             *slope = weights.iter().zip(k).map(|(weight, k)| weight * k[i]).sum();
         }
-        Ok(())
     }
 
-    /// Time reached: the end of the last accepted step.
+    /// Time of the state [`y`](Self::y).
     pub fn t(&self) -> f64 {
-        self.t
+        self.rest.unwrap_or(self.t)
     }
 
-    /// Solution at [`t()`](Self::t).
+    /// The state at time [`t`](Self::t).
     pub fn y(&self) -> &[f64] {
-        &self.y
+        if self.rest.is_some() { &self.output } else { &self.y }
+    }
+
+    /// Start and end of the last step: the times between which [`interpolate`](Self::interpolate)
+    /// works. Before the first step both are the start.
+    pub fn last_step(&self) -> (f64, f64) {
+        (self.t_old, self.t)
+    }
+
+    /// Order of the steps.
+    pub fn last_order(&self) -> u32 {
+        ORDER
+    }
+
+    /// After [`Reached::Root`]: for each root function 0, or the sign of its change where it has a root
+    /// at the present time: +1 rising, -1 falling.
+    pub fn roots_found(&self) -> &[i32] {
+        &self.roots.found
     }
 
     /// What has been done so far.
@@ -296,14 +365,6 @@ impl<S: Ode> DormandPrince<S> {
         if given.len() != n {
             let mend = format!("the state has {n} components");
             return Err(Error::bad_input(input, given.len(), mend));
-        }
-        Ok(())
-    }
-
-    fn check_within_step(&self, t: f64) -> Result<(), Error> {
-        if !(self.t_old <= t && t <= self.t) {
-            let mend = format!("it lies outside the last step, [{}, {}]", self.t_old, self.t);
-            return Err(Error::bad_input("t", t, mend));
         }
         Ok(())
     }

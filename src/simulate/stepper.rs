@@ -82,7 +82,10 @@ impl Stepper {
                 let _ = ida.step(end)?;
                 Ok(ida.t())
             }
-            Self::Rk(rk) => Ok(rk.step()?),
+            Self::Rk(rk) => {
+                let _ = rk.step()?;
+                Ok(rk.t())
+            }
             Self::CentralDifference(central) => central.step(),
         }
     }
@@ -93,7 +96,7 @@ impl Stepper {
             Self::Arkode(arkode) => Ok(arkode.interpolate(t, 0, state)?),
             Self::Cvode(cvode) => Ok(cvode.interpolate(t, 0, state)?),
             Self::Ida(ida) => Ok(ida.interpolate(t, 0, state)?),
-            Self::Rk(rk) => Ok(rk.interpolate(t, state)?),
+            Self::Rk(rk) => Ok(rk.interpolate(t, 0, state)?),
             Self::CentralDifference(central) => central.interpolate(t, state),
         }
     }

@@ -50,7 +50,8 @@ pub fn drift(alpha: f64, outward: f64, periods: usize) -> Outcome<(Vec<f64>, usi
     let mut solver = DormandPrince::new(pendulum(alpha), 0.0, &start, &options)?;
     let mut off = Vec::new();
     for period in 1..=periods {
-        let s = solver.solve_to(Pendulum::PERIOD * period as f64)?;
+        solver.solve_to(Pendulum::PERIOD * period as f64)?;
+        let s = solver.y();
         off.push((s[0].hypot(s[1]) - 1.0).abs());
     }
     Ok((off, solver.statistics().steps))

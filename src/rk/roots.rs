@@ -1,0 +1,231 @@
+//! Where root functions change sign within a step.
+//!
+//! The search is that of SUNDIALS: the Illinois algorithm, a secant method that keeps the root between
+//! its two points (K. L. Hiebert, L. F. Shampine, "Implicitly defined output points for solutions of
+//! ODEs", Sandia report SAND80-0180, 1980; CVODE user guide, "Rootfinding").
+
+use std::mem::{swap, take};
+
+use super::tableau::advance;
+use super::{DormandPrince, Error};
+use crate::ode::Ode;
+
+/// The root functions g of a system, as far as they have been followed.
+#[derive(Debug, Default)]
+pub(super) struct Roots {
+    /// Whether g was evaluated at the start.
+    started: bool,
+    /// Whether there is a root at `low`.
+    rests: bool,
+    /// Up to where sign changes were looked for, and g there.
+    low: f64,
+    at_low: Vec<f64>,
+    /// g at the end of the interval that holds a sign change.
+    at_high: Vec<f64>,
+    trial: Vec<f64>,
+    /// Functions that are 0 and stay so are left out until they leave it.
+    active: Vec<bool>,
+    /// For each function 0, or the sign of its change at the root last found.
+    pub(super) found: Vec<i32>,
+}
+
+/// What happens to the functions from one time to a later one.
+enum Change {
+    None,
+    /// One or more become 0 at the later time.
+    Zero,
+    /// The sign of this one changes, the earliest of all as far as secants tell.
+    Sign(usize),
+}
+
+/// The end of an interval.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    Low,
+    High,
+}
+
+impl Roots {
+    pub(super) fn new(count: usize) -> Self {
+        Self {
+            at_low: vec![0.0; count],
+            at_high: vec![0.0; count],
+            trial: vec![0.0; count],
+            active: vec![true; count],
+            found: vec![0; count],
+            ..Self::default()
+        }
+    }
+
+    /// Begins anew.
+    pub(super) fn restart(&mut self) {
+        (self.started, self.rests) = (false, false);
+        self.active.fill(true);
+        self.found.fill(0);
+    }
+
+    /// Goes on with the values a little later, in `trial`, where a function is 0 at `low`.
+    fn leave_zeros(&mut self) {
+        for (i, at_low) in self.at_low.iter_mut().enumerate().filter(|(_, value)| **value == 0.0) {
+            *at_low = self.trial[i];
+            self.active[i] = self.trial[i] != 0.0;
+        }
+    }
+
+    /// Finds the first sign change between `low` and `high`, to within `tolerance`, or else goes on to
+    /// `high`.
+    fn search(
+        &mut self,
+        mut high: f64,
+        tolerance: f64,
+        mut evaluate: impl FnMut(f64, &mut [f64]) -> Result<(), Error>,
+    ) -> Result<Option<f64>, Error> {
+        evaluate(high, &mut self.at_high)?;
+        let mut change = self.change(&self.at_high);
+        // weight of the lower end in the secant, halved or doubled when the same end moves again
+        let (mut weight, mut moved, mut moved_before) = (1.0, None, None);
+        while let Change::Sign(i) = change
+            && high - self.low > tolerance
+        {
+            weight = match moved {
+                Some(End::Low) if moved == moved_before => 2.0 * weight,
+                Some(End::High) if moved == moved_before => 0.5 * weight,
+                _ => 1.0,
+            };
+            moved_before = moved;
+            let width = high - self.low;
+            let part = self.at_high[i] / (self.at_high[i] - weight * self.at_low[i]);
+            // too near to an end, it would tell nothing new
+            let edge = 0.5 * tolerance / width;
+            let inward = if width > 5.0 * tolerance { 0.1 } else { edge };
+            let part = match part {
+                part if part < edge => inward,
+                part if part > 1.0 - edge => 1.0 - inward,
+                part => part,
+            };
+            let middle = high - part * width;
+            evaluate(middle, &mut self.trial)?;
+            match self.change(&self.trial) {
+                Change::None => {
+                    (self.low, moved) = (middle, Some(End::Low));
+                    swap(&mut self.at_low, &mut self.trial);
+                }
+                nearer => {
+                    (high, moved, change) = (middle, Some(End::High), nearer);
+                    swap(&mut self.at_high, &mut self.trial);
+                }
+            }
+        }
+        for i in 0..self.found.len() {
+            let (before, after) = (self.at_low[i], self.at_high[i]);
+            let is_root = self.active[i] && (after == 0.0 || differ(before, after));
+            self.found[i] = if is_root { -before.signum() as i32 } else { 0 };
+            self.active[i] |= after != 0.0;
+        }
+        self.low = high;
+        swap(&mut self.at_low, &mut self.at_high);
+        self.rests = !matches!(change, Change::None);
+        Ok(self.rests.then_some(high))
+    }
+
+    /// What happens from `low` on to where the functions are `values`.
+    fn change(&self, values: &[f64]) -> Change {
+        let (mut change, mut largest) = (Change::None, 0.0);
+        for (i, (&before, &after)) in self.at_low.iter().zip(values).enumerate() {
+            if !self.active[i] {
+                continue;
+            }
+            if after == 0.0 {
+                if largest == 0.0 {
+                    change = Change::Zero;
+                }
+            } else if differ(before, after) {
+                let part = after / (after - before);
+                if part > largest {
+                    (change, largest) = (Change::Sign(i), part);
+                }
+            }
+        }
+        change
+    }
+}
+
+/// Whether the signs of two numbers differ, neither of which is 0.
+fn differ(a: f64, b: f64) -> bool {
+    (a < 0.0) != (b < 0.0)
+}
+
+impl<S: Ode> DormandPrince<S> {
+    /// Evaluates the root functions at the start; `step` is the size of the first step.
+    ///
+    /// One that is 0 there is a root no longer, and followed from its value a tenth of a step later.
+    pub(super) fn start_roots(&mut self, step: f64) -> Result<(), Error> {
+        if self.roots.started || self.roots.found.is_empty() {
+            return Ok(());
+        }
+        let mut roots = take(&mut self.roots);
+        (roots.started, roots.low) = (true, self.t);
+        self.argument.copy_from_slice(&self.y);
+        let mut result = self.evaluate_roots(self.t, &mut roots.at_low);
+        if result.is_ok() && roots.at_low.contains(&0.0) {
+            let ahead = f64::max(0.1 * step, self.time_tolerance(step));
+            advance(&mut self.argument, &self.y, ahead, [1.0], [&self.k[0]]);
+            result = self.evaluate_roots(self.t + ahead, &mut roots.trial);
+            roots.leave_zeros();
+        }
+        self.roots = roots;
+        result
+    }
+
+    /// Leaves the root last found behind.
+    pub(super) fn pass_root(&mut self) -> Result<(), Error> {
+        let mut roots = take(&mut self.roots);
+        let mut result = Ok(());
+        if take(&mut roots.rests) && roots.at_low.contains(&0.0) {
+            let t = roots.low + self.time_tolerance(self.t - self.t_old);
+            result = self.evaluate_roots_within_step(t, &mut roots.trial);
+            roots.leave_zeros();
+        }
+        self.roots = roots;
+        result
+    }
+
+    /// The time of the first root from where the search ended to `high`, within the last step.
+    pub(super) fn find_root(&mut self, high: f64) -> Result<Option<f64>, Error> {
+        if !self.roots.started || high <= self.roots.low {
+            return Ok(None);
+        }
+        let tolerance = self.time_tolerance(self.t - self.t_old);
+        let mut roots = take(&mut self.roots);
+        let found = roots.search(high, tolerance, |t, g| self.evaluate_roots_within_step(t, g));
+        self.roots = roots;
+        found
+    }
+
+    /// To how much of the time a root is found.
+    fn time_tolerance(&self, step: f64) -> f64 {
+        100.0 * f64::EPSILON * (self.t.abs() + step)
+    }
+
+    fn evaluate_roots_within_step(&mut self, t: f64, g: &mut [f64]) -> Result<(), Error> {
+        let mut y = take(&mut self.argument);
+        self.interpolate_state(t, &mut y);
+        self.argument = y;
+        self.evaluate_roots(t, g)
+    }
+
+    /// Writes g(t, `argument`).
+    fn evaluate_roots(&mut self, t: f64, g: &mut [f64]) -> Result<(), Error> {
+        self.statistics.root_evaluations += 1;
+        self.system
+            .roots(t, &self.argument, g)
+            .map_err(|failure| Error::Roots { t, source: failure.into_error() })?;
+        match g.iter().position(|value| !value.is_finite()) {
+            None => Ok(()),
+            Some(i) => {
+                let source = format!("root function {i} is {}", g[i]).into();
+                Err(Error::Roots { t, source })
+            }
+        }
+    }
+}
