@@ -35,7 +35,7 @@ fn sum_over_cells(bencher: Bencher, nodes: usize) {
     let (u, mut forces) = (displacements(&body), NodalForces::zeros(body.dofs()));
     bencher.counter(triangles(nodes)).bench_local(|| {
         forces.conservative.fill(0.0);
-        body.add_green_forces(&u, &mut forces).unwrap();
+        body.add_elastic_forces(&u, &mut forces).unwrap();
     });
 }
 

@@ -53,6 +53,7 @@ pub mod statics;
 pub mod study;
 pub mod sundials;
 mod system;
+mod tensor;
 pub mod trajectory;
 mod vector;
 

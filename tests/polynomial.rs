@@ -117,7 +117,7 @@ fn forces_are_those_of_the_sum_over_cells() {
             for seed in 0..10 {
                 let u = noise(body.dofs(), 0.15 * cell, seed);
                 let mut sum = NodalForces::zeros(body.dofs());
-                body.add_green_forces(&u, &mut sum).unwrap();
+                body.add_elastic_forces(&u, &mut sum).unwrap();
                 let mut forces = vec![f64::NAN; body.dofs()];
                 polynomial.forces(&u, &mut forces).unwrap();
                 let largest = sum.conservative.iter().fold(0.0_f64, |most, f| most.max(f.abs()));

@@ -2,23 +2,18 @@
 
 use std::sync::Arc;
 
-use super::cells::{Cells, Law};
+use super::assembly::Elements;
+use super::forces::NonlinearTerms;
 use super::regions::Regions;
 use crate::force::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
-/// Forces of Green strain, of objective viscosity, or both.
+/// Elastic forces, forces of objective viscosity, or both.
 pub(crate) struct Elastic {
-    cells: Arc<dyn Cells>,
-    regions: Arc<Regions>,
-    law: Law,
-}
-
-impl Elastic {
-    pub(super) fn new(cells: Arc<dyn Cells>, regions: Arc<Regions>, law: Law) -> Self {
-        Self { cells, regions, law }
-    }
+    pub(super) elements: Arc<dyn Elements>,
+    pub(super) regions: Arc<Regions>,
+    pub(super) terms: NonlinearTerms,
 }
 
 impl Force for Elastic {
@@ -29,7 +24,7 @@ impl Force for Elastic {
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        self.cells.add_forces(&self.regions, self.law, u, v, forces)
+        self.elements.add_forces(&self.regions, self.terms, u, v, forces)
     }
 
     fn add_tangents(
@@ -40,7 +35,7 @@ impl Force for Elastic {
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
-        self.cells.add_tangents(&self.regions, self.law, u, v, stiffness, damping);
+        self.elements.add_tangents(&self.regions, self.terms, u, v, stiffness, damping);
     }
 
     fn is_nonlinear(&self) -> bool {
@@ -48,7 +43,7 @@ impl Force for Elastic {
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        if self.law.green { self.cells.green_energy(&self.regions, u) } else { 0.0 }
+        if self.terms.elastic { self.elements.energy(&self.regions, u) } else { 0.0 }
     }
 
     fn reservoir(&self) -> Reservoir {

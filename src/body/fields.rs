@@ -16,10 +16,10 @@ mod tests;
 
 use nalgebra::{Matrix3, SMatrix};
 
-use super::Strain;
-use super::strain::{cauchy_strain, energy_density, green_strain, stress, stretch_of};
+use super::elements::{ElementsOf, gradient};
+use super::regions::Regions;
 use crate::element::StrainPoint;
-use crate::material::{Lame, Plane};
+use crate::material::{Deformation, ElasticLaw, with_law};
 
 /// Strain, stress and strain energy density of one cell: means over its natural volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,55 +43,104 @@ impl CellField {
     }
 }
 
-/// How strain is measured and what there is across a cell.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Measure {
-    pub(super) strain: Strain,
-    pub(super) across: Plane,
+/// Elements as carriers of strain and stress.
+pub(super) trait Fields {
+    /// Strain energy (J).
+    fn energy(&self, regions: &Regions, u: &[f64]) -> f64;
+
+    /// Strain, stress and energy density of each cell.
+    fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField>;
+
+    /// Present over natural volume of each cell.
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
+
+    /// Natural volume of each cell (m^3).
+    fn volumes(&self) -> Vec<f64>;
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
+    for ElementsOf<N, M, D, Q>
+{
+    fn energy(&self, regions: &Regions, u: &[f64]) -> f64 {
+        let of_cell = |cell| {
+            with_law!(regions.of(cell).elastic, law => {
+                self.deformed(cell, u).map(|(volume, at)| volume * law.energy(&at)).sum::<f64>()
+            })
+        };
+        (0..self.nodes.len()).map(of_cell).sum()
+    }
+
+    fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField> {
+        let of_cell = |cell| {
+            with_law!(regions.of(cell).elastic, law => {
+                mean(self.deformed(cell, u).map(|(volume, at)| (volume, PointField::new(&law, &at))))
+            })
+        };
+        (0..self.nodes.len()).map(of_cell).collect()
+    }
+
+    fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        let of_cell = |(cell, natural): (usize, f64)| {
+            let present = self.deformed(cell, u).map(|(volume, at)| volume * at.stretch());
+            present.sum::<f64>() / natural
+        };
+        self.volumes().into_iter().enumerate().map(of_cell).collect()
+    }
+
+    fn volumes(&self) -> Vec<f64> {
+        let volume = |points: &[StrainPoint<N, M, D>; Q]| points.iter().map(|p| p.volume).sum();
+        self.points().iter().map(volume).collect()
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// The strain points of a cell, their volumes and how they are deformed.
+    fn deformed(
+        &self,
+        cell: usize,
+        u: &[f64],
+    ) -> impl Iterator<Item = (f64, Deformation<'_, f64, M, D>)> {
+        let (u, nodes) = (u.as_chunks::<D>().0, &self.nodes[cell]);
+        let of_nodes = nodes.map(|node| u[node]);
+        self.points()[cell].iter().map(move |point| {
+            let h = gradient(&of_nodes, &point.gradients);
+            (point.volume, Deformation::new(&point.frame, h))
+        })
+    }
 }
 
 /// The fields at one strain point.
-pub(super) struct PointField {
+struct PointField {
     strain: Matrix3<f64>,
     stress: Matrix3<f64>,
     energy_density: f64,
 }
 
 impl PointField {
-    /// `h` is the displacement gradient H at `point`.
-    pub(super) fn new<const N: usize, const M: usize, const D: usize>(
-        measure: Measure,
-        lame: Lame,
-        point: &StrainPoint<N, M, D>,
-        h: &SMatrix<f64, D, M>,
+    fn new<L: ElasticLaw, const M: usize, const D: usize>(
+        law: &L,
+        at: &Deformation<'_, f64, M, D>,
     ) -> Self {
-        let strain = match measure.strain {
-            Strain::Cauchy => cauchy_strain(point, h),
-            Strain::Green => green_strain(point, h),
+        // where strains are small the present shape counts as the natural one
+        let (twice_strain, shape, swelling) = match L::SMALL_STRAIN {
+            true => (at.twice_cauchy(), *at.frame(), 1.0),
+            false => (at.twice_green(), at.gradient(), at.stretch()),
         };
-        let inner = stress(lame, &strain);
-        let (strain_across, stress_across) = match measure.across {
-            Plane::Strain => (0.0, lame.lambda * strain.trace()),
-            Plane::Stress => (-lame.lambda / (2.0 * lame.mu) * strain.trace(), 0.0),
-        };
-        let f = point.frame + h;
-        let (frame, present) = (in_space(&point.frame), in_space(&f));
-        let embed = |tensor, frame: &SMatrix<f64, 3, M>, across| {
-            frame * tensor * frame.transpose() + normal_part(frame) * across
-        };
+        let strain = SMatrix::from(twice_strain) * 0.5;
+        let [strain_across, stress_across] = law.across(at);
+        let (frame, shape) =
+            (in_space(&SMatrix::from(*at.frame())), in_space(&SMatrix::from(shape)));
+        let piola = in_space(&SMatrix::from(law.stress(at, 1.0)));
         Self {
-            strain: embed(strain, &frame, strain_across),
-            stress: match measure.strain {
-                Strain::Cauchy => embed(inner, &frame, stress_across),
-                Strain::Green => embed(inner, &present, stress_across) / stretch_of(&f),
-            },
-            energy_density: energy_density(lame, &strain),
+            strain: frame * strain * frame.transpose() + normal_part(&frame) * strain_across,
+            stress: (piola * shape.transpose() + normal_part(&shape) * stress_across) / swelling,
+            energy_density: law.energy(at),
         }
     }
 }
 
 /// The mean of `points`, each with the volume that it stands for.
-pub(super) fn mean(points: impl Iterator<Item = (f64, PointField)>) -> CellField {
+fn mean(points: impl Iterator<Item = (f64, PointField)>) -> CellField {
     let (mut volume, mut strain, mut stress) = (0.0, Matrix3::zeros(), Matrix3::zeros());
     let mut energy = 0.0;
     for (share, point) in points {

@@ -1,4 +1,4 @@
-//! The forces of all cells: the loop in which explicit methods spend their time.
+//! The forces of all elements: the loop in which explicit methods spend their time.
 //!
 //! It is written in plain arrays, column by column, which the compiler turns into less than half the
 //! instructions that it makes of products of small matrices. Sums begin with -0, the zero that
@@ -12,52 +12,82 @@
 
 use std::ops::Range;
 
-use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-use super::cells::{Law, check_orientation};
+use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
-use super::shares::Shares;
 use crate::element::StrainPoint;
 use crate::force::NodalForces;
-use crate::material::Lame;
+use crate::material::{Deformation, ElasticLaw, ViscousLaw, with_law};
 use crate::ode::Failure;
+use crate::tensor::Matrix;
 
-/// A matrix of M columns.
-type Columns<const D: usize, const M: usize> = [[f64; D]; M];
-
-/// Cells as arrays of one kind, and how they are shared out.
-pub(super) struct Shared<'a, const N: usize, const M: usize, const D: usize, const Q: usize> {
-    pub(super) nodes: &'a [[usize; N]],
-    pub(super) points: &'a [[StrainPoint<N, M, D>; Q]],
-    pub(super) shares: &'a Shares,
+/// Which forces are nonlinear, and computed element by element; the others have constant matrices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct NonlinearTerms {
+    pub(super) elastic: bool,
+    /// Objective viscosity.
+    pub(super) viscous: bool,
 }
 
-impl<const N: usize, const M: usize, const D: usize, const Q: usize> Shared<'_, N, M, D, Q> {
-    /// Adds the forces of Green strain, if `law` has them, and of objective viscosity.
-    pub(super) fn add_forces(
+/// Elements as forces.
+pub(super) trait Forces {
+    /// Adds the elastic forces to the conservative ones and those of objective viscosity to the
+    /// dissipative ones, as far as `terms` has them.
+    fn add_forces(
         &self,
         regions: &Regions,
-        law: Law,
+        terms: NonlinearTerms,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
+    for ElementsOf<N, M, D, Q>
+{
+    fn add_forces(
+        &self,
+        regions: &Regions,
+        terms: NonlinearTerms,
         u: &[f64],
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
-        if law.green {
+        if terms.elastic {
             self.share_out(&mut forces.conservative, |run, first, forces| {
-                self.add_elastic(run, regions, u, first, forces)
+                regions.runs(run).try_for_each(|(cells, substance)| {
+                    with_law!(substance.elastic, law => {
+                        self.add(cells, [u], first, forces, |point, [h]| {
+                            let at = Deformation::new(&point.frame, h);
+                            let domain = law.domain(&at);
+                            // not `domain <= 0`, which NaN is not
+                            match domain > 0.0 {
+                                true => Ok(law.stress(&at, point.volume)),
+                                false => Err(law.outside(domain)),
+                            }
+                        })
+                    })
+                })
             })?;
         }
-        if law.objective {
+        if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
-                self.add_viscous(run, regions, u, v, first, forces);
-                Ok(())
+                regions.runs(run).try_for_each(|(cells, substance)| {
+                    self.add(cells, [u, v], first, forces, |point, [h, rate]| {
+                        let at = Deformation::new(&point.frame, h);
+                        Ok(substance.viscous.stress(&at, &rate, point.volume))
+                    })
+                })
             })?;
         }
         Ok(())
     }
+}
 
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Calls `add` for all runs of cells with the forces on each share of the nodes and the first of
     /// these, on threads if there are several shares.
     fn share_out(
@@ -77,61 +107,36 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Shared<'_, 
         failed.map_or(Ok(()), Err)
     }
 
-    /// Number, nodes and strain points of a run of cells.
-    fn cells(
+    /// Adds the forces of `cells` to those on the nodes from `first` on. `stress` gives P times the
+    /// volume of a point, or says what is wrong there, from the gradients of the `fields`.
+    #[inline(always)]
+    fn add<const K: usize>(
         &self,
-        run: &Range<usize>,
-    ) -> impl Iterator<Item = (usize, &[usize; N], &[StrainPoint<N, M, D>; Q])> {
-        let cells = self.nodes[run.clone()].iter().zip(&self.points[run.clone()]);
-        cells.zip(run.clone()).map(|((nodes, points), cell)| (cell, nodes, points))
-    }
-
-    /// Adds the forces of Green strain of a run of cells to those on the nodes from `first` on.
-    fn add_elastic(
-        &self,
-        run: &Range<usize>,
-        regions: &Regions,
-        u: &[[f64; D]],
+        cells: Range<usize>,
+        fields: [&[[f64; D]]; K],
         first: usize,
         forces: &mut [[f64; D]],
+        stress: impl Fn(
+            &StrainPoint<N, M, D>,
+            [Matrix<f64, D, M>; K],
+        ) -> Result<Matrix<f64, D, M>, String>,
     ) -> Result<(), Failure> {
-        for (cell, nodes, points) in self.cells(run) {
-            let elastic = regions.of(cell).elastic;
-            let displacements = relative(nodes, u);
+        let points = &self.points()[cells.clone()];
+        for ((nodes, points), cell) in self.nodes[cells.clone()].iter().zip(points).zip(cells) {
+            let fields = fields.map(|field| relative(nodes, field));
             let mut pull = [[-0.0; D]; N];
             for point in points {
-                let h = gradient(point, &displacements);
-                let f = deformation(point, &h);
-                check_orientation(cell, nodes, &SMatrix::<f64, D, M>::from_fn(|i, j| f[j][i]))?;
-                let stress = stress(elastic, point.volume, &twice_strain(point, &h));
-                collect(point, &f, &stress, &mut pull);
+                let gradients = fields.map(|x| gradient(&x[1..], &point.gradients[1..]));
+                let stress = stress(point, gradients).map_err(|problem| {
+                    let nodes = nodes.map(|node| node + 1);
+                    let problem = format!("cell {} (nodes {nodes:?}) {problem}", cell + 1);
+                    Failure::Recoverable(problem)
+                })?;
+                collect(point, &stress, &mut pull);
             }
             subtract(nodes, &pull, first, forces);
         }
         Ok(())
-    }
-
-    /// Adds the forces of objective viscosity likewise.
-    fn add_viscous(
-        &self,
-        run: &Range<usize>,
-        regions: &Regions,
-        u: &[[f64; D]],
-        v: &[[f64; D]],
-        first: usize,
-        forces: &mut [[f64; D]],
-    ) {
-        for (cell, nodes, points) in self.cells(run) {
-            let viscous = regions.of(cell).viscous;
-            let (displacements, velocities) = (relative(nodes, u), relative(nodes, v));
-            let mut pull = [[-0.0; D]; N];
-            for point in points {
-                let f = deformation(point, &gradient(point, &displacements));
-                let rate = twice_symmetric(&f, &gradient(point, &velocities));
-                collect(point, &f, &stress(viscous, point.volume, &rate), &mut pull);
-            }
-            subtract(nodes, &pull, first, forces);
-        }
     }
 }
 
@@ -149,90 +154,17 @@ fn relative<const N: usize, const D: usize>(nodes: &[usize; N], x: &[[f64; D]]) 
     relative
 }
 
-/// H = sum x_a g_a^T
-#[inline(always)]
-fn gradient<const N: usize, const M: usize, const D: usize>(
-    point: &StrainPoint<N, M, D>,
-    relative: &[[f64; D]; N],
-) -> Columns<D, M> {
-    let mut h = [[-0.0; D]; M];
-    for (j, column) in h.iter_mut().enumerate() {
-        for a in 1..N {
-            for i in 0..D {
-                column[i] += relative[a][i] * point.gradients[a][j];
-            }
-        }
-    }
-    h
-}
-
-/// F = F_0 + H
-#[inline(always)]
-fn deformation<const N: usize, const M: usize, const D: usize>(
-    point: &StrainPoint<N, M, D>,
-    h: &Columns<D, M>,
-) -> Columns<D, M> {
-    let mut f = *h;
-    for (j, column) in f.iter_mut().enumerate() {
-        // a frame that is the identity need not be looked up
-        match M == D {
-            true => column[j] += 1.0,
-            false => (0..D).for_each(|i| column[i] += point.frame[(i, j)]),
-        }
-    }
-    f
-}
-
-/// 2 E = F_0^T H + H^T F_0 + H^T H
-#[inline(always)]
-fn twice_strain<const N: usize, const M: usize, const D: usize>(
-    point: &StrainPoint<N, M, D>,
-    h: &Columns<D, M>,
-) -> Columns<M, M> {
-    let along = |j: usize, k: usize| match M == D {
-        true => h[k][j],
-        false => (0..D).fold(-0.0, |sum, i| sum + point.frame[(i, j)] * h[k][i]),
-    };
-    symmetric(|j, k| along(j, k) + along(k, j) + dot(&h[j], &h[k]))
-}
-
-/// F^T L + L^T F: twice the rate of strain, if L is that of F.
-#[inline(always)]
-fn twice_symmetric<const M: usize, const D: usize>(
-    f: &Columns<D, M>,
-    l: &Columns<D, M>,
-) -> Columns<M, M> {
-    symmetric(|j, k| dot(&f[j], &l[k]) + dot(&f[k], &l[j]))
-}
-
-/// lambda tr(E) I + 2 mu E, times the volume, of 2 E.
-#[inline(always)]
-fn stress<const M: usize>(lame: Lame, volume: f64, twice: &Columns<M, M>) -> Columns<M, M> {
-    let trace = (0..M).fold(-0.0, |sum, j| sum + twice[j][j]);
-    let (mean, shear) = (0.5 * lame.lambda * volume * trace, lame.mu * volume);
-    symmetric(|j, k| shear * twice[j][k] + if j == k { mean } else { -0.0 })
-}
-
-/// Adds F S g_a to the forces of all nodes but the first.
+/// Adds P g_a to the forces of all nodes but the first.
 #[inline(always)]
 fn collect<const N: usize, const M: usize, const D: usize>(
     point: &StrainPoint<N, M, D>,
-    f: &Columns<D, M>,
-    s: &Columns<M, M>,
+    stress: &Matrix<f64, D, M>,
     pull: &mut [[f64; D]; N],
 ) {
-    let mut product = [[-0.0; D]; M];
-    for j in 0..M {
-        for k in 0..M {
-            for i in 0..D {
-                product[j][i] += f[k][i] * s[j][k];
-            }
-        }
-    }
     for a in 1..N {
         for j in 0..M {
             for i in 0..D {
-                pull[a][i] += product[j][i] * point.gradients[a][j];
+                pull[a][i] += stress[j][i] * point.gradients[a][j];
             }
         }
     }
@@ -257,21 +189,4 @@ fn subtract<const N: usize, const D: usize>(
     if let Some(on_first) = forces.get_mut(nodes[0].wrapping_sub(first)) {
         (0..D).for_each(|i| on_first[i] += sum[i]);
     }
-}
-
-#[inline(always)]
-fn symmetric<const M: usize>(entry: impl Fn(usize, usize) -> f64) -> Columns<M, M> {
-    let mut matrix = [[0.0; M]; M];
-    for j in 0..M {
-        for k in 0..=j {
-            matrix[j][k] = entry(j, k);
-            matrix[k][j] = matrix[j][k];
-        }
-    }
-    matrix
-}
-
-#[inline(always)]
-fn dot<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
-    (0..D).fold(-0.0, |sum, i| sum + a[i] * b[i])
 }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use faer::Mat;
 
-use super::Body;
+use super::assembled::Body;
 use crate::input::InputError;
 use crate::mesh::CellKind;
 use crate::sparse::BlockMatrix;
@@ -174,7 +174,7 @@ impl GreenPolynomial {
         let area: f64 = triangles.iter().map(|triangle| triangle.area).sum();
         let thickness = body.volume() / area;
         for (number, (cell, triangle)) in cells.iter().zip(&triangles).enumerate() {
-            let lame = body.regions.of(number).elastic;
+            let lame = body.regions.of(number).hooke.lame;
             let volume = thickness * triangle.area;
             let weights = [lame.lambda * volume, lame.mu * volume];
             for (p, &row) in cell.iter().enumerate() {

@@ -1,9 +1,10 @@
-//! Regions: parts of a body with a material of their own.
+//! Regions: parts of a body with another material.
 
 use std::fmt;
+use std::ops::Range;
 
 use crate::input::InputError;
-use crate::material::{Lame, Material, Plane};
+use crate::material::{Elastic, Hooke, Lame, Material, ObjectiveViscosity, Plane, Strain};
 use crate::mesh::Mesh;
 
 /// Cells, by the name of a group, by number or by a box around their centroids.
@@ -91,19 +92,21 @@ impl CellSelection {
     }
 }
 
-/// The numbers that a material contributes, for the cells at hand.
+/// What the elements of a region are made of: density (kg/m^3) and laws.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Moduli {
-    pub(crate) density: f64,
-    pub(crate) elastic: Lame,
-    pub(crate) viscous: Lame,
+pub(super) struct Substance {
+    pub(super) density: f64,
+    pub(super) elastic: Elastic,
+    /// What the elastic law is at small strains.
+    pub(super) hooke: Hooke,
+    pub(super) viscous: ObjectiveViscosity,
 }
 
-/// Which moduli each cell has.
+/// Which substance each cell is made of.
 #[derive(Debug, Clone)]
-pub(crate) struct Regions {
-    moduli: Vec<Moduli>,
-    /// Index of each cell's moduli; empty if all cells have the first.
+pub(super) struct Regions {
+    substances: Vec<Substance>,
+    /// Index of each cell's substance; empty if all cells have the first.
     of_cell: Vec<u16>,
 }
 
@@ -111,37 +114,60 @@ impl Regions {
     /// `base` everywhere but in `regions`, of which the last one that holds a cell counts.
     pub(super) fn new(
         mesh: &Mesh,
+        strain: Strain,
         plane: Plane,
         base: &Material,
         regions: &[(CellSelection, Material)],
     ) -> Result<Self, InputError> {
-        let moduli = |material: &Material| -> Result<Moduli, InputError> {
+        let substance = |material: &Material| -> Result<Substance, InputError> {
             material.validate()?;
-            let reduced = |lame: Lame| lame.reduced(mesh.kind().dimension(), plane);
-            Ok(Moduli {
+            let hooke = |lame: Lame| Hooke::new(lame, mesh.kind().dimension(), plane);
+            let elastic = hooke(material.elastic());
+            Ok(Substance {
                 density: material.density,
-                elastic: reduced(material.elastic()),
-                viscous: reduced(material.viscous()),
+                elastic: Elastic::new(strain, elastic),
+                hooke: elastic,
+                viscous: ObjectiveViscosity(hooke(material.viscous())),
             })
         };
-        let mut all = Self { moduli: vec![moduli(base)?], of_cell: Vec::new() };
+        let mut all = Self { substances: vec![substance(base)?], of_cell: Vec::new() };
         if regions.len() >= usize::from(u16::MAX) {
             return Err(InputError::new("number of regions", regions.len(), "65,534 are the most"));
         }
         for (number, (cells, material)) in (1_u16..).zip(regions) {
-            all.moduli.push(moduli(material)?);
+            all.substances.push(substance(material)?);
             all.of_cell.resize(mesh.cell_count(), 0);
             cells.cells(mesh)?.into_iter().for_each(|cell| all.of_cell[cell] = number);
         }
         Ok(all)
     }
 
-    /// The moduli of a cell.
-    pub(super) fn of(&self, cell: usize) -> &Moduli {
-        &self.moduli[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
+    /// The substance of a cell.
+    pub(super) fn of(&self, cell: usize) -> &Substance {
+        &self.substances[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
     }
+
+    /// `cells`, divided into runs of one substance.
+    pub(super) fn runs(
+        &self,
+        cells: &Range<usize>,
+    ) -> impl Iterator<Item = (Range<usize>, &Substance)> {
+        let Range { mut start, end } = *cells;
+        std::iter::from_fn(move || {
+            let run = match self.of_cell.get(start..end) {
+                None => start..end,
+                Some(indices) => {
+                    let same = indices.iter().take_while(|index| **index == indices[0]);
+                    start..start + same.count()
+                }
+            };
+            start = run.end;
+            (!run.is_empty()).then(|| (run.clone(), self.of(run.start)))
+        })
+    }
+
     /// Whether any of them is viscous.
     pub(super) fn are_viscous(&self) -> bool {
-        self.moduli.iter().any(|moduli| moduli.viscous != Lame { lambda: 0.0, mu: 0.0 })
+        self.substances.iter().any(|substance| !substance.viscous.0.is_zero())
     }
 }

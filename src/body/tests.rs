@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use super::*;
 use crate::force::{Force, NodalForces};
-use crate::mesh::{CellKind, Cells};
+use crate::material::Material;
+use crate::mesh::{CellKind, Cells, Mesh};
 use crate::samples::SQUARE_MATERIAL;
+use crate::sparse::BlockMatrix;
 
 /// Bodies of every kind of cell, in every space they may live in, somewhat irregular.
 pub(super) fn bodies(strain: Strain) -> Vec<(String, Body)> {

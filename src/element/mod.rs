@@ -27,6 +27,32 @@ pub(crate) use tetrahedron10::Tetrahedron10;
 pub(crate) use triangle::Triangle;
 pub(crate) use triangle6::Triangle6;
 
+use crate::tensor::{Matrix, determinant};
+
+/// Calls a function that is generic over the reference cell, its nodes, its dimension, that of space and the
+/// number of strain points with those of a kind of cell.
+macro_rules! with_element {
+    ($kind:expr, $space:expr, $function:ident ( $($argument:expr),* )) => {{
+        use $crate::element::*;
+        use $crate::mesh::CellKind as Kind;
+        match ($kind, $space) {
+            (Kind::Segment, 1) => $function::<Segment, 2, 1, 1, 1>($($argument),*),
+            (Kind::Segment, 2) => $function::<Segment, 2, 1, 2, 1>($($argument),*),
+            (Kind::Segment, _) => $function::<Segment, 2, 1, 3, 1>($($argument),*),
+            (Kind::Triangle, 2) => $function::<Triangle, 3, 2, 2, 1>($($argument),*),
+            (Kind::Triangle, _) => $function::<Triangle, 3, 2, 3, 1>($($argument),*),
+            (Kind::Triangle6, 2) => $function::<Triangle6, 6, 2, 2, 3>($($argument),*),
+            (Kind::Triangle6, _) => $function::<Triangle6, 6, 2, 3, 3>($($argument),*),
+            (Kind::Quadrilateral, 2) => $function::<Quadrilateral, 4, 2, 2, 4>($($argument),*),
+            (Kind::Quadrilateral, _) => $function::<Quadrilateral, 4, 2, 3, 4>($($argument),*),
+            (Kind::Tetrahedron, _) => $function::<Tetrahedron, 4, 3, 3, 1>($($argument),*),
+            (Kind::Tetrahedron10, _) => $function::<Tetrahedron10, 10, 3, 3, 4>($($argument),*),
+            (Kind::Hexahedron, _) => $function::<Hexahedron, 8, 3, 3, 8>($($argument),*),
+        }
+    }};
+}
+pub(crate) use with_element;
+
 /// A reference cell of `N` nodes in dimension `M`.
 pub(crate) trait ReferenceCell<const N: usize, const M: usize> {
     /// Points and weights that integrate the stiffness.
@@ -45,10 +71,10 @@ pub(crate) trait ReferenceCell<const N: usize, const M: usize> {
 #[derive(Debug, Clone)]
 pub(crate) struct StrainPoint<const N: usize, const M: usize, const D: usize> {
     /// Gradients g_a of the shape functions (1/m), in the coordinates of the cell.
-    pub gradients: [SVector<f64, M>; N],
-    /// Derivative of the natural position by the coordinates of the cell: the identity where the
+    pub gradients: [[f64; M]; N],
+    /// Derivative F_0 of the natural position by the coordinates of the cell: the identity where the
     /// cell fills space, else its tangent frame.
-    pub frame: SMatrix<f64, D, M>,
+    pub frame: Matrix<f64, D, M>,
     /// Length, area or volume that the point stands for (m, m^2, m^3).
     pub volume: f64,
 }
@@ -73,11 +99,11 @@ pub(crate) fn strain_points<
     let point = |&(xi, weight): &([f64; M], f64)| {
         let derivatives = C::derivatives(xi).map(SVector::from);
         let (frame, map) = split(&jacobian(nodes, &derivatives));
-        let volume = weight * determinant(&map);
+        let volume = weight * determinant(&map.into());
         match map.try_inverse() {
             Some(inverse) if volume > smallest => Ok(StrainPoint {
-                gradients: derivatives.map(|derivative| inverse.tr_mul(&derivative)),
-                frame,
+                gradients: derivatives.map(|derivative| inverse.tr_mul(&derivative).into()),
+                frame: frame.into(),
                 volume,
             }),
             _ => Err(volume),
@@ -97,7 +123,7 @@ pub(crate) fn mass_points<
 ) -> impl Iterator<Item = MassPoint<N>> {
     C::MASS_RULE.iter().map(move |&(xi, weight)| {
         let (_, map) = split(&jacobian(nodes, &C::derivatives(xi).map(SVector::from)));
-        MassPoint { values: C::values(xi), volume: weight * determinant(&map) }
+        MassPoint { values: C::values(xi), volume: weight * determinant(&map.into()) }
     })
 }
 
@@ -133,20 +159,6 @@ fn split<const M: usize, const D: usize>(
         }
     }
     (frame, map)
-}
-
-/// Determinant of a matrix of at most 3 rows.
-pub(crate) fn determinant<const M: usize>(matrix: &SMatrix<f64, M, M>) -> f64 {
-    let m = |i: usize, j: usize| matrix[(i, j)];
-    match M {
-        1 => m(0, 0),
-        2 => m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0),
-        _ => {
-            m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1))
-                - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0))
-                + m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0))
-        }
-    }
 }
 
 /// Largest distance of a node from the first one.

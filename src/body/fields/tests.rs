@@ -241,7 +241,7 @@ fn stresses_are_those_of_the_nodal_forces() {
             }
             Strain::Green => {
                 let u = mapped(body.mesh(), &a);
-                body.add_green_forces(&u, &mut forces).unwrap();
+                body.add_elastic_forces(&u, &mut forces).unwrap();
                 x.iter_mut().zip(&u).for_each(|(x, u)| *x += u);
                 let ratios = body.volume_ratios(&u);
                 volumes.iter_mut().zip(ratios).for_each(|(volume, ratio)| *volume *= ratio);

@@ -1,4 +1,16 @@
-//! Isotropic viscoelastic material: what a body is made of.
+//! Isotropic viscoelastic material, what a body is made of, and the laws of its stress.
+
+mod deformation;
+mod hooke;
+mod law;
+mod laws;
+
+pub(crate) use deformation::Deformation;
+pub(crate) use hooke::Hooke;
+pub use hooke::{Lame, Plane};
+pub(crate) use law::{Block, ElasticLaw, ViscousLaw};
+pub(crate) use laws::{Elastic, Linear, ObjectiveViscosity, with_law};
+pub use laws::{Strain, Viscosity};
 
 use crate::input::{InputError, not_negative, positive};
 
@@ -19,25 +31,6 @@ pub struct Material {
     pub poisson: f64,
     /// Viscous modulus c (Pa s), 0 or above: the counterpart of E in the viscous Lamé pair.
     pub viscosity: f64,
-}
-
-/// Lamé's constants (Pa; Pa s for the viscous pair).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Lame {
-    /// First constant, lambda.
-    pub lambda: f64,
-    /// Second constant, mu (the shear modulus).
-    pub mu: f64,
-}
-
-/// What a two-dimensional body assumes about the third dimension.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Plane {
-    /// No strain across the plane (Hirai's choice): lambda as it is.
-    #[default]
-    Strain,
-    /// No stress across the plane: lambda becomes 2 lambda mu / (lambda + 2 mu).
-    Stress,
 }
 
 impl Material {
@@ -71,23 +64,6 @@ impl Material {
     }
 }
 
-impl Lame {
-    /// The pair for a cell of `cell_dimension`: cells of lower dimension than space have no stress
-    /// across them, so that a segment stretches with E = lambda + 2 mu exactly.
-    pub(crate) fn reduced(self, cell_dimension: usize, plane: Plane) -> Lame {
-        let Lame { lambda, mu } = self;
-        let lambda = match (cell_dimension, plane) {
-            // E - 2 mu, with E = mu (3 lambda + 2 mu) / (lambda + mu)
-            (1, _) if mu == 0.0 => 0.0,
-            (1, _) => lambda * mu / (lambda + mu),
-            (2, Plane::Stress) if mu == 0.0 => 0.0,
-            (2, Plane::Stress) => 2.0 * lambda * mu / (lambda + 2.0 * mu),
-            _ => lambda,
-        };
-        Lame { lambda, mu }
-    }
-}
-
 fn lame(modulus: f64, poisson: f64) -> Lame {
     Lame {
         lambda: poisson * modulus / ((1.0 + poisson) * (1.0 - 2.0 * poisson)),
@@ -102,8 +78,8 @@ mod tests {
     #[test]
     fn a_segment_stretches_with_youngs_modulus() {
         for poisson in [0.0, 0.3, 0.48, -0.5] {
-            let lame = lame(5e4, poisson).reduced(1, Plane::Strain);
-            assert!((lame.lambda + 2.0 * lame.mu - 5e4).abs() < 1e-9);
+            let Lame { lambda, mu } = Hooke::new(lame(5e4, poisson), 1, Plane::Strain).lame;
+            assert!((lambda + 2.0 * mu - 5e4).abs() < 1e-9);
         }
     }
 

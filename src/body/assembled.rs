@@ -1,0 +1,198 @@
+//! A body as it is assembled: its constant matrices, and what follows from displacements.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::assembly::Elements;
+use super::elastic::Elastic;
+use super::fields::CellField;
+use super::forces::NonlinearTerms;
+use super::regions::Regions;
+use crate::force::NodalForces;
+use crate::material::{Hooke, Lame, Material, Plane, Strain, Viscosity};
+use crate::mesh::Mesh;
+use crate::ode::Failure;
+use crate::sparse::{BlockMatrix, NodeMatrix};
+
+/// An elastic body: mesh, material, and the matrices M, K and B.
+///
+/// ```
+/// use pliant::{Body, Cells, Material, Mesh};
+///
+/// let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+/// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+/// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+/// assert!((body.mass() - 0.9).abs() < 1e-12); // kg
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Body {
+    pub(super) mesh: Mesh,
+    pub(super) material: Material,
+    pub(super) strain: Strain,
+    pub(super) viscosity: Viscosity,
+    pub(super) section: f64,
+    pub(super) elements: Arc<dyn Elements>,
+    pub(super) regions: Arc<Regions>,
+    pub(super) inertia: Arc<NodeMatrix>,
+    pub(super) stiffness: Arc<BlockMatrix>,
+    pub(super) damping: Arc<BlockMatrix>,
+}
+
+impl fmt::Debug for Body {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Body")
+            .field("nodes", &self.mesh.node_count())
+            .field("cells", &self.mesh.cell_count())
+            .field("kind", &self.mesh.kind())
+            .field("material", &self.material)
+            .field("strain", &self.strain)
+            .field("viscosity", &self.viscosity)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Body {
+    /// The mesh in its natural shape.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// What it is made of.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// How strain is measured.
+    pub fn strain(&self) -> Strain {
+        self.strain
+    }
+
+    /// How viscosity acts.
+    pub fn viscosity(&self) -> Viscosity {
+        self.viscosity
+    }
+
+    /// Thickness (m) of a body of two-dimensional cells, cross-sectional area (m^2) of one of
+    /// segments, 1 otherwise.
+    pub(crate) fn section(&self) -> f64 {
+        self.section
+    }
+
+    /// Dimension of space.
+    pub fn dimension(&self) -> usize {
+        self.mesh.dimension()
+    }
+
+    /// Number of displacement components: nodes times dimension.
+    pub fn dofs(&self) -> usize {
+        self.mesh.node_count() * self.dimension()
+    }
+
+    /// Inertia matrix M = m (x) I; this is m (kg).
+    pub fn inertia(&self) -> &NodeMatrix {
+        &self.inertia
+    }
+
+    /// Stiffness matrix K = lambda J_lambda + mu J_mu (N/m).
+    pub fn stiffness(&self) -> &BlockMatrix {
+        &self.stiffness
+    }
+
+    /// Damping matrix B = lambda_vis J_lambda + mu_vis J_mu (N s/m).
+    pub fn damping(&self) -> &BlockMatrix {
+        &self.damping
+    }
+
+    /// The connection matrices J_lambda and J_mu: geometry only (slides, "stiffness matrix").
+    pub fn connection_matrices(&self) -> [BlockMatrix; 2] {
+        [Lame { lambda: 1.0, mu: 0.0 }, Lame { lambda: 0.0, mu: 1.0 }].map(|unit| {
+            let unit = Hooke::new(unit, 3, Plane::Strain);
+            let mut matrix = BlockMatrix::zeros(self.stiffness.pattern(), self.dimension());
+            self.elements.add_stiffness(&self.regions, &|_| unit, &mut matrix);
+            matrix
+        })
+    }
+
+    /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
+    pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        self.elements.volume_ratios(u)
+    }
+
+    /// Strain, stress and strain energy density of each cell under the displacements `u` (m,
+    /// dimension components per node).
+    ///
+    /// ```
+    /// use pliant::{Body, Material, Mesh};
+    ///
+    /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
+    /// let bar = Body::new(Mesh::bar(0.1, 2)?, soft).area(2e-4).build()?;
+    /// let [field] = bar.cell_fields(&[0.0, 0.001])[..] else { panic!("one cell") };
+    /// assert!((field.strain[0][0] - 0.01).abs() < 1e-12);
+    /// assert!((field.stress[0][0] - 500.0).abs() < 1e-9 && (field.von_mises() - 500.0).abs() < 1e-9);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn cell_fields(&self, u: &[f64]) -> Vec<CellField> {
+        self.elements.fields(&self.regions, u)
+    }
+
+    /// Natural volume of each cell (m^3).
+    pub fn cell_volumes(&self) -> Vec<f64> {
+        self.elements.volumes()
+    }
+
+    /// Adds the elastic forces (N) at the displacements `u` (m, dimension components per node) to the
+    /// conservative ones of `forces`, element by element. With Cauchy strain they are -K u.
+    ///
+    /// # Errors
+    /// A cell for which the material's law has no meaning: one that `u` turns inside out, with Green
+    /// strain.
+    pub fn add_elastic_forces(&self, u: &[f64], forces: &mut NodalForces) -> Result<(), Failure> {
+        // without objective viscosity velocities count for nothing
+        let terms = NonlinearTerms { elastic: true, viscous: false };
+        self.elements.add_forces(&self.regions, terms, u, u, forces)
+    }
+
+    /// Volume of the cells (m^3).
+    pub fn volume(&self) -> f64 {
+        self.cell_volumes().iter().sum()
+    }
+
+    pub(crate) fn shared_inertia(&self) -> Arc<NodeMatrix> {
+        self.inertia.clone()
+    }
+
+    /// K, if the elastic force is -K u.
+    pub(crate) fn constant_stiffness(&self) -> Option<Arc<BlockMatrix>> {
+        (self.strain == Strain::Cauchy).then(|| self.stiffness.clone())
+    }
+
+    /// B, if the viscous force is -B v, and not 0.
+    pub(crate) fn constant_damping(&self) -> Option<Arc<BlockMatrix>> {
+        let natural = self.viscosity == Viscosity::Natural;
+        (natural && self.regions.are_viscous()).then(|| self.damping.clone())
+    }
+
+    /// The elastic and viscous forces that have no constant matrix.
+    pub(crate) fn elastic(&self) -> Option<Elastic> {
+        let terms = NonlinearTerms {
+            elastic: self.strain != Strain::Cauchy,
+            viscous: self.viscosity == Viscosity::Objective && self.regions.are_viscous(),
+        };
+        let (elements, regions) = (self.elements.clone(), self.regions.clone());
+        (terms.elastic || terms.viscous).then_some(Elastic { elements, regions, terms })
+    }
+
+    /// Total mass (kg).
+    pub fn mass(&self) -> f64 {
+        self.inertia.values.iter().sum()
+    }
+
+    /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, corners of
+    /// quadratic cells may have none, or less than none.
+    pub fn nodal_masses(&self) -> Vec<f64> {
+        let pattern = self.inertia.pattern();
+        let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();
+        (0..pattern.nodes()).map(row_sum).collect()
+    }
+}

@@ -1,0 +1,27 @@
+//! Elements behind a face that knows neither kind nor dimension.
+
+use super::elements::ElementsOf;
+use super::fields::Fields;
+use super::forces::Forces;
+use super::inertia::Masses;
+use super::tangents::Tangents;
+use crate::element::{ReferenceCell, with_element};
+use crate::input::InputError;
+use crate::mesh::Mesh;
+
+/// All elements of a body.
+pub(super) trait Elements: Masses + Forces + Tangents + Fields + Send + Sync {}
+
+impl<T: Masses + Forces + Tangents + Fields + Send + Sync> Elements for T {}
+
+/// The elements on the cells of `mesh`; `section` is the area or thickness of the body.
+pub(super) fn elements(mesh: &Mesh, section: f64) -> Result<Box<dyn Elements>, InputError> {
+    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section))
+}
+
+fn of<C: ReferenceCell<N, M>, const N: usize, const M: usize, const D: usize, const Q: usize>(
+    mesh: &Mesh,
+    section: f64,
+) -> Result<Box<dyn Elements>, InputError> {
+    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section)?))
+}

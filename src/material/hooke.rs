@@ -1,0 +1,121 @@
+//! Hooke's law: the isotropic linear formula between strain and stress that several laws share.
+
+use super::law::Block;
+use crate::tensor::{Matrix, Real, apply, dot, product_transposed, symmetric, trace};
+
+/// Lamé's constants (Pa; Pa s for the viscous pair).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lame {
+    /// First constant, lambda.
+    pub lambda: f64,
+    /// Second constant, mu (the shear modulus).
+    pub mu: f64,
+}
+
+/// What a two-dimensional body assumes about the third dimension.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Plane {
+    /// No strain across the plane (Hirai's choice): lambda as it is.
+    #[default]
+    Strain,
+    /// No stress across the plane: lambda becomes 2 lambda mu / (lambda + 2 mu).
+    Stress,
+}
+
+/// S = lambda tr(E) I + 2 mu E in the coordinates of a cell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hooke {
+    pub(crate) lame: Lame,
+    /// What there is across the cell, if it does not fill space.
+    across: Plane,
+}
+
+impl Hooke {
+    /// The law of a cell of `cell_dimension`: cells of lower dimension than space have no stress across
+    /// them, so that a segment stretches with E = lambda + 2 mu exactly.
+    pub(crate) fn new(lame: Lame, cell_dimension: usize, plane: Plane) -> Self {
+        let Lame { lambda, mu } = lame;
+        let across = if cell_dimension == 1 { Plane::Stress } else { plane };
+        let lambda = match (cell_dimension, across) {
+            (1 | 2, Plane::Stress) if mu == 0.0 => 0.0,
+            // E - 2 mu, with E = mu (3 lambda + 2 mu) / (lambda + mu)
+            (1, _) => lambda * mu / (lambda + mu),
+            (2, Plane::Stress) => 2.0 * lambda * mu / (lambda + 2.0 * mu),
+            _ => lambda,
+        };
+        Self { lame: Lame { lambda, mu }, across }
+    }
+
+    /// Whether there is no stress at any strain.
+    pub(crate) fn is_zero(&self) -> bool {
+        self.lame == Lame { lambda: 0.0, mu: 0.0 }
+    }
+
+    /// lambda tr(E)^2 / 2 + mu E : E of 2 E
+    #[inline(always)]
+    pub(super) fn energy<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> T {
+        let strain = twice.map(|column| column.map(|entry| T::from(0.5) * entry));
+        let trace = trace(&strain);
+        let square = strain.iter().fold(T::from(-0.0), |sum, column| sum + dot(column, column));
+        T::from(0.5 * self.lame.lambda) * trace * trace + T::from(self.lame.mu) * square
+    }
+
+    /// lambda tr(E) I + 2 mu E, times `weight`, of 2 E
+    #[inline(always)]
+    pub(super) fn stress<T: Real, const M: usize>(
+        &self,
+        twice: &Matrix<T, M, M>,
+        weight: T,
+    ) -> Matrix<T, M, M> {
+        let mean = T::from(0.5 * self.lame.lambda) * weight * trace(twice);
+        let shear = T::from(self.lame.mu) * weight;
+        symmetric(|j, k| shear * twice[j][k] + if j == k { mean } else { T::from(-0.0) })
+    }
+
+    /// Strain and stress across a cell with 2 E along it.
+    #[inline(always)]
+    pub(super) fn across<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> [T; 2] {
+        let Lame { lambda, mu } = self.lame;
+        let swelling = T::from(0.5) * trace(twice);
+        match self.across {
+            Plane::Strain => [T::from(0.0), T::from(lambda) * swelling],
+            Plane::Stress => [T::from(-lambda / (2.0 * mu)) * swelling, T::from(0.0)],
+        }
+    }
+}
+
+/// The vectors f_a = F g_a and products with which tangents of Hooke's law are written.
+pub(super) struct Spread<'a, T, const N: usize, const M: usize, const D: usize> {
+    gradients: &'a [[T; M]; N],
+    /// F g_a
+    pub(super) along: [[T; D]; N],
+    /// F F^T
+    square: Matrix<T, D, D>,
+}
+
+impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Spread<'a, T, N, M, D> {
+    #[inline(always)]
+    pub(super) fn new(f: &Matrix<T, D, M>, gradients: &'a [[T; M]; N]) -> Self {
+        let along = gradients.map(|g| apply(f, &g));
+        Self { gradients, along, square: product_transposed(f, f) }
+    }
+
+    /// What the change of strain adds to the block of nodes a and b:
+    /// lambda f_a f_b^T + mu ((g_a . g_b) F F^T + f_b f_a^T).
+    #[inline(always)]
+    pub(super) fn material(&self, lame: Lame, a: usize, b: usize) -> Block<T, D> {
+        let (fa, fb) = (&self.along[a], &self.along[b]);
+        let (lambda, mu) = (T::from(lame.lambda), T::from(lame.mu));
+        let stretch = dot(&self.gradients[a], &self.gradients[b]);
+        let entry = |i: usize, k: usize| {
+            fa[i] * fb[k] * lambda + (self.square[k][i] * stretch + fb[i] * fa[k]) * mu
+        };
+        std::array::from_fn(|i| std::array::from_fn(|k| entry(i, k)))
+    }
+
+    /// What the turning of the stress S adds to each entry on the diagonal: g_a . S g_b.
+    #[inline(always)]
+    pub(super) fn geometric(&self, stress: &Matrix<T, M, M>, a: usize, b: usize) -> T {
+        dot(&self.gradients[a], &apply(stress, &self.gradients[b]))
+    }
+}

@@ -1,0 +1,81 @@
+//! What a material law is: the one formula for energy, stress and tangent that forces, tangents of
+//! forces and fields take.
+//!
+//! Laws see one point of a cell of dimension `M` in a space of dimension `D`. They are written over a
+//! number `T` that may be a lane of several points, so no branch may depend on a value: where a law has
+//! meaning is a number of its own ([`ElasticLaw::domain`]), apart from its stress.
+
+use super::deformation::Deformation;
+use crate::tensor::{Matrix, Real};
+
+/// A block of a tangent, row by row.
+pub(crate) type Block<T, const D: usize> = [[T; D]; D];
+
+/// A hyperelastic law: strain energy W(F) per natural volume and its derivatives.
+pub(crate) trait ElasticLaw {
+    /// Whether strains are taken for small, so that natural and present shape count as one.
+    const SMALL_STRAIN: bool = false;
+
+    /// W (J/m^3)
+    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<'_, T, M, D>) -> T;
+
+    /// First Piola stress P = dW/dF (Pa), times `weight`, the volume of the point.
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        weight: T,
+    ) -> Matrix<T, D, M>;
+
+    /// dP/dF, as the stiffness between two nodes: with the `gradients` g of their shape functions, the
+    /// block of nodes a and b has the entries sum_jl g_a[j] dP_ij/dF_kl g_b[l], times `weight`.
+    fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Fn(usize, usize) -> Block<T, D>;
+
+    /// Strain and stress (Pa) across a cell that does not fill space.
+    fn across<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+    ) -> [T; 2];
+
+    /// A number above 0 where the law has meaning, such as det F.
+    fn domain<T: Real, const M: usize, const D: usize>(&self, _at: &Deformation<'_, T, M, D>) -> T {
+        T::from(1.0)
+    }
+
+    /// Says of a cell whose `domain` is not above 0 what happened to it.
+    fn outside(&self, domain: f64) -> String {
+        format!("is deformed beyond what its material law describes ({domain:.3})")
+    }
+}
+
+/// A viscous law: stress from the rate of deformation F'.
+pub(crate) trait ViscousLaw {
+    /// First Piola stress P (Pa), times `weight`, the volume of the point.
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        rate: &Matrix<T, D, M>,
+        weight: T,
+    ) -> Matrix<T, D, M>;
+
+    /// dP/dF, as [`ElasticLaw::tangent`].
+    fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        rate: &Matrix<T, D, M>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Fn(usize, usize) -> Block<T, D>;
+
+    /// dP/dF', likewise.
+    fn rate_tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Fn(usize, usize) -> Block<T, D>;
+}

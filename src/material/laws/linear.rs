@@ -1,0 +1,47 @@
+//! Linear elasticity: Hooke's law for Cauchy's small strain.
+
+use crate::material::deformation::Deformation;
+use crate::material::hooke::{Hooke, Spread};
+use crate::material::law::{Block, ElasticLaw};
+use crate::tensor::{Matrix, Real, product};
+
+/// W = lambda tr(E)^2 / 2 + mu E : E, P = F_0 S with E = sym(F_0^T H), S = lambda tr(E) I + 2 mu E.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Linear(pub(crate) Hooke);
+
+impl ElasticLaw for Linear {
+    const SMALL_STRAIN: bool = true;
+
+    #[inline(always)]
+    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<'_, T, M, D>) -> T {
+        self.0.energy(&at.twice_cauchy())
+    }
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        weight: T,
+    ) -> Matrix<T, D, M> {
+        product(at.frame(), &self.0.stress(&at.twice_cauchy(), weight))
+    }
+
+    #[inline(always)]
+    fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Fn(usize, usize) -> Block<T, D> {
+        let spread = Spread::new(at.frame(), gradients);
+        move |a, b| spread.material(self.0.lame, a, b).map(|row| row.map(|entry| entry * weight))
+    }
+
+    #[inline(always)]
+    fn across<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+    ) -> [T; 2] {
+        self.0.across(&at.twice_cauchy())
+    }
+}

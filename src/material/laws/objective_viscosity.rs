@@ -1,0 +1,63 @@
+//! Objective viscosity: Hooke's law, with viscous moduli, for the rate of Green's strain.
+
+use crate::material::deformation::Deformation;
+use crate::material::hooke::{Hooke, Spread};
+use crate::material::law::{Block, ViscousLaw};
+use crate::tensor::{Matrix, Real, apply, dot, product, product_transposed};
+
+/// P = F S with E' = sym(F^T F'), S = lambda tr(E') I + 2 mu E'. A body that spins as a whole is not
+/// braked.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ObjectiveViscosity(pub(crate) Hooke);
+
+impl ViscousLaw for ObjectiveViscosity {
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        rate: &Matrix<T, D, M>,
+        weight: T,
+    ) -> Matrix<T, D, M> {
+        product(&at.gradient(), &self.0.stress(&at.twice_green_rate(rate), weight))
+    }
+
+    /// The rate of strain changes with F, too, so that this is not symmetric:
+    /// lambda f_a f'_b^T + mu ((g_a . g_b) F F'^T + f_b f'_a^T) + (g_a . S g_b) I, f'_a = F' g_a
+    #[inline(always)]
+    fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        rate: &Matrix<T, D, M>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Fn(usize, usize) -> Block<T, D> {
+        let f = at.gradient();
+        let spread = Spread::new(&f, gradients);
+        let moving = gradients.map(|g| apply(rate, &g));
+        let mixed = product_transposed(&f, rate);
+        let stress = self.0.stress(&at.twice_green_rate(rate), T::from(1.0));
+        let (lambda, mu) = (T::from(self.0.lame.lambda), T::from(self.0.lame.mu));
+        move |a, b| {
+            let stretch = dot(&gradients[a], &gradients[b]);
+            let geometric = spread.geometric(&stress, a, b);
+            let entry = |i: usize, k: usize| {
+                let turning = if i == k { geometric } else { T::from(-0.0) };
+                let volumetric = spread.along[a][i] * moving[b][k];
+                let shear = mixed[k][i] * stretch + spread.along[b][i] * moving[a][k];
+                (turning + volumetric * lambda + shear * mu) * weight
+            };
+            std::array::from_fn(|i| std::array::from_fn(|k| entry(i, k)))
+        }
+    }
+
+    #[inline(always)]
+    fn rate_tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<'_, T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Fn(usize, usize) -> Block<T, D> {
+        let spread = Spread::new(&at.gradient(), gradients);
+        move |a, b| spread.material(self.0.lame, a, b).map(|row| row.map(|entry| entry * weight))
+    }
+}

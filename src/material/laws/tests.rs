@@ -1,0 +1,318 @@
+//! What every law has to keep, checked for all laws by the same functions at random deformations of cells of
+//! every dimension in every space.
+
+use nalgebra::{Rotation3, Vector3};
+
+use super::*;
+use crate::material::{Deformation, ElasticLaw, Lame, Plane, ViscousLaw};
+use crate::tensor::{Matrix, Real, dot, product};
+
+/// Moduli of a soft material, Pa.
+const LAME: Lame = Lame { lambda: 2.0, mu: 1.0 };
+const LAWS: [Strain; 2] = [Strain::Cauchy, Strain::Green];
+
+fn law(strain: Strain, cell_dimension: usize) -> Elastic {
+    Elastic::new(strain, Hooke::new(LAME, cell_dimension, Plane::Strain))
+}
+
+/// Runs `check::<M, D>` for all cells: strings, membranes and cells that fill space.
+macro_rules! in_all_dimensions {
+    ($check:ident) => {
+        $check::<1, 1>();
+        $check::<1, 2>();
+        $check::<1, 3>();
+        $check::<2, 2>();
+        $check::<2, 3>();
+        $check::<3, 3>();
+    };
+}
+
+/// Numbers between -`size` and `size` without a pattern.
+fn noise<const R: usize, const C: usize>(size: f64, seed: f64) -> Matrix<f64, R, C> {
+    let number = |k: usize| size * (12.9898 * (k as f64 + seed)).sin().mul_add(43.758, 0.3).sin();
+    std::array::from_fn(|j| std::array::from_fn(|i| number(R * j + i)))
+}
+
+/// An orthonormal frame of a tangent space: the identity where `M == D`, some turned axes otherwise.
+fn frame<const M: usize, const D: usize>() -> Matrix<f64, D, M> {
+    let mut frame: Matrix<f64, D, M> =
+        std::array::from_fn(|j| std::array::from_fn(|i| f64::from(u8::from(i == j))));
+    match (M, D) {
+        (_, 3) if M < D => frame = rotated(&frame),
+        (1, 2) => frame[0][..2].copy_from_slice(&[0.6, 0.8]),
+        _ => {}
+    }
+    frame
+}
+
+/// R A, with R a rotation by some angle about a skew axis (about z in the plane, none on a line).
+fn rotated<const M: usize, const D: usize>(a: &Matrix<f64, D, M>) -> Matrix<f64, D, M> {
+    let rotation = match D {
+        1 => Rotation3::identity(),
+        2 => Rotation3::new(Vector3::z() * 1.3),
+        _ => Rotation3::new(Vector3::new(0.7, -1.1, 0.9)),
+    };
+    let r: Matrix<f64, D, D> = std::array::from_fn(|j| std::array::from_fn(|i| rotation[(i, j)]));
+    product(&r, a)
+}
+
+/// `h` with `by` added in row `i`, column `j`.
+fn moved<const M: usize, const D: usize>(
+    h: &Matrix<f64, D, M>,
+    [i, j]: [usize; 2],
+    by: f64,
+) -> Matrix<f64, D, M> {
+    let mut h = *h;
+    h[j][i] += by;
+    h
+}
+
+/// Step of central differences. They are off by the third derivatives of energies and stresses (some
+/// ten times the moduli) times its square, 1e-9, and by round-off of 1e-16 over it, 1e-11.
+const STEP: f64 = 1e-5;
+const OFF: f64 = 1e-8;
+
+fn slope(f: impl Fn(f64) -> f64) -> f64 {
+    (f(STEP) - f(-STEP)) / (2.0 * STEP)
+}
+
+/// Compares P with `energy`'s derivatives, and a tangent with those of P. The unit vectors as gradients
+/// make its blocks dP_ij/dF_kl = block(j, l)[i][k].
+fn are_derivatives<const M: usize, const D: usize>(
+    name: &str,
+    at: &Matrix<f64, D, M>,
+    energy: impl Fn(&Matrix<f64, D, M>) -> f64,
+    stress: impl Fn(&Matrix<f64, D, M>) -> Matrix<f64, D, M>,
+    block: impl Fn(usize, usize) -> [[f64; D]; D],
+) {
+    for (i, j) in (0..D).flat_map(|i| (0..M).map(move |j| (i, j))) {
+        let by_energy = slope(|by| energy(&moved(at, [i, j], by)));
+        let apart = (stress(at)[j][i] - by_energy).abs();
+        assert!(apart < OFF, "{name} {M} in {D}: P_{i}{j} is off by {apart:e}");
+        is_tangent(name, at, &stress, &block, [i, j]);
+    }
+}
+
+fn is_tangent<const M: usize, const D: usize>(
+    name: &str,
+    at: &Matrix<f64, D, M>,
+    stress: &impl Fn(&Matrix<f64, D, M>) -> Matrix<f64, D, M>,
+    block: &impl Fn(usize, usize) -> [[f64; D]; D],
+    [i, j]: [usize; 2],
+) {
+    for (k, l) in (0..D).flat_map(|k| (0..M).map(move |l| (k, l))) {
+        let by_stress = slope(|by| stress(&moved(at, [k, l], by))[j][i]);
+        let apart = (block(j, l)[i][k] - by_stress).abs();
+        assert!(apart < OFF, "{name} {M} in {D}: dP_{i}{j}/dF_{k}{l} is off by {apart:e}");
+    }
+}
+
+fn units<const M: usize>() -> Matrix<f64, M, M> {
+    std::array::from_fn(|j| std::array::from_fn(|i| f64::from(u8::from(i == j))))
+}
+
+/// P = dW/dF and the tangent dP/dF, by central differences.
+#[test]
+fn stresses_and_tangents_are_derivatives() {
+    fn check<const M: usize, const D: usize>() {
+        let frame = frame::<M, D>();
+        for (strain, seed) in LAWS.into_iter().flat_map(|law| [1.0, 20.0, 300.0].map(|s| (law, s)))
+        {
+            let h = noise(0.3, seed);
+            with_law!(law(strain, M), law => {
+                assert!(law.domain(&Deformation::new(&frame, h)) > 0.0);
+                let units = units();
+                are_derivatives(
+                    &format!("{strain:?}"),
+                    &h,
+                    |h| law.energy(&Deformation::new(&frame, *h)),
+                    |h| law.stress(&Deformation::new(&frame, *h), 1.0),
+                    law.tangent(&Deformation::new(&frame, h), &units, 1.0),
+                );
+            });
+        }
+    }
+    in_all_dimensions!(check);
+}
+
+/// The same of objective viscosity: its potential by F' is Hooke's energy of the rate of Green's strain.
+#[test]
+fn viscous_stresses_and_tangents_are_derivatives() {
+    fn check<const M: usize, const D: usize>() {
+        let law = ObjectiveViscosity(Hooke::new(LAME, M, Plane::Strain));
+        let (frame, h, rate) = (frame::<M, D>(), noise(0.3, 5.0), noise(1.0, 40.0));
+        let (at, units) = (Deformation::new(&frame, h), units());
+        are_derivatives(
+            "objective viscosity, by the rate",
+            &rate,
+            |rate| law.0.energy(&at.twice_green_rate(rate)),
+            |rate| law.stress(&at, rate, 1.0),
+            law.rate_tangent(&at, &units, 1.0),
+        );
+        let stress = |h: &Matrix<f64, D, M>| law.stress(&Deformation::new(&frame, *h), &rate, 1.0);
+        let block = law.tangent(&at, &rate, &units, 1.0);
+        for place in (0..D).flat_map(|i| (0..M).map(move |j| [i, j])) {
+            is_tangent("objective viscosity", &h, &stress, &block, place);
+        }
+    }
+    in_all_dimensions!(check);
+}
+
+/// Energy does not see a rotation that comes after a deformation, and stress turns with it. Only linear
+/// elasticity takes rotations for strains, of the size 1 - cos(angle).
+#[test]
+fn laws_do_not_see_rotations() {
+    fn check<const M: usize, const D: usize>() {
+        let frame = frame::<M, D>();
+        for strain in LAWS {
+            let h = noise(0.3, 9.0);
+            let f = Deformation::new(&frame, h).gradient();
+            let mut turned = rotated(&f);
+            for (turned, frame) in turned.iter_mut().zip(&frame) {
+                turned.iter_mut().zip(frame).for_each(|(x, x_0)| *x -= x_0);
+            }
+            let [at, after] = [h, turned].map(|h| Deformation::new(&frame, h));
+            with_law!(law(strain, M), law => {
+                let apart = (law.energy(&after) - law.energy(&at)).abs();
+                if strain == Strain::Cauchy && D > 1 {
+                    assert!(apart > 1e-2, "linear elasticity, {M} in {D}: {apart:e}");
+                    continue;
+                }
+                // round-off of energies and stresses of size 1
+                assert!(apart < 1e-14, "{strain:?} {M} in {D}: energy is off by {apart:e}");
+                let expected = rotated(&law.stress(&at, 1.0));
+                let apart = farthest(&law.stress(&after, 1.0), &expected);
+                assert!(apart < 1e-14, "{strain:?} {M} in {D}: stress is off by {apart:e}");
+            });
+        }
+        let viscous = ObjectiveViscosity(Hooke::new(LAME, M, Plane::Strain));
+        let (at, rate) = (Deformation::new(&frame, noise(0.3, 9.0)), noise(1.0, 3.0));
+        let f = at.gradient();
+        if D > 1 {
+            // spinning about an axis: F' = W F with a skew W
+            let mut spin = [[0.0; D]; D];
+            (spin[0][1], spin[1][0]) = (3.0, -3.0);
+            let still = viscous.stress(&at, &product(&spin, &f), 1.0);
+            assert!(farthest(&still, &[[0.0; D]; M]) < 1e-14, "{M} in {D}: {still:?}");
+        }
+        let [some, twice] = [1.0, 2.0].map(|weight| viscous.stress(&at, &rate, weight));
+        assert!(farthest(&some, &[[0.0; D]; M]) > 0.1);
+        assert_eq!(twice, some.map(|column| column.map(|entry| 2.0 * entry)));
+    }
+    in_all_dimensions!(check);
+}
+
+fn farthest<const R: usize, const C: usize>(a: &Matrix<f64, R, C>, b: &Matrix<f64, R, C>) -> f64 {
+    let apart = a.as_flattened().iter().zip(b.as_flattened()).map(|(a, b)| (a - b).abs());
+    apart.fold(0.0, f64::max)
+}
+
+/// At strains of 1e-7 every law is linear elasticity, to terms of their size: those of the stress are sums of
+/// up to nine products of two strains, times moduli.
+#[test]
+fn laws_are_linear_elasticity_at_small_strains() {
+    fn check<const M: usize, const D: usize>() {
+        let (frame, size) = (frame::<M, D>(), 1e-7);
+        let at = Deformation::new(&frame, noise(size, 70.0));
+        let linear = Linear(Hooke::new(LAME, M, Plane::Strain));
+        let Lame { lambda, mu } = linear.0.lame;
+        // the closed form, entry by entry
+        let e = |j: usize, k: usize| 0.5 * (dot(&frame[j], &at.h[k]) + dot(&frame[k], &at.h[j]));
+        let trace: f64 = (0..M).map(|j| e(j, j)).sum();
+        let square: f64 =
+            (0..M).flat_map(|j| (0..M).map(move |k| (j, k))).map(|(j, k)| e(j, k) * e(j, k)).sum();
+        let s: Matrix<f64, M, M> = std::array::from_fn(|k| {
+            std::array::from_fn(|j| 2.0 * mu * e(j, k) + if j == k { lambda * trace } else { 0.0 })
+        });
+        let (energy, stress) = (0.5 * lambda * trace * trace + mu * square, product(&frame, &s));
+        for strain in LAWS {
+            with_law!(law(strain, M), law => {
+                let apart = law.energy(&at) / energy - 1.0;
+                assert!(apart.abs() < 10.0 * size, "{strain:?} {M} in {D}: energy {apart:e}");
+                let apart = farthest(&law.stress(&at, 1.0), &stress);
+                assert!(apart < 20.0 * size * size, "{strain:?} {M} in {D}: stress {apart:e}");
+                let rest = Deformation::new(&frame, [[0.0; D]; M]);
+                let units = units();
+                let (own, hooke) = (law.tangent(&rest, &units, 1.0), linear.tangent(&rest, &units, 1.0));
+                for (a, b) in (0..M).flat_map(|a| (0..M).map(move |b| (a, b))) {
+                    let apart = farthest(&own(a, b), &hooke(a, b));
+                    assert!(apart < 1e-14, "{strain:?} {M} in {D}: tangent {apart:e}");
+                }
+            });
+        }
+    }
+    in_all_dimensions!(check);
+}
+
+/// Two points at once, as forces of several cells will be computed.
+#[derive(Clone, Copy)]
+struct Pair([f64; 2]);
+
+impl From<f64> for Pair {
+    fn from(x: f64) -> Self {
+        Self([x; 2])
+    }
+}
+
+macro_rules! by_parts {
+    ($($trait:ident $function:ident $operator:tt),*) => {$(
+        impl std::ops::$trait for Pair {
+            type Output = Self;
+            fn $function(self, other: Self) -> Self {
+                Self([self.0[0] $operator other.0[0], self.0[1] $operator other.0[1]])
+            }
+        }
+    )*};
+}
+by_parts!(Add add +, Sub sub -, Mul mul *);
+
+impl std::ops::AddAssign for Pair {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Real for Pair {
+    fn sqrt(self) -> Self {
+        Self(self.0.map(f64::sqrt))
+    }
+}
+
+/// Laws are the same formula over any number: two points at once, bit for bit as one after the other,
+/// one of them outside the domain.
+#[test]
+fn several_points_at_once() {
+    fn check<const M: usize, const D: usize>() {
+        let frame = frame::<M, D>();
+        let mut points = [noise(0.3, 11.0), noise(0.3, 50.0)];
+        points[1][0] = std::array::from_fn(|i| points[1][0][i] - 3.0 * frame[0][i]);
+        let lanes: Matrix<Pair, D, M> =
+            std::array::from_fn(|j| std::array::from_fn(|i| Pair(points.map(|point| point[j][i]))));
+        let frames = frame.map(|column| column.map(Pair::from));
+        let at = Deformation::new(&frames, lanes);
+        for strain in LAWS {
+            with_law!(law(strain, M), law => {
+                let (energy, stress) = (law.energy(&at), law.stress(&at, Pair([0.3, 0.7])));
+                let domain = law.domain(&at);
+                for (lane, h) in points.into_iter().enumerate() {
+                    let one = Deformation::new(&frame, h);
+                    assert_eq!(energy.0[lane], law.energy(&one));
+                    assert_eq!(domain.0[lane], law.domain(&one));
+                    let own = stress.map(|column| column.map(|entry| entry.0[lane]));
+                    assert_eq!(own, law.stress(&one, [0.3, 0.7][lane]), "{strain:?} {M} in {D}");
+                }
+            });
+        }
+    }
+    in_all_dimensions!(check);
+}
+
+/// The words for a cell that is turned inside out, and the number that tells it.
+#[test]
+fn what_is_inverted_is_outside_the_domain() {
+    let frame = units::<2>();
+    let law = StVenantKirchhoff(Hooke::new(LAME, 2, Plane::Strain));
+    let turned = Deformation::new(&frame, [[-1.5, 0.0], [0.0, 0.0]]);
+    assert_eq!(law.domain(&turned), -0.5);
+    assert!(law.outside(-0.5).starts_with("is inverted, det F = -0.500: St. Venant-Kirchhoff"));
+}
