@@ -117,6 +117,33 @@ pub enum Reservoir {
     None,
 }
 
+/// A step that an integrator has taken: the states at both ends.
+pub struct Step<'a> {
+    /// Times (s).
+    pub times: [f64; 2],
+    /// Displacements (m).
+    pub u: [&'a [f64]; 2],
+    /// Velocities (m/s).
+    pub v: [&'a [f64]; 2],
+}
+
+impl Step<'_> {
+    /// A bound (m) on how far any node moves, if each component of a displacement goes by the cubic
+    /// that has its values and velocities at both ends.
+    pub(crate) fn reach(&self, dimension: usize) -> f64 {
+        let third = (self.times[1] - self.times[0]) / 3.0;
+        let ([u0, u1], [v0, v1]) = (self.u, self.v);
+        let largest = u0.iter().zip(u1).zip(v0.iter().zip(v1)).fold(
+            0.0_f64,
+            |largest, ((u0, u1), (v0, v1))| {
+                let (first, last) = (third * v0, third * v1);
+                largest.max(first.abs() + (u1 - u0 - first - last).abs() + last.abs())
+            },
+        );
+        largest * (dimension as f64).sqrt()
+    }
+}
+
 /// A force that depends on time t (s), displacements u (m) and velocities v (m/s) of the nodes.
 pub trait Force: Send + Sync {
     /// Adds the force at (t, u, v).
@@ -178,6 +205,15 @@ pub trait Force: Send + Sync {
     /// Keeps each switch on or off, whatever its value, so that the force is smooth; `None` lets all
     /// of them act by their values again.
     fn hold_switches(&self, _on: Option<&[bool]>) {}
+
+    /// A time (s) within a step at which a part of the force acts that the ends of the step do not
+    /// show, as they lie before and behind an obstacle. Depths below `tolerance` (m) do not matter.
+    ///
+    /// `clearances` has a number for each switch: a bound (m) on how far the body can still move
+    /// without a change of that switch. 0 is always right; the search renews it.
+    fn passage(&self, _step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
+        None
+    }
 
     /// Pairs of nodes (counted from 0) that the tangents couple though they may share no cell.
     fn couplings(&self) -> Vec<[usize; 2]> {

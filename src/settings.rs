@@ -202,6 +202,9 @@ pub struct Settings {
     pub stability_limit_detection: bool,
     /// Whether contact events are located. Default: where that is faster for the accuracy.
     pub contact_events: ContactEvents,
+    /// Longest step (s), above 0. Default: none. Error control needs no bound, and no step leads
+    /// through an obstacle; this is for forces that come and go between two steps.
+    pub max_step: Option<f64>,
     /// Steps that one phase may take. Default: 10 million, a guard against runs without end.
     pub max_steps: usize,
 }
@@ -217,6 +220,7 @@ impl Default for Settings {
             max_order: None,
             stability_limit_detection: false,
             contact_events: ContactEvents::default(),
+            max_step: None,
             max_steps: 10_000_000,
         }
     }
@@ -235,6 +239,7 @@ impl Settings {
         positive("alpha", self.alpha, "1/s")?;
         self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
         self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
+        self.max_step.map_or(Ok(1.0), |step| positive("max_step", step, "s"))?;
         let orders = self.method.orders();
         match self.max_order {
             Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {

@@ -100,6 +100,7 @@ fn in_space() {
         max_order: Some(4),
         stability_limit_detection: true,
         contact_events: ContactEvents::Locate,
+        max_step: Some(0.01),
         max_steps: 5000,
     };
     assert_eq!(file.solver, solver);

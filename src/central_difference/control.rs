@@ -21,8 +21,9 @@ pub(super) struct Control {
     end: f64,
     count: f64,
     taken: f64,
-    /// Longest step that is stable (s).
+    /// Longest step that is stable (s), and longest step that may be taken.
     limit: f64,
+    longest: f64,
     /// Largest error since the last change or thought of one, and steps since then.
     worst: f64,
     watched: usize,
@@ -31,8 +32,9 @@ pub(super) struct Control {
 impl Control {
     /// Steps from `t` to `end` as long as `limit` allows.
     pub(super) fn new(t: f64, end: f64, limit: f64) -> Self {
+        let (count, longest) = (1.0, f64::INFINITY);
         let mut control =
-            Self { from: t, end, count: 1.0, taken: 0.0, limit, worst: 0.0, watched: 0 };
+            Self { from: t, end, count, taken: 0.0, limit, longest, worst: 0.0, watched: 0 };
         control.divide(t, limit);
         control
     }
@@ -91,11 +93,17 @@ impl Control {
         self.divide(t, REFUSED_FACTOR * self.step());
     }
 
+    /// Sets the longest step that may be taken, at time `t`.
+    pub(super) fn set_longest(&mut self, t: f64, longest: f64) {
+        self.longest = longest;
+        self.set_limit(t, self.limit);
+    }
+
     /// Sets the longest stable step, at time `t`.
     pub(super) fn set_limit(&mut self, t: f64, limit: f64) {
-        self.limit = limit;
-        if self.step() > limit {
-            self.divide(t, limit);
+        self.limit = limit.min(self.longest);
+        if self.step() > self.limit {
+            self.divide(t, self.limit);
         }
     }
 }

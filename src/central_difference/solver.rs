@@ -101,6 +101,12 @@ impl<S: SecondOrder> CentralDifference<S> {
         Ok(started)
     }
 
+    /// Takes no steps longer than `step` (s).
+    pub(crate) fn max_step(mut self, step: f64) -> Self {
+        self.control.set_longest(self.t, step);
+        self
+    }
+
     /// Takes one step and returns the time reached.
     ///
     /// # Errors

@@ -3,10 +3,11 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::obstacle::{Law, Obstacle};
+use super::passage::{Path, deepest};
 use super::shape::Nearest;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
 use crate::body::Body;
-use crate::force::{Force, NodalForces, Reservoir};
+use crate::force::{Force, NodalForces, Reservoir, Step};
 use crate::input::InputError;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -98,6 +99,20 @@ impl Contact {
         let mut x = point.on.at(u, self.dimension);
         x.iter_mut().zip(&point.natural).for_each(|(x, natural)| *x += natural);
         self.obstacle.nearest(t, x, self.dimension)
+    }
+
+    /// The path of a point within a step, as the obstacle sees it.
+    fn path(&self, point: &ContactPoint, step: &Step) -> Path {
+        let (d, drift) = (self.dimension, &self.drift);
+        let x = [0, 1].map(|k| {
+            let (u, t) = (point.on.at(step.u[k], d), step.times[k]);
+            std::array::from_fn(|i| point.natural[i] + u[i] - t * drift[i])
+        });
+        let v = step.v.map(|v| {
+            let v = point.on.at(v, d);
+            std::array::from_fn(|i| v[i] - drift[i])
+        });
+        Path::new(x, v, step.times[1] - step.times[0])
     }
 
     fn touches<'a>(
@@ -241,6 +256,29 @@ impl Force for Contact {
             held.store(on, Ordering::Relaxed);
         }
         are_held.store(on.is_some(), Ordering::Relaxed);
+    }
+
+    fn passage(&self, step: &Step, tolerance: f64, clearances: &mut [f64]) -> Option<f64> {
+        let (d, [start, end]) = (self.dimension, step.times);
+        let reach = step.reach(d) + (end - start) * dot(&self.drift, &self.drift).sqrt();
+        let mut first: Option<f64> = None;
+        for (point, clearance) in self.points.iter().zip(clearances) {
+            *clearance -= reach;
+            if *clearance > 0.0 {
+                continue;
+            }
+            let (shape, path) = (self.obstacle.shape(), self.path(point, step));
+            let [before, after] =
+                [path.start(), path.end()].map(|x| shape.nearest(&x[..d]).distance);
+            *clearance = after.abs();
+            // forces at an end that is half as deep tell enough
+            let depth = 2.0 * f64::max(0.0, -before.min(after)) + tolerance;
+            if let Some(part) = deepest(shape, &path, d, depth) {
+                let t = start + part * (end - start);
+                first = Some(first.map_or(t, |first| first.min(t)));
+            }
+        }
+        first
     }
 
     fn reservoir(&self) -> Reservoir {

@@ -5,6 +5,7 @@ mod contact;
 mod gravity;
 mod load;
 mod obstacle;
+mod passage;
 mod shape;
 mod signal;
 mod spring;

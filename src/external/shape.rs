@@ -105,8 +105,10 @@ impl Shape {
         Self(Kind::Union(parts.into_iter().collect()))
     }
 
-    /// A shape given by its signed distance: `distance` returns d at a point (m) and writes its gradient, a
-    /// vector of length 1. (It need not be right where d is above 0, except for its sign.)
+    /// A shape given by its signed distance: `distance` returns d at a point (m) and writes its
+    /// gradient, a vector of length 1. (Where d is above 0, only its sign counts for the force. It
+    /// should not be larger than the distance there, for steps that lead through the shape are found
+    /// by it.)
     ///
     /// The curvature of the shape is left out of the Newton matrix: results are the same, but the
     /// iteration converges more slowly where the shape is strongly curved.

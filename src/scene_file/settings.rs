@@ -17,6 +17,7 @@ const SOLVER: &[&str] = &[
     "max_order",
     "stability_limit_detection",
     "contact_events",
+    "max_step",
     "max_steps",
 ];
 
@@ -46,6 +47,7 @@ pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
         max_order: max_order.map(|order| u32::try_from(order).unwrap_or(u32::MAX)),
         stability_limit_detection: detection.unwrap_or(default.stability_limit_detection),
         contact_events: events.unwrap_or(default.contact_events),
+        max_step: table.optional("max_step", "the longest step (s)", Value::number)?,
         max_steps: max_steps.unwrap_or(default.max_steps),
     };
     solver.validate().map_err(|error| table.blame(error))?;

@@ -1,10 +1,20 @@
 //! Contact events: where a node touches an obstacle or leaves it.
 
 use super::stepper::{Failed, Stepper};
+use crate::force::Step;
 use crate::system::System;
 
+/// What a step has met.
+pub(super) enum Met {
+    Nothing,
+    /// The first contact event, at this time (s).
+    Event(f64),
+    /// An obstacle that the step has passed through without a force, at this time (s).
+    Passage(f64),
+}
+
 /// The switches of the forces (see [`crate::force::Force::switches`]) in a phase, as they are held
-/// from one event to the next.
+/// from one event to the next, if events are located.
 ///
 /// Held, the force is smooth within a step: a node that leaves an obstacle is still pulled by it, as
 /// if glued, until the event is found and the step cut off there.
@@ -12,6 +22,9 @@ use crate::system::System;
 pub(super) struct Events {
     on: Vec<bool>,
     values: Vec<f64>,
+    /// How far the body can move before a switch can change (see
+    /// [`crate::force::Force::passage`]).
+    clearances: Vec<f64>,
     /// Events found, and those in a row that did not move time ahead.
     pub(super) count: usize,
     standing: usize,
@@ -26,26 +39,61 @@ const PRECISION: f64 = 1e-12;
 impl Events {
     /// From now on holds the switches of `system`, as they are at `t` and `u`, if they are `located`.
     pub(super) fn begin(&mut self, system: &System, t: f64, u: &[f64], located: bool) {
-        let count = if located { system.switches() } else { 0 };
+        self.clearances = vec![0.0; system.switches()];
+        let count = if located { self.clearances.len() } else { 0 };
         (self.on, self.values) = (vec![false; count], vec![0.0; count]);
         system.hold_switches(None);
         self.set(system, t, u);
     }
 
-    /// The time of the first event in the last step, from `start` (s) to `end` (s). `work` has room
-    /// for a state.
-    pub(super) fn first(
+    /// What the last step has met, from the state `before` at time `start` (s) to time `end` (s).
+    /// Depths within obstacles below `tolerance` (m) do not matter. `work` has room for a state.
+    pub(super) fn met(
+        &mut self,
+        stepper: &mut Stepper,
+        before: &[f64],
+        [start, end]: [f64; 2],
+        tolerance: f64,
+        work: &mut [f64],
+    ) -> Result<Met, Failed> {
+        if self.clearances.is_empty() {
+            return Ok(Met::Nothing);
+        }
+        let (system, after) = (stepper.system(), stepper.state());
+        let n = system.dofs();
+        let step = Step {
+            times: [start, end],
+            u: [before, after].map(|state| &state[..n]),
+            v: [before, after].map(|state| &state[n..2 * n]),
+        };
+        let passage = system.passage(&step, tolerance, &mut self.clearances);
+        let mut event = self.change(system, end, &after[..n]).then_some(end);
+        if let Some(t) = passage.filter(|&t| t > start && t < end) {
+            // the step will not be taken as it is
+            self.clearances.fill(0.0);
+            stepper.interpolate(t, work)?;
+            match (self.change(stepper.system(), t, &work[..n]), event) {
+                (true, _) => event = Some(t),
+                (false, None) => return Ok(Met::Passage(t)),
+                (false, Some(_)) => {}
+            }
+        }
+        match event {
+            Some(event) => Ok(Met::Event(self.locate(stepper, start, event, work)?)),
+            None => Ok(Met::Nothing),
+        }
+    }
+
+    /// The first event between `start` (s), where no switch has changed, and `end` (s), where one at
+    /// least has: by bisection.
+    fn locate(
         &mut self,
         stepper: &mut Stepper,
         start: f64,
         end: f64,
         work: &mut [f64],
-    ) -> Result<Option<f64>, Failed> {
+    ) -> Result<f64, Failed> {
         let n = stepper.system().dofs();
-        if !self.change(stepper.system(), end, &stepper.state()[..n]) {
-            return Ok(None);
-        }
-        // bisection: no switch has changed at `before`, one at least has at `after`
         let (mut before, mut after) = (start, end);
         while after - before > PRECISION * (end - start) {
             let middle = 0.5 * (before + after);
@@ -58,13 +106,14 @@ impl Events {
                 false => before = middle,
             }
         }
-        Ok(Some(after))
+        Ok(after)
     }
 
     /// Goes on after an event at (t, u), a `step` (s) after the one before.
     pub(super) fn pass(&mut self, system: &System, t: f64, u: &[f64], step: f64) {
         self.count += 1;
         self.standing = if step > 0.0 { 0 } else { self.standing + 1 };
+        self.clearances.fill(0.0);
         self.set(system, t, u);
         if self.standing == STANDING {
             // a node that trembles at the edge

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use super::auto::{Plan, TRIAL};
-use super::events::Events;
+use super::events::{Events, Met};
 use super::failure::{STANDING, standing_still, too_many_steps};
 use super::progress::{Observer, Progress};
 use super::stepper::{Failed, Stepper};
@@ -58,10 +58,22 @@ enum Ending {
     Reached,
     /// At a contact event.
     Event,
+    /// Before a step that would have passed through an obstacle, which it met at this time (s).
+    Passage(f64),
     /// The energy balance tells that the method cannot be trusted.
     Doubtful { instead: Plan },
     /// Another method is better.
     Better(Plan),
+}
+
+/// What became of a step.
+enum Outcome {
+    /// Its size (s).
+    Taken(f64),
+    /// Its size (s), up to a contact event.
+    CutOff(f64),
+    /// It was not taken, as it would have passed through an obstacle at this time (s).
+    Refused(f64),
 }
 
 /// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
@@ -161,17 +173,21 @@ impl<'a> Run<'a> {
         events.begin(&system, self.time, &self.state[..system.dofs()], plan.locates());
         let mut leg = Leg { number, times: &times, taken: 0, stop: 0.0, steps, events };
         let (mut counts, mut states) = (Counts::default(), 0);
-        let mut stops = self.scene.breaks(number).into_iter().chain([phase.until]);
+        let mut stops = self.scene.breaks(number);
+        stops.push(phase.until);
+        stops.reverse();
         self.remember(&leg);
         let mut ended = Ok(Ending::Reached);
         let result = loop {
             match ended {
                 Err(source) => break Err(source),
-                Ok(Ending::Reached) => match stops.next() {
+                Ok(Ending::Reached) => match stops.pop() {
                     Some(stop) => leg.stop = stop,
                     None => break Ok(()),
                 },
                 Ok(Ending::Event) => {}
+                // a step that ends within the obstacle feels it
+                Ok(Ending::Passage(t)) => stops.push(std::mem::replace(&mut leg.stop, t)),
                 Ok(Ending::Better(other)) => {
                     plan = other;
                     counts.notice = None;
@@ -236,7 +252,11 @@ impl<'a> Run<'a> {
                 return Err(too_many_steps(self.solver.max_steps, &stepper.counts()));
             }
             leg.steps -= 1;
-            let (step, is_event) = self.step(leg, stepper, &mut sample)?;
+            let (step, is_event) = match self.step(leg, stepper, &mut sample)? {
+                Outcome::Taken(step) => (step, false),
+                Outcome::CutOff(step) => (step, true),
+                Outcome::Refused(t) => return Ok(Ending::Passage(t)),
+            };
             if self.steps.is_multiple_of(WATCH) || self.time >= leg.stop {
                 self.watch(stepper.system_mut());
                 if plan.is_on_trial() {
@@ -290,17 +310,21 @@ impl<'a> Run<'a> {
         self.trajectory.watch(&energy);
     }
 
-    /// Takes one step, up to the first contact event within it, and the samples there are. Returns its
-    /// size (s), and whether it ended in an event.
+    /// Takes one step, up to the first contact event within it, and the samples there are.
     fn step(
         &mut self,
         leg: &mut Leg,
         stepper: &mut Stepper,
         sample: &mut [f64],
-    ) -> Result<(f64, bool), Failed> {
+    ) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
         let reached = stepper.step(leg.stop)?;
-        let event = leg.events.first(stepper, self.time, reached, sample)?;
+        let times = [self.time, reached];
+        let event = match leg.events.met(stepper, &self.state, times, self.atol.position, sample)? {
+            Met::Nothing => None,
+            Met::Event(t) => Some(t),
+            Met::Passage(t) => return Ok(Outcome::Refused(t)),
+        };
         let time = event.unwrap_or(reached);
         self.standing = if time > self.time { 0 } else { self.standing + 1 };
         if self.standing == STANDING {
@@ -326,7 +350,7 @@ impl<'a> Run<'a> {
         let drift = system.drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
-        Ok((step, event.is_some()))
+        Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
     }
 
     /// Tells how far the run has come.

@@ -37,6 +37,7 @@ impl Stepper {
         let mut tolerances = vec![atol.position; n];
         tolerances.resize(2 * n, atol.velocity);
         tolerances.resize(2 * n + ENERGIES, atol.energy);
+        let longest = solver.max_step.unwrap_or(f64::INFINITY);
         match solver.method {
             // a plan names a method of its own
             Method::Auto | Method::CvodeBdf => {
@@ -56,13 +57,13 @@ impl Stepper {
             }
             Method::Rk => {
                 let options = rk::Options::default().rtol(solver.rtol).atol(tolerances);
-                let options = options.stop_time(end);
+                let options = options.stop_time(end).max_step(longest);
                 Ok(Self::Rk(Box::new(DormandPrince::new(system, t, state, &options)?)))
             }
             Method::CentralDifference => {
                 let form = SecondOrderForm::new(system);
                 let started = CentralDifference::new(form, t, end, state, solver.rtol, tolerances)?;
-                Ok(Self::CentralDifference(Box::new(started)))
+                Ok(Self::CentralDifference(Box::new(started.max_step(longest))))
             }
         }
     }
@@ -245,6 +246,9 @@ fn cvode(
     if let Some(order) = solver.max_order {
         options = options.max_order(order);
     }
+    if let Some(step) = solver.max_step {
+        options = options.max_step(step);
+    }
     let mut cvode = Cvode::new(system, t, state, &options)?;
     cvode.set_stop_time(Some(end))?;
     Ok(Stepper::Cvode(cvode))
@@ -271,6 +275,9 @@ fn arkode(
             .max_steps_between_setups(STEPS_BETWEEN_SETUPS)
             .max_steps_between_jacobians(STEPS_BETWEEN_SETUPS),
     };
+    if let Some(step) = solver.max_step {
+        options = options.max_step(step);
+    }
     let mut arkode = Arkode::new(system, t, state, &options)?;
     arkode.set_stop_time(Some(end))?;
     Ok(Stepper::Arkode(arkode))
@@ -303,6 +310,9 @@ fn ida(
         .suppress_algebraic(true);
     if let Some(order) = solver.max_order {
         options = options.max_order(order);
+    }
+    if let Some(step) = solver.max_step {
+        options = options.max_step(step);
     }
     let mut ida = Ida::new(equations, t, &y, &yp, &options)?;
     ida.set_stop_time(Some(end))?;

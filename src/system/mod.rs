@@ -47,7 +47,7 @@ pub use spectrum::Spectrum;
 pub use summary::PhaseSummary;
 
 use crate::constraint::{Prescribed, Row};
-use crate::force::{Force, NodalForces, Reservoir};
+use crate::force::{Force, NodalForces, Reservoir, Step};
 use crate::input::InputError;
 use crate::model::Model;
 use crate::ode::Failure;
@@ -237,6 +237,24 @@ impl System {
             force.switch_values(t, u, own);
             values = rest;
         }
+    }
+
+    /// A time (s) within a step at which a force acts that its ends do not show, if any.
+    pub(crate) fn passage(
+        &self,
+        step: &Step,
+        tolerance: f64,
+        mut clearances: &mut [f64],
+    ) -> Option<f64> {
+        let mut first: Option<f64> = None;
+        for force in &self.forces {
+            let (own, rest) = clearances.split_at_mut(force.switches());
+            clearances = rest;
+            if let Some(t) = force.passage(step, tolerance, own) {
+                first = Some(first.map_or(t, |first| first.min(t)));
+            }
+        }
+        first
     }
 
     /// Keeps each of them on or off, or lets all of them act by their values again.

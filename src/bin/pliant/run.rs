@@ -57,6 +57,9 @@ struct SolverArguments {
     /// How contact events are met: step-over or locate
     #[arg(long, value_name = "WAY")]
     contact_events: Option<ContactEvents>,
+    /// Longest step (s)
+    #[arg(long, value_name = "SECONDS")]
+    max_step: Option<f64>,
     /// Steps that a phase may take
     #[arg(long, value_name = "STEPS")]
     max_steps: Option<usize>,
@@ -71,6 +74,7 @@ impl SolverArguments {
         solver.alpha = self.alpha.unwrap_or(solver.alpha);
         solver.max_order = self.max_order.or(solver.max_order);
         solver.contact_events = self.contact_events.unwrap_or(solver.contact_events);
+        solver.max_step = self.max_step.or(solver.max_step);
         solver.max_steps = self.max_steps.unwrap_or(solver.max_steps);
         solver.validate()
     }
