@@ -194,6 +194,11 @@ pub trait Force: Send + Sync {
     /// Where that energy belongs.
     fn reservoir(&self) -> Reservoir;
 
+    /// Velocity (m/s) of what the force comes from, if that moves by itself: an obstacle.
+    fn velocity(&self) -> Option<[f64; 3]> {
+        None
+    }
+
     /// Number of switches: functions whose change of sign is a kink or a jump of the force.
     fn switches(&self) -> usize {
         0

@@ -87,7 +87,7 @@ impl Report {
             Some(format!("phase \"{}\": {notice}", phase.name))
         };
         let mut warnings: Vec<String> = self.phases.iter().filter_map(notice).collect();
-        let doubt = self.creation(0.0).or_else(|| {
+        let doubt = creation(self.energy_created, self.energy_scale).or_else(|| {
             let part = self.energy_error / self.energy_scale;
             (part > DOUBTFUL).then(|| {
                 format!("the energy balance is off by {:.1} % of the largest energy", 100.0 * part)
@@ -98,23 +98,22 @@ impl Report {
         }));
         warnings
     }
-
-    /// What the integrator has created, if it is more than a hundredth of the largest energy, which
-    /// counts as `least` (J) at least.
-    pub(crate) fn creation(&self, least: f64) -> Option<String> {
-        let part = self.energy_created / self.energy_scale.max(least);
-        (part > DOUBTFUL).then(|| {
-            format!(
-                "the integrator created {:.1e} J, {:.1} % of the largest energy",
-                self.energy_created,
-                100.0 * part
-            )
-        })
-    }
 }
 
 /// Error of the energy balance, as part of the largest energy, from which a result is doubtful.
 const DOUBTFUL: f64 = 0.01;
+
+/// What the integrator has created, if a rise of the energy balance by `created` (J) is more than a
+/// hundredth of `scale`, the largest energy (J).
+pub(crate) fn creation(created: f64, scale: f64) -> Option<String> {
+    let part = created / scale;
+    (part > DOUBTFUL).then(|| {
+        format!(
+            "the integrator created {created:.1e} J, {:.1} % of the largest energy",
+            100.0 * part
+        )
+    })
+}
 
 impl fmt::Display for Report {
     /// A table of the phases and the sums over them, then what is conserved and what is not.

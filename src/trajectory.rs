@@ -41,8 +41,11 @@ pub struct Trajectory {
 }
 
 impl Trajectory {
-    pub(crate) fn new(scene: &Scene, report: Report) -> Self {
-        Self { scene: scene.clone(), samples: Vec::new(), report }
+    /// A trajectory that begins with the sample `first`.
+    pub(crate) fn new(scene: &Scene, report: Report, first: Sample) -> Self {
+        let mut trajectory = Self { scene: scene.clone(), samples: Vec::new(), report };
+        trajectory.push(first);
+        trajectory
     }
 
     pub(crate) fn push(&mut self, sample: Sample) {
@@ -59,7 +62,7 @@ impl Trajectory {
         report.energy_scale = report.energy_scale.max(energy.size());
     }
 
-    /// Forgets the samples after the first `count`, and the energies seen since: what was noted
+    /// Forgets the samples after the first `count`, which is 1 at least, and the energies seen since: what was noted
     /// until then is in `report`.
     pub(crate) fn go_back(&mut self, count: usize, [error, created, scale]: [f64; 3]) {
         self.samples.truncate(count);
@@ -69,7 +72,7 @@ impl Trajectory {
 
     /// The last sample alone, with the same report.
     pub fn at_end(&self) -> Self {
-        let samples = self.samples.last().cloned().into_iter().collect();
+        let samples = vec![self.last().clone()];
         Self { scene: self.scene.clone(), samples, report: self.report.clone() }
     }
 
@@ -83,17 +86,14 @@ impl Trajectory {
         self.scene.body()
     }
 
-    /// The samples, in order of time.
+    /// The samples, in order of time: the first one is that of the start.
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
 
     /// The last sample.
-    ///
-    /// # Panics
-    /// Never for a trajectory that [`Scene::simulate`] returned: it begins with a sample.
     pub fn last(&self) -> &Sample {
-        self.samples.last().expect("a trajectory begins with a sample at t = 0")
+        &self.samples[self.samples.len() - 1] // there is one at least: see `new`
     }
 
     /// How it was computed.

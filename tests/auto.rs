@@ -3,8 +3,8 @@
 
 use pliant::samples::{self, ClampedBeam, RingRoll};
 use pliant::{
-    Body, CellSelection, Cells, Inertia, Material, Mesh, Method, Phase, Sampling, Scene, Settings,
-    Strain, Trajectory,
+    Body, CellSelection, Cells, Inertia, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene,
+    Settings, Strain, Trajectory,
 };
 
 fn run(scene: &Scene, solver: &Settings) -> Trajectory {
@@ -138,4 +138,53 @@ fn energy_out_of_nothing_is_told() {
     assert!(warnings.iter().any(|warning| warning.contains("created")), "{warnings:?}");
     let motion = run(&scene, &auto(1e-4));
     assert_eq!(motion.report().warnings(), Vec::<String>::new());
+}
+
+/// An obstacle whose gradient is not that of its distance drives what lies on it without end: no method
+/// can help that, and the run ends the phase with the last resort. What flies freely after it has done
+/// nothing wrong, and keeps its method; the warning stays.
+#[test]
+fn what_an_earlier_phase_created_is_not_held_against_a_later_one() {
+    let (sin, cos) = 0.3_f64.sin_cos();
+    let crooked = Obstacle::custom(move |x, gradient| {
+        gradient.copy_from_slice(&[sin, cos]);
+        x[1]
+    });
+    let mesh = Mesh::rectangle([0.1, 0.1], [4, 4], Cells::Triangles).unwrap();
+    let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 10.0 };
+    let body = Body::new(mesh, rubber).thickness(0.1).strain(Strain::Green).build().unwrap();
+    let scene = Scene::new(body)
+        .gravity([0.0, -9.8])
+        .obstacle(crooked.stiffness(1e4).damping(10.0))
+        .phase(Phase::until(0.4).named("driven"))
+        .phase(Phase::until(0.8).named("flight").without_contact());
+    let motion = run(&scene, &auto(1e-4));
+    let [driven, flight] = &motion.report().phases[..] else { panic!("two phases") };
+    println!("{:?}\n{:?}", driven.reason, flight.reason);
+    let reason = |phase: &pliant::PhaseReport| phase.reason.clone().unwrap();
+    assert!(reason(driven).contains("created"), "{}", reason(driven));
+    assert!(!reason(flight).contains("created"), "{}", reason(flight));
+    let warnings = motion.report().warnings();
+    assert!(warnings.iter().any(|warning| warning.contains("created")), "{warnings:?}");
+}
+
+/// A floor that begins to act where nodes are inside it already pushes them out by what its springs store
+/// then: energy that the phase has brought along, and no method made.
+#[test]
+fn what_an_obstacle_stores_when_it_begins_to_act_is_supplied() {
+    let mesh = Mesh::rectangle([0.1, 0.1], [4, 4], Cells::Triangles).unwrap();
+    let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 10.0 };
+    let body = Body::new(mesh, rubber).thickness(0.1).strain(Strain::Green).build().unwrap();
+    let scene = Scene::new(body)
+        .obstacle(Obstacle::half_plane([0.0, 0.01], [0.0, 1.0]).stiffness(1e3))
+        .phase(Phase::until(0.1).named("inside").without_contact())
+        .phase(Phase::until(0.3).named("pushed out"));
+    let motion = run(&scene, &auto(1e-5));
+    let report = motion.report();
+    assert_eq!(report.warnings(), Vec::<String>::new());
+    assert!(!report.phases[1].reason.clone().unwrap().contains("created"));
+    // four nodes, 1 cm inside springs of 1 kN/m
+    let supplied = motion.last().energy.supplied;
+    assert!((supplied - 4.0 * 0.5 * 1e3 * 1e-4).abs() < 1e-12, "{supplied}");
+    assert!(report.energy_error < 1e-4 * report.energy_scale, "{:e}", report.energy_error);
 }

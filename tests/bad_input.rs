@@ -3,7 +3,7 @@
 use pliant::samples::{SQUARE_MATERIAL, square_press};
 use pliant::{
     Axis, Body, Cells, Chamber, Error, Material, Mesh, Method, Obstacle, Phase, Plane, Prescribed,
-    Sampling, Scene, Selection, Settings, Shape, SolidCells, Spring, Trajectory,
+    Sampling, Scene, Selection, Settings, Shape, SolidCells, Spring, Statics, Strain, Trajectory,
 };
 
 fn grid() -> Mesh {
@@ -103,7 +103,7 @@ fn constraints() {
     let twice = [(14, Axis::X, 1.0), (15, Axis::X, 1.0)];
     says(
         run(hold().hold_combination(twice).hold_combination(twice)),
-        &["press", "node 14 x + node 15 x", "leave this row out"],
+        &["press", "node 14 x + node 15 x", "leave it out"],
     );
 }
 
@@ -121,7 +121,7 @@ fn nan_in_a_path() {
         let phase = Phase::until(0.5).named("probe").hold("bottom");
         scene().phase(phase.follow([14], Axis::Y, path(from)))
     };
-    says(simulate(&scene(0.0)), &["probe", "node 14 y", "b = NaN", "t = 0 s"]);
+    says(simulate(&scene(0.0)), &["probe", "node 14 y", "(NaN, -0, -0.02)", "t = 0 s"]);
     for method in Method::ALL {
         let solver = Settings { method, ..Settings::default() };
         let result = scene(0.25).simulate(&solver, &Sampling::every(0.1));
@@ -164,6 +164,36 @@ fn phases() {
         &["contact of phase \"phase 1\" = \"wall\""],
     );
     says(simulate(&scene().gravity([9.8]).phase(phase(0.1))), &["gravity = [9.8]", "2 component"]);
+}
+
+/// A start in which a force has no meaning is refused by name before anything is computed.
+#[test]
+fn starts() {
+    let turned = |x: &[f64]| vec![-2.0 * x[0], 0.0];
+    let green = || {
+        let body = Body::new(grid(), SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+        Scene::new(body.build().unwrap()).phase(Phase::until(0.1).named("fly"))
+    };
+    let inverted = ["initial displacement = up to 6e-1 m", "cell 1 (nodes [1, 2, 5]) is inverted"];
+    for method in Method::ALL {
+        let solver = Settings { method, ..Settings::default() };
+        let scene = green().initial_displacement(turned);
+        says(scene.simulate(&solver, &Sampling::phase_ends()), &inverted);
+    }
+    says(green().initial_displacement(turned).validate(), &inverted);
+    says(green().initial_displacement(turned).summary(), &inverted);
+    // small strain knows no inversion
+    let linear = scene().initial_displacement(turned).phase(Phase::until(1e-3));
+    assert!(simulate(&linear).is_ok());
+    let collapsed = scene()
+        .spring(Spring::between([1], [4]).named("A1").stiffness(20.0))
+        .initial_displacement(|x| vec![0.15 - x[0], 0.0])
+        .phase(Phase::until(0.1));
+    says(simulate(&collapsed), &["initial displacement", "spring \"A1\" has collapsed"]);
+    let beyond = scene().initial_displacement(|_| vec![1e200, 0.0]).phase(Phase::until(0.1));
+    says(simulate(&beyond), &["initial displacement = up to 1e200 m", "double precision"]);
+    let beyond = scene().initial_velocity(|_| vec![1e200, 0.0]).phase(Phase::until(0.1));
+    says(simulate(&beyond), &["double precision"]);
 }
 
 #[test]
@@ -300,10 +330,36 @@ fn solvers_and_samplings() {
     );
     says(with(Settings { max_steps: 0, ..good() }), &["max_steps = 0"]);
     let sampled = |sampling| scene.simulate(&good(), &sampling);
-    says(sampled(Sampling::every(0.0)), &["sampling step = 0"]);
+    for step in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        says(sampled(Sampling::every(step)), &[&format!("sampling step = {step}")]);
+    }
+    says(sampled(Sampling::every(1e-13)), &["sampling step = 0.0000000000001", "2 s"]);
+    says(sampled(Sampling::at([0.1, f64::NAN])), &["sampling time = NaN"]);
+    says(sampled(Sampling::at([-0.1])), &["sampling time = -0.1"]);
     says(sampled(Sampling::at([0.1, 3.0])), &["sampling time = 3", "2 s"]);
     says("cvode".parse::<Method>(), &["method = \"cvode\"", "cvode-bdf, cvode-adams, ida"]);
     says(square_press(3), &["nodes = 3", "4 nodes"]);
+}
+
+/// Statics knows no motion, and so minds no bad start.
+#[test]
+fn statics() {
+    let held = || scene().phase(Phase::until(1.0).hold("bottom").load("top", [0.0, -1.0]));
+    let with = |statics: Statics| held().equilibrium(&statics);
+    let good = Statics::default;
+    assert!(with(Statics { rtol: 1e-3, ..good() }).is_ok());
+    for rtol in [0.0, -1e-10, 1e-16, 0.1, 1.0, f64::NAN, f64::INFINITY] {
+        let said = format!("statics.rtol = {rtol}");
+        says(with(Statics { rtol, ..good() }), &[&said, "1e-14", "1e-2"]);
+    }
+    for min_load_step in [0.0, -0.1, 1.5, f64::NAN, f64::INFINITY] {
+        let said = format!("statics.min_load_step = {min_load_step}");
+        says(with(Statics { min_load_step, ..good() }), &[&said, "at most 1"]);
+    }
+    says(with(Statics { load_steps: 0, ..good() }), &["statics.load_steps = 0"]);
+    says(with(Statics { max_iterations: 0, ..good() }), &["statics.max_iterations = 0"]);
+    says(scene().equilibrium(&good()), &["number of phases = 0"]);
+    assert!(held().initial_displacement(|_| vec![1e200, 0.0]).equilibrium(&good()).is_ok());
 }
 
 /// A step limit ends the run with what it has, and says what to do.

@@ -4,8 +4,8 @@ use std::f64::consts::{PI, TAU};
 
 use pliant::mesh::CellKind;
 use pliant::{
-    Axis, Body, Cells, Equilibrium, Material, Mesh, Phase, Prescribed, Scene, Stability, Statics,
-    Strain, samples,
+    Axis, Body, Cells, Equilibrium, Material, Mesh, Obstacle, Phase, Prescribed, Scene, Spring,
+    Stability, Statics, Strain, samples,
 };
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
@@ -66,10 +66,11 @@ fn static_square() {
     assert_eq!(equilibrium.factorizations, 1);
 }
 
+const SOFT: Material = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
+
 fn bar(strain: Strain) -> Body {
-    let material = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
     let mesh = Mesh::bar(0.1, 6).unwrap();
-    Body::new(mesh, material).area(2e-4).strain(strain).build().unwrap()
+    Body::new(mesh, SOFT).area(2e-4).strain(strain).build().unwrap()
 }
 
 #[test]
@@ -349,4 +350,48 @@ fn the_flag_of_turek_and_hron() {
     let tip = equilibrium.displacements()[2 * 71 + 1];
     assert!((tip / -28.98e-3 - 1.0).abs() < 0.02, "{tip}");
     assert!(equilibrium.iterations < 20 && equilibrium.load_steps == 1, "{equilibrium}");
+}
+
+/// An actuator of force f pulls the end of a bar, of stiffness k = E A/L = 100 N/m, towards a point that is
+/// held, against a spring of stiffness c: u = f/(k + c). In steps or at once.
+#[test]
+fn actuators_pull_as_in_the_textbook() {
+    let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4);
+    let body = body.point_mass("hook", [0.15], 0.01).build().unwrap();
+    for (c, f) in [(0.0, 0.3), (25.0, 0.3), (25.0, -1.0)] {
+        let scene = Scene::new(body.clone())
+            .spring(Spring::between("right", "hook").named("A1").stiffness(c))
+            .phase(Phase::until(1.0).hold("left").hold("hook").actuate(["A1"], -f));
+        for load_steps in [1, 7] {
+            let statics = Statics { load_steps, ..Statics::default() };
+            let pulled = scene.equilibrium(&statics).unwrap();
+            let found = pulled.displacements()[5];
+            // forces balanced to 1e-10 of f
+            assert!((found - f / (100.0 + c)).abs() < 1e-12, "{c} {f} {load_steps}: {found}");
+            assert_eq!((pulled.load_steps, pulled.failed_steps), (load_steps, 0));
+        }
+    }
+}
+
+/// A plate that has come down by 4 cm presses the end of a bar by 2 cm less what its own spring gives way:
+/// u = -c d/(k + c). It stands there: its speed, damping and drag are those of no motion.
+#[test]
+fn obstacles_press_from_where_they_have_come_to() {
+    let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4).build().unwrap();
+    for (damping, adhesion) in [(0.0, true), (50.0, true), (50.0, false)] {
+        let plate = Obstacle::half_plane([0.12], [-1.0]).velocity([-0.04]).stiffness(300.0);
+        let plate = plate.damping(damping).friction(damping).adhesion(adhesion);
+        let scene = Scene::new(body.clone()).obstacle(plate).phase(Phase::until(1.0).hold("left"));
+        for load_steps in [1, 8] {
+            let statics = Statics { load_steps, ..Statics::default() };
+            let pressed = scene.equilibrium(&statics).unwrap();
+            let (found, exact) = (pressed.displacements()[5], -300.0 * 0.02 / 400.0);
+            assert!((found - exact).abs() < 1e-12, "{damping} {adhesion} {load_steps}: {found}");
+            // the plate has done what bar and contact have stored; nothing was stored at the start
+            let energy = pressed.sample().energy;
+            let stored = 0.5 * 100.0 * exact.powi(2) + 0.5 * 300.0 * (0.02 + exact).powi(2);
+            assert!((energy.strain + energy.contact - stored).abs() < 1e-12);
+            assert!((energy.supplied - stored).abs() < 1e-12, "{}", energy.supplied);
+        }
+    }
 }

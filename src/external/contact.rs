@@ -240,6 +240,10 @@ impl Force for Contact {
         self.points.iter().enumerate().map(energy).sum()
     }
 
+    fn velocity(&self) -> Option<[f64; 3]> {
+        (self.drift != [0.0; 3]).then_some(self.drift)
+    }
+
     fn switches(&self) -> usize {
         self.points.len()
     }

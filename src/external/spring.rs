@@ -100,15 +100,11 @@ impl Spring {
         if self.name.is_empty() { self.named(name) } else { self }
     }
 
-    /// The force of the spring in a phase in which `actuation` (N) acts along it.
+    /// Where the spring runs.
     ///
     /// # Errors
     /// Ends that are not one node each, or the same; numbers out of range.
-    pub(crate) fn force(
-        &self,
-        mesh: &Mesh,
-        actuation: Vec<Signal>,
-    ) -> Result<SpringForce, InputError> {
+    fn line(&self, mesh: &Mesh) -> Result<Line, InputError> {
         let input = |key: &str| format!("spring \"{}\" {key}", self.name);
         let end = |which: &str, selection: &Selection| match mesh.select(selection)?[..] {
             [node] => Ok(node),
@@ -139,33 +135,54 @@ impl Spring {
                 mend,
             ));
         }
-        Ok(SpringForce {
-            name: self.name.clone(),
-            dimension: mesh.dimension(),
-            nodes,
-            natural,
-            stiffness: self.stiffness,
-            length,
-            damping: self.damping,
-            actuation,
-        })
+        Ok(Line { name: self.name.clone(), dimension: mesh.dimension(), nodes, natural, length })
+    }
+
+    /// The force of the spring, without that of its actuator.
+    ///
+    /// # Errors
+    /// Ends that are not one node each, or the same; numbers out of range.
+    pub(crate) fn force(&self, mesh: &Mesh) -> Result<SpringForce, InputError> {
+        let line = self.line(mesh)?;
+        Ok(SpringForce { line, stiffness: self.stiffness, damping: self.damping })
+    }
+
+    /// The force of its actuator, the sum of the signals `force` (N): a load, which statics brings on in
+    /// steps, and so apart from what the spring itself does.
+    ///
+    /// # Errors
+    /// As [`force`](Self::force).
+    pub(crate) fn actuator(&self, mesh: &Mesh, force: Vec<Signal>) -> Result<Actuator, InputError> {
+        Ok(Actuator { line: self.line(mesh)?, force })
     }
 }
 
-/// The forces of one spring.
-pub(crate) struct SpringForce {
+/// The straight line between the ends of a spring.
+struct Line {
     name: String,
     dimension: usize,
     nodes: [usize; 2],
     /// From the first node to the second in the natural shape.
     natural: [f64; 3],
-    stiffness: f64,
+    /// L
     length: f64,
+}
+
+/// The forces of one spring.
+pub(crate) struct SpringForce {
+    line: Line,
+    stiffness: f64,
     damping: f64,
-    actuation: Vec<Signal>,
+}
+
+/// The force of an actuator along a spring.
+pub(crate) struct Actuator {
+    line: Line,
+    force: Vec<Signal>,
 }
 
 /// A spring at one instant; components beyond the dimension are 0.
+#[derive(Clone, Copy)]
 struct Stretch {
     length: f64,
     /// Unit vector e from the first node to the second.
@@ -176,7 +193,7 @@ struct Stretch {
     turning: [f64; 3],
 }
 
-impl SpringForce {
+impl Line {
     /// Difference of `x` between the two nodes.
     fn difference(&self, x: &[f64]) -> [f64; 3] {
         let [first, second] = self.nodes.map(|node| &x[node * self.dimension..]);
@@ -197,6 +214,15 @@ impl SpringForce {
         ))
     }
 
+    /// # Errors
+    /// No length, and so no direction.
+    fn check_length(&self, t: f64, length: f64) -> Result<(), Failure> {
+        match length <= NO_DIRECTION * self.length {
+            true => Err(self.collapsed(t, "it has no length")),
+            false => Ok(()),
+        }
+    }
+
     fn stretch(&self, u: &[f64], v: &[f64]) -> Stretch {
         let (length, along) = self.length(u);
         let direction = along.map(|x| x / length);
@@ -204,6 +230,37 @@ impl SpringForce {
         let rate = dot(&direction, &velocity);
         let turning = std::array::from_fn(|i| (velocity[i] - rate * direction[i]) / length);
         Stretch { length, direction, rate, turning }
+    }
+
+    /// Adds a force `along` the line (N), which pushes its ends apart.
+    fn add(&self, along: f64, direction: &[f64; 3], nodal: &mut [f64]) {
+        for (node, sign) in self.nodes.into_iter().zip([-1.0, 1.0]) {
+            for i in 0..self.dimension {
+                nodal[node * self.dimension + i] += sign * along * direction[i];
+            }
+        }
+    }
+
+    /// Adds the tangent `entry` of the second node by its own displacement.
+    fn add_tangent(&self, matrix: &mut BlockMatrix, entry: impl Fn(usize, usize) -> f64) {
+        let d = self.dimension;
+        for row in self.nodes {
+            for column in self.nodes {
+                let sign = if row == column { 1.0 } else { -1.0 };
+                let Some(block) = matrix.block_mut(row, column) else { continue };
+                for (k, x) in block.iter_mut().enumerate() {
+                    *x += sign * entry(k / d, k % d);
+                }
+            }
+        }
+    }
+}
+
+impl Stretch {
+    /// Tangent of a constant force `along` the line: it turns with it.
+    fn turn(&self, along: f64, i: usize, j: usize) -> f64 {
+        let e = &self.direction;
+        -along / self.length * (f64::from(i == j) - e[i] * e[j])
     }
 }
 
@@ -215,36 +272,22 @@ impl Force for SpringForce {
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let Stretch { length, direction, rate, .. } = self.stretch(u, v);
-        if length <= NO_DIRECTION * self.length {
-            return Err(self.collapsed(t, "it has no length"));
-        }
-        let actuation = signal::sum(&self.actuation, t);
-        finite_at(t, format_args!("the actuation of spring \"{}\"", self.name), actuation)?;
-        let elastic = -self.stiffness * (length - self.length);
-        let parts = [
-            (&mut forces.conservative, elastic),
-            (&mut forces.dissipative, -self.damping * rate),
-            (&mut forces.applied, actuation),
-        ];
-        for (nodal, along) in parts {
-            for (node, sign) in self.nodes.into_iter().zip([-1.0, 1.0]) {
-                for i in 0..self.dimension {
-                    nodal[node * self.dimension + i] += sign * along * direction[i];
-                }
-            }
-        }
+        let Stretch { length, direction, rate, .. } = self.line.stretch(u, v);
+        self.line.check_length(t, length)?;
+        let elastic = -self.stiffness * (length - self.line.length);
+        self.line.add(elastic, &direction, &mut forces.conservative);
+        self.line.add(-self.damping * rate, &direction, &mut forces.dissipative);
         Ok(())
     }
 
     /// A spring that turns by more than a right angle in one step has passed through nothing.
     fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
-        let (length, along) = self.length(after);
-        if length <= COLLAPSED * self.length {
-            return Err(self.collapsed(t, &format!("it is {length:.1e} m long")));
+        let (length, along) = self.line.length(after);
+        if length <= COLLAPSED * self.line.length {
+            return Err(self.line.collapsed(t, &format!("it is {length:.1e} m long")));
         }
-        if dot(&self.length(before).1, &along) <= 0.0 {
-            return Err(self.collapsed(t, "its ends have passed each other within one step"));
+        if dot(&self.line.length(before).1, &along) <= 0.0 {
+            return Err(self.line.collapsed(t, "its ends have passed each other within one step"));
         }
         Ok(())
     }
@@ -253,35 +296,19 @@ impl Force for SpringForce {
     /// k e e^T + c e e'^T - (T/l) (I - e e^T), and -df/dv is c e e^T.
     fn add_tangents(
         &self,
-        t: f64,
+        _t: f64,
         u: &[f64],
         v: &[f64],
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
     ) {
-        let d = self.dimension;
-        let Stretch { length, direction: e, rate, turning } = self.stretch(u, v);
-        let tension = signal::sum(&self.actuation, t)
-            - self.stiffness * (length - self.length)
-            - self.damping * rate;
-        let by_u = |i: usize, j: usize| {
-            let across = f64::from(i == j) - e[i] * e[j];
-            e[i] * (self.stiffness * e[j] + self.damping * turning[j]) - tension / length * across
-        };
-        let by_v = |i: usize, j: usize| self.damping * e[i] * e[j];
-        for row in self.nodes {
-            for column in self.nodes {
-                let sign = if row == column { 1.0 } else { -1.0 };
-                let add = |matrix: &mut BlockMatrix, entry: &dyn Fn(usize, usize) -> f64| {
-                    let Some(block) = matrix.block_mut(row, column) else { return };
-                    for (k, x) in block.iter_mut().enumerate() {
-                        *x += sign * entry(k / d, k % d);
-                    }
-                };
-                add(stiffness, &by_u);
-                add(damping, &by_v);
-            }
-        }
+        let stretch = self.line.stretch(u, v);
+        let Stretch { length, direction: e, rate, turning } = stretch;
+        let along = -self.stiffness * (length - self.line.length) - self.damping * rate;
+        self.line.add_tangent(stiffness, |i, j| {
+            e[i] * (self.stiffness * e[j] + self.damping * turning[j]) + stretch.turn(along, i, j)
+        });
+        self.line.add_tangent(damping, |i, j| self.damping * e[i] * e[j]);
     }
 
     fn is_nonlinear(&self) -> bool {
@@ -289,7 +316,7 @@ impl Force for SpringForce {
     }
 
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        0.5 * self.stiffness * (self.length(u).0 - self.length).powi(2)
+        0.5 * self.stiffness * (self.line.length(u).0 - self.line.length).powi(2)
     }
 
     fn reservoir(&self) -> Reservoir {
@@ -297,6 +324,51 @@ impl Force for SpringForce {
     }
 
     fn couplings(&self) -> Vec<[usize; 2]> {
-        vec![self.nodes]
+        vec![self.line.nodes]
+    }
+}
+
+impl Force for Actuator {
+    fn add_forces(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let Stretch { length, direction, .. } = self.line.stretch(u, v);
+        self.line.check_length(t, length)?;
+        let force = signal::sum(&self.force, t);
+        finite_at(t, format_args!("the actuation of spring \"{}\"", self.line.name), force)?;
+        self.line.add(force, &direction, &mut forces.applied);
+        Ok(())
+    }
+
+    fn add_tangents(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        _damping: &mut BlockMatrix,
+    ) {
+        let (stretch, force) = (self.line.stretch(u, v), signal::sum(&self.force, t));
+        self.line.add_tangent(stiffness, |i, j| stretch.turn(force, i, j));
+    }
+
+    fn is_nonlinear(&self) -> bool {
+        true
+    }
+
+    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
+        0.0
+    }
+
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::None
+    }
+
+    fn couplings(&self) -> Vec<[usize; 2]> {
+        vec![self.line.nodes]
     }
 }

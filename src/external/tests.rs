@@ -83,14 +83,17 @@ fn springs() {
     for dimension in 1..=3 {
         let mesh = bar(dimension);
         let spring = Spring::between([3], [1]).named("s").stiffness(20.0).length(1.2).damping(3.0);
+        let force = spring.force(&mesh).unwrap();
         let actuation = vec![Signal::Constant(-2.0), Signal::function(|t| 5.0 * t)];
-        let force = spring.force(&mesh, actuation).unwrap();
+        let actuator = spring.actuator(&mesh, actuation).unwrap();
         for seed in [1.0, 2.0, 3.0] {
             let n = 3 * dimension;
             let (u, v) = (noise(n, 0.3, seed), noise(n, 2.0, 10.0 * seed));
             assert!(check(&force, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
+            check(&actuator, (dimension, &[]), 0.7, &u, &v, 1e-8);
             // what the spring does not touch feels nothing, and action is reaction
-            let forces = nodal_forces(&force, 0.7, &u, &v);
+            let mut forces = nodal_forces(&force, 0.7, &u, &v);
+            actuator.add_forces(0.7, &u, &v, &mut forces).unwrap();
             for part in [&forces.conservative, &forces.dissipative, &forces.applied] {
                 for i in 0..dimension {
                     assert_eq!(part[dimension + i], 0.0);
@@ -106,9 +109,12 @@ fn springs() {
 #[test]
 fn a_spring_pulls_its_second_end_back() {
     let spring = Spring::between([1], [3]).stiffness(20.0).length(1.5).damping(3.0);
-    let force = spring.force(&bar(1), vec![Signal::Constant(0.25)]).unwrap();
+    let force = spring.force(&bar(1)).unwrap();
     // from 1.6 m to 1.7 m, at 2 m/s
-    let forces = nodal_forces(&force, 0.0, &[0.1, 0.0, 0.2], &[1.0, 0.0, 3.0]);
+    let (u, v) = ([0.1, 0.0, 0.2], [1.0, 0.0, 3.0]);
+    let mut forces = nodal_forces(&force, 0.0, &u, &v);
+    let actuator = spring.actuator(&bar(1), vec![Signal::Constant(0.25)]).unwrap();
+    actuator.add_forces(0.0, &u, &v, &mut forces).unwrap();
     for (part, expected) in
         [(forces.conservative, -4.0), (forces.dissipative, -6.0), (forces.applied, 0.25)]
     {

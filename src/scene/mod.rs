@@ -12,7 +12,10 @@ pub use phase::Phase;
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
 use crate::external::{Chamber, Contact, Obstacle, Spring};
+use crate::force::NodalForces;
 use crate::input::{InputError, finite};
+use crate::ode::Failure;
+use crate::vector::largest;
 
 /// A body, gravity, springs, chambers, obstacles, and what happens when.
 ///
@@ -190,17 +193,47 @@ impl Scene {
     ///
     /// # Errors
     /// The first input that cannot be used: no phases, phases out of order, unknown nodes, springs,
-    /// chambers or obstacles, numbers out of range, constraints that contradict each other.
+    /// chambers or obstacles, numbers out of range, constraints that contradict each other, initial
+    /// displacements in which a force has no meaning (an inverted cell of Green strain).
     pub fn validate(&self) -> Result<(), InputError> {
-        self.forces().map(|_| ())
+        self.forces_from_start().map(|_| ())
+    }
+
+    /// The [`forces`](Self::forces) of each phase, if those of the first one have a meaning at t = 0.
+    pub(crate) fn forces_from_start(&self) -> Result<Vec<Forces>, InputError> {
+        let forces = self.forces()?;
+        let [u, v] = self.start();
+        let mut nodal = NodalForces::zeros(self.body.dofs());
+        let mut first = forces.iter().take(1).flatten();
+        match first.try_for_each(|force| force.add_forces(0.0, u, v, &mut nodal)) {
+            Ok(()) => Ok(forces),
+            Err(failure) => Err(self.bad_start(failure)),
+        }
+    }
+
+    /// A force that has no meaning at t = 0.
+    pub(crate) fn bad_start(&self, failure: Failure) -> InputError {
+        match failure {
+            Failure::Recoverable(reason) => {
+                let displacement = format!("up to {:e} m", largest(&self.start[0]));
+                InputError::new("initial displacement", displacement, reason)
+            }
+            Failure::Fatal(error) => {
+                InputError::new("start of the first phase", "t = 0 s", error.to_string())
+            }
+        }
+    }
+
+    /// The phase that a run begins with.
+    pub(crate) fn first_phase(&self) -> Result<&Phase, InputError> {
+        let none = || InputError::new("number of phases", 0, "a scene needs one phase at least");
+        self.phases.first().ok_or_else(none)
     }
 
     /// The forces of each phase, all but those of constant matrices, after the checks of
-    /// [`validate`](Self::validate).
+    /// [`validate`](Self::validate), but for those of the initial state.
     pub(crate) fn forces(&self) -> Result<Vec<Forces>, InputError> {
-        if self.phases.is_empty() {
-            return Err(InputError::new("number of phases", 0, "a scene needs one phase at least"));
-        }
+        self.first_phase()?;
         for (name, vector) in
             ["initial displacement", "initial velocity"].into_iter().zip(&self.start)
         {

@@ -20,7 +20,7 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
         let [first, second] = &list[..] else { return Err(value.unexpected("two ends")) };
         let ends = [selection(first, body.mesh())?, selection(second, body.mesh())?];
         let spring = Spring::between(ends[0].clone(), ends[1].clone()).named(name);
-        spring.force(body.mesh(), Vec::new()).map_err(|error| value.error(error))?;
+        spring.force(body.mesh()).map_err(|error| value.error(error))?;
         Ok(spring)
     })?;
     if let Some(k) = table.optional("stiffness", "the stiffness (N/m)", Value::number)? {
@@ -32,7 +32,7 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
     if let Some(c) = table.optional("damping", "the damping (N s/m)", Value::number)? {
         spring = spring.damping(c);
     }
-    spring.force(body.mesh(), Vec::new()).map_err(|error| table.blame(error))?;
+    spring.force(body.mesh()).map_err(|error| table.blame(error))?;
     Ok(scene.spring(spring))
 }
 

@@ -52,7 +52,15 @@ impl Sampling {
     fn validate(&self, end: f64) -> Result<(), InputError> {
         match &self.0 {
             Times::PhaseEnds => Ok(()),
-            Times::Every(step) => positive("sampling step", *step, "s").map(|_| ()),
+            Times::Every(step) => {
+                positive("sampling step", *step, "s")?;
+                if *step < LEAST_STEP * end {
+                    let mend =
+                        format!("double precision does not tell such times apart up to {end} s");
+                    return Err(InputError::new("sampling step", step, mend));
+                }
+                Ok(())
+            }
             Times::At(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
                 Some(t) => {
                     let mend = format!("samples lie between 0 and the end of the scene, {end} s");
@@ -87,6 +95,9 @@ impl Sampling {
         Schedule { inner, count, end }
     }
 }
+
+/// Least time between samples, as a part of the whole time: a thousand units of round-off.
+const LEAST_STEP: f64 = 2e-13;
 
 /// The sampling times of a phase, of which there may be more than fit in memory.
 struct Schedule {
@@ -178,9 +189,9 @@ impl Scene {
     ) -> Result<Trajectory, Error> {
         let clock = Instant::now();
         solver.validate()?;
-        let forces = self.forces()?;
+        let forces = self.forces_from_start()?;
         sampling.validate(self.end())?;
-        Run::new(self, solver, clock).all(forces, sampling, &mut observer)
+        Run::all(self, solver, clock, forces, sampling, &mut observer)
     }
 }
 

@@ -11,12 +11,10 @@ use super::{Sampling, Schedule};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
 use crate::ode::Failure;
-use crate::report::Counts;
-use crate::report::{PhaseReport, Report};
+use crate::report::{Counts, PhaseReport, Report, creation};
 use crate::scene::{Forces, Phase, Scene};
-use crate::settings::Tolerances;
-use crate::settings::{Method, Settings};
-use crate::system::{ENERGIES, System};
+use crate::settings::{Method, Settings, Tolerances};
+use crate::system::{ENERGIES, Energy, System};
 use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// A scene on its way.
@@ -36,6 +34,9 @@ pub(super) struct Run<'a> {
     trajectory: Trajectory,
     /// Where the energy balance last was in order.
     good: Checkpoint,
+    /// Energy balance (J) that methods are judged by: that of the start or, once a phase has ended with one
+    /// that was not in order, of the next one, which is not to blame for that.
+    balance: f64,
     /// Energies below this (J) are too small to be watched.
     least_energy: f64,
 }
@@ -93,67 +94,83 @@ struct Leg<'a> {
 }
 
 impl<'a> Run<'a> {
-    pub(super) fn new(scene: &'a Scene, solver: &'a Settings, clock: Instant) -> Self {
+    /// Runs `scene` under the `forces` of its phases.
+    pub(super) fn all(
+        scene: &'a Scene,
+        solver: &'a Settings,
+        clock: Instant,
+        forces: Vec<Forces>,
+        sampling: &Sampling,
+        observer: Observer,
+    ) -> Result<Trajectory, Error> {
+        let n = scene.body().dofs();
+        let model = scene.model(&forces);
+        let mut forces = forces.into_iter();
+        let mut equations = |phase: &Phase, time: f64, u: &[f64]| {
+            let forces = forces.next().unwrap_or_default();
+            scene.system(&model, phase, forces, &Start { time, u }, solver.alpha)
+        };
+        let mut system = equations(scene.first_phase()?, 0.0, scene.start()[0])?;
+        let mut run = Self::new(scene, solver, clock, &mut system)?;
+        for (number, phase) in scene.phases().iter().enumerate() {
+            if number > 0 {
+                let mut u = run.state[..n].to_vec();
+                tell(system.rows(), run.time, &mut u);
+                let next = equations(phase, run.time, &u)?;
+                // an obstacle that begins or ceases to act with nodes inside it changes what is stored:
+                // that comes from outside
+                let [before, after] =
+                    [&system, &next].map(|system| energy(system, run.time, &run.state).balance());
+                run.state[2 * n + 1] += after - before;
+                system = next;
+                project(solver, phase, &mut system, run.time, &mut run.state);
+            }
+            system = match run.phase(number, phase, system, sampling, observer) {
+                Ok(system) => system,
+                Err((source, step)) => return Err(run.failure(phase, source, step)),
+            };
+        }
+        Ok(run.trajectory)
+    }
+
+    /// A run at its start, which `system` is sampled at.
+    fn new(
+        scene: &'a Scene,
+        solver: &'a Settings,
+        clock: Instant,
+        system: &mut System,
+    ) -> Result<Self, Error> {
+        let mut state = [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat();
+        project(solver, scene.first_phase()?, system, 0.0, &mut state);
+        let first = sample(0, system, 0.0, &state).map_err(|failure| scene.bad_start(failure))?;
+        if !first.energy.balance().is_finite() {
+            let reason = "the energies are beyond the range of double precision";
+            return Err(scene.bad_start(Failure::Recoverable(reason.into())).into());
+        }
         let report = Report {
             method: solver.method,
             rtol: solver.rtol,
             alpha: solver.alpha,
             ..Report::default()
         };
-        Self {
+        Ok(Self {
             scene,
             solver,
             atol: solver.tolerances(scene.body()),
             clock,
             time: 0.0,
-            state: [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat(),
+            state,
             steps: 0,
             standing: 0,
-            trajectory: Trajectory::new(scene, report),
             good: Checkpoint::default(),
+            balance: first.energy.balance(),
+            trajectory: Trajectory::new(scene, report, first),
             // that of strains of a thousandth
             least_energy: 1e-6 * scene.body().material().young * scene.body().volume(),
-        }
+        })
     }
 
-    pub(super) fn all(
-        mut self,
-        forces: Vec<Forces>,
-        sampling: &Sampling,
-        observer: Observer,
-    ) -> Result<Trajectory, Error> {
-        let n = self.scene.body().dofs();
-        let model = self.scene.model(&forces);
-        let mut rows = Vec::new();
-        for (number, (phase, forces)) in self.scene.phases().iter().zip(forces).enumerate() {
-            let mut u = self.state[..n].to_vec();
-            tell(&rows, self.time, &mut u);
-            let start = Start { time: self.time, u: &u };
-            let mut system = self.scene.system(&model, phase, forces, &start, self.solver.alpha)?;
-            rows = system.rows().to_vec();
-            // an equation for velocities allows no others
-            if phase.projects_velocity || self.solver.method == Method::IdaIndexTwo {
-                self.project(&mut system);
-            }
-            if let Err((source, step)) = self.phase(number, phase, system, sampling, observer) {
-                return Err(self.failure(phase, source, step));
-            }
-        }
-        Ok(self.trajectory)
-    }
-
-    /// Projects the velocities on those that the constraints allow. What that takes from the kinetic
-    /// energy, or gives to it, is supplied by the constraints.
-    fn project(&mut self, system: &mut System) {
-        let n = system.dofs();
-        let (u, rest) = self.state.split_at_mut(n);
-        let (v, energies) = rest.split_at_mut(n);
-        let before = system.energy(self.time, u, v).kinetic;
-        system.project(self.time, v);
-        energies[1] += system.energy(self.time, u, v).kinetic - before;
-    }
-
-    /// Integrates one phase to its end.
+    /// Integrates one phase to its end, and gives its equations back.
     fn phase(
         &mut self,
         number: usize,
@@ -161,12 +178,8 @@ impl<'a> Run<'a> {
         mut system: System,
         sampling: &Sampling,
         observer: Observer,
-    ) -> Result<(), (Failed, f64)> {
+    ) -> Result<System, (Failed, f64)> {
         let clock = Instant::now();
-        if number == 0 {
-            let state = self.state.clone();
-            self.sample(number, &mut system, 0.0, &state).map_err(|source| (source, 0.0))?;
-        }
         let times = sampling.within(self.time, phase.until);
         let mut plan = Plan::new(self.solver, &mut system, self.time, &self.state);
         let (steps, mut events) = (self.solver.max_steps, Events::default());
@@ -176,6 +189,10 @@ impl<'a> Run<'a> {
         let mut stops = self.scene.breaks(number);
         stops.push(phase.until);
         stops.reverse();
+        let balance = energy(&system, self.time, &self.state).balance();
+        if self.created(balance).is_some() {
+            self.balance = balance;
+        }
         self.remember(&leg);
         let mut ended = Ok(Ending::Reached);
         let result = loop {
@@ -211,8 +228,8 @@ impl<'a> Run<'a> {
         };
         if result.is_err() && self.time > self.trajectory.last().time {
             // the state that the last step led to, unless the equations have no meaning there
-            let state = self.state.clone();
-            let _ = self.sample(number, &mut system, self.time, &state);
+            let last = sample(number, &mut system, self.time, &self.state);
+            last.into_iter().for_each(|sample| self.trajectory.push(sample));
         }
         counts.contact_events = leg.events.count;
         if plan.reason.is_some() && plan.solver.method == Method::Rk {
@@ -232,7 +249,7 @@ impl<'a> Run<'a> {
             reason: plan.reason,
             counts,
         });
-        result.map_err(|source| (source, step))
+        result.map(|()| system).map_err(|source| (source, step))
     }
 
     /// Integrates to the end of a leg, unless the energy balance casts doubt on a method that can be
@@ -258,9 +275,10 @@ impl<'a> Run<'a> {
                 Outcome::Refused(t) => return Ok(Ending::Passage(t)),
             };
             if self.steps.is_multiple_of(WATCH) || self.time >= leg.stop {
-                self.watch(stepper.system_mut());
+                let energy = energy(stepper.system(), self.time, &self.state);
+                self.trajectory.watch(&energy);
                 if plan.is_on_trial() {
-                    let created = self.trajectory.report.creation(self.least_energy);
+                    let created = self.created(energy.balance());
                     match created.and_then(|trouble| plan.instead(&trouble)) {
                         Some(instead) => return Ok(Ending::Doubtful { instead }),
                         None => self.remember(leg),
@@ -283,6 +301,12 @@ impl<'a> Run<'a> {
         Ok(Ending::Reached)
     }
 
+    /// What the methods have created if the energy balance is now `balance` (J), if it is too much.
+    fn created(&self, balance: f64) -> Option<String> {
+        let scale = self.trajectory.report.energy_scale.max(self.least_energy);
+        creation(balance - self.balance, scale)
+    }
+
     /// Keeps the present state to go back to.
     fn remember(&mut self, leg: &Leg) {
         let Report { energy_error, energy_created, energy_scale, .. } = self.trajectory.report;
@@ -299,15 +323,6 @@ impl<'a> Run<'a> {
         (self.time, leg.taken, self.standing) = (time, taken, 0);
         self.state.clone_from(state);
         self.trajectory.go_back(samples, energies);
-    }
-
-    /// Looks at the energy balance.
-    fn watch(&mut self, system: &mut System) {
-        let n = system.dofs();
-        let (u, v) = (&self.state[..n], &self.state[n..2 * n]);
-        let mut energy = system.energy(self.time, u, v);
-        (energy.dissipated, energy.supplied) = (self.state[2 * n], self.state[2 * n + 1]);
-        self.trajectory.watch(&energy);
     }
 
     /// Takes one step, up to the first contact event within it, and the samples there are.
@@ -337,7 +352,8 @@ impl<'a> Run<'a> {
         while let Some(t) = leg.times.get(leg.taken).filter(|&t| t <= time) {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
-            self.sample(leg.number, stepper.system_mut(), t, sample)?;
+            let taken = self::sample(leg.number, stepper.system_mut(), t, sample);
+            self.trajectory.push(taken.map_err(Failure::into_error)?);
         }
         let (system, arrived) = arrival(stepper, event, sample)?;
         let step = time - self.time;
@@ -362,32 +378,6 @@ impl<'a> Run<'a> {
         if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
     }
 
-    /// Records `state` = (u, v, energies, ...) at `time`.
-    fn sample(
-        &mut self,
-        phase: usize,
-        system: &mut System,
-        time: f64,
-        state: &[f64],
-    ) -> Result<(), Failed> {
-        let n = system.dofs();
-        let (u, v) = (&state[..n], &state[n..2 * n]);
-        let multipliers = system.multipliers(time, u, v).map_err(Failure::into_error)?.to_vec();
-        let mut energy = system.energy(time, u, v);
-        energy.dissipated = state[2 * n];
-        energy.supplied = state[2 * n + 1];
-        self.trajectory.push(Sample {
-            time,
-            phase,
-            u: u.to_vec(),
-            v: v.to_vec(),
-            multipliers,
-            energy,
-            constraint_drift: system.drift(time, u),
-        });
-        Ok(())
-    }
-
     fn failure(self, phase: &Phase, source: Failed, step: f64) -> Error {
         Box::new(IntegrationFailure {
             phase: phase.name.clone(),
@@ -410,4 +400,37 @@ fn arrival<'s>(
     let Some(t) = event else { return Ok((stepper.system(), stepper.state())) };
     stepper.interpolate(t, sample)?;
     Ok((stepper.system(), sample))
+}
+
+/// The sample of `state` = (u, v, energies, ...) at `time`.
+fn sample(phase: usize, system: &mut System, time: f64, state: &[f64]) -> Result<Sample, Failure> {
+    let n = system.dofs();
+    let (u, v) = (&state[..n], &state[n..2 * n]);
+    let multipliers = system.multipliers(time, u, v)?.to_vec();
+    let energy = energy(system, time, state);
+    let constraint_drift = system.drift(time, u);
+    Ok(Sample { time, phase, u: u.to_vec(), v: v.to_vec(), multipliers, energy, constraint_drift })
+}
+
+/// Energies of `state` = (u, v, energies, ...) at `time`.
+fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
+    let n = system.dofs();
+    let (u, v) = (&state[..n], &state[n..2 * n]);
+    let (dissipated, supplied) = (state[2 * n], state[2 * n + 1]);
+    Energy { dissipated, supplied, ..system.energy(time, u, v) }
+}
+
+/// Projects the velocities of `state` on those that the constraints allow, if the phase asks for that or
+/// the method has an equation for velocities, which allows no others. What that takes from the kinetic
+/// energy, or gives to it, is supplied by the constraints.
+fn project(solver: &Settings, phase: &Phase, system: &mut System, time: f64, state: &mut [f64]) {
+    if !phase.projects_velocity && solver.method != Method::IdaIndexTwo {
+        return;
+    }
+    let n = system.dofs();
+    let (u, rest) = state.split_at_mut(n);
+    let (v, energies) = rest.split_at_mut(n);
+    let before = system.energy(time, u, v).kinetic;
+    system.project(time, v);
+    energies[1] += system.energy(time, u, v).kinetic - before;
 }

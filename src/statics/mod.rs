@@ -8,12 +8,15 @@
 //! | Green strain, contact, springs, ... | least U - W under A^T u = b | Newton's method with the exact tangent and a line search on the energy |
 //!
 //! Where the tangent is indefinite, a multiple of M is added to it until it is not, so that the
-//! search goes on downhill. If it does not converge, the constraints, gravity and the loads are
-//! brought on in smaller and smaller steps.
+//! search goes on downhill. If it does not converge, what moves and loads the body is brought on in smaller
+//! and smaller steps: constraints and obstacles along their way; gravity, loads, pressure and the forces
+//! of actuators by a factor. Obstacles in motion count as standing where they are: nothing is dragged
+//! along.
 
 mod newton;
 mod rigid;
 
+use std::ops::RangeInclusive;
 use std::time::Instant;
 
 use newton::{Search, Stuck};
@@ -21,7 +24,7 @@ use newton::{Search, Stuck};
 use crate::constraint::Start;
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
-use crate::input::{InputError, positive};
+use crate::input::InputError;
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::system::{AtRest, Energy};
@@ -31,14 +34,14 @@ use crate::trajectory::{Sample, Trajectory};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statics {
     /// Forces are in balance when none is left that is larger than this part of the largest one.
-    /// Default: 1e-10, some orders above round-off.
+    /// Default: 1e-10, some orders above round-off; 1e-14 to 1e-2.
     pub rtol: f64,
     /// Newton iterations in one load step. Default: 100; ten do unless the body has to move far.
     pub max_iterations: usize,
     /// Steps in which constraints and loads are brought on. Default: 1, everything at once; more
     /// of them when it converges to an equilibrium other than the one that a slow loading reaches.
     pub load_steps: usize,
-    /// Smallest load step, as a part of the whole load. Default: 1e-3.
+    /// Smallest load step, as a part of the whole load, at most 1. Default: 1e-3.
     pub min_load_step: f64,
 }
 
@@ -48,10 +51,21 @@ impl Default for Statics {
     }
 }
 
+/// Relative tolerances that can be meant: with larger ones a body that has not moved at all passes for one
+/// in balance.
+const RTOL: RangeInclusive<f64> = 1e-14..=1e-2;
+
 impl Statics {
     fn validate(&self) -> Result<(), InputError> {
-        positive("statics.rtol", self.rtol, "")?;
-        positive("statics.min_load_step", self.min_load_step, "")?;
+        if !RTOL.contains(&self.rtol) {
+            let [least, most] = [RTOL.start(), RTOL.end()];
+            let mend = format!("it must lie between {least:e}, near round-off, and {most:e}");
+            return Err(InputError::new("statics.rtol", self.rtol, mend));
+        }
+        if !(self.min_load_step > 0.0 && self.min_load_step <= 1.0) {
+            let mend = "it is a part of the whole load, above 0 and at most 1";
+            return Err(InputError::new("statics.min_load_step", self.min_load_step, mend));
+        }
         for (input, number) in [
             ("statics.max_iterations", self.max_iterations),
             ("statics.load_steps", self.load_steps),
@@ -88,7 +102,7 @@ impl Scene {
         statics.validate()?;
         let mut forces = self.forces()?;
         let model = self.model(&forces);
-        let phase = &self.phases()[0];
+        let phase = self.first_phase()?;
         let start = Start { time: 0.0, u: &vec![0.0; self.body().dofs()] };
         let system = self.system(&model, phase, forces.swap_remove(0), &start, 0.0)?;
         let free =
@@ -105,10 +119,10 @@ impl Scene {
         }
         let mut search = Search::new(rest, statics, self.body().mesh().size(), !free.is_empty());
         let result = search.all();
-        let mut trajectory = Trajectory::new(self, Report::default());
         let natural = vec![0.0; self.body().dofs()];
         let natural_energy = search.rest.energy(0.0, &natural);
-        trajectory.push(sample(0.0, &natural, &vec![0.0; search.mu.len()], natural_energy));
+        let first = sample(0.0, &natural, &vec![0.0; search.mu.len()], natural_energy);
+        let mut trajectory = Trajectory::new(self, Report::default(), first);
         if search.fraction > 0.0 {
             let mut energy = search.rest.energy(search.fraction, &search.u);
             energy.supplied = energy.balance() - natural_energy.balance();

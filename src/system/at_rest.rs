@@ -5,8 +5,11 @@
 //! [ -A^T 0 ] [ mu ] = [ -d ]
 //! ```
 //!
-//! with K = -df/du. Gravity and loads act with a fraction of their strength, so that they can be
-//! brought on little by little; the body, contacts and springs are what they are.
+//! with K = -df/du. What acts from outside is brought on little by little: gravity, loads, pressure and
+//! the forces of actuators by a fraction of their strength, obstacles in motion along their way. The
+//! body and its springs are what they are.
+
+use std::sync::Arc;
 
 use super::reduced::Source;
 use super::{System, nodal_multipliers};
@@ -22,7 +25,10 @@ use crate::vector::{dot, largest};
 pub(crate) struct AtRest {
     system: System,
     time: f64,
-    still: Vec<f64>,
+    still: Arc<[f64]>,
+    /// Velocities of the nodes for each of the forces: those of an obstacle in motion, so that it drags
+    /// nothing along and no damper acts, as if it stood where it is.
+    velocities: Vec<Arc<[f64]>>,
     nodal: NodalForces,
     factorizations: usize,
 }
@@ -97,9 +103,15 @@ impl AtRest {
                 "it must give finite numbers",
             ));
         }
-        let dofs = system.dofs();
-        let (still, nodal) = (vec![0.0; dofs], NodalForces::zeros(dofs));
-        Ok(Self { system, time, still, nodal, factorizations: 0 })
+        let (dofs, dimension) = (system.dofs(), system.model.dimension);
+        let still: Arc<[f64]> = vec![0.0; dofs].into();
+        let with = |force: &Arc<dyn Force>| match force.velocity() {
+            None => still.clone(),
+            Some(w) => (0..dofs).map(|dof| w[dof % dimension]).collect(),
+        };
+        let velocities = system.forces.iter().map(with).collect();
+        let nodal = NodalForces::zeros(dofs);
+        Ok(Self { system, time, still, velocities, nodal, factorizations: 0 })
     }
 
     pub(crate) fn system(&self) -> &System {
@@ -116,9 +128,9 @@ impl AtRest {
         self.system.forces.iter().all(|force| !force.is_nonlinear())
     }
 
-    /// Potential energies with a fraction of gravity.
+    /// Potential energies with a fraction of gravity and of the way of obstacles.
     pub(crate) fn energy(&self, fraction: f64, u: &[f64]) -> Energy {
-        let energy = self.system.energy(self.time, u, &self.still);
+        let energy = self.system.energy(fraction * self.time, u, &self.still);
         Energy { gravity: fraction * energy.gravity, ..energy }
     }
 
@@ -135,7 +147,7 @@ impl AtRest {
         }
     }
 
-    /// Evaluates the forces at `u` with a fraction of gravity and loads.
+    /// Evaluates the forces at `u` at a fraction of the load.
     pub(crate) fn evaluate(
         &mut self,
         fraction: f64,
@@ -149,14 +161,15 @@ impl AtRest {
             at.add(&self.nodal, 1.0, true);
             at.add_potential(-0.5 * dot(u, &self.nodal.conservative));
         }
-        for force in &self.system.forces {
+        for (force, v) in self.system.forces.iter().zip(&self.velocities) {
             self.nodal.clear();
-            force.add_forces(self.time, u, &self.still, &mut self.nodal)?;
+            let time = when(&**force, fraction, self.time);
             let share = if is_load(&**force) { fraction } else { 1.0 };
+            force.add_forces(time, u, v, &mut self.nodal)?;
             let bound = force.reservoir() != Reservoir::None;
             at.add(&self.nodal, share, bound);
             if bound {
-                at.add_potential(share * force.potential(self.time, u));
+                at.add_potential(share * force.potential(time, u));
             }
         }
         Ok(())
@@ -167,10 +180,12 @@ impl AtRest {
         let newton = &mut self.system.newton;
         let own = (newton.stiffness.begin(&None), newton.damping.begin(&None));
         let (Some(stiffness), Some(damping)) = own else { return };
-        let (time, still) = (self.time, &self.still);
         let mut add = |loads: bool, stiffness: &mut BlockMatrix| {
-            for force in self.system.forces.iter().filter(|force| is_load(&***force) == loads) {
-                force.add_tangents(time, u, still, stiffness, damping);
+            for (force, v) in self.system.forces.iter().zip(&self.velocities) {
+                if is_load(&**force) == loads {
+                    let time = when(&**force, fraction, self.time);
+                    force.add_tangents(time, u, v, stiffness, damping);
+                }
             }
         };
         add(true, stiffness);
@@ -260,20 +275,27 @@ pub(super) fn shifted(
 /// Bound on inverse iterations: enough for six digits even of close pairs of eigenvalues.
 const ITERATIONS: usize = 300;
 
-/// Whether a force is brought on by fractions.
+/// The time (s) up to the end `time` at which a force acts at a `fraction` of the load: an obstacle in
+/// motion has come so far on its way.
+fn when(force: &dyn Force, fraction: f64, time: f64) -> f64 {
+    if force.reservoir() == Reservoir::Contact { fraction * time } else { time }
+}
+
+/// Whether a force is brought on by fractions of its strength.
 fn is_load(force: &dyn Force) -> bool {
     matches!(force.reservoir(), Reservoir::Gravity | Reservoir::None)
 }
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
     use crate::body::{Body, Strain};
-    use crate::mesh::Mesh;
+    use crate::constraint::Start;
+    use crate::external::{Chamber, Obstacle, Spring};
+    use crate::mesh::{Cells, Mesh};
     use crate::model::Model;
-    use crate::samples::BEAM_MATERIAL;
+    use crate::samples::{BEAM_MATERIAL, SQUARE_MATERIAL};
+    use crate::scene::{Phase, Scene};
 
     /// A load on the last of three nodes that grows with the square of its displacement.
     struct Growing;
@@ -350,6 +372,77 @@ mod tests {
                     // forces of 1 N, known to 1e-16, over 1e-6 m; stiffness 200 N/m
                     assert!((k - slope).abs() < 1e-6, "{strain:?} ({i}, {j}): {k} {slope}");
                 }
+            }
+        }
+    }
+
+    /// A square between a spring, a chamber and an obstacle on its way, with everything from outside by a
+    /// factor; the equations of its only phase.
+    fn all_at_once(factor: f64) -> AtRest {
+        let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+        let body = body.point_mass("bob", [0.5, 0.4], 0.1).build().unwrap();
+        // it comes down by 3 cm, by a factor less than that
+        let disc = Obstacle::disc([0.1, 0.38], 0.1).velocity([0.01 * factor, -0.03 * factor]);
+        let phase = Phase::until(1.0)
+            .hold("bottom")
+            .load([16], [2.0 * factor, -1.0 * factor])
+            .load_total("right", [0.0, 3.0 * factor])
+            .load_with("left", move |t| [factor * t, 0.0])
+            .load_table("top", [0.0, 2.0], [[0.0, 0.0], [4.0 * factor, 0.0]])
+            .actuate(["A1"], -2.0 * factor)
+            .actuate_with(["A1"], move |t| 0.5 * factor * t)
+            .pressure("cell", 2e3 * factor);
+        let scene = Scene::new(body)
+            .gravity([1.0 * factor, -9.8 * factor])
+            .spring(Spring::between([16], "bob").named("A1").stiffness(20.0).damping(5.0))
+            .chamber(Chamber::within("cell", [6, 7, 11, 10]))
+            .obstacle(disc.stiffness(100.0).damping(50.0).friction(20.0))
+            .phase(phase.clone());
+        let forces = scene.forces().unwrap();
+        let (model, start) = (scene.model(&forces), vec![0.0; scene.body().dofs()]);
+        let start = Start { time: 0.0, u: &start };
+        let forces = forces.into_iter().next().unwrap();
+        let system = scene.system(&model, &phase, forces, &start, 0.0).unwrap();
+        AtRest::new(system, 1.0, "test").unwrap()
+    }
+
+    /// A part of the load is what one gets who makes all of it smaller by hand: forces, their energy and
+    /// their tangents, which are the derivatives of the forces.
+    #[test]
+    fn a_part_of_the_load_is_the_load_made_smaller() {
+        let part = 0.3;
+        let (mut rest, mut smaller) = (all_at_once(1.0), all_at_once(part));
+        let dofs = rest.system.dofs();
+        let u: Vec<f64> = (0..dofs).map(|i| 0.01 * (i as f64 * 1.7 + 0.3).sin()).collect();
+        let evaluate = |rest: &mut AtRest, part: f64, u: &[f64]| {
+            let mut balance = Balance::zeros(dofs);
+            rest.evaluate(part, u, &mut balance).unwrap();
+            balance
+        };
+        let (found, expected) = (evaluate(&mut rest, part, &u), evaluate(&mut smaller, 1.0, &u));
+        assert!(rest.energy(part, &u).contact > 1e-3, "the obstacle touches");
+        rest.update_tangent(part, &u);
+        let k = rest.system.tangents().0;
+        for i in 0..dofs {
+            // round-off of forces up to 1 kN
+            assert!((found.total[i] - expected.total[i]).abs() < 1e-11, "{i}");
+            assert!((found.unbound[i] - expected.unbound[i]).abs() < 1e-11, "{i}");
+        }
+        assert!((found.potential - expected.potential).abs() < 1e-11);
+        let h = 1e-6;
+        for j in 0..dofs {
+            let at = |by: f64| {
+                let mut moved = u.clone();
+                moved[j] += by;
+                evaluate(&mut all_at_once(1.0), part, &moved).total
+            };
+            let (ahead, behind) = (at(h), at(-h));
+            for i in 0..dofs {
+                let slope = (behind[i] - ahead[i]) / (2.0 * h);
+                // central differences of forces of 1 kN that change over 0.1 m: 1e3 h^2/0.1^3, and
+                // round-off, 1e-13/h
+                assert!((k.get(i, j) - slope).abs() < 1e-4, "({i}, {j}): {} {slope}", k.get(i, j));
             }
         }
     }

@@ -35,6 +35,7 @@ impl Scene {
     /// # Errors
     /// As [`validate`](Self::validate).
     pub fn summary(&self) -> Result<Vec<PhaseSummary>, InputError> {
+        self.validate()?;
         let spectra = self.spectrum()?;
         let starts = [0.0].into_iter().chain(self.phases().iter().map(Phase::end));
         let phases = self.phases().iter().zip(starts).zip(spectra);

@@ -253,5 +253,5 @@ fn a_row_that_follows_from_others_is_named() {
     let Err(error) = first_phase(&scene, &start) else { panic!("accepted") };
     let message = error.to_string();
     assert!(message.contains("pull") && message.contains("node 6 x + node 7 x"), "{message}");
-    assert!(message.contains("follow from the other constraints"), "{message}");
+    assert!(message.contains("follows from the other constraints"), "{message}");
 }

@@ -108,9 +108,6 @@ impl Directory {
         title: &str,
         output: &OutputRequest,
     ) -> Result<(), Failure> {
-        if trajectory.samples().is_empty() {
-            return Ok(()); // the run failed before its first state
-        }
         for format in &output.formats {
             match format {
                 Format::Svg => self.write("snapshots.svg", |path| {
