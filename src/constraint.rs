@@ -4,11 +4,13 @@
 //! general linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0
 //! (Hirai (4.1.3)); the equations are those of `system`.
 
+mod prescribed;
 mod spline;
 
 use std::fmt;
 use std::sync::Arc;
 
+pub use prescribed::{Path, Prescribed};
 pub(crate) use spline::Spline;
 
 use crate::input::InputError;
@@ -36,20 +38,6 @@ impl Axis {
         &[Self::X, Self::Y, Self::Z][..dimension]
     }
 }
-
-/// A prescribed displacement at one instant: b, b' and b''.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Prescribed {
-    /// Displacement from the natural position (m).
-    pub displacement: f64,
-    /// Its first derivative (m/s).
-    pub velocity: f64,
-    /// Its second derivative (m/s^2).
-    pub acceleration: f64,
-}
-
-/// A prescribed displacement as a smooth function of time (s).
-pub type Path = Arc<dyn Fn(f64) -> Prescribed + Send + Sync>;
 
 /// A constraint as the user of a phase says it.
 #[derive(Clone, Debug)]

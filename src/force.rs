@@ -1,6 +1,7 @@
 //! Nodal forces, and the trait of what exerts them.
 
 use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
 
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -225,3 +226,6 @@ pub trait Force: Send + Sync {
         Vec::new()
     }
 }
+
+/// The forces that act in one phase.
+pub(crate) type Forces = Vec<Arc<dyn Force>>;

@@ -78,20 +78,6 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Gives a name to a set of nodes, to be used in selections. A set of that name is replaced.
-    ///
-    /// # Errors
-    /// A node that does not exist, an empty selection.
-    pub fn name_nodes(
-        mut self,
-        name: impl Into<String>,
-        nodes: impl Into<Selection>,
-    ) -> Result<Self, InputError> {
-        let nodes = self.select(&nodes.into())?;
-        self.sets.insert(name.into(), nodes);
-        Ok(self)
-    }
-
     /// Adds a node that belongs to no cell, alone in the node set `name`.
     pub(crate) fn push_node(&mut self, name: &str, position: &[f64]) -> Result<(), InputError> {
         if position.len() != self.dimension {

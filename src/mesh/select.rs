@@ -78,6 +78,20 @@ impl Mesh {
         Ok(nodes)
     }
 
+    /// Gives a name to a set of nodes, to be used in selections. A set of that name is replaced.
+    ///
+    /// # Errors
+    /// A node that does not exist, an empty selection.
+    pub fn name_nodes(
+        mut self,
+        name: impl Into<String>,
+        nodes: impl Into<Selection>,
+    ) -> Result<Self, InputError> {
+        let nodes = self.select(&nodes.into())?;
+        self.sets.insert(name.into(), nodes);
+        Ok(self)
+    }
+
     fn by_number(&self, numbers: &[usize]) -> Result<Vec<usize>, InputError> {
         let count = self.node_count();
         let mut seen = vec![false; count];

@@ -5,11 +5,8 @@ use std::sync::Arc;
 use super::phase::{Load as PhaseLoad, check_vector, find};
 use super::{Phase, Scene};
 use crate::external::{Chamber, Contact, Gravity, Load, Signal, Spring, VaryingLoad};
-use crate::force::Force;
+use crate::force::Forces;
 use crate::input::{InputError, finite};
-
-/// The forces that act in one phase.
-pub(crate) type Forces = Vec<Arc<dyn Force>>;
 
 impl Scene {
     /// The forces in one phase, all but those of constant matrices.

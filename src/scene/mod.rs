@@ -6,13 +6,12 @@ mod phase;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-pub(crate) use forces::Forces;
 pub use phase::Phase;
 
 use crate::body::Body;
 use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
 use crate::external::{Chamber, Contact, Obstacle, Spring};
-use crate::force::NodalForces;
+use crate::force::{Forces, NodalForces};
 use crate::input::{InputError, finite};
 use crate::ode::Failure;
 use crate::vector::largest;

@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::ops::Range;
 
 use toml::Spanned;
-use toml::de::{DeString, DeTable};
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::nearest::{list, unknown};
 use super::source::Source;
@@ -128,6 +128,42 @@ impl<'a> Table<'a> {
         let Some(entries) = found.entries() else { return Some(found) };
         let Value { source, key, at, .. } = found.clone();
         Table { source, key, at, entries }.culprit(input).or(Some(found))
+    }
+}
+
+impl<'a> Value<'a> {
+    /// A table with the keys `known`.
+    pub(super) fn table(&self, known: &[&str]) -> Result<Table<'a>, Error> {
+        let DeValue::Table(entries) = self.value else {
+            return Err(self.unexpected("a table"));
+        };
+        Table::new(self.source, self.key.clone(), self.at.clone(), entries, known)
+    }
+
+    /// Tables with the keys `known`: a list of them, or one alone.
+    pub(super) fn tables(&self, known: &[&str]) -> Result<Vec<Table<'a>>, Error> {
+        self.one_or_more()?.iter().map(|value| value.table(known)).collect()
+    }
+
+    /// A table with a key `kind`, one of the words of `kinds`. Its other keys are those that come
+    /// with the kind and the `common` ones.
+    pub(super) fn table_of_kind<K: Copy>(
+        &self,
+        kinds: &[(&str, K, &[&str])],
+        common: &[&str],
+    ) -> Result<(K, Table<'a>), Error> {
+        let mut all = [&["kind"], common].concat();
+        for key in kinds.iter().flat_map(|(_, _, keys)| keys.iter()) {
+            if !all.contains(key) {
+                all.push(key);
+            }
+        }
+        let words: Vec<(&str, usize)> = kinds.iter().map(|(word, ..)| *word).zip(0..).collect();
+        let table = self.table(&all)?;
+        let chosen = table.required("kind", "the kind", |value| value.word(&words))?;
+        let (word, kind, keys) = kinds[chosen];
+        let table = table.restricted(&[&["kind"], keys, common].concat(), word)?;
+        Ok((kind, table))
     }
 }
 

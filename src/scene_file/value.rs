@@ -7,7 +7,6 @@ use toml::de::{DeTable, DeValue};
 
 use super::nearest::{list, unknown};
 use super::source::Source;
-use super::table::Table;
 use crate::error::Error;
 
 /// A value with all that an error about it needs.
@@ -155,40 +154,6 @@ impl<'a> Value<'a> {
         let expected = || format!("{}, one per dimension", number_of(dimension, "number"));
         let numbers = self.numbers()?;
         if numbers.len() == dimension { Ok(numbers) } else { Err(self.unexpected(expected())) }
-    }
-
-    /// A table with the keys `known`.
-    pub(super) fn table(&self, known: &[&str]) -> Result<Table<'a>, Error> {
-        let DeValue::Table(entries) = self.value else {
-            return Err(self.unexpected("a table"));
-        };
-        Table::new(self.source, self.key.clone(), self.at.clone(), entries, known)
-    }
-
-    /// Tables with the keys `known`: a list of them, or one alone.
-    pub(super) fn tables(&self, known: &[&str]) -> Result<Vec<Table<'a>>, Error> {
-        self.one_or_more()?.iter().map(|value| value.table(known)).collect()
-    }
-
-    /// A table with a key `kind`, one of the words of `kinds`. Its other keys are those that come
-    /// with the kind and the `common` ones.
-    pub(super) fn table_of_kind<K: Copy>(
-        &self,
-        kinds: &[(&str, K, &[&str])],
-        common: &[&str],
-    ) -> Result<(K, Table<'a>), Error> {
-        let mut all = [&["kind"], common].concat();
-        for key in kinds.iter().flat_map(|(_, _, keys)| keys.iter()) {
-            if !all.contains(key) {
-                all.push(key);
-            }
-        }
-        let words: Vec<(&str, usize)> = kinds.iter().map(|(word, ..)| *word).zip(0..).collect();
-        let table = self.table(&all)?;
-        let chosen = table.required("kind", "the kind", |value| value.word(&words))?;
-        let (word, kind, keys) = kinds[chosen];
-        let table = table.restricted(&[&["kind"], keys, common].concat(), word)?;
-        Ok((kind, table))
     }
 
     /// The entries, if the value is a table.

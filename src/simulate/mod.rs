@@ -5,6 +5,7 @@ mod events;
 mod failure;
 mod progress;
 mod run;
+mod sampling;
 mod stepper;
 
 use std::ops::ControlFlow;
@@ -12,122 +13,12 @@ use std::time::Instant;
 
 pub use progress::Progress;
 use run::Run;
+pub use sampling::Sampling;
 
 use crate::error::Error;
-use crate::input::{InputError, positive};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::trajectory::Trajectory;
-
-/// When the motion is sampled. The start and the end of each phase always are.
-///
-/// Samples come from the dense output of the integrator; they never shorten its steps.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sampling(Times);
-
-#[derive(Debug, Clone, PartialEq, Default)]
-enum Times {
-    #[default]
-    PhaseEnds,
-    Every(f64),
-    At(Vec<f64>),
-}
-
-impl Sampling {
-    /// At t = 0 and at the ends of the phases only.
-    pub fn phase_ends() -> Self {
-        Self(Times::PhaseEnds)
-    }
-
-    /// At all multiples of `step` (s).
-    pub fn every(step: f64) -> Self {
-        Self(Times::Every(step))
-    }
-
-    /// At the given times (s), in any order.
-    pub fn at(times: impl Into<Vec<f64>>) -> Self {
-        Self(Times::At(times.into()))
-    }
-
-    fn validate(&self, end: f64) -> Result<(), InputError> {
-        match &self.0 {
-            Times::PhaseEnds => Ok(()),
-            Times::Every(step) => {
-                positive("sampling step", *step, "s")?;
-                if *step < LEAST_STEP * end {
-                    let mend =
-                        format!("double precision does not tell such times apart up to {end} s");
-                    return Err(InputError::new("sampling step", step, mend));
-                }
-                Ok(())
-            }
-            Times::At(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
-                Some(t) => {
-                    let mend = format!("samples lie between 0 and the end of the scene, {end} s");
-                    Err(InputError::new("sampling time", t, mend))
-                }
-                None => Ok(()),
-            },
-        }
-    }
-
-    /// The sampling times after `start` up to `end`, ending with `end`.
-    fn within(&self, start: f64, end: f64) -> Schedule {
-        // times that round-off alone keeps apart from the ends of the phase are those ends
-        let apart = 1e-9 * (end - start);
-        let (after, before) = (start + apart, end - apart);
-        let (inner, count) = match &self.0 {
-            Times::PhaseEnds => (Inner::Listed(Vec::new()), 0),
-            Times::Every(step) => {
-                let first = (after / step).floor() + 1.0;
-                let count = ((before / step).ceil() - first).max(0.0) as usize;
-                (Inner::Multiples { step: *step, first }, count)
-            }
-            Times::At(times) => {
-                let inside = times.iter().copied().filter(|&t| t > after && t < before);
-                let mut times: Vec<f64> = inside.collect();
-                times.sort_by(f64::total_cmp);
-                times.dedup();
-                let count = times.len();
-                (Inner::Listed(times), count)
-            }
-        };
-        Schedule { inner, count, end }
-    }
-}
-
-/// Least time between samples, as a part of the whole time: a thousand units of round-off.
-const LEAST_STEP: f64 = 2e-13;
-
-/// The sampling times of a phase, of which there may be more than fit in memory.
-struct Schedule {
-    /// Those before the end, and their number.
-    inner: Inner,
-    count: usize,
-    end: f64,
-}
-
-enum Inner {
-    /// Multiples of `step`, from `first` times it on.
-    Multiples {
-        step: f64,
-        first: f64,
-    },
-    Listed(Vec<f64>),
-}
-
-impl Schedule {
-    /// One of the times, counted from 0.
-    fn get(&self, number: usize) -> Option<f64> {
-        if number >= self.count {
-            return (number == self.count).then_some(self.end);
-        }
-        match &self.inner {
-            Inner::Multiples { step, first } => Some((first + number as f64) * step),
-            Inner::Listed(times) => times.get(number).copied(),
-        }
-    }
-}
 
 impl Scene {
     /// Runs the scene, from rest in its natural shape if nothing else was said.
@@ -192,26 +83,5 @@ impl Scene {
         let forces = self.forces_from_start()?;
         sampling.validate(self.end())?;
         Run::all(self, solver, clock, forces, sampling, &mut observer)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Sampling;
-
-    #[test]
-    fn samples_lie_within_the_phase_and_end_with_it() {
-        let within = |sampling: Sampling, start, end| -> Vec<f64> {
-            let schedule = sampling.within(start, end);
-            (0..9).map_while(|number| schedule.get(number)).collect()
-        };
-        // 3 x 0.1 is a little more than 0.3
-        assert_eq!(within(Sampling::every(0.1), 0.0, 0.3), [0.1, 0.2, 0.3]);
-        assert_eq!(within(Sampling::every(0.1), 0.3, 0.45), [0.4, 0.45]);
-        assert_eq!(within(Sampling::every(0.1), 0.31, 0.35), [0.35]);
-        assert_eq!(within(Sampling::at([0.4, 0.1, 0.3, 0.1]), 0.0, 0.35), [0.1, 0.3, 0.35]);
-        assert_eq!(within(Sampling::phase_ends(), 0.3, 0.45), [0.45]);
-        // more than fit in memory
-        assert_eq!(within(Sampling::every(0.002), 0.0, 1e6)[..2], [0.002, 0.004]);
     }
 }

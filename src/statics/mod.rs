@@ -14,12 +14,13 @@
 //! along.
 
 mod newton;
+mod options;
 mod rigid;
 
-use std::ops::RangeInclusive;
 use std::time::Instant;
 
 use newton::{Search, Stuck};
+pub use options::Statics;
 
 use crate::constraint::Start;
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
@@ -29,54 +30,6 @@ use crate::report::Report;
 use crate::scene::Scene;
 use crate::system::{AtRest, Energy};
 use crate::trajectory::{Sample, Trajectory};
-
-/// How an equilibrium is sought.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Statics {
-    /// Forces are in balance when none is left that is larger than this part of the largest one.
-    /// Default: 1e-10, some orders above round-off; 1e-14 to 1e-2.
-    pub rtol: f64,
-    /// Newton iterations in one load step. Default: 100; ten do unless the body has to move far.
-    pub max_iterations: usize,
-    /// Steps in which constraints and loads are brought on. Default: 1, everything at once; more
-    /// of them when it converges to an equilibrium other than the one that a slow loading reaches.
-    pub load_steps: usize,
-    /// Smallest load step, as a part of the whole load, at most 1. Default: 1e-3.
-    pub min_load_step: f64,
-}
-
-impl Default for Statics {
-    fn default() -> Self {
-        Self { rtol: 1e-10, max_iterations: 100, load_steps: 1, min_load_step: 1e-3 }
-    }
-}
-
-/// Relative tolerances that can be meant: with larger ones a body that has not moved at all passes for one
-/// in balance.
-const RTOL: RangeInclusive<f64> = 1e-14..=1e-2;
-
-impl Statics {
-    fn validate(&self) -> Result<(), InputError> {
-        if !RTOL.contains(&self.rtol) {
-            let [least, most] = [RTOL.start(), RTOL.end()];
-            let mend = format!("it must lie between {least:e}, near round-off, and {most:e}");
-            return Err(InputError::new("statics.rtol", self.rtol, mend));
-        }
-        if !(self.min_load_step > 0.0 && self.min_load_step <= 1.0) {
-            let mend = "it is a part of the whole load, above 0 and at most 1";
-            return Err(InputError::new("statics.min_load_step", self.min_load_step, mend));
-        }
-        for (input, number) in [
-            ("statics.max_iterations", self.max_iterations),
-            ("statics.load_steps", self.load_steps),
-        ] {
-            if number == 0 {
-                return Err(InputError::new(input, number, "it must be 1 at least"));
-            }
-        }
-        Ok(())
-    }
-}
 
 impl Scene {
     /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first

@@ -1,6 +1,7 @@
 //! The search for an equilibrium: Newton's method downhill, load step by load step.
 
-use super::{Stability, Statics};
+use super::options::Statics;
+use crate::equilibrium::Stability;
 use crate::ode::Failure;
 use crate::system::{AtRest, Balance};
 use crate::vector::{dot, largest};

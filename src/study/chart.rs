@@ -32,8 +32,20 @@ const WORST: f64 = 10.0;
 
 type Point = [f64; 2];
 
+impl Findings {
+    /// Draws error over time, both logarithmic, one line per line of the study, to an SVG or PNG
+    /// file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for another ending of `path`, and if no run succeeded; [`Error::Output`] if
+    /// the file cannot be written.
+    pub fn write_chart(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        Chart::of(self)?.write(path.as_ref())
+    }
+}
+
 /// Findings on a page.
-pub(super) struct Chart<'a> {
+struct Chart<'a> {
     findings: &'a Findings,
     /// Decades of time (s) from left to right.
     times: [f64; 2],
@@ -51,7 +63,7 @@ struct Style {
 impl<'a> Chart<'a> {
     /// # Errors
     /// [`Error::Input`] if no run succeeded.
-    pub(super) fn of(findings: &'a Findings) -> Result<Self, Error> {
+    fn of(findings: &'a Findings) -> Result<Self, Error> {
         let points: Vec<_> =
             findings.lines().iter().flat_map(LineFindings::points).flatten().collect();
         if points.is_empty() {

@@ -1,8 +1,30 @@
 //! Which line is the fastest, accuracy by accuracy.
 
 use std::fmt::{self, Write};
+use std::path::Path;
 
 use super::Findings;
+use crate::error::Error;
+use crate::output::write_file;
+
+impl Findings {
+    /// Which line is the fastest, accuracy by accuracy.
+    #[must_use]
+    pub fn fastest(&self) -> Fastest {
+        Fastest::of(self)
+    }
+
+    /// Writes who is the fastest, and the notes, to a Markdown file.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written.
+    pub fn write_table(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        write_file(path.as_ref(), |file| {
+            writeln!(file, "# {}\n\n{}", self.title(), self.fastest().markdown())?;
+            self.notes().iter().try_for_each(|note| writeln!(file, "- {note}"))
+        })
+    }
+}
 
 /// For each decade of error from 1e-1 to 1e-7 the line that reaches it in the least time, and how
 /// much longer the others take. Its text is a table; [`markdown`](Self::markdown) another.
@@ -26,7 +48,7 @@ pub struct Accuracy {
 }
 
 impl Fastest {
-    pub(super) fn of(findings: &Findings) -> Self {
+    fn of(findings: &Findings) -> Self {
         let accuracy = |digits: i32| {
             let error = 10_f64.powi(-digits);
             let is_resolved = error >= 10.0 * findings.resolution();

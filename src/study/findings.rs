@@ -2,11 +2,9 @@
 
 use std::path::Path;
 
-use super::chart::Chart;
 use super::row::write_rows;
-use super::{Fastest, Line, Problem, Row};
+use super::{Line, Problem, Row};
 use crate::error::Error;
-use crate::output::write_file;
 
 /// All rows of a study, line by line.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,12 +87,6 @@ impl Findings {
         self.rows().map(|row| row.resolution).fold(0.0, f64::max)
     }
 
-    /// Which line is the fastest, accuracy by accuracy.
-    #[must_use]
-    pub fn fastest(&self) -> Fastest {
-        Fastest::of(self)
-    }
-
     /// Notes on how far the numbers can be trusted: how sure the reference is, which runs
     /// failed, whether the machine was busy.
     #[must_use]
@@ -139,27 +131,6 @@ impl Findings {
     /// [`Error::Output`] if it cannot be written.
     pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         write_rows(self.rows(), path.as_ref())
-    }
-
-    /// Writes who is the fastest, and the notes, to a Markdown file.
-    ///
-    /// # Errors
-    /// [`Error::Output`] if it cannot be written.
-    pub fn write_table(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        write_file(path.as_ref(), |file| {
-            writeln!(file, "# {}\n\n{}", self.title, self.fastest().markdown())?;
-            self.notes().iter().try_for_each(|note| writeln!(file, "- {note}"))
-        })
-    }
-
-    /// Draws error over time, both logarithmic, one line per line of the study, to an SVG or PNG
-    /// file.
-    ///
-    /// # Errors
-    /// [`Error::Input`] for another ending of `path`, and if no run succeeded; [`Error::Output`] if
-    /// the file cannot be written.
-    pub fn write_chart(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        Chart::of(self)?.write(path.as_ref())
     }
 }
 

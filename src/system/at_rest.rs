@@ -11,8 +11,9 @@
 
 use std::sync::Arc;
 
+use super::System;
 use super::reduced::Source;
-use super::{System, nodal_multipliers};
+use super::reduced::nodal_multipliers;
 use crate::constraint::Prescribed;
 use crate::force::{Force, NodalForces, Reservoir};
 use crate::input::InputError;

@@ -4,7 +4,8 @@
 //! M a = f + A lambda,   w = v + tau a,   A^T w = rates
 //! ```
 
-use super::{System, nodal_multipliers};
+use super::System;
+use super::reduced::nodal_multipliers;
 use crate::constraint::Row;
 use crate::model::Model;
 use crate::ode::Kick;

@@ -24,6 +24,7 @@ mod dae;
 mod guide;
 mod mobility;
 mod newton;
+mod newton_matrix;
 mod ode;
 mod rates;
 mod reduced;
@@ -38,10 +39,9 @@ use std::sync::Arc;
 
 pub(crate) use at_rest::{AtRest, Balance};
 pub(crate) use dae::{DaeForm, Index};
-use newton::Newton;
+use newton_matrix::NewtonMatrix;
 pub(crate) use ode::ENERGIES;
-use rates::RatesBound;
-use reduced::{Coupling, Reduced};
+use reduced::{Coupling, Reduced, nodal_multipliers};
 pub(crate) use second_order::SecondOrderForm;
 pub use spectrum::Spectrum;
 pub use summary::PhaseSummary;
@@ -62,7 +62,7 @@ pub(crate) struct System {
     /// Stabilization rate alpha (1/s).
     alpha: f64,
     inertia: Reduced,
-    newton: Newton,
+    newton: NewtonMatrix,
     at: Evaluation,
     /// Why a force had no meaning, the last time that one had none.
     refusal: String,
@@ -148,7 +148,7 @@ impl System {
             });
         }
         let nonlinear = forces.iter().any(|force| force.is_nonlinear());
-        let newton = Newton::new(&model, &rows, nonlinear);
+        let newton = NewtonMatrix::new(&model, &rows, nonlinear);
         let at = Evaluation {
             nodal: NodalForces::zeros(dofs),
             total: vec![0.0; dofs],
@@ -364,24 +364,5 @@ impl System {
             )
             .into(),
         )
-    }
-}
-
-/// Completes the multipliers by those of nodal rows: `residual` is X x - f at a fixed component,
-/// where X x - f = A mu.
-fn nodal_multipliers(rows: &[Row], multipliers: &mut [f64], residual: impl Fn(usize) -> f64) {
-    for (row, multiplier) in rows.iter().zip(&mut *multipliers) {
-        if let Some((dof, coefficient)) = row.nodal() {
-            *multiplier = residual(dof) / coefficient;
-        }
-    }
-    for general in (0..rows.len()).filter(|&k| rows[k].nodal().is_none()) {
-        for &(dof, c) in &rows[general].terms {
-            let fixed = |row: &Row| row.nodal().filter(|term| term.0 == dof);
-            let found = rows.iter().enumerate().find_map(|(k, row)| Some((k, fixed(row)?.1)));
-            if let Some((k, coefficient)) = found {
-                multipliers[k] -= c * multipliers[general] / coefficient;
-            }
-        }
     }
 }

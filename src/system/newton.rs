@@ -1,4 +1,4 @@
-//! The structured Newton matrix.
+//! Solves with the structured Newton matrix.
 //!
 //! An implicit method of step parameter gamma needs x with (I - gamma J) x = r, J the Jacobian of
 //! the ODE form. J holds M^-1 and is dense; it is never formed. With Kt = -df/du, D = -df/dv and
@@ -15,113 +15,14 @@
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
 //! M rv is M cv + gamma f, and no iteration solves a system with M.
 
-use std::sync::Arc;
-
-use super::reduced::{Coupling, Reduced, Source};
-use super::{System, nodal_multipliers};
-use crate::constraint::Row;
+use super::System;
+use super::newton_matrix::NewtonMatrix;
+use super::reduced::Source;
+use super::reduced::nodal_multipliers;
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 use crate::vector::{dot, largest};
-
-pub(super) struct Newton {
-    pub(super) solver: Reduced,
-    pub(super) stiffness: Tangent,
-    pub(super) damping: Tangent,
-    /// Whether the tangents follow the state, and have been evaluated.
-    follows: bool,
-    is_set: bool,
-    /// Whether D is not all zeros.
-    is_damped: bool,
-    gamma: f64,
-    tangent_evaluations: usize,
-    factorizations: usize,
-    /// How many of them were not positive definite.
-    indefinite: usize,
-    /// f of the linear system, and its solution xv.
-    right: Vec<f64>,
-    pub(super) xv: Vec<f64>,
-    /// d of the linear system, and its multipliers mu.
-    demands: Vec<f64>,
-    pub(super) mu: Vec<f64>,
-}
-
-/// Kt or D.
-pub(super) enum Tangent {
-    /// The constant matrix of the model, in a phase without forces that change it.
-    Constant(Arc<BlockMatrix>),
-    /// A matrix of its own.
-    Own(BlockMatrix),
-}
-
-impl Tangent {
-    fn new(model: &Model, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
-        match constant {
-            Some(constant) if !follows => Self::Constant(constant.clone()),
-            _ => Self::Own(BlockMatrix::zeros(model.pattern(), model.dimension)),
-        }
-    }
-
-    pub(super) fn get(&self) -> &BlockMatrix {
-        match self {
-            Self::Constant(matrix) => matrix,
-            Self::Own(matrix) => matrix,
-        }
-    }
-
-    /// Its own matrix, set back to the constant part.
-    pub(super) fn begin(
-        &mut self,
-        constant: &Option<Arc<BlockMatrix>>,
-    ) -> Option<&mut BlockMatrix> {
-        let Self::Own(matrix) = self else { return None };
-        match constant {
-            Some(constant) => matrix.values.copy_from_slice(&constant.values),
-            None => matrix.values.fill(0.0),
-        }
-        Some(matrix)
-    }
-}
-
-impl Newton {
-    pub(super) fn new(model: &Model, rows: &[Row], follows: bool) -> Self {
-        let dofs = model.dofs();
-        Self {
-            solver: Reduced::new(model, rows, Coupling::AllAxes),
-            stiffness: Tangent::new(model, &model.stiffness, follows),
-            damping: Tangent::new(model, &model.damping, follows),
-            follows,
-            is_set: false,
-            is_damped: model.damping.is_some(),
-            gamma: f64::NAN,
-            tangent_evaluations: 0,
-            factorizations: 0,
-            indefinite: 0,
-            right: vec![0.0; dofs],
-            xv: vec![0.0; dofs],
-            demands: vec![0.0; rows.len()],
-            mu: vec![0.0; rows.len()],
-        }
-    }
-
-    /// Starts all counts from 0.
-    pub(super) fn forget_counts(&mut self) {
-        (self.tangent_evaluations, self.factorizations, self.indefinite) = (0, 0, 0);
-    }
-
-    pub(super) fn factorizations(&self) -> usize {
-        self.factorizations
-    }
-
-    pub(super) fn tangent_evaluations(&self) -> usize {
-        self.tangent_evaluations
-    }
-
-    pub(super) fn indefinite(&self) -> usize {
-        self.indefinite
-    }
-}
 
 impl System {
     /// Whether all forces are linear in u and v, so that Kt and D never change.
@@ -142,8 +43,15 @@ impl System {
     /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
     /// current.
     pub(crate) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
-        let Newton { stiffness, damping, follows, is_set, is_damped, tangent_evaluations, .. } =
-            &mut self.newton;
+        let NewtonMatrix {
+            stiffness,
+            damping,
+            follows,
+            is_set,
+            is_damped,
+            tangent_evaluations,
+            ..
+        } = &mut self.newton;
         if !*follows {
             return true;
         }
@@ -166,7 +74,7 @@ impl System {
     pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
         self.newton.factorizations += 1;
-        let Newton { solver, stiffness, damping, is_damped, .. } = &mut self.newton;
+        let NewtonMatrix { solver, stiffness, damping, is_damped, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.model.inertia;
         let factorized = solver.factorize(|source| {
@@ -193,7 +101,8 @@ impl System {
     /// those of nodal rows, mu.
     fn solve_newton(&mut self, ru: &mut [f64]) {
         let gamma = self.newton.gamma;
-        let Newton { solver, stiffness, damping, right, xv, demands, mu, .. } = &mut self.newton;
+        let NewtonMatrix { solver, stiffness, damping, right, xv, demands, mu, .. } =
+            &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         solver.solve(&self.rows, right, demands, xv, mu);
         let (inertia, dimension) = (&self.model.inertia, self.model.dimension);
@@ -217,7 +126,7 @@ impl System {
     /// follow from the forces and demands last evaluated is added to `rv` first. Leaves in mu
     /// gamma times the change of lambda, or with those accelerations all of `share` times lambda.
     pub(crate) fn solve_newton_ode(&mut self, share: f64, ru: &mut [f64], rv: &mut [f64]) {
-        let Newton { stiffness, right, demands, gamma, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, demands, gamma, .. } = &mut self.newton;
         right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
         self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
@@ -242,7 +151,7 @@ impl System {
     ) {
         let gamma = self.newton.gamma;
         r1.iter_mut().for_each(|r| *r *= gamma);
-        let Newton { stiffness, right, demands, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, demands, .. } = &mut self.newton;
         right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
         stiffness.get().add_product(-gamma, r1, right);
         demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
@@ -267,7 +176,7 @@ impl System {
         r4: &mut [f64],
     ) {
         let gamma = self.newton.gamma;
-        let Newton { stiffness, right, demands, .. } = &mut self.newton;
+        let NewtonMatrix { stiffness, right, demands, .. } = &mut self.newton;
         right.iter_mut().zip(&*r1).for_each(|(f, r)| *f = gamma * r);
         let of_slip = r4.iter().zip(&*r3).map(|(r4, r3)| r4 - gamma * r3);
         demands.iter_mut().zip(of_slip).for_each(|(d, of_slip)| *d = of_slip);
@@ -289,7 +198,7 @@ impl System {
     /// system: where forces are linear, exactly, for powers are quadratic then. So one iteration
     /// settles the energies, too. Multipliers that the evaluation left at 0 are all in mu.
     pub(super) fn power_changes(&mut self) -> (f64, f64) {
-        let Newton { damping, is_damped, right, xv, mu, gamma, .. } = &mut self.newton;
+        let NewtonMatrix { damping, is_damped, right, xv, mu, gamma, .. } = &mut self.newton;
         let (mut dissipated, mut supplied) = self.at.nodal.work(xv);
         if *is_damped {
             right.fill(0.0);

@@ -284,3 +284,26 @@ impl GeneralRows {
         }
     }
 }
+
+/// Completes the multipliers by those of nodal rows: `residual` is X x - f at a fixed component,
+/// where X x - f = A mu.
+pub(super) fn nodal_multipliers(
+    rows: &[Row],
+    multipliers: &mut [f64],
+    residual: impl Fn(usize) -> f64,
+) {
+    for (row, multiplier) in rows.iter().zip(&mut *multipliers) {
+        if let Some((dof, coefficient)) = row.nodal() {
+            *multiplier = residual(dof) / coefficient;
+        }
+    }
+    for general in (0..rows.len()).filter(|&k| rows[k].nodal().is_none()) {
+        for &(dof, c) in &rows[general].terms {
+            let fixed = |row: &Row| row.nodal().filter(|term| term.0 == dof);
+            let found = rows.iter().enumerate().find_map(|(k, row)| Some((k, fixed(row)?.1)));
+            if let Some((k, coefficient)) = found {
+                multipliers[k] -= c * multipliers[general] / coefficient;
+            }
+        }
+    }
+}

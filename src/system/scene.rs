@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use super::{Spectrum, System};
 use crate::constraint::Start;
+use crate::force::Forces;
 use crate::input::InputError;
 use crate::model::Model;
-use crate::scene::{Forces, Phase, Scene};
+use crate::scene::{Phase, Scene};
 
 impl Scene {
     /// The constant numbers of the scene under the forces of its phases.

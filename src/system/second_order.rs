@@ -3,10 +3,11 @@
 #[cfg(test)]
 mod tests;
 
+use super::System;
 use super::guide::Guide;
 use super::mobility::Mobility;
 use super::ode::ENERGIES;
-use super::{RatesBound, System};
+use super::rates::RatesBound;
 use crate::constraint::{Prescribed, Row};
 use crate::ode::{EnergyBalance, Failure, Kick, Rates, SecondOrder};
 

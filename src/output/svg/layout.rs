@@ -1,6 +1,7 @@
 //! Where panels stand on the page, and which part of space they show.
 
 use super::obstacle::{Outline, outlines};
+use super::projection::{Point, positions};
 use crate::trajectory::{Sample, Trajectory};
 
 /// Width that a page aims at, its least width, and the limits of a panel (px).
@@ -16,9 +17,6 @@ const KEY: f64 = 34.0;
 const CHARACTER: f64 = 6.8;
 /// Width of a one-dimensional body as drawn, as a fraction of its length.
 pub(in crate::output) const BAR_WIDTH: f64 = 0.12;
-
-/// A point in the plane of the drawing: (m) or (px).
-pub(in crate::output) type Point = [f64; 2];
 
 /// The part of space that each panel shows (m), its second axis upward.
 pub(in crate::output) struct View {
@@ -118,41 +116,6 @@ fn clip(polygon: &[Point], level: impl Fn(&Point) -> f64) -> Vec<Point> {
         }
     }
     clipped
-}
-
-/// How space is seen: from the front, turned 30 degrees to the right and 20 degrees from above.
-/// Axes of the drawing, to the right and upward, and the direction away from the viewer.
-const RIGHTWARD: [f64; 3] = [0.866_025, 0.5, 0.0];
-const UPWARD: [f64; 3] = [-0.171_010, 0.296_198, 0.939_693];
-const AWAY: [f64; 3] = [-0.469_846, 0.813_798, -0.342_020];
-
-/// Positions of all nodes as drawn: a one-dimensional body stands upright, space is seen obliquely.
-pub(in crate::output) fn positions(trajectory: &Trajectory, sample: &Sample) -> Vec<Point> {
-    let dimension = trajectory.body().dimension();
-    displaced(trajectory, sample).chunks_exact(dimension).map(drawn).collect()
-}
-
-/// How far away from the viewer each node of a body in space is (m, from an arbitrary plane).
-pub(super) fn depths(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
-    displaced(trajectory, sample).chunks_exact(3).map(|x| along(x, AWAY)).collect()
-}
-
-/// Positions of all nodes (m), dimension coordinates each.
-pub(in crate::output) fn displaced(trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
-    let natural = trajectory.body().mesh().positions().iter();
-    natural.zip(&sample.u).map(|(x, u)| x + u).collect()
-}
-
-fn along(x: &[f64], direction: [f64; 3]) -> f64 {
-    x.iter().zip(direction).map(|(x, d)| x * d).sum()
-}
-
-pub(in crate::output) fn drawn(x: &[f64]) -> Point {
-    match *x {
-        [x] => [0.0, x],
-        [x, y] => [x, y],
-        _ => [RIGHTWARD, UPWARD].map(|axis| along(x, axis)),
-    }
 }
 
 /// Where everything stands on the page.

@@ -1,18 +1,22 @@
 //! Pictures of the deformed body.
 
 mod layout;
+mod mark;
 mod obstacle;
 mod panel;
+mod projection;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-pub(super) use layout::{BAR_WIDTH, View, displaced, drawn, positions};
+pub(super) use layout::{BAR_WIDTH, View};
 use layout::{Layout, scale_bar};
-use panel::{Mark, Panel};
+use mark::{Mark, text};
+use panel::Panel;
 pub(super) use panel::{around, around_face, through_middle};
+pub(super) use projection::{displaced, drawn, positions};
 use svg::Document;
-use svg::node::element::{Circle, Definitions, Group, Line, Path as Outline, Pattern, Text};
+use svg::node::element::{Definitions, Group, Line, Path as Outline, Pattern};
 
 use super::{FONT, INK, write_file};
 use crate::error::Error;
@@ -203,27 +207,4 @@ fn key(view: &View, layout: &Layout, marks: BTreeSet<Mark>) -> Group {
         right -= 16.0;
     }
     key
-}
-
-fn text(content: &str, x: f64, y: f64) -> Text {
-    Text::new(content).set("x", format!("{x:.2}")).set("y", format!("{y:.2}"))
-}
-
-impl Mark {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Ring => "tracked",
-            Self::Held => "held",
-            Self::Moved => "moved",
-        }
-    }
-
-    fn draw(self, x: f64, y: f64) -> Circle {
-        let dot = Circle::new().set("cx", format!("{x:.2}")).set("cy", format!("{y:.2}"));
-        match self {
-            Self::Ring => dot.set("r", 4.2).set("fill", "none").set("stroke", "#d55e00"),
-            Self::Held => dot.set("r", 3.2).set("fill", INK),
-            Self::Moved => dot.set("r", 3.8).set("fill", "#d55e00"),
-        }
-    }
 }

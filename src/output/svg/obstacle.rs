@@ -1,16 +1,11 @@
-//! Obstacles as drawn: half-planes by a hatched band along their surface, others by their outline.
+//! Obstacles in the plane of the drawing: half-planes and outlines.
 
 use std::f64::consts::{PI, TAU};
 
-use svg::node::element::{Group, Path};
-
-use super::layout::{Point, drawn};
-use super::panel::{Data, Panel};
+use super::projection::{Point, drawn};
 use crate::external::{Shape, ShapeKind};
 use crate::trajectory::Trajectory;
 
-/// Thickness of the hatched band along the surface of a half-plane (px).
-const BAND: f64 = 14.0;
 /// Chords of a full circle.
 const CHORDS: usize = 96;
 
@@ -95,50 +90,5 @@ impl Outline {
                 if points.iter().all(is_near) { points.clone() } else { Vec::new() }
             }
         }
-    }
-}
-
-impl Panel<'_> {
-    pub(super) fn obstacle(&self, outline: &Outline) -> Group {
-        let (view, top) = (self.view, self.layout.top(self.number));
-        let mut group = Group::new().set("class", "obstacle");
-        let (inside, surface) = match outline {
-            Outline::HalfPlane(plane) => {
-                let band = view.band(top, *plane, self.layout.metres(BAND));
-                let [point, normal] = plane;
-                let on_surface = |x: &&Point| {
-                    let distance: f64 = (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum();
-                    distance.abs() < 1e-9 * view.width()
-                };
-                let surface = band.iter().filter(on_surface).copied().collect();
-                (band, vec![surface])
-            }
-            Outline::Solid(points) => (view.clip(points, top), self.edges(points)),
-            Outline::Cavity(points) => (Vec::new(), self.edges(points)),
-        };
-        let mut hatched = Data::default();
-        hatched.polyline(&self.placed(&inside), true);
-        let mut line = Data::default();
-        for part in surface.iter().filter(|part| part.len() > 1) {
-            line.polyline(&self.placed(part), false);
-        }
-        for (data, fill, stroke) in [(hatched, "url(#hatch)", "none"), (line, "none", "#555555")] {
-            if data.0.len() > 1 {
-                let path = Path::new().set("d", data.0).set("fill", fill);
-                group = group.add(path.set("stroke", stroke).set("stroke-width", 1.5));
-            }
-        }
-        group
-    }
-
-    /// The edges of a polygon, as far as they are in the view.
-    fn edges(&self, polygon: &[Point]) -> Vec<Vec<Point>> {
-        let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
-        let top = self.layout.top(self.number);
-        ends.map(|(&p, &q)| self.view.clip(&[p, q], top)).collect()
-    }
-
-    fn placed(&self, points: &[Point]) -> Vec<Point> {
-        points.iter().map(|&x| self.layout.place(self.number, x)).collect()
     }
 }

@@ -5,24 +5,18 @@ use std::fmt::Write;
 
 use svg::node::element::{Group, Path};
 
-use super::layout::{BAR_WIDTH, Layout, Point, View, depths, positions};
-use super::{INK, text};
+use super::layout::{BAR_WIDTH, Layout, View};
+use super::mark::{Mark, text};
+use super::obstacle::Outline;
+use super::projection::{Point, depths, positions};
 use crate::mesh::{CellKind, Mesh};
+use crate::output::INK;
 use crate::trajectory::{Sample, Trajectory};
 
 const EDGE: &str = "#35618f";
 const FILL: &str = "#a9cbe8";
-
-/// How a node is marked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Mark {
-    /// By the user.
-    Ring,
-    /// Because the phase holds it.
-    Held,
-    /// Because the phase moves it.
-    Moved,
-}
+/// Thickness of the hatched band along the surface of a half-plane (px).
+const BAND: f64 = 14.0;
 
 pub(super) struct Panel<'a> {
     pub(super) number: usize,
@@ -61,6 +55,50 @@ impl Panel<'_> {
         }
         let [x, y] = self.layout.caption(self.number);
         panel.add(text(self.caption, x, y).set("text-anchor", "middle").set("fill", INK))
+    }
+
+    /// An obstacle: a half-plane as a hatched band along its surface, others by their outline.
+    fn obstacle(&self, outline: &Outline) -> Group {
+        let (view, top) = (self.view, self.layout.top(self.number));
+        let mut group = Group::new().set("class", "obstacle");
+        let (inside, surface) = match outline {
+            Outline::HalfPlane(plane) => {
+                let band = view.band(top, *plane, self.layout.metres(BAND));
+                let [point, normal] = plane;
+                let on_surface = |x: &&Point| {
+                    let distance: f64 = (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum();
+                    distance.abs() < 1e-9 * view.width()
+                };
+                let surface = band.iter().filter(on_surface).copied().collect();
+                (band, vec![surface])
+            }
+            Outline::Solid(points) => (view.clip(points, top), self.edges(points)),
+            Outline::Cavity(points) => (Vec::new(), self.edges(points)),
+        };
+        let mut hatched = Data::default();
+        hatched.polyline(&self.placed(&inside), true);
+        let mut line = Data::default();
+        for part in surface.iter().filter(|part| part.len() > 1) {
+            line.polyline(&self.placed(part), false);
+        }
+        for (data, fill, stroke) in [(hatched, "url(#hatch)", "none"), (line, "none", "#555555")] {
+            if data.0.len() > 1 {
+                let path = Path::new().set("d", data.0).set("fill", fill);
+                group = group.add(path.set("stroke", stroke).set("stroke-width", 1.5));
+            }
+        }
+        group
+    }
+
+    /// The edges of a polygon, as far as they are in the view.
+    fn edges(&self, polygon: &[Point]) -> Vec<Vec<Point>> {
+        let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
+        let top = self.layout.top(self.number);
+        ends.map(|(&p, &q)| self.view.clip(&[p, q], top)).collect()
+    }
+
+    fn placed(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|&x| self.layout.place(self.number, x)).collect()
     }
 
     /// The springs, as straight lines.

@@ -1,0 +1,106 @@
+//! The Newton matrix, factorized, and the tangents of the forces of which it is made.
+
+use std::sync::Arc;
+
+use super::reduced::{Coupling, Reduced};
+use crate::constraint::Row;
+use crate::model::Model;
+use crate::sparse::BlockMatrix;
+
+pub(super) struct NewtonMatrix {
+    pub(super) solver: Reduced,
+    pub(super) stiffness: Tangent,
+    pub(super) damping: Tangent,
+    /// Whether the tangents follow the state, and have been evaluated.
+    pub(super) follows: bool,
+    pub(super) is_set: bool,
+    /// Whether D is not all zeros.
+    pub(super) is_damped: bool,
+    pub(super) gamma: f64,
+    pub(super) tangent_evaluations: usize,
+    pub(super) factorizations: usize,
+    /// How many of them were not positive definite.
+    pub(super) indefinite: usize,
+    /// f of the linear system, and its solution xv.
+    pub(super) right: Vec<f64>,
+    pub(super) xv: Vec<f64>,
+    /// d of the linear system, and its multipliers mu.
+    pub(super) demands: Vec<f64>,
+    pub(super) mu: Vec<f64>,
+}
+
+/// Kt or D.
+pub(super) enum Tangent {
+    /// The constant matrix of the model, in a phase without forces that change it.
+    Constant(Arc<BlockMatrix>),
+    /// A matrix of its own.
+    Own(BlockMatrix),
+}
+
+impl Tangent {
+    fn new(model: &Model, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
+        match constant {
+            Some(constant) if !follows => Self::Constant(constant.clone()),
+            _ => Self::Own(BlockMatrix::zeros(model.pattern(), model.dimension)),
+        }
+    }
+
+    pub(super) fn get(&self) -> &BlockMatrix {
+        match self {
+            Self::Constant(matrix) => matrix,
+            Self::Own(matrix) => matrix,
+        }
+    }
+
+    /// Its own matrix, set back to the constant part.
+    pub(super) fn begin(
+        &mut self,
+        constant: &Option<Arc<BlockMatrix>>,
+    ) -> Option<&mut BlockMatrix> {
+        let Self::Own(matrix) = self else { return None };
+        match constant {
+            Some(constant) => matrix.values.copy_from_slice(&constant.values),
+            None => matrix.values.fill(0.0),
+        }
+        Some(matrix)
+    }
+}
+
+impl NewtonMatrix {
+    pub(super) fn new(model: &Model, rows: &[Row], follows: bool) -> Self {
+        let dofs = model.dofs();
+        Self {
+            solver: Reduced::new(model, rows, Coupling::AllAxes),
+            stiffness: Tangent::new(model, &model.stiffness, follows),
+            damping: Tangent::new(model, &model.damping, follows),
+            follows,
+            is_set: false,
+            is_damped: model.damping.is_some(),
+            gamma: f64::NAN,
+            tangent_evaluations: 0,
+            factorizations: 0,
+            indefinite: 0,
+            right: vec![0.0; dofs],
+            xv: vec![0.0; dofs],
+            demands: vec![0.0; rows.len()],
+            mu: vec![0.0; rows.len()],
+        }
+    }
+
+    /// Starts all counts from 0.
+    pub(super) fn forget_counts(&mut self) {
+        (self.tangent_evaluations, self.factorizations, self.indefinite) = (0, 0, 0);
+    }
+
+    pub(super) fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+
+    pub(super) fn tangent_evaluations(&self) -> usize {
+        self.tangent_evaluations
+    }
+
+    pub(super) fn indefinite(&self) -> usize {
+        self.indefinite
+    }
+}
