@@ -35,7 +35,11 @@ pub(crate) fn apply<T: Real, const R: usize, const C: usize>(
     a: &Matrix<T, R, C>,
     x: &[T; C],
 ) -> [T; R] {
-    std::array::from_fn(|i| (0..C).fold(T::from(-0.0), |sum, j| sum + a[j][i] * x[j]))
+    let mut y = [T::from(-0.0); R];
+    for k in 0..C {
+        (0..R).for_each(|i| y[i] += a[k][i] * x[k]);
+    }
+    y
 }
 
 /// A B
@@ -44,7 +48,7 @@ pub(crate) fn product<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &Matrix<T, R, K>,
     b: &Matrix<T, K, C>,
 ) -> Matrix<T, R, C> {
-    std::array::from_fn(|j| apply(a, &b[j]))
+    b.map(|column| apply(a, &column))
 }
 
 /// A B^T
@@ -53,9 +57,13 @@ pub(crate) fn product_transposed<T: Real, const R: usize, const K: usize, const 
     a: &Matrix<T, R, K>,
     b: &Matrix<T, C, K>,
 ) -> Matrix<T, R, C> {
-    std::array::from_fn(|j| {
-        std::array::from_fn(|i| (0..K).fold(T::from(-0.0), |sum, k| sum + a[k][i] * b[k][j]))
-    })
+    let mut product = [[T::from(-0.0); R]; C];
+    for j in 0..C {
+        for k in 0..K {
+            (0..R).for_each(|i| product[j][i] += a[k][i] * b[k][j]);
+        }
+    }
+    product
 }
 
 /// The symmetric matrix with `entry` at each row and column not beyond it.

@@ -364,7 +364,11 @@ fn unsuitable_cells_get_a_message() {
     let nine = file("1 1 1 1\n2 1 10 1\n1 1 3 9 7 2 6 8 4 5\n");
     says(
         read(nine),
-        &["1 quadrilaterals of 9 node(s)", "triangles of 3 or 6", "Mesh.ElementOrder"],
+        &[
+            "1 quadrilaterals of 9 node(s)",
+            "triangles, triangles of 6 nodes, quadrilaterals, tetrahedra",
+            "Mesh.ElementOrder",
+        ],
     );
     says(read(file("1 1 1 1\n3 1 6 1\n1 1 2 4 3 5 6\n")), &["1 prisms of 6 node(s)"]);
     says(read(file("1 1 1 1\n1 1 8 1\n1 1 3 2\n")), &["1 lines of 3 node(s)"]);

@@ -91,7 +91,7 @@ impl BodyBuilder {
         let Self { mut mesh, material, strain, plane, .. } = self;
         let viscosity = self.viscosity.unwrap_or(match strain {
             Strain::Cauchy => Viscosity::Natural,
-            Strain::Green => Viscosity::Objective,
+            _ => Viscosity::Objective,
         });
         let regions = Regions::new(&mesh, strain, plane, &material, &self.regions)?;
         let elements = elements(&mesh, section)?;

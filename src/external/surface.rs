@@ -1,6 +1,7 @@
 //! Points of the boundary of a body at which contact is felt.
 
 use crate::body::Body;
+use crate::mesh::FaceKind;
 use crate::vector::{cross, dot};
 
 /// A point that moves with some nodes.
@@ -43,14 +44,14 @@ pub(super) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
 /// touch.
 pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     let (mesh, cell) = (body.mesh(), body.mesh().kind().dimension());
-    let (face_dimension, section) = match (cell, body.dimension()) {
-        (cell, space) if cell == space => (cell - 1, body.section()),
-        (2, 3) => (2, 1.0),
+    let section = match (cell, body.dimension()) {
+        (cell, space) if cell == space => body.section(),
+        (2, 3) => 1.0,
         _ => return None,
     };
+    let (parts, weight) = pieces(mesh.face_kind());
     let mut points = Vec::new();
     for face in mesh.boundary_faces() {
-        let (parts, weight) = pieces(face_dimension, face.len());
         for part in parts {
             let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
             let area = weight * section * measure(body, &corners);
@@ -82,16 +83,16 @@ fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
     point
 }
 
-/// A face with `nodes` nodes, corners first, cut into segments or triangles, and the weight of each:
-/// a quadrilateral is cut along both diagonals.
-pub(super) fn pieces(dimension: usize, nodes: usize) -> (&'static [&'static [usize]], f64) {
-    match (dimension, nodes) {
-        (0, _) => (&[&[0]], 1.0),
-        (1, 2) => (&[&[0, 1]], 1.0),
-        (1, _) => (&[&[0, 2], &[2, 1]], 1.0),
-        (_, 3) => (&[&[0, 1, 2]], 1.0),
-        (_, 4) => (&[&[0, 1, 2], &[0, 2, 3], &[1, 2, 3], &[1, 3, 0]], 0.5),
-        _ => (&[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]], 1.0),
+/// A face, cut into points, segments or triangles by their local nodes, and the weight of each: a
+/// quadrilateral is cut along both diagonals.
+pub(super) fn pieces(face: FaceKind) -> (&'static [&'static [usize]], f64) {
+    match face {
+        FaceKind::Point => (&[&[0]], 1.0),
+        FaceKind::Segment => (&[&[0, 1]], 1.0),
+        FaceKind::Segment3 => (&[&[0, 2], &[2, 1]], 1.0),
+        FaceKind::Triangle => (&[&[0, 1, 2]], 1.0),
+        FaceKind::Quadrilateral => (&[&[0, 1, 2], &[0, 2, 3], &[1, 2, 3], &[1, 3, 0]], 0.5),
+        FaceKind::Triangle6 => (&[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]], 1.0),
     }
 }
 

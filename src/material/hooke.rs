@@ -89,7 +89,7 @@ pub(super) struct Spread<'a, T, const N: usize, const M: usize, const D: usize> 
     gradients: &'a [[T; M]; N],
     /// F g_a
     pub(super) along: [[T; D]; N],
-    /// F F^T
+    /// F F^T, symmetric to the last bit
     square: Matrix<T, D, D>,
 }
 
@@ -107,10 +107,14 @@ impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Spread<'a, T, 
         let (fa, fb) = (&self.along[a], &self.along[b]);
         let (lambda, mu) = (T::from(lame.lambda), T::from(lame.mu));
         let stretch = dot(&self.gradients[a], &self.gradients[b]);
-        let entry = |i: usize, k: usize| {
-            fa[i] * fb[k] * lambda + (self.square[k][i] * stretch + fb[i] * fa[k]) * mu
-        };
-        std::array::from_fn(|i| std::array::from_fn(|k| entry(i, k)))
+        let mut block = [[T::from(0.0); D]; D];
+        for i in 0..D {
+            for k in 0..D {
+                let shear = self.square[i][k] * stretch + fb[i] * fa[k];
+                block[i][k] = fa[i] * fb[k] * lambda + shear * mu;
+            }
+        }
+        block
     }
 
     /// What the turning of the stress S adds to each entry on the diagonal: g_a . S g_b.

@@ -1,14 +1,13 @@
 //! Boundary extraction: the faces that belong to one cell only.
 
-use super::Mesh;
+use std::ops::Range;
+
+use super::{FaceKind, Mesh};
 
 /// A face of a cell: a node in 1D, an edge in 2D, a face in 3D. Its corners come first and run so
 /// that the body lies to the left (2D), counter-clockwise as seen from outside (3D); the mid nodes
 /// of a quadratic cell follow, as in [`CellKind::faces`](super::CellKind::faces).
 pub type Face = Vec<usize>;
-
-/// Nodes of a face of any kind of cell, ascending, filled up with `usize::MAX`.
-type Key = [usize; 6];
 
 impl Mesh {
     /// The faces that belong to one cell only, in the order of the cells.
@@ -25,18 +24,21 @@ impl Mesh {
             return self.cells().map(<[usize]>::to_vec).enumerate().collect();
         }
         let mut once: Vec<usize> = Vec::new();
-        let mut keys: Vec<(Key, usize)> = Vec::new();
         let (offsets, faces) = self.faces_by_smallest_node();
         for range in offsets.windows(2) {
-            keys.clear();
-            keys.extend(faces[range[0]..range[1]].iter().map(|&face| (self.key(face), face)));
-            keys.sort_unstable();
-            let same = keys.chunk_by(|(a, _), (b, _)| a == b);
-            once.extend(same.filter(|faces| faces.len() == 1).map(|faces| faces[0].1));
+            once.extend(without_match(&faces[range[0]..range[1]], |face| self.face(face)));
         }
         once.sort_unstable();
         let cell = |face| face / self.kind.faces().len();
         once.into_iter().map(|face| (cell(face), self.face(face).collect())).collect()
+    }
+
+    /// The shape of these faces.
+    pub(crate) fn face_kind(&self) -> FaceKind {
+        match (self.dimension > self.kind.dimension(), self.kind.as_face()) {
+            (true, Some(face)) => face,
+            _ => self.kind.face(),
+        }
     }
 
     pub(super) fn find_boundary_nodes(&self) -> Vec<usize> {
@@ -73,13 +75,25 @@ impl Mesh {
         }
         (offsets, faces)
     }
+}
 
-    fn key(&self, face: usize) -> Key {
-        let mut key = [usize::MAX; 6];
-        key.iter_mut().zip(self.face(face)).for_each(|(place, node)| *place = node);
-        key.sort_unstable();
-        key
+/// Those of `faces` whose nodes no other one of them has.
+fn without_match<I: Iterator<Item = usize>>(
+    faces: &[usize],
+    nodes: impl Fn(usize) -> I,
+) -> Vec<usize> {
+    // the nodes of each face, ascending: keys one after the other, of any length each
+    let (mut all, mut keys) = (Vec::new(), Vec::with_capacity(faces.len()));
+    for &face in faces {
+        let start = all.len();
+        all.extend(nodes(face));
+        all[start..].sort_unstable();
+        keys.push((start..all.len(), face));
     }
+    let key = |range: &Range<usize>| &all[range.clone()];
+    keys.sort_unstable_by(|(a, _), (b, _)| key(a).cmp(key(b)));
+    let same = keys.chunk_by(|(a, _), (b, _)| key(a) == key(b));
+    same.filter(|faces| faces.len() == 1).map(|faces| faces[0].1).collect()
 }
 
 #[cfg(test)]
@@ -107,5 +121,19 @@ mod tests {
     fn a_bar_ends_at_its_ends() {
         let mesh = Mesh::bar(1.0, 5).unwrap();
         assert_eq!(mesh.boundary_nodes(), [0, 4]);
+    }
+
+    /// Faces of eight nodes, as hexahedra with mid nodes have them: two that share six nodes and differ in
+    /// the others are two faces, and the same nodes in another order are one.
+    #[test]
+    fn faces_are_told_apart_by_all_their_nodes() {
+        let faces = [
+            [0, 1, 2, 3, 4, 5, 6, 7],
+            [0, 1, 2, 3, 4, 5, 8, 9],
+            [0, 10, 11, 12, 13, 14, 15, 16],
+            [16, 15, 14, 13, 12, 11, 10, 0],
+        ];
+        let alone = super::without_match(&[0, 1, 2, 3], |face| faces[face].into_iter());
+        assert_eq!(alone, [0, 1]);
     }
 }

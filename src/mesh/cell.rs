@@ -1,54 +1,213 @@
-//! Shapes of cells.
+//! Kinds of cells: one row of a table each.
 
-/// Shape of a cell, with the order of its nodes. It is that of VTK; Gmsh swaps the last two nodes
-/// of [`CellKind::Tetrahedron10`] and agrees otherwise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
-pub enum CellKind {
-    /// Two nodes.
+use mshio::ElementType;
+
+/// What the kinds of cells differ by. Local numbers of nodes count from 0.
+struct Shape {
+    /// Several of them, in words.
+    name: &'static str,
+    dimension: usize,
+    nodes: usize,
+    /// Whether edges have mid nodes.
+    quadratic: bool,
+    /// What the cell itself is as a face; none of a solid.
+    as_face: Option<FaceKind>,
+    face: FaceKind,
+    faces: &'static [&'static [usize]],
+    /// Empty in two dimensions, where edges and faces are the same.
+    edges: &'static [&'static [usize]],
+    /// The nodes in the order of a cell that is turned over.
+    turned_over: &'static [usize],
+    /// The corners at the other ends of the edges at the first one; these edges make a right-handed system.
+    neighbours: &'static [usize],
+    /// The type of Gmsh, and the nodes of Gmsh's cell in the order of ours.
+    gmsh: (ElementType, &'static [usize]),
+}
+
+/// Shape of a face of a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FaceKind {
+    Point,
     Segment,
-    /// Three nodes, counter-clockwise.
+    /// With a mid node.
+    Segment3,
     Triangle,
-    /// Six nodes: the corners counter-clockwise, then the middles of the edges 1-2, 2-3, 3-1.
+    /// With mid nodes.
     Triangle6,
-    /// Four nodes, counter-clockwise.
     Quadrilateral,
+}
+
+/// Makes the enum of the kinds from their documentation and their shapes.
+macro_rules! cell_kinds {
+    ($($(#[$doc:meta])* $kind:ident => $shape:expr,)*) => {
+        /// Shape of a cell, with the order of its nodes. It is that of VTK.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum CellKind {
+            $($(#[$doc])* $kind,)*
+        }
+
+        impl CellKind {
+            /// All kinds.
+            pub(crate) const ALL: &[Self] = &[$(Self::$kind),*];
+
+            const fn shape(self) -> &'static Shape {
+                match self {
+                    $(Self::$kind => { const SHAPE: &Shape = &$shape; SHAPE })*
+                }
+            }
+        }
+    };
+}
+
+cell_kinds! {
+    /// Two nodes.
+    Segment => Shape {
+        name: "segments",
+        dimension: 1,
+        nodes: 2,
+        quadratic: false,
+        as_face: Some(FaceKind::Segment),
+        face: FaceKind::Point,
+        faces: &[&[0], &[1]],
+        edges: &[&[0, 1]],
+        turned_over: &[1, 0],
+        neighbours: &[1],
+        gmsh: (ElementType::Lin2, &[0, 1]),
+    },
+    /// Three nodes, counter-clockwise.
+    Triangle => Shape {
+        name: "triangles",
+        dimension: 2,
+        nodes: 3,
+        quadratic: false,
+        as_face: Some(FaceKind::Triangle),
+        face: FaceKind::Segment,
+        faces: &[&[0, 1], &[1, 2], &[2, 0]],
+        edges: &[],
+        turned_over: &[0, 2, 1],
+        neighbours: &[1, 2],
+        gmsh: (ElementType::Tri3, &[0, 1, 2]),
+    },
+    /// Six nodes: the corners counter-clockwise, then the middles of the edges 1-2, 2-3, 3-1.
+    Triangle6 => Shape {
+        name: "triangles of 6 nodes",
+        dimension: 2,
+        nodes: 6,
+        quadratic: true,
+        as_face: Some(FaceKind::Triangle6),
+        face: FaceKind::Segment3,
+        faces: &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
+        edges: &[],
+        turned_over: &[0, 2, 1, 5, 4, 3],
+        neighbours: &[1, 2],
+        gmsh: (ElementType::Tri6, &[0, 1, 2, 3, 4, 5]),
+    },
+    /// Four nodes, counter-clockwise.
+    Quadrilateral => Shape {
+        name: "quadrilaterals",
+        dimension: 2,
+        nodes: 4,
+        quadratic: false,
+        as_face: Some(FaceKind::Quadrilateral),
+        face: FaceKind::Segment,
+        faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+        edges: &[],
+        turned_over: &[0, 3, 2, 1],
+        neighbours: &[1, 3],
+        gmsh: (ElementType::Qua4, &[0, 1, 2, 3]),
+    },
     /// Four nodes: the first three counter-clockwise as seen from the fourth.
-    Tetrahedron,
+    Tetrahedron => Shape {
+        name: "tetrahedra",
+        dimension: 3,
+        nodes: 4,
+        quadratic: false,
+        as_face: None,
+        face: FaceKind::Triangle,
+        faces: &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
+        edges: &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]],
+        turned_over: &[0, 2, 1, 3],
+        neighbours: &[1, 2, 3],
+        gmsh: (ElementType::Tet4, &[0, 1, 2, 3]),
+    },
     /// Ten nodes: the corners as in [`CellKind::Tetrahedron`], then the middles of the edges 1-2,
     /// 2-3, 3-1, 1-4, 2-4, 3-4.
-    Tetrahedron10,
+    Tetrahedron10 => Shape {
+        name: "tetrahedra of 10 nodes",
+        dimension: 3,
+        nodes: 10,
+        quadratic: true,
+        as_face: None,
+        face: FaceKind::Triangle6,
+        faces: &[
+            &[0, 2, 1, 6, 5, 4],
+            &[0, 1, 3, 4, 8, 7],
+            &[1, 2, 3, 5, 9, 8],
+            &[0, 3, 2, 7, 9, 6],
+        ],
+        edges: &[&[0, 1, 4], &[1, 2, 5], &[2, 0, 6], &[0, 3, 7], &[1, 3, 8], &[2, 3, 9]],
+        turned_over: &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
+        neighbours: &[1, 2, 3],
+        gmsh: (ElementType::Tet10, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
+    },
     /// Eight nodes: four around one face, counter-clockwise as seen from the opposite one, then
     /// the four across from them.
-    Hexahedron,
+    Hexahedron => Shape {
+        name: "hexahedra",
+        dimension: 3,
+        nodes: 8,
+        quadratic: false,
+        as_face: None,
+        face: FaceKind::Quadrilateral,
+        faces: &[
+            &[0, 3, 2, 1],
+            &[4, 5, 6, 7],
+            &[0, 1, 5, 4],
+            &[1, 2, 6, 5],
+            &[2, 3, 7, 6],
+            &[3, 0, 4, 7],
+        ],
+        edges: &[
+            &[0, 1],
+            &[1, 2],
+            &[2, 3],
+            &[3, 0],
+            &[4, 5],
+            &[5, 6],
+            &[6, 7],
+            &[7, 4],
+            &[0, 4],
+            &[1, 5],
+            &[2, 6],
+            &[3, 7],
+        ],
+        turned_over: &[0, 3, 2, 1, 4, 7, 6, 5],
+        neighbours: &[1, 3, 4],
+        gmsh: (ElementType::Hex8, &[0, 1, 2, 3, 4, 5, 6, 7]),
+    },
 }
 
 impl CellKind {
+    /// Several of them, in words.
+    pub(crate) fn name(self) -> &'static str {
+        self.shape().name
+    }
+
     /// Nodes of one cell.
     pub fn nodes(self) -> usize {
-        match self {
-            Self::Segment => 2,
-            Self::Triangle => 3,
-            Self::Triangle6 => 6,
-            Self::Quadrilateral | Self::Tetrahedron => 4,
-            Self::Tetrahedron10 => 10,
-            Self::Hexahedron => 8,
-        }
+        self.shape().nodes
     }
 
     /// Whether edges have mid nodes.
     pub(crate) fn is_quadratic(self) -> bool {
-        matches!(self, Self::Triangle6 | Self::Tetrahedron10)
+        self.shape().quadratic
     }
 
     /// Dimension of the cell itself: 1 for a segment, 2 for triangles and quadrilaterals, 3 for
     /// tetrahedra and hexahedra.
     pub fn dimension(self) -> usize {
-        match self {
-            Self::Segment => 1,
-            Self::Triangle | Self::Triangle6 | Self::Quadrilateral => 2,
-            Self::Tetrahedron | Self::Tetrahedron10 | Self::Hexahedron => 3,
-        }
+        self.shape().dimension
     }
 
     /// The faces of the cell as local node numbers (from 0): its ends in 1D, its edges in 2D.
@@ -56,66 +215,40 @@ impl CellKind {
     /// their left); the mid nodes of a quadratic cell follow, in the order of the edges of the
     /// face.
     pub fn faces(self) -> &'static [&'static [usize]] {
-        match self {
-            Self::Segment => &[&[0], &[1]],
-            Self::Triangle => &[&[0, 1], &[1, 2], &[2, 0]],
-            Self::Triangle6 => &[&[0, 1, 3], &[1, 2, 4], &[2, 0, 5]],
-            Self::Quadrilateral => &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
-            Self::Tetrahedron => &[&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[0, 3, 2]],
-            Self::Tetrahedron10 => &[
-                &[0, 2, 1, 6, 5, 4],
-                &[0, 1, 3, 4, 8, 7],
-                &[1, 2, 3, 5, 9, 8],
-                &[0, 3, 2, 7, 9, 6],
-            ],
-            Self::Hexahedron => &[
-                &[0, 3, 2, 1],
-                &[4, 5, 6, 7],
-                &[0, 1, 5, 4],
-                &[1, 2, 6, 5],
-                &[2, 3, 7, 6],
-                &[3, 0, 4, 7],
-            ],
-        }
+        self.shape().faces
+    }
+
+    /// The shape of all of its faces.
+    pub(crate) fn face(self) -> FaceKind {
+        self.shape().face
+    }
+
+    /// What the cell itself is as a face: of a body that is thinner than space, all of it is boundary.
+    pub(crate) fn as_face(self) -> Option<FaceKind> {
+        self.shape().as_face
     }
 
     /// The edges of the cell as local node numbers (from 0): two corners, and the mid node between
     /// them if the cell is quadratic. In 2D edges and faces are the same.
     pub fn edges(self) -> &'static [&'static [usize]] {
-        match self {
-            Self::Segment => &[&[0, 1]],
-            Self::Triangle | Self::Triangle6 | Self::Quadrilateral => self.faces(),
-            Self::Tetrahedron => &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]],
-            Self::Tetrahedron10 => {
-                &[&[0, 1, 4], &[1, 2, 5], &[2, 0, 6], &[0, 3, 7], &[1, 3, 8], &[2, 3, 9]]
-            }
-            Self::Hexahedron => &[
-                &[0, 1],
-                &[1, 2],
-                &[2, 3],
-                &[3, 0],
-                &[4, 5],
-                &[5, 6],
-                &[6, 7],
-                &[7, 4],
-                &[0, 4],
-                &[1, 5],
-                &[2, 6],
-                &[3, 7],
-            ],
+        match self.dimension() {
+            2 => self.faces(),
+            _ => self.shape().edges,
         }
     }
 
     /// The nodes of the cell in the order of one that is turned over: local numbers (from 0).
     pub(super) fn turned_over(self) -> &'static [usize] {
-        match self {
-            Self::Segment => &[1, 0],
-            Self::Triangle => &[0, 2, 1],
-            Self::Triangle6 => &[0, 2, 1, 5, 4, 3],
-            Self::Quadrilateral => &[0, 3, 2, 1],
-            Self::Tetrahedron => &[0, 2, 1, 3],
-            Self::Tetrahedron10 => &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
-            Self::Hexahedron => &[0, 3, 2, 1, 4, 7, 6, 5],
-        }
+        self.shape().turned_over
+    }
+
+    /// The corners next to the first one, in the order of the axes: local numbers (from 0).
+    pub(super) fn neighbours(self) -> &'static [usize] {
+        self.shape().neighbours
+    }
+
+    /// Gmsh's type of element, and the nodes of it in the order of this crate.
+    pub(super) fn gmsh(self) -> (ElementType, &'static [usize]) {
+        self.shape().gmsh
     }
 }

@@ -71,12 +71,11 @@ fn build(contents: &Contents) -> Result<Mesh, String> {
     let (mut connectivity, mut cell_groups) = (Vec::new(), BTreeMap::new());
     for block in body {
         let first = connectivity.len() / kind.nodes();
-        let number =
-            |element: &Vec<usize>| element.iter().filter_map(|&place| numbers[place]).collect();
+        let (_, order) = kind.gmsh();
+        let number = |element: &Vec<usize>| {
+            order.iter().filter_map(|&local| numbers[element[local]]).collect()
+        };
         let mut cells: Vec<Vec<usize>> = block.elements.iter().map(number).collect();
-        if kind == CellKind::Tetrahedron10 {
-            cells.iter_mut().for_each(|cell| cell.swap(8, 9));
-        }
         let turned = |cell: &Vec<usize>| signed_measure(kind, cell, &positions) < 0.0;
         if dimension == kind.dimension() && cells.iter().all(turned) {
             cells
@@ -133,9 +132,9 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
     match &*counts {
         [] => Err("it has no elements".into()),
         [only] => cell_kind(only.0).ok_or_else(|| {
-            let mend = "cells may be lines of 2 nodes, triangles of 3 or 6, quadrilaterals of 4, \
-                        tetrahedra of 4 or 10, hexahedra of 8 (in Gmsh: Mesh.ElementOrder)";
-            format!("it has {}: {mend}", words(only))
+            let known: Vec<&str> = CellKind::ALL.iter().map(|kind| kind.name()).collect();
+            let mend = "(in Gmsh: Mesh.ElementOrder)";
+            format!("it has {}: cells may be {} {mend}", words(only), known.join(", "))
         }),
         several => {
             let mend = "all cells must be of one kind: mesh it so (in Gmsh: without Recombine; or \
@@ -149,16 +148,7 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
 }
 
 fn cell_kind(kind: ElementType) -> Option<CellKind> {
-    match kind {
-        ElementType::Lin2 => Some(CellKind::Segment),
-        ElementType::Tri3 => Some(CellKind::Triangle),
-        ElementType::Tri6 => Some(CellKind::Triangle6),
-        ElementType::Qua4 => Some(CellKind::Quadrilateral),
-        ElementType::Tet4 => Some(CellKind::Tetrahedron),
-        ElementType::Tet10 => Some(CellKind::Tetrahedron10),
-        ElementType::Hex8 => Some(CellKind::Hexahedron),
-        _ => None,
-    }
+    CellKind::ALL.iter().copied().find(|cell| cell.gmsh().0 == kind)
 }
 
 /// A type of elements in words.
@@ -192,16 +182,9 @@ fn space(kind: CellKind, positions: &[[f64; 3]]) -> usize {
 /// Length, area or volume that the edges at the first corner span, below 0 if the cell runs the
 /// wrong way round; for cells that fill space.
 fn signed_measure(kind: CellKind, cell: &[usize], positions: &[[f64; 3]]) -> f64 {
-    let neighbours: &[usize] = match kind {
-        CellKind::Segment => &[1],
-        CellKind::Triangle | CellKind::Triangle6 => &[1, 2],
-        CellKind::Quadrilateral => &[1, 3],
-        CellKind::Tetrahedron | CellKind::Tetrahedron10 => &[1, 2, 3],
-        CellKind::Hexahedron => &[1, 3, 4],
-    };
     let corner = |local: usize| Vector3::from(positions[cell[local]]);
     let mut edges = Matrix3::identity();
-    for (axis, &neighbour) in neighbours.iter().enumerate() {
+    for (axis, &neighbour) in kind.neighbours().iter().enumerate() {
         edges.set_column(axis, &(corner(neighbour) - corner(0)));
     }
     edges.determinant()

@@ -13,6 +13,7 @@ use std::collections::BTreeMap;
 
 pub use boundary::Face;
 pub use cell::CellKind;
+pub(crate) use cell::FaceKind;
 pub use generate::{Cells, SolidCells};
 pub use select::Selection;
 

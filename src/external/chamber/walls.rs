@@ -45,12 +45,12 @@ impl Chamber {
         faces.retain(|face| face.len() > 2);
         let faces =
             between(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let corners = faces.iter().map(|face| match face.len() {
-            6 => &face[..3],
-            _ => &face[..],
+        let corners = faces.iter().map(|face| match mesh.kind().is_quadratic() {
+            true => &face[..face.len() / 2],
+            false => &face[..],
         });
         check_closed(corners).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let (parts, weight) = pieces(2, faces.first().map_or(3, Vec::len));
+        let (parts, weight) = pieces(mesh.face_kind());
         let triangles = faces
             .iter()
             .flat_map(|face| parts.iter().map(|part| [0, 1, 2].map(|corner| face[part[corner]])));
@@ -81,11 +81,10 @@ impl Chamber {
 
 /// The edges of the boundary of a body in the plane, two nodes each, the body to their left.
 fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
+    let (parts, _) = pieces(mesh.face_kind());
     let faces = mesh.boundary_faces();
-    let edges = faces.iter().flat_map(|face| {
-        let (parts, _) = pieces(1, face.len());
-        parts.iter().map(|part| [face[part[0]], face[part[1]]])
-    });
+    let edges =
+        faces.iter().flat_map(|face| parts.iter().map(|part| [face[part[0]], face[part[1]]]));
     edges.collect()
 }
 

@@ -34,19 +34,23 @@ impl ViscousLaw for ObjectiveViscosity {
         let f = at.gradient();
         let spread = Spread::new(&f, gradients);
         let moving = gradients.map(|g| apply(rate, &g));
-        let mixed = product_transposed(&f, rate);
+        let mixed = product_transposed(rate, &f);
         let stress = self.0.stress(&at.twice_green_rate(rate), T::from(1.0));
         let (lambda, mu) = (T::from(self.0.lame.lambda), T::from(self.0.lame.mu));
         move |a, b| {
             let stretch = dot(&gradients[a], &gradients[b]);
             let geometric = spread.geometric(&stress, a, b);
-            let entry = |i: usize, k: usize| {
-                let turning = if i == k { geometric } else { T::from(-0.0) };
-                let volumetric = spread.along[a][i] * moving[b][k];
-                let shear = mixed[k][i] * stretch + spread.along[b][i] * moving[a][k];
-                (turning + volumetric * lambda + shear * mu) * weight
-            };
-            std::array::from_fn(|i| std::array::from_fn(|k| entry(i, k)))
+            let along = &spread.along;
+            let mut block = [[T::from(0.0); D]; D];
+            for i in 0..D {
+                block[i][i] += geometric;
+                for k in 0..D {
+                    let shear = mixed[i][k] * stretch + along[b][i] * moving[a][k];
+                    let volumetric = along[a][i] * moving[b][k];
+                    block[i][k] = (block[i][k] + volumetric * lambda + shear * mu) * weight;
+                }
+            }
+            block
         }
     }
 

@@ -10,7 +10,7 @@ use crate::body::{Body, CellField};
 use crate::error::Error;
 use crate::external::{Shape, ShapeKind, Spring};
 use crate::input::InputError;
-use crate::mesh::{CellKind, Mesh};
+use crate::mesh::Mesh;
 use crate::output::svg::{View, displaced, drawn, positions};
 use crate::scene::{Phase, Role, Scene};
 use crate::system::Energy;
@@ -255,7 +255,7 @@ fn run(trajectory: &Trajectory) -> Value {
     json!({
         "nodes": mesh.node_count(),
         "cells": mesh.cell_count(),
-        "cellName": cell_name(mesh.kind()),
+        "cellName": mesh.kind().name(),
         "method": report.method.to_string(),
         "rtol": format!("{:e}", report.rtol),
         "steps": report.steps(),
@@ -265,16 +265,4 @@ fn run(trajectory: &Trajectory) -> Value {
         "energyScale": report.energy_scale,
         "samples": trajectory.samples().len(),
     })
-}
-
-fn cell_name(kind: CellKind) -> &'static str {
-    match kind {
-        CellKind::Segment => "segments",
-        CellKind::Triangle => "triangles",
-        CellKind::Triangle6 => "triangles of 6 nodes",
-        CellKind::Quadrilateral => "quadrilaterals",
-        CellKind::Tetrahedron => "tetrahedra",
-        CellKind::Tetrahedron10 => "tetrahedra of 10 nodes",
-        CellKind::Hexahedron => "hexahedra",
-    }
 }

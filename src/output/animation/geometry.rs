@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use crate::mesh::{CellKind, Mesh};
-use crate::output::svg::{BAR_WIDTH, around, around_face, through_middle};
+use crate::mesh::Mesh;
+use crate::output::svg::{BAR_WIDTH, around, through_middle};
 
 /// The drawn part of a mesh.
 pub(super) struct Geometry {
@@ -53,7 +53,7 @@ impl Geometry {
             outline: Vec::new(),
             places,
             width: BAR_WIDTH * mesh.size(),
-            quadratic: matches!(kind, CellKind::Triangle6 | CellKind::Tetrahedron10),
+            quadratic: kind.is_quadratic(),
         };
         geometry.faces = faces.iter().map(|(_, face)| geometry.places(face)).collect();
         if look == "area" {
@@ -88,11 +88,10 @@ fn segments(mesh: &Mesh) -> Faces {
 }
 
 fn cells(mesh: &Mesh) -> Faces {
-    let in_order = |cell: &[usize]| around(mesh.kind()).map(|local| cell[local]).collect();
-    mesh.cells().map(in_order).enumerate().collect()
+    mesh.cells().map(|cell| around(mesh.kind(), cell).collect()).enumerate().collect()
 }
 
 fn surface(mesh: &Mesh) -> Faces {
     let faces = mesh.boundary_faces_of_cells().into_iter();
-    faces.map(|(cell, face)| (cell, around_face(&face).collect())).collect()
+    faces.map(|(cell, face)| (cell, around(mesh.kind(), &face).collect())).collect()
 }

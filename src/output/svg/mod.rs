@@ -13,7 +13,7 @@ pub(super) use layout::{BAR_WIDTH, View};
 use layout::{Layout, scale_bar};
 use mark::{Mark, text};
 use panel::Panel;
-pub(super) use panel::{around, around_face, through_middle};
+pub(super) use panel::{around, through_middle};
 pub(super) use projection::{displaced, drawn, positions};
 use svg::Document;
 use svg::node::element::{Definitions, Group, Line, Path as Outline, Pattern};

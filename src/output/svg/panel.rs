@@ -140,7 +140,7 @@ fn string(mesh: &Mesh, points: &[Point]) -> Group {
 fn cells(mesh: &Mesh, points: &[Point]) -> Group {
     let mut data = Data::default();
     for cell in mesh.cells() {
-        let around = around(mesh.kind()).map(|local| points[cell[local]]);
+        let around = around(mesh.kind(), cell).map(|node| points[node]);
         data.polyline(&around.collect::<Vec<_>>(), true);
     }
     let mut outline = Data::default();
@@ -160,7 +160,7 @@ fn surface(mesh: &Mesh, points: &[Point], depths: &[f64]) -> Group {
     let solid = mesh.kind().dimension() == 3;
     let mut faces: Vec<(f64, Vec<Point>)> = Vec::new();
     for face in mesh.boundary_faces() {
-        let around: Vec<Point> = around_face(&face).map(|node| points[node]).collect();
+        let around: Vec<Point> = around(mesh.kind(), &face).map(|node| points[node]).collect();
         if !solid || looks_at_viewer(&around) {
             let depth: f64 = face.iter().map(|&node| depths[node]).sum();
             faces.push((depth / face.len() as f64, around));
@@ -187,19 +187,20 @@ fn looks_at_viewer(polygon: &[Point]) -> bool {
     polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>() < 0.0
 }
 
-/// The nodes of a face of a solid in the order in which they stand around it.
-pub(in crate::output) fn around_face(face: &[usize]) -> impl Iterator<Item = usize> {
-    let kind = match face.len() {
-        3 => CellKind::Triangle,
-        4 => CellKind::Quadrilateral,
-        _ => CellKind::Triangle6,
+/// The nodes of a face of a solid, or of a two-dimensional cell, in the order in which they stand around it:
+/// each corner, then the mid node of the edge that begins there, in cells of `kind` that have some.
+pub(in crate::output) fn around(kind: CellKind, face: &[usize]) -> impl Iterator<Item = usize> {
+    let (corners, middles) = match kind.is_quadratic() {
+        true => face.split_at(face.len() / 2),
+        false => (face, &face[..0]),
     };
-    around(kind).map(|local| face[local])
-}
-
-/// The nodes of a two-dimensional cell in the order in which they stand around it.
-pub(in crate::output) fn around(kind: CellKind) -> impl Iterator<Item = usize> {
-    kind.edges().iter().flat_map(|edge| through_middle(edge).take(edge.len() - 1))
+    let middles = middles.iter().map(Some).chain(std::iter::repeat(None));
+    corners
+        .iter()
+        .zip(middles)
+        .flat_map(|(corner, middle)| [Some(corner), middle])
+        .flatten()
+        .copied()
 }
 
 /// The nodes of an edge from end to end: through the mid node, where there is one.
