@@ -20,13 +20,14 @@
 //! ```
 //!
 //! The integrators stand on their own: [`sundials`] is a safe layer over CVODE and IDA for any ODE
-//! or DAE, [`rk`] an explicit Runge-Kutta method; both take the systems of [`ode`].
+//! or DAE, [`rk`] an explicit Runge-Kutta method, [`central_difference`] one for systems of second order; all take the
+//! systems of [`ode`].
 //!
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
 //! brackets are its equations.
 
 pub mod body;
-mod central_difference;
+pub mod central_difference;
 pub mod constraint;
 mod element;
 pub mod equations;

@@ -14,54 +14,71 @@ const REJECTED_FACTOR: f64 = 0.8;
 /// Shortening after forces that could not be evaluated.
 const REFUSED_FACTOR: f64 = 0.25;
 
-/// Equal steps from one time to the end of the phase, until a reason turns up to change them.
+/// Equal steps from one time to the stop time, until a reason turns up to change them.
 #[derive(Debug, Clone)]
 pub(super) struct Control {
     from: f64,
+    /// The stop time; infinite if there is none.
     end: f64,
+    /// Step size asked for (s), and number and size of the equal ones.
+    planned: f64,
     count: f64,
+    step: f64,
     taken: f64,
-    /// Longest step that is stable (s), and longest step that may be taken.
+    /// Longest step that is stable and allowed (s).
     limit: f64,
-    longest: f64,
     /// Largest error since the last change or thought of one, and steps since then.
     worst: f64,
     watched: usize,
 }
 
 impl Control {
-    /// Steps from `t` to `end` as long as `limit` allows.
-    pub(super) fn new(t: f64, end: f64, limit: f64) -> Self {
-        let (count, longest) = (1.0, f64::INFINITY);
-        let mut control =
-            Self { from: t, end, count, taken: 0.0, limit, longest, worst: 0.0, watched: 0 };
-        control.divide(t, limit);
+    /// Steps of size `first` from `t` on, to be no longer than `limit`.
+    pub(super) fn new(t: f64, first: f64, limit: f64) -> Self {
+        let mut control = Self {
+            from: t,
+            end: f64::INFINITY,
+            planned: 0.0,
+            count: 0.0,
+            step: 0.0,
+            taken: 0.0,
+            limit,
+            worst: 0.0,
+            watched: 0,
+        };
+        control.divide(t, first.min(limit));
         control
+    }
+
+    /// Ends the steps at `end`.
+    pub(super) fn set_end(&mut self, t: f64, end: f64) {
+        self.end = end;
+        self.divide(t, self.planned);
     }
 
     /// Divides what lies ahead of `t` into equal steps no longer than `step`.
     fn divide(&mut self, t: f64, step: f64) {
-        self.from = t;
+        (self.from, self.planned) = (t, step);
         // round-off must not add a step
         self.count = ((self.end - t) / step * (1.0 - 1e-12)).ceil().max(1.0);
+        self.step = if self.end.is_finite() { (self.end - t) / self.count } else { step };
         (self.taken, self.worst, self.watched) = (0.0, 0.0, 0);
     }
 
     #[cfg(test)]
     pub(super) fn fix_steps(&mut self, t: f64, h: f64) {
-        *self = Self::new(t, self.end, h);
+        (self.limit, self.planned) = (h, h);
+        self.divide(t, h);
     }
 
-    /// Size of the present steps (s).
-    pub(super) fn step(&self) -> f64 {
-        (self.end - self.from) / self.count
-    }
-
-    /// Where the next step ends.
-    pub(super) fn next(&self) -> f64 {
+    /// Where the next step from `t` ends: at `towards` if nothing bounds it.
+    pub(super) fn next(&mut self, t: f64, towards: f64) -> f64 {
+        if self.step == f64::INFINITY {
+            self.divide(t, towards - t);
+        }
         match self.taken + 1.0 >= self.count {
             true => self.end,
-            false => self.from + (self.taken + 1.0) * self.step(),
+            false => self.from + (self.taken + 1.0) * self.step,
         }
     }
 
@@ -71,7 +88,7 @@ impl Control {
         self.worst = self.worst.max(error);
         self.watched += 1;
         if self.watched == PATIENCE {
-            let step = self.step();
+            let step = self.step;
             let factor = (TARGET / self.worst).cbrt().min(LARGEST_FACTOR);
             let longer = f64::min(factor * step, self.limit);
             (self.worst, self.watched) = (0.0, 0);
@@ -85,25 +102,19 @@ impl Control {
     pub(super) fn reject(&mut self, t: f64, error: f64) {
         let error = if error.is_nan() { f64::INFINITY } else { error };
         let factor = (TARGET / error).cbrt().clamp(SMALLEST_FACTOR, REJECTED_FACTOR);
-        self.divide(t, factor * self.step());
+        self.divide(t, factor * self.step);
     }
 
     /// The step from `t` met forces that have no meaning.
     pub(super) fn refuse(&mut self, t: f64) {
-        self.divide(t, REFUSED_FACTOR * self.step());
-    }
-
-    /// Sets the longest step that may be taken, at time `t`.
-    pub(super) fn set_longest(&mut self, t: f64, longest: f64) {
-        self.longest = longest;
-        self.set_limit(t, self.limit);
+        self.divide(t, REFUSED_FACTOR * self.step);
     }
 
     /// Sets the longest stable step, at time `t`.
     pub(super) fn set_limit(&mut self, t: f64, limit: f64) {
-        self.limit = limit.min(self.longest);
-        if self.step() > self.limit {
-            self.divide(t, self.limit);
+        self.limit = limit;
+        if self.step > limit {
+            self.divide(t, limit);
         }
     }
 }

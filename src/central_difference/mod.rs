@@ -13,6 +13,46 @@
 //! *Nonlinear Finite Elements for Continua and Structures*, chapter 6; E. Hairer, C. Lubich, G. Wanner,
 //! Acta Numerica 12 (2003) 399-450). It pays with lumped inertia, where M^-1 is no work.
 //!
+//! ```
+//! use pliant::central_difference::{CentralDifference, Options};
+//! use pliant::ode::{Failure, Kick, Rates, SecondOrder};
+//!
+//! /// Masses of 1 kg in a row, with springs of stiffness `k` (N/m) between neighbours and to both walls.
+//! struct Chain {
+//!     k: f64,
+//! }
+//!
+//! impl SecondOrder for Chain {
+//!     fn forces(&mut self, _t: f64, u: &[f64], _v: &[f64], f: &mut [f64]) -> Result<(), Failure> {
+//!         for i in 0..u.len() {
+//!             let left = if i == 0 { 0.0 } else { u[i - 1] };
+//!             let right = u.get(i + 1).copied().unwrap_or(0.0);
+//!             f[i] = self.k * (left - 2.0 * u[i] + right);
+//!         }
+//!         Ok(())
+//!     }
+//!
+//!     fn accelerations(&mut self, kick: &Kick<'_>, a: &mut [f64]) {
+//!         a.copy_from_slice(kick.force); // masses of 1 kg
+//!     }
+//!
+//!     fn rates(&mut self, _t: f64, _u: &[f64], _v: &[f64]) -> Rates {
+//!         Rates { frequency: 2.0 * self.k.sqrt(), decay: 0.0 }
+//!     }
+//! }
+//!
+//! // the slowest vibration of 9 masses, of frequency 2 sqrt(k) sin(pi/20), at rest at its largest
+//! let k = 100.0_f64;
+//! let shape: Vec<f64> = (1..=9).map(|i| (std::f64::consts::PI * f64::from(i) / 10.0).sin()).collect();
+//! let start = [shape.as_slice(), &[0.0; 9]].concat();
+//! let options = Options::default().rtol(1e-6).atol(1e-6);
+//! let mut solver = CentralDifference::new(Chain { k }, 0.0, &start, &options)?;
+//! solver.solve_to(1.0)?;
+//! let omega = 2.0 * k.sqrt() * (std::f64::consts::PI / 20.0).sin();
+//! assert!((solver.y()[4] - omega.cos()).abs() < 1e-4);
+//! # Ok::<(), pliant::central_difference::Error>(())
+//! ```
+//!
 //! **Damping.** Viscous forces see the velocity 2 w - v_n = v_n + h v_n', extrapolated to the end of
 //! the step. Taking w instead, as is often done, allows twice the step where damping rules, but makes the
 //! method first order.
@@ -41,18 +81,10 @@ mod solver;
 mod stability;
 mod trial;
 
-pub(crate) use solver::CentralDifference;
-pub(crate) use stability::longest_step;
+pub use solver::CentralDifference;
+pub use stability::longest_step;
+
+pub use crate::rk::{Error, Options, Statistics};
 
 /// Order of the method.
-pub(crate) const ORDER: u32 = 2;
-
-/// What has been done so far.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Statistics {
-    pub(crate) steps: usize,
-    pub(crate) evaluations: usize,
-    pub(crate) rejected_steps: usize,
-    pub(crate) refused_steps: usize,
-    pub(crate) last_step: f64,
-}
+pub const ORDER: u32 = 2;

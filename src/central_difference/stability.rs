@@ -19,11 +19,12 @@ const CREATED: f64 = 0.05;
 const SHORTENED: f64 = 0.7;
 
 /// Longest step (s) that is stable: 2/(decay + sqrt(decay^2 + frequency^2)).
-pub(crate) fn longest_step(rates: &Rates) -> f64 {
+pub fn longest_step(rates: &Rates) -> f64 {
     let Rates { frequency, decay } = *rates;
     2.0 / (decay + decay.hypot(frequency))
 }
 
+#[derive(Debug)]
 pub(super) struct Stability {
     rates: Rates,
     /// Part of the bound in use.

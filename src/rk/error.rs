@@ -108,7 +108,7 @@ pub enum Error {
 }
 
 impl Error {
-    pub(super) fn bad_input(
+    pub(crate) fn bad_input(
         input: impl Into<String>,
         value: impl ToString,
         mend: impl Into<String>,

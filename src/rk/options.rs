@@ -11,12 +11,12 @@ use super::Error;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
-    pub(super) rtol: f64,
-    pub(super) atol: Tolerance,
-    pub(super) initial_step: Option<f64>,
-    pub(super) max_step: f64,
-    pub(super) max_steps: usize,
-    pub(super) stop_time: Option<f64>,
+    pub(crate) rtol: f64,
+    pub(crate) atol: Tolerance,
+    pub(crate) initial_step: Option<f64>,
+    pub(crate) max_step: f64,
+    pub(crate) max_steps: usize,
+    pub(crate) stop_time: Option<f64>,
 }
 
 impl Default for Options {
@@ -84,7 +84,7 @@ impl Options {
     }
 
     /// Checks everything that does not depend on the state; returns atol for each component.
-    pub(super) fn check(&self, n: usize) -> Result<Vec<f64>, Error> {
+    pub(crate) fn check(&self, n: usize) -> Result<Vec<f64>, Error> {
         if !(self.rtol >= 1e-14 && self.rtol.is_finite()) {
             return Err(Error::bad_input("rtol", self.rtol, "give 1e-14 or more, 1e-6 say"));
         }

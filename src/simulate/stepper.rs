@@ -61,9 +61,11 @@ impl Stepper {
                 Ok(Self::Rk(Box::new(DormandPrince::new(system, t, state, &options)?)))
             }
             Method::CentralDifference => {
+                let options = rk::Options::default().rtol(solver.rtol).atol(tolerances);
+                let options = options.stop_time(end).max_step(longest);
                 let form = SecondOrderForm::new(system);
-                let started = CentralDifference::new(form, t, end, state, solver.rtol, tolerances)?;
-                Ok(Self::CentralDifference(Box::new(started.max_step(longest))))
+                let started = CentralDifference::new(form, t, state, &options)?;
+                Ok(Self::CentralDifference(Box::new(started)))
             }
         }
     }
@@ -87,7 +89,10 @@ impl Stepper {
                 let _ = rk.step()?;
                 Ok(rk.t())
             }
-            Self::CentralDifference(central) => central.step(),
+            Self::CentralDifference(central) => {
+                let _ = central.step(end)?;
+                Ok(central.t())
+            }
         }
     }
 
@@ -98,7 +103,7 @@ impl Stepper {
             Self::Cvode(cvode) => Ok(cvode.interpolate(t, 0, state)?),
             Self::Ida(ida) => Ok(ida.interpolate(t, 0, state)?),
             Self::Rk(rk) => Ok(rk.interpolate(t, 0, state)?),
-            Self::CentralDifference(central) => central.interpolate(t, state),
+            Self::CentralDifference(central) => Ok(central.interpolate(t, state)?),
         }
     }
 
@@ -205,7 +210,7 @@ impl Stepper {
                 let s = central.statistics();
                 Counts {
                     steps: s.steps,
-                    evaluations: s.evaluations,
+                    evaluations: s.rhs_evaluations,
                     jacobian_evaluations: central.system().system.tangent_evaluations(),
                     factorizations: 0,
                     error_test_failures: s.rejected_steps,
