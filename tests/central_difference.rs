@@ -275,6 +275,21 @@ fn errors_follow_the_tolerance() {
     }
 }
 
+/// Dampers that push, in no account.
+#[test]
+fn energy_that_grows_by_itself_is_noticed() {
+    let chain = Chain { watches_energy: true, ..chain(4, -0.01) };
+    let (start, frequency) = (displaced(&chain, 1), chain.frequency(4));
+    let options = Options::default().rtol(1.0).atol(1e300);
+    let mut solver = CentralDifference::new(chain, 0.0, &start, &options).unwrap();
+    // beyond the second look at the energy, after 258 steps, but not the third one
+    solver.solve_to(300.0).unwrap();
+    assert!(solver.notice().is_some_and(|notice| notice.contains("energy grew")));
+    let longest = longest_step(&Rates { frequency, decay: 0.01 * frequency * frequency });
+    let part = solver.statistics().last_step / longest;
+    assert!((part - 0.98 * 0.7).abs() < 1e-9, "{part}");
+}
+
 #[test]
 fn outputs_do_not_change_steps_and_a_restart_repeats_them() {
     let chain = chain(3, 0.1);
