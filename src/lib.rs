@@ -49,6 +49,7 @@ pub mod scene_file;
 mod settings;
 pub mod simulate;
 pub mod sparse;
+mod state;
 pub mod statics;
 #[cfg(feature = "study")]
 pub mod study;

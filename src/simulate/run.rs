@@ -15,7 +15,8 @@ use crate::ode::Failure;
 use crate::report::{Counts, PhaseReport, Report, creation};
 use crate::scene::{Phase, Scene};
 use crate::settings::{Method, Settings, Tolerances};
-use crate::system::{ENERGIES, Energy, System};
+use crate::state::ENERGIES;
+use crate::system::{Energy, System};
 use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// A scene on its way.

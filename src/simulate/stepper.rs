@@ -6,11 +6,12 @@ use crate::report::Counts;
 use crate::rk::{self, DormandPrince};
 use crate::settings::Tolerances;
 use crate::settings::{Method, Settings};
+use crate::state::ENERGIES;
 use crate::sundials::{
     Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern,
     Statistics, Table,
 };
-use crate::system::{DaeForm, ENERGIES, Index, SecondOrderForm, System};
+use crate::system::{DaeForm, Index, SecondOrderForm, System};
 
 pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 

@@ -7,7 +7,7 @@ use crate::constraint::Start;
 use crate::error::Error;
 use crate::ode::Ode;
 use crate::scene::Scene;
-use crate::system::ENERGIES;
+use crate::state;
 
 /// A hash of everything that a scene says of itself, of what its functions of time do at a few
 /// times, and of the version of this library.
@@ -42,7 +42,7 @@ fn add_text(hasher: &mut DefaultHasher, text: fmt::Arguments<'_>) {
 /// Accelerations of the body at rest in its natural shape, at a few times of each phase: loads,
 /// pressures, actuation and paths are functions that say nothing of themselves.
 fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Error> {
-    let state = vec![0.0; 2 * scene.body().dofs() + ENERGIES];
+    let state = vec![0.0; state::length(scene.body().dofs())];
     let mut change = state.clone();
     let forces = scene.forces()?;
     let model = scene.model(&forces);

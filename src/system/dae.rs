@@ -21,9 +21,9 @@
 //! ```
 
 use super::System;
-use super::ode::ENERGIES;
 use crate::constraint::Prescribed;
 use crate::ode::{Dae, Failure};
+use crate::state::{self, State, StateMut};
 
 /// What the constraints enter as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,7 +39,7 @@ pub(crate) struct DaeForm {
     pub(crate) system: System,
     index: Index,
     /// u' - v
-    slip: Vec<f64>,
+    mismatch: Vec<f64>,
     /// For each degree of freedom, the constraint rows it is in and its coefficients there.
     constraints_of: Vec<Vec<(usize, f64)>>,
 }
@@ -52,7 +52,7 @@ impl DaeForm {
                 .iter()
                 .for_each(|&(dof, coefficient)| constraints_of[dof].push((k, coefficient)));
         }
-        Self { slip: vec![0.0; system.dofs()], system, index, constraints_of }
+        Self { mismatch: vec![0.0; system.dofs()], system, index, constraints_of }
     }
 
     /// Number of unknowns.
@@ -61,7 +61,7 @@ impl DaeForm {
             Index::One => self.system.rows.len(),
             Index::Two => 2 * self.system.rows.len(),
         };
-        2 * self.system.dofs() + ENERGIES + multipliers
+        state::length(self.system.dofs()) + multipliers
     }
 
     /// y and y' with which the residual vanishes, from (u, v) and the energies in the front of
@@ -71,8 +71,7 @@ impl DaeForm {
         t: f64,
         state: &[f64],
     ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
-        let n = self.system.dofs();
-        let (u, v) = (&state[..n], &state[n..2 * n]);
+        let State { u, v, .. } = State::of(state, self.system.dofs());
         self.system.evaluate(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, &self.system.at.multipliers);
         let mut y = [state, &self.system.at.multipliers].concat();
@@ -89,7 +88,7 @@ impl DaeForm {
         let (n, d) = (self.system.dofs(), model.dimension);
         let (stiffness, damping) = self.system.tangents();
         let (inertia, pattern) = (&model.inertia, model.pattern());
-        let lambda = 2 * n + ENERGIES;
+        let lambda = state::length(n);
         // entry (column, row) of the pattern; the one that is wanted is (row, column)
         let block = |matrix: &[f64], entry: usize, row_axis: usize, column_axis: usize| {
             matrix[(pattern.transposed(entry) * d + row_axis) * d + column_axis]
@@ -134,9 +133,8 @@ impl Dae for DaeForm {
         residual: &mut [f64],
     ) -> Result<(), Failure> {
         let n = self.system.dofs();
-        let (u, v, lambda) = (&y[..n], &y[n..2 * n], 2 * n + ENERGIES);
-        let (multipliers, eta) = y[lambda..].split_at(self.system.rows.len());
-        let (up, vp) = (&yp[..n], &yp[n..2 * n]);
+        let (State { u, v, multipliers, .. }, rates) = (State::of(y, n), State::of(yp, n));
+        let (multipliers, eta) = multipliers.split_at(self.system.rows.len());
         self.system.evaluate_forces(t, u, v)?;
         self.system.evaluate_rows(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, multipliers);
@@ -148,28 +146,30 @@ impl Dae for DaeForm {
                 row.terms.iter().for_each(|&(dof, c)| momentum[dof] -= c * multiplier);
             }
         };
+        let residual = StateMut::of(residual, n);
+        let (kinematic, dynamic) = (residual.u, residual.v);
         for i in 0..n {
-            residual[i] = up[i] - v[i];
-            residual[n + i] = -at.total[i];
+            kinematic[i] = rates.u[i] - v[i];
+            dynamic[i] = -at.total[i];
         }
-        let (kinematic, dynamic) = residual[..2 * n].split_at_mut(n);
-        model.inertia.add_product(model.dimension, 1.0, vp, dynamic);
+        model.inertia.add_product(model.dimension, 1.0, rates.v, dynamic);
         subtract_pull(multipliers, dynamic);
         if self.index == Index::Two {
-            self.slip.copy_from_slice(kinematic);
+            self.mismatch.copy_from_slice(kinematic);
             kinematic.fill(0.0);
-            model.inertia.add_product(model.dimension, 1.0, &self.slip, kinematic);
+            model.inertia.add_product(model.dimension, 1.0, &self.mismatch, kinematic);
             subtract_pull(eta, kinematic);
         }
-        residual[2 * n] = yp[2 * n] - dissipated;
-        residual[2 * n + 1] = yp[2 * n + 1] - supplied;
+        *residual.dissipated = rates.dissipated - dissipated;
+        *residual.supplied = rates.supplied - supplied;
+        let (of_rates, of_positions) = residual.multipliers.split_at_mut(rows.len());
         for (k, row) in rows.iter().enumerate() {
             match self.index {
-                Index::One => residual[lambda + k] = row.apply(vp) - at.demands[k],
+                Index::One => of_rates[k] = row.apply(rates.v) - at.demands[k],
                 Index::Two => {
                     let Prescribed { displacement, velocity, .. } = row.prescribed(t);
-                    residual[lambda + k] = at.rates[k] - velocity;
-                    residual[lambda + rows.len() + k] = row.apply(u) - displacement;
+                    of_rates[k] = at.rates[k] - velocity;
+                    of_positions[k] = row.apply(u) - displacement;
                 }
             }
         }
@@ -184,8 +184,8 @@ impl Dae for DaeForm {
         _yp: &[f64],
         values: &mut [f64],
     ) -> Result<(), Failure> {
-        let n = self.system.dofs();
-        self.system.update_tangents(t, &y[..n], &y[n..2 * n], false);
+        let State { u, v, .. } = State::of(y, self.system.dofs());
+        self.system.update_tangents(t, u, v, false);
         let mut values = values.iter_mut();
         self.visit_jacobian(cj, |_, _, value| {
             if let Some(slot) = values.next() {
@@ -196,25 +196,22 @@ impl Dae for DaeForm {
     }
 
     fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], _yp: &[f64]) -> Result<(), Failure> {
-        let n = self.system.dofs();
-        self.system.update_tangents(t, &y[..n], &y[n..2 * n], false);
+        let State { u, v, .. } = State::of(y, self.system.dofs());
+        self.system.update_tangents(t, u, v, false);
         self.system.factorize_newton(1.0 / cj)
     }
 
     fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
-        let n = self.system.dofs();
-        let (motion, rest) = r.split_at_mut(2 * n);
-        let (energies, multipliers) = rest.split_at_mut(ENERGIES);
-        let (r1, r2) = motion.split_at_mut(n);
-        let (r3, r4) = multipliers.split_at_mut(self.system.rows.len());
+        let r = StateMut::of(r, self.system.dofs());
+        let (r3, r4) = r.multipliers.split_at_mut(self.system.rows.len());
         match self.index {
-            Index::One => self.system.solve_newton_index_one(r1, r2, r3),
-            Index::Two => self.system.solve_newton_index_two(r1, r2, r3, r4),
+            Index::One => self.system.solve_newton_index_one(r.u, r.v, r3),
+            Index::Two => self.system.solve_newton_index_two(r.u, r.v, r3, r4),
         }
         let (dissipated, supplied) = self.system.power_changes();
         let gamma = self.system.gamma();
-        energies[0] = gamma * (energies[0] + dissipated);
-        energies[1] = gamma * (energies[1] + supplied);
+        *r.dissipated = gamma * (*r.dissipated + dissipated);
+        *r.supplied = gamma * (*r.supplied + supplied);
         Ok(())
     }
 }

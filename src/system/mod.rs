@@ -40,7 +40,6 @@ use std::sync::Arc;
 pub(crate) use at_rest::{AtRest, Balance};
 pub(crate) use dae::{DaeForm, Index};
 use newton_matrix::NewtonMatrix;
-pub(crate) use ode::ENERGIES;
 use reduced::{Coupling, Reduced, nodal_multipliers};
 pub(crate) use second_order::SecondOrderForm;
 pub use spectrum::Spectrum;

@@ -2,18 +2,16 @@
 
 use super::System;
 use crate::ode::{Failure, Ode};
-
-/// Unknowns that ride along behind u and v.
-pub(crate) const ENERGIES: usize = 2;
+use crate::state::{State, StateMut};
 
 impl Ode for System {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        let n = self.dofs();
-        let (u, v) = (&y[..n], &y[n..2 * n]);
+        let State { u, v, .. } = State::of(y, self.dofs());
         self.evaluate(t, u, v)?;
-        ydot[..n].copy_from_slice(v);
-        ydot[n..2 * n].copy_from_slice(&self.at.acceleration);
-        (ydot[2 * n], ydot[2 * n + 1]) = self.powers(v, &self.at.multipliers);
+        let rates = StateMut::of(ydot, self.dofs());
+        rates.u.copy_from_slice(v);
+        rates.v.copy_from_slice(&self.at.acceleration);
+        (*rates.dissipated, *rates.supplied) = self.powers(v, &self.at.multipliers);
         Ok(())
     }
 
@@ -25,8 +23,8 @@ impl Ode for System {
         gamma: f64,
         reuse: bool,
     ) -> Result<bool, Failure> {
-        let n = self.dofs();
-        let current = self.update_tangents(t, &y[..n], &y[n..2 * n], reuse);
+        let State { u, v, .. } = State::of(y, self.dofs());
+        let current = self.update_tangents(t, u, v, reuse);
         self.factorize_newton(gamma)?;
         Ok(current)
     }
@@ -34,24 +32,23 @@ impl Ode for System {
     /// Leaves the accelerations to [`newton_solve`](Self::newton_solve), and with them the
     /// power of the constraints.
     fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        let n = self.dofs();
-        let (u, v) = (&y[..n], &y[n..2 * n]);
+        let State { u, v, .. } = State::of(y, self.dofs());
         self.evaluate_forces(t, u, v)?;
         self.evaluate_rows(t, u, v)?;
         self.at.multipliers.fill(0.0);
-        ydot[..n].copy_from_slice(v);
-        ydot[n..2 * n].fill(0.0);
-        (ydot[2 * n], ydot[2 * n + 1]) = self.at.nodal.powers(v);
+        let rates = StateMut::of(ydot, self.dofs());
+        rates.u.copy_from_slice(v);
+        rates.v.fill(0.0);
+        (*rates.dissipated, *rates.supplied) = self.at.nodal.powers(v);
         Ok(())
     }
 
     fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
-        let (motion, energies) = r.split_at_mut(2 * self.dofs());
-        let (ru, rv) = motion.split_at_mut(self.dofs());
-        self.solve_newton_ode(gamma, ru, rv);
+        let r = StateMut::of(r, self.dofs());
+        self.solve_newton_ode(gamma, r.u, r.v);
         let (dissipated, supplied) = self.power_changes();
-        energies[0] += self.gamma() * dissipated;
-        energies[1] += self.gamma() * supplied;
+        *r.dissipated += self.gamma() * dissipated;
+        *r.supplied += self.gamma() * supplied;
         Ok(())
     }
 }

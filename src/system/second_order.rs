@@ -6,10 +6,10 @@ mod tests;
 use super::System;
 use super::guide::Guide;
 use super::mobility::Mobility;
-use super::ode::ENERGIES;
 use super::rates::RatesBound;
 use crate::constraint::{Prescribed, Row};
 use crate::ode::{EnergyBalance, Failure, Kick, Rates, SecondOrder};
+use crate::state::ENERGIES;
 
 /// The equations of a phase as central differences take them. The integrals are the energies
 /// dissipated and supplied (J).

@@ -3,10 +3,11 @@
 use faer::Mat;
 use faer::prelude::Solve;
 
-use super::{DaeForm, ENERGIES, Index, System};
+use super::{DaeForm, Index, System};
 use crate::constraint::{Axis, Start};
 use crate::ode::{Dae, Ode};
 use crate::samples::SQUARE_MATERIAL;
+use crate::state::ENERGIES;
 use crate::{Body, Cells, InputError, Mesh, Obstacle, Phase, Scene};
 
 const ALPHA: f64 = 30.0;
