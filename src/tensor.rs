@@ -1,7 +1,9 @@
 //! Numbers and small dense matrices: what the formulas at one point of a cell are written in.
 //!
 //! Sums begin with -0, the zero that changes nothing it is added to, so that the compiler leaves out
-//! their first addition.
+//! their first addition. Loops, and not `map` or `from_fn` of arrays, which it does not always inline.
+
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
 use std::ops::{Add, AddAssign, Mul, Sub};
 
@@ -42,13 +44,29 @@ pub(crate) fn apply<T: Real, const R: usize, const C: usize>(
     y
 }
 
-/// A B
+/// A B, or A x of several vectors x.
 #[inline(always)]
 pub(crate) fn product<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &Matrix<T, R, K>,
-    b: &Matrix<T, K, C>,
+    b: &[[T; K]; C],
 ) -> Matrix<T, R, C> {
-    b.map(|column| apply(a, &column))
+    let mut product = [[T::from(-0.0); R]; C];
+    (0..C).for_each(|j| product[j] = apply(a, &b[j]));
+    product
+}
+
+/// A, every entry times `factor`
+#[inline(always)]
+pub(crate) fn times<T: Real, const R: usize, const C: usize>(
+    mut a: Matrix<T, R, C>,
+    factor: T,
+) -> Matrix<T, R, C> {
+    for column in &mut a {
+        for entry in column {
+            *entry = *entry * factor;
+        }
+    }
+    a
 }
 
 /// A B^T

@@ -123,10 +123,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     ) -> Result<(), Failure> {
         let points = &self.points()[cells.clone()];
         for ((nodes, points), cell) in self.nodes[cells.clone()].iter().zip(points).zip(cells) {
-            let fields = fields.map(|field| relative(nodes, field));
+            let mut x = [[[0.0; D]; N]; K];
+            (0..K).for_each(|k| x[k] = relative(nodes, fields[k]));
             let mut pull = [[-0.0; D]; N];
             for point in points {
-                let gradients = fields.map(|x| gradient(&x[1..], &point.gradients[1..]));
+                let mut gradients = [[[0.0; D]; M]; K];
+                (0..K).for_each(|k| gradients[k] = gradient(&x[k][1..], &point.gradients[1..]));
                 let stress = stress(point, gradients).map_err(|problem| {
                     let nodes = nodes.map(|node| node + 1);
                     let problem = format!("cell {} (nodes {nodes:?}) {problem}", cell + 1);

@@ -62,7 +62,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
                 let (nodes, substance) = (&self.nodes[cell], regions.of(cell));
                 for point in &self.points()[cell] {
                     let (g, volume) = (&point.gradients, point.volume);
-                    let of_nodes = |x: &[[f64; D]]| gradient(&nodes.map(|node| x[node]), g);
+                    let of_nodes = |x: &[[f64; D]]| {
+                        let mut at_nodes = [[0.0; D]; N];
+                        (0..N).for_each(|a| at_nodes[a] = x[nodes[a]]);
+                        gradient(&at_nodes, g)
+                    };
                     let at = Deformation::new(&point.frame, of_nodes(u));
                     if terms.elastic {
                         with_law!(substance.elastic, law => {

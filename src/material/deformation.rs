@@ -63,7 +63,11 @@ impl<'a, T: Real, const M: usize, const D: usize> Deformation<'a, T, M, D> {
     pub(crate) fn stretch(&self) -> T {
         let f = self.gradient();
         match M == D {
-            true => determinant::<T, M>(&f.map(|column| std::array::from_fn(|i| column[i]))),
+            true => {
+                let mut square = [[T::from(0.0); M]; M];
+                (0..M).for_each(|j| square[j].copy_from_slice(&f[j][..M]));
+                determinant(&square)
+            }
             false => determinant::<T, M>(&symmetric(|j, k| dot(&f[j], &f[k]))).sqrt(),
         }
     }

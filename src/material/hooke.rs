@@ -1,7 +1,7 @@
 //! Hooke's law: the isotropic linear formula between strain and stress that several laws share.
 
 use super::law::Block;
-use crate::tensor::{Matrix, Real, apply, dot, product_transposed, symmetric, trace};
+use crate::tensor::{Matrix, Real, dot, product, product_transposed, symmetric, times, trace};
 
 /// Lamé's constants (Pa; Pa s for the viscous pair).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +54,7 @@ impl Hooke {
     /// lambda tr(E)^2 / 2 + mu E : E of 2 E
     #[inline(always)]
     pub(super) fn energy<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> T {
-        let strain = twice.map(|column| column.map(|entry| T::from(0.5) * entry));
+        let strain = times(*twice, T::from(0.5));
         let trace = trace(&strain);
         let square = strain.iter().fold(T::from(-0.0), |sum, column| sum + dot(column, column));
         T::from(0.5 * self.lame.lambda) * trace * trace + T::from(self.lame.mu) * square
@@ -84,7 +84,8 @@ impl Hooke {
     }
 }
 
-/// The vectors f_a = F g_a and products with which tangents of Hooke's law are written.
+/// The vectors f_a = F g_a and products with which tangents of Hooke's law are written. What the turning of the
+/// stress S adds to them is g_a . S g_b on the diagonal.
 pub(super) struct Spread<'a, T, const N: usize, const M: usize, const D: usize> {
     gradients: &'a [[T; M]; N],
     /// F g_a
@@ -96,7 +97,7 @@ pub(super) struct Spread<'a, T, const N: usize, const M: usize, const D: usize> 
 impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Spread<'a, T, N, M, D> {
     #[inline(always)]
     pub(super) fn new(f: &Matrix<T, D, M>, gradients: &'a [[T; M]; N]) -> Self {
-        let along = gradients.map(|g| apply(f, &g));
+        let along = product(f, gradients);
         Self { gradients, along, square: product_transposed(f, f) }
     }
 
@@ -115,11 +116,5 @@ impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Spread<'a, T, 
             }
         }
         block
-    }
-
-    /// What the turning of the stress S adds to each entry on the diagonal: g_a . S g_b.
-    #[inline(always)]
-    pub(super) fn geometric(&self, stress: &Matrix<T, M, M>, a: usize, b: usize) -> T {
-        dot(&self.gradients[a], &apply(stress, &self.gradients[b]))
     }
 }

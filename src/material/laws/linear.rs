@@ -3,7 +3,7 @@
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Spread};
 use crate::material::law::{Block, ElasticLaw};
-use crate::tensor::{Matrix, Real, product};
+use crate::tensor::{Matrix, Real, product, times};
 
 /// W = lambda tr(E)^2 / 2 + mu E : E, P = F_0 S with E = sym(F_0^T H), S = lambda tr(E) I + 2 mu E.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +34,7 @@ impl ElasticLaw for Linear {
         weight: T,
     ) -> impl Fn(usize, usize) -> Block<T, D> {
         let spread = Spread::new(at.frame(), gradients);
-        move |a, b| spread.material(self.0.lame, a, b).map(|row| row.map(|entry| entry * weight))
+        move |a, b| times(spread.material(self.0.lame, a, b), weight)
     }
 
     #[inline(always)]

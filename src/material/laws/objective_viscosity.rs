@@ -3,7 +3,7 @@
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Spread};
 use crate::material::law::{Block, ViscousLaw};
-use crate::tensor::{Matrix, Real, apply, dot, product, product_transposed};
+use crate::tensor::{Matrix, Real, dot, product, product_transposed, times};
 
 /// P = F S with E' = sym(F^T F'), S = lambda tr(E') I + 2 mu E'. A body that spins as a whole is not
 /// braked.
@@ -33,13 +33,14 @@ impl ViscousLaw for ObjectiveViscosity {
     ) -> impl Fn(usize, usize) -> Block<T, D> {
         let f = at.gradient();
         let spread = Spread::new(&f, gradients);
-        let moving = gradients.map(|g| apply(rate, &g));
+        let moving = product(rate, gradients);
         let mixed = product_transposed(rate, &f);
         let stress = self.0.stress(&at.twice_green_rate(rate), T::from(1.0));
+        let pulls = product(&stress, gradients);
         let (lambda, mu) = (T::from(self.0.lame.lambda), T::from(self.0.lame.mu));
         move |a, b| {
             let stretch = dot(&gradients[a], &gradients[b]);
-            let geometric = spread.geometric(&stress, a, b);
+            let geometric = dot(&gradients[a], &pulls[b]);
             let along = &spread.along;
             let mut block = [[T::from(0.0); D]; D];
             for i in 0..D {
@@ -62,6 +63,6 @@ impl ViscousLaw for ObjectiveViscosity {
         weight: T,
     ) -> impl Fn(usize, usize) -> Block<T, D> {
         let spread = Spread::new(&at.gradient(), gradients);
-        move |a, b| spread.material(self.0.lame, a, b).map(|row| row.map(|entry| entry * weight))
+        move |a, b| times(spread.material(self.0.lame, a, b), weight)
     }
 }

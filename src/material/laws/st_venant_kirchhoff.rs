@@ -3,7 +3,7 @@
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Spread};
 use crate::material::law::{Block, ElasticLaw};
-use crate::tensor::{Matrix, Real, product};
+use crate::tensor::{Matrix, Real, dot, product, times};
 
 /// W = lambda tr(E)^2 / 2 + mu E : E, P = F S with E = (F^T F - I) / 2, S = lambda tr(E) I + 2 mu E.
 #[derive(Debug, Clone, Copy)]
@@ -34,11 +34,12 @@ impl ElasticLaw for StVenantKirchhoff {
     ) -> impl Fn(usize, usize) -> Block<T, D> {
         let spread = Spread::new(&at.gradient(), gradients);
         let stress = self.0.stress(&at.twice_green(), T::from(1.0));
+        let pulls = product(&stress, gradients);
         move |a, b| {
             let mut block = spread.material(self.0.lame, a, b);
-            let geometric = spread.geometric(&stress, a, b);
+            let geometric = dot(&gradients[a], &pulls[b]);
             (0..D).for_each(|i| block[i][i] += geometric);
-            block.map(|row| row.map(|entry| entry * weight))
+            times(block, weight)
         }
     }
 
