@@ -40,11 +40,13 @@ pub mod material;
 pub mod mesh;
 mod model;
 pub mod ode;
+#[cfg(feature = "output")]
 pub mod output;
 mod report;
 pub mod rk;
 pub mod samples;
 pub mod scene;
+#[cfg(feature = "scene-file")]
 pub mod scene_file;
 mod settings;
 pub mod simulate;
@@ -70,6 +72,7 @@ pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use report::{Counts, PhaseReport, Report};
 pub use scene::{Phase, Scene};
+#[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};
 pub use settings::{ContactEvents, Method, Settings, Tolerances};
 pub use simulate::Sampling;
@@ -79,5 +82,5 @@ pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// Compiles the code blocks of the README.
 #[doc = include_str!("../README.md")]
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "output"))]
 pub struct ReadmeDoctests;

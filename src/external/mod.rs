@@ -18,6 +18,7 @@ pub(crate) use contact::Contact;
 pub(crate) use gravity::Gravity;
 pub(crate) use load::{Load, VaryingLoad};
 pub use obstacle::Obstacle;
+#[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
 pub(crate) use signal::{Signal, Table, VectorSignal};

@@ -92,6 +92,7 @@ impl Spring {
         &self.name
     }
 
+    #[cfg(feature = "output")]
     pub(crate) fn ends(&self) -> &[Selection; 2] {
         &self.ends
     }

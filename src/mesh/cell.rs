@@ -238,6 +238,7 @@ impl CellKind {
     }
 
     /// The nodes of the cell in the order of one that is turned over: local numbers (from 0).
+    #[cfg(feature = "gmsh")]
     pub(super) fn turned_over(self) -> &'static [usize] {
         self.shape().turned_over
     }

@@ -6,6 +6,7 @@
 mod boundary;
 mod cell;
 mod generate;
+#[cfg(feature = "gmsh")]
 mod gmsh;
 mod select;
 

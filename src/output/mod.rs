@@ -20,6 +20,7 @@ mod decades;
 #[cfg(feature = "study")]
 mod png;
 mod report;
+mod role;
 mod svg;
 mod vtk;
 

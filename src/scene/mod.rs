@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub use phase::Phase;
 
 use crate::body::Body;
-use crate::constraint::{Constrained, Constraint, Motion, Row, Start, rows, tell};
+use crate::constraint::{Row, Start, rows, tell};
 use crate::external::{Chamber, Contact, Obstacle, Spring};
 use crate::force::{Forces, NodalForces};
 use crate::input::{InputError, finite};
@@ -42,13 +42,6 @@ pub struct Scene {
     phases: Vec<Phase>,
     /// Displacements and velocities at t = 0.
     start: [Vec<f64>; 2],
-}
-
-/// What a constraint makes a node do.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub(crate) enum Role {
-    Held,
-    Moved,
 }
 
 impl Scene {
@@ -125,26 +118,6 @@ impl Scene {
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body
-    }
-
-    /// The nodes that a phase constrains, with what it makes them do.
-    pub(crate) fn constrained_nodes(
-        &self,
-        phase: &Phase,
-    ) -> Result<Vec<(usize, Role)>, InputError> {
-        let mut nodes = Vec::new();
-        for Constraint { what, how } in &phase.constraints {
-            let role = match how {
-                Motion::Hold => Role::Held,
-                Motion::Velocity(_) | Motion::Path(_) | Motion::Spline(_) => Role::Moved,
-            };
-            let selected = match what {
-                Constrained::Nodes(selection, _) => self.body.mesh().select(selection)?,
-                Constrained::Row(terms) => terms.iter().map(|(number, ..)| number - 1).collect(),
-            };
-            nodes.extend(selected.into_iter().map(|node| (node, role)));
-        }
-        Ok(nodes)
     }
 
     /// Acceleration of gravity (m/s^2), if there is any.

@@ -11,8 +11,9 @@ use crate::error::Error;
 use crate::external::{Shape, ShapeKind, Spring};
 use crate::input::InputError;
 use crate::mesh::Mesh;
+use crate::output::role::Role;
 use crate::output::svg::{View, displaced, drawn, positions};
-use crate::scene::{Phase, Role, Scene};
+use crate::scene::{Phase, Scene};
 use crate::system::Energy;
 use crate::trajectory::{Sample, Trajectory};
 

@@ -22,7 +22,7 @@ use super::{FONT, INK, write_file};
 use crate::error::Error;
 use crate::input::{InputError, finite};
 use crate::mesh::Selection;
-use crate::scene::Role;
+use crate::output::role::Role;
 use crate::trajectory::{Sample, Trajectory};
 
 /// Snapshots of a motion: one panel per chosen time, all on the same scale, each with the deformed
