@@ -9,6 +9,7 @@
 
 mod hexahedron;
 mod quadrilateral;
+mod reference;
 mod segment;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ use nalgebra::{SMatrix, SVector};
 
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use quadrilateral::Quadrilateral;
+pub(crate) use reference::ReferenceCell;
 pub(crate) use segment::Segment;
 pub(crate) use tetrahedron::Tetrahedron;
 pub(crate) use tetrahedron10::Tetrahedron10;
@@ -52,20 +54,6 @@ macro_rules! with_element {
     }};
 }
 pub(crate) use with_element;
-
-/// A reference cell of `N` nodes in dimension `M`.
-pub(crate) trait ReferenceCell<const N: usize, const M: usize> {
-    /// Points and weights that integrate the stiffness.
-    const STIFFNESS_RULE: &'static [([f64; M], f64)];
-    /// Points and weights that integrate products of two shape functions.
-    const MASS_RULE: &'static [([f64; M], f64)];
-
-    /// The shape functions N_a.
-    fn values(xi: [f64; M]) -> [f64; N];
-
-    /// Their derivatives by the reference coordinates.
-    fn derivatives(xi: [f64; M]) -> [[f64; M]; N];
-}
 
 /// A quadrature point for strain.
 #[derive(Debug, Clone)]

@@ -1,6 +1,7 @@
 //! Kinds of cells: one row of a table each.
 
-use mshio::ElementType;
+// some columns of the table serve the readers of files and the pictures alone
+#![cfg_attr(not(all(feature = "gmsh", feature = "output")), allow(dead_code))]
 
 /// What the kinds of cells differ by. Local numbers of nodes count from 0.
 struct Shape {
@@ -20,8 +21,8 @@ struct Shape {
     turned_over: &'static [usize],
     /// The corners at the other ends of the edges at the first one; these edges make a right-handed system.
     neighbours: &'static [usize],
-    /// The type of Gmsh, and the nodes of Gmsh's cell in the order of ours.
-    gmsh: (ElementType, &'static [usize]),
+    /// The number of its type in Gmsh, and the nodes of Gmsh's cell in the order of ours.
+    gmsh: (u8, &'static [usize]),
 }
 
 /// Shape of a face of a cell.
@@ -73,7 +74,7 @@ cell_kinds! {
         edges: &[&[0, 1]],
         turned_over: &[1, 0],
         neighbours: &[1],
-        gmsh: (ElementType::Lin2, &[0, 1]),
+        gmsh: (1, &[0, 1]),
     },
     /// Three nodes, counter-clockwise.
     Triangle => Shape {
@@ -87,7 +88,7 @@ cell_kinds! {
         edges: &[],
         turned_over: &[0, 2, 1],
         neighbours: &[1, 2],
-        gmsh: (ElementType::Tri3, &[0, 1, 2]),
+        gmsh: (2, &[0, 1, 2]),
     },
     /// Six nodes: the corners counter-clockwise, then the middles of the edges 1-2, 2-3, 3-1.
     Triangle6 => Shape {
@@ -101,7 +102,7 @@ cell_kinds! {
         edges: &[],
         turned_over: &[0, 2, 1, 5, 4, 3],
         neighbours: &[1, 2],
-        gmsh: (ElementType::Tri6, &[0, 1, 2, 3, 4, 5]),
+        gmsh: (9, &[0, 1, 2, 3, 4, 5]),
     },
     /// Four nodes, counter-clockwise.
     Quadrilateral => Shape {
@@ -115,7 +116,7 @@ cell_kinds! {
         edges: &[],
         turned_over: &[0, 3, 2, 1],
         neighbours: &[1, 3],
-        gmsh: (ElementType::Qua4, &[0, 1, 2, 3]),
+        gmsh: (3, &[0, 1, 2, 3]),
     },
     /// Four nodes: the first three counter-clockwise as seen from the fourth.
     Tetrahedron => Shape {
@@ -129,7 +130,7 @@ cell_kinds! {
         edges: &[&[0, 1], &[1, 2], &[2, 0], &[0, 3], &[1, 3], &[2, 3]],
         turned_over: &[0, 2, 1, 3],
         neighbours: &[1, 2, 3],
-        gmsh: (ElementType::Tet4, &[0, 1, 2, 3]),
+        gmsh: (4, &[0, 1, 2, 3]),
     },
     /// Ten nodes: the corners as in [`CellKind::Tetrahedron`], then the middles of the edges 1-2,
     /// 2-3, 3-1, 1-4, 2-4, 3-4.
@@ -149,7 +150,7 @@ cell_kinds! {
         edges: &[&[0, 1, 4], &[1, 2, 5], &[2, 0, 6], &[0, 3, 7], &[1, 3, 8], &[2, 3, 9]],
         turned_over: &[0, 2, 1, 3, 6, 5, 4, 7, 9, 8],
         neighbours: &[1, 2, 3],
-        gmsh: (ElementType::Tet10, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
+        gmsh: (11, &[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]),
     },
     /// Eight nodes: four around one face, counter-clockwise as seen from the opposite one, then
     /// the four across from them.
@@ -184,7 +185,7 @@ cell_kinds! {
         ],
         turned_over: &[0, 3, 2, 1, 4, 7, 6, 5],
         neighbours: &[1, 3, 4],
-        gmsh: (ElementType::Hex8, &[0, 1, 2, 3, 4, 5, 6, 7]),
+        gmsh: (5, &[0, 1, 2, 3, 4, 5, 6, 7]),
     },
 }
 
@@ -238,7 +239,6 @@ impl CellKind {
     }
 
     /// The nodes of the cell in the order of one that is turned over: local numbers (from 0).
-    #[cfg(feature = "gmsh")]
     pub(super) fn turned_over(self) -> &'static [usize] {
         self.shape().turned_over
     }
@@ -248,8 +248,8 @@ impl CellKind {
         self.shape().neighbours
     }
 
-    /// Gmsh's type of element, and the nodes of it in the order of this crate.
-    pub(super) fn gmsh(self) -> (ElementType, &'static [usize]) {
+    /// The number of Gmsh's type of element, and the nodes of it in the order of this crate.
+    pub(super) fn gmsh(self) -> (u8, &'static [usize]) {
         self.shape().gmsh
     }
 }

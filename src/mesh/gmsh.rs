@@ -148,7 +148,7 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
 }
 
 fn cell_kind(kind: ElementType) -> Option<CellKind> {
-    CellKind::ALL.iter().copied().find(|cell| cell.gmsh().0 == kind)
+    CellKind::ALL.iter().copied().find(|cell| cell.gmsh().0 == kind as u8)
 }
 
 /// A type of elements in words.
