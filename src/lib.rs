@@ -74,7 +74,7 @@ pub use report::{Counts, PhaseReport, Report};
 pub use scene::{Phase, Scene};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};
-pub use settings::{ContactEvents, Method, Settings, Tolerances};
+pub use settings::{ContactEvents, Method, Settings, SettingsOption, SettingsValue, Tolerances};
 pub use simulate::Sampling;
 pub use statics::Statics;
 pub use system::{Energy, PhaseSummary, Spectrum};

@@ -7,6 +7,7 @@ mod files;
 mod methods;
 mod progress;
 mod run;
+mod settings;
 mod statics;
 
 use std::io::{self, Write};

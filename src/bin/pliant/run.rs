@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pliant::ContactEvents;
 use pliant::output::write_report;
-use pliant::{Error, InputError, Method, SceneFile, Settings};
+use pliant::{Error, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::OutputArguments;
 use crate::progress::Watch;
+use crate::settings::SettingsArguments;
 
 /// Run a scene and write its motion
 ///
@@ -22,7 +22,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     scene: PathBuf,
     #[command(flatten)]
-    solver: SolverArguments,
+    solver: SettingsArguments,
     /// Time between rows of trajectory.csv (s)
     #[arg(long, value_name = "SECONDS")]
     step: Option<f64>,
@@ -31,53 +31,6 @@ pub struct Arguments {
     until: Option<f64>,
     #[command(flatten)]
     output: OutputArguments,
-}
-
-/// Flags that override `[solver]`.
-#[derive(Args)]
-struct SolverArguments {
-    /// Integration method: see "pliant methods"
-    #[arg(long)]
-    method: Option<Method>,
-    /// Relative tolerance
-    #[arg(long)]
-    rtol: Option<f64>,
-    /// Absolute tolerance of displacements (m)
-    #[arg(long, value_name = "METRES")]
-    atol_position: Option<f64>,
-    /// Absolute tolerance of velocities (m/s)
-    #[arg(long, value_name = "METRES/SECOND")]
-    atol_velocity: Option<f64>,
-    /// Rate at which errors of constraints decay (1/s)
-    #[arg(long, value_name = "1/SECONDS")]
-    alpha: Option<f64>,
-    /// Highest order of a multistep method
-    #[arg(long, value_name = "ORDER")]
-    max_order: Option<u32>,
-    /// How contact events are met: step-over or locate
-    #[arg(long, value_name = "WAY")]
-    contact_events: Option<ContactEvents>,
-    /// Longest step (s)
-    #[arg(long, value_name = "SECONDS")]
-    max_step: Option<f64>,
-    /// Steps that a phase may take
-    #[arg(long, value_name = "STEPS")]
-    max_steps: Option<usize>,
-}
-
-impl SolverArguments {
-    fn apply(&self, solver: &mut Settings) -> Result<(), InputError> {
-        solver.method = self.method.unwrap_or(solver.method);
-        solver.rtol = self.rtol.unwrap_or(solver.rtol);
-        solver.atol_position = self.atol_position.or(solver.atol_position);
-        solver.atol_velocity = self.atol_velocity.or(solver.atol_velocity);
-        solver.alpha = self.alpha.unwrap_or(solver.alpha);
-        solver.max_order = self.max_order.or(solver.max_order);
-        solver.contact_events = self.contact_events.unwrap_or(solver.contact_events);
-        solver.max_step = self.max_step.or(solver.max_step);
-        solver.max_steps = self.max_steps.unwrap_or(solver.max_steps);
-        solver.validate()
-    }
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

@@ -1,11 +1,10 @@
-//! How a scene is integrated: method, tolerances, limits.
+//! The words among the settings: integration methods, ways to meet contact events.
 
 use std::fmt;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
-use crate::body::Body;
-use crate::input::{InputError, positive};
+use crate::input::InputError;
 
 /// An integration method.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -102,7 +101,7 @@ impl Method {
         }
     }
 
-    fn orders(self) -> RangeInclusive<u32> {
+    pub(super) fn orders(self) -> RangeInclusive<u32> {
         match self {
             Self::CvodeAdams => 1..=12,
             Self::Arkode => 2..=5,
@@ -174,127 +173,4 @@ impl FromStr for ContactEvents {
             )
         })
     }
-}
-
-/// How a scene is integrated.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// Integration method. Default: [`Method::Auto`].
-    pub method: Method,
-    /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
-    /// `rtol |y| + atol` in the root mean square over displacements and velocities. Default: 1e-5.
-    pub rtol: f64,
-    /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the body's size,
-    /// so that smaller displacements count as that large.
-    pub atol_position: Option<f64>,
-    /// Absolute tolerance of velocities (m/s). Default: rtol times a hundredth of the speed of
-    /// waves in the body, its displacements' counterpart in a vibration.
-    pub atol_velocity: Option<f64>,
-    /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger
-    /// means less drift; it costs the implicit methods and central differences nothing, `rk` a step
-    /// of 3.3/alpha.
-    pub alpha: f64,
-    /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's (default: 4).
-    pub max_order: Option<u32>,
-    /// Whether CVODE's BDF looks out for steps that its orders above 2 make unstable, and lowers the
-    /// order then (`CVodeSetStabLimDet`). It helps some lightly damped vibrations, not undamped
-    /// ones. Default: no.
-    pub stability_limit_detection: bool,
-    /// Whether contact events are located. Default: where that is faster for the accuracy.
-    pub contact_events: ContactEvents,
-    /// Longest step (s), above 0. Default: none. Error control needs no bound, and no step leads
-    /// through an obstacle; this is for forces that come and go between two steps.
-    pub max_step: Option<f64>,
-    /// Steps that one phase may take. Default: 10 million, a guard against runs without end.
-    pub max_steps: usize,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            method: Method::default(),
-            rtol: 1e-5,
-            atol_position: None,
-            atol_velocity: None,
-            alpha: 1e3,
-            max_order: None,
-            stability_limit_detection: false,
-            contact_events: ContactEvents::default(),
-            max_step: None,
-            max_steps: 10_000_000,
-        }
-    }
-}
-
-impl Settings {
-    /// Checks what can be known before anything is run.
-    ///
-    /// # Errors
-    /// The first number out of its range.
-    pub fn validate(&self) -> Result<(), InputError> {
-        if !(self.rtol > 0.0 && self.rtol < 1.0) {
-            let mend = "it must lie above 0 and below 1 (1e-3 is rough, 1e-8 fine)";
-            return Err(InputError::new("rtol", self.rtol, mend));
-        }
-        positive("alpha", self.alpha, "1/s")?;
-        self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
-        self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
-        self.max_step.map_or(Ok(1.0), |step| positive("max_step", step, "s"))?;
-        let orders = self.method.orders();
-        match self.max_order {
-            Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {
-                let mend = format!("{} has one order only: leave it out", self.method);
-                Err(InputError::new("max_order", order, mend))
-            }
-            Some(order) if !orders.contains(&order) => {
-                let (lowest, highest) = (orders.start(), orders.end());
-                let mend = format!("{} has the orders {lowest} to {highest}", self.method);
-                Err(InputError::new("max_order", order, mend))
-            }
-            _ if self.stability_limit_detection
-                && !matches!(self.method, Method::Auto | Method::CvodeBdf) =>
-            {
-                let mend = format!("{} has no such limits: leave it out", self.method);
-                Err(InputError::new("stability_limit_detection", true, mend))
-            }
-            _ if self.max_steps == 0 => {
-                Err(InputError::new("max_steps", 0, "allow one step at least"))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// The absolute tolerances in force for `body`.
-    pub fn tolerances(&self, body: &Body) -> Tolerances {
-        const SMALL_STRAIN: f64 = 0.01;
-        let (size, young) = (body.mesh().size(), body.material().young);
-        let volume = body.volume();
-        let position = self.rtol * SMALL_STRAIN * size;
-        let velocity = self.rtol * SMALL_STRAIN * body.material().wave_speed();
-        Tolerances {
-            position: self.atol_position.unwrap_or(position),
-            velocity: self.atol_velocity.unwrap_or(velocity),
-            energy: self.rtol * young * volume,
-            force: self.rtol * young * volume / size,
-            momentum: self.rtol * young * volume / body.material().wave_speed(),
-        }
-    }
-}
-
-/// Absolute tolerances in force.
-///
-/// Those of the energies and of the multipliers are loose (as if strain were 1):
-/// enough that the Newton iteration looks after them, too little for them to rule the steps.
-#[derive(Debug, Clone, Copy)]
-pub struct Tolerances {
-    /// Displacements (m).
-    pub position: f64,
-    /// Velocities (m/s).
-    pub velocity: f64,
-    /// Energies dissipated and supplied (J).
-    pub(crate) energy: f64,
-    /// Multipliers (N).
-    pub(crate) force: f64,
-    /// Multipliers of positions in the form of index 2 (kg m/s).
-    pub(crate) momentum: f64,
 }

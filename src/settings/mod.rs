@@ -1,0 +1,9 @@
+//! How a scene is integrated: method, tolerances, limits.
+
+mod method;
+mod options;
+mod record;
+
+pub use method::{ContactEvents, Method};
+pub use options::{SettingsOption, SettingsValue};
+pub use record::{Settings, Tolerances};
