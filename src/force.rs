@@ -206,7 +206,7 @@ pub trait Force: Send + Sync {
     }
 
     /// Writes the values of the switches: above 0 where a part of the force is off.
-    fn switch_values(&self, _t: f64, _u: &[f64], _values: &mut [f64]) {}
+    fn switch_values(&self, _t: f64, _u: &[f64], _v: &[f64], _values: &mut [f64]) {}
 
     /// Keeps each switch on or off, whatever its value, so that the force is smooth; `None` lets all
     /// of them act by their values again.

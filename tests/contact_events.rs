@@ -86,3 +86,43 @@ fn a_rolling_ring_passes_its_events() {
     assert_eq!(end(ContactEvents::Auto, 1e-7), (located, events));
     assert_eq!(end(ContactEvents::Auto, 1e-5).1, 0);
 }
+
+/// A bounce with damping, by the law with adhesion (two events: touch, leave) and without (three: the
+/// damper is cut off while the bar still touches).
+fn damped_bounce(adhesion: bool) -> Scene {
+    let steel = Material { density: 1000.0, young: 1e9, poisson: 0.0, viscosity: 1e3 };
+    let mesh = Mesh::bar(0.1, 2).unwrap().translated(&[0.01]).unwrap();
+    let body = Body::new(mesh, steel).area(2e-4).build().unwrap();
+    let floor = Obstacle::half_plane([0.0], [1.0]).stiffness(STIFFNESS).damping(2.0);
+    Scene::new(body)
+        .gravity([-9.8])
+        .obstacle(floor.adhesion(adhesion))
+        .initial_velocity(|_| vec![-1.0])
+        .phase(Phase::until(0.06))
+}
+
+/// Located, events cost no accuracy: errors fall as the tolerance does, by every method and both laws
+/// of contact, against explicit Runge-Kutta that steps over the events at a tolerance far below.
+#[test]
+fn located_motion_converges_by_every_method_and_law() {
+    for adhesion in [true, false] {
+        let scene = damped_bounce(adhesion);
+        let run = |method, contact_events, rtol| {
+            let settings = Settings { method, rtol, contact_events, ..Settings::default() };
+            scene.simulate(&settings, &Sampling::phase_ends()).unwrap()
+        };
+        let fine = run(Method::Rk, ContactEvents::StepOver, 1e-13);
+        for method in Method::ALL {
+            let error = |rtol: f64| {
+                let motion = run(method, ContactEvents::Locate, rtol);
+                let events = motion.report().phases[0].counts.contact_events;
+                let off = (motion.last().u[0] - fine.last().u[0]).abs();
+                println!("{method} {adhesion} {rtol:e}: {off:.1e} m, {events} events");
+                assert_eq!(events, if adhesion { 2 } else { 3 }, "{method} {rtol:e}");
+                off
+            };
+            let [rough, fine] = [1e-5, 1e-9].map(error);
+            assert!(fine < 1e-2 * rough && fine < 2e-8, "{method} {adhesion}: {rough:e} {fine:e}");
+        }
+    }
+}

@@ -24,20 +24,41 @@ pub(crate) struct Contact {
     switches: Switches,
 }
 
-/// Which points touch: by their distance, or as held from one contact event to the next.
+/// Which points touch, and which of their normal forces push: by the numbers that decide on it, or as
+/// held from one contact event to the next.
 struct Switches {
     are_held: AtomicBool,
-    on: Vec<AtomicBool>,
+    touch: Vec<AtomicBool>,
+    /// None with adhesion, where normal forces may pull.
+    push: Vec<AtomicBool>,
 }
 
 impl Switches {
-    /// Whether point number `k` touches, at this distance. One that is no number is taken along, to
-    /// be found out.
-    fn is_on(&self, k: usize, distance: f64) -> bool {
-        match self.are_held.load(Ordering::Relaxed) {
-            true => self.on[k].load(Ordering::Relaxed),
-            false => distance.is_nan() || distance <= 0.0,
+    fn new(points: usize, adhesion: bool) -> Self {
+        let off = |count| (0..count).map(|_| AtomicBool::new(false)).collect();
+        Self {
+            are_held: AtomicBool::new(false),
+            touch: off(points),
+            push: off(if adhesion { 0 } else { points }),
         }
+    }
+
+    fn is_on(&self, held: &AtomicBool, value: f64) -> bool {
+        match self.are_held.load(Ordering::Relaxed) {
+            true => held.load(Ordering::Relaxed),
+            // what is no number is taken along, to be found out
+            false => value.is_nan() || value <= 0.0,
+        }
+    }
+
+    /// Whether point number `k` touches, at this distance (m).
+    fn touches(&self, k: usize, distance: f64) -> bool {
+        self.is_on(&self.touch[k], distance)
+    }
+
+    /// Whether the normal force of point number `k` acts, of which the law has this `pull` (N).
+    fn acts(&self, k: usize, pull: f64) -> bool {
+        self.push.get(k).is_none_or(|push| self.is_on(push, pull))
     }
 }
 
@@ -50,20 +71,16 @@ struct ContactPoint {
 
 /// One point inside an obstacle.
 struct Touch<'a> {
+    /// Its number.
+    k: usize,
     point: &'a ContactPoint,
     nearest: Nearest,
     /// x' - w
     velocity: [f64; 3],
     /// d' = n . (x' - w)
     rate: f64,
-}
-
-impl Touch<'_> {
     /// Whether the normal force is cut off at 0 because it would pull.
-    fn is_cut_off(&self) -> bool {
-        let Law { stiffness, damping, adhesion, .. } = self.point.law;
-        !adhesion && stiffness * self.nearest.distance + damping * self.rate > 0.0
-    }
+    is_cut_off: bool,
 }
 
 impl Contact {
@@ -88,10 +105,7 @@ impl Contact {
         });
         let (points, drift): (Vec<_>, _) = (points.collect(), obstacle.drift());
         let is_custom = obstacle.shape().is_custom();
-        let switches = Switches {
-            are_held: AtomicBool::new(false),
-            on: points.iter().map(|_| AtomicBool::new(false)).collect(),
-        };
+        let switches = Switches::new(points.len(), obstacle.has_adhesion());
         Ok(Self { obstacle, dimension, drift, is_custom, points, switches })
     }
 
@@ -123,13 +137,14 @@ impl Contact {
     ) -> impl Iterator<Item = Touch<'a>> + 'a {
         self.points.iter().enumerate().filter_map(move |(k, point)| {
             let nearest = self.nearest(t, point, u);
-            if !self.switches.is_on(k, nearest.distance) {
+            if !self.switches.touches(k, nearest.distance) {
                 return None;
             }
             let mut velocity = point.on.at(v, self.dimension);
             velocity.iter_mut().zip(&self.drift).for_each(|(x, w)| *x -= w);
             let rate = dot(&nearest.normal, &velocity);
-            Some(Touch { point, nearest, velocity, rate })
+            let is_cut_off = !self.switches.acts(k, point.law.pull(nearest.distance, rate));
+            Some(Touch { k, point, nearest, velocity, rate, is_cut_off })
         })
     }
 
@@ -162,9 +177,9 @@ impl Force for Contact {
     ) -> Result<(), Failure> {
         for touch in self.touches(t, u, v) {
             self.check(t, &touch)?;
-            let Touch { point, ref nearest, velocity, rate } = touch;
+            let Touch { point, ref nearest, velocity, rate, is_cut_off, .. } = touch;
             let spring = -point.law.stiffness * nearest.distance;
-            let damper = if touch.is_cut_off() { -spring } else { -point.law.damping * rate };
+            let damper = if is_cut_off { -spring } else { -point.law.damping * rate };
             for (i, speed) in velocity.into_iter().take(self.dimension).enumerate() {
                 let (n, w) = (nearest.normal[i], self.drift[i]);
                 let sliding = speed - rate * n;
@@ -193,8 +208,8 @@ impl Force for Contact {
         damping: &mut BlockMatrix,
     ) {
         for touch in self.touches(t, u, v) {
-            let Touch { point, ref nearest, velocity, rate } = touch;
-            let (spring, damper) = match touch.is_cut_off() {
+            let Touch { point, ref nearest, velocity, rate, is_cut_off, .. } = touch;
+            let (spring, damper) = match is_cut_off {
                 true => (0.0, 0.0),
                 false => (point.law.stiffness, point.law.damping),
             };
@@ -234,7 +249,7 @@ impl Force for Contact {
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
         let energy = |(k, point): (usize, &ContactPoint)| {
             let distance = self.nearest(t, point, u).distance;
-            let is_on = self.switches.is_on(k, distance);
+            let is_on = self.switches.touches(k, distance);
             if is_on { 0.5 * point.law.stiffness * distance * distance } else { 0.0 }
         };
         self.points.iter().enumerate().map(energy).sum()
@@ -244,19 +259,28 @@ impl Force for Contact {
         (self.drift != [0.0; 3]).then_some(self.drift)
     }
 
+    /// The distances of all points, then the pulls of all normal forces that must not pull; those of
+    /// points that do not touch stay off.
     fn switches(&self) -> usize {
-        self.points.len()
+        self.switches.touch.len() + self.switches.push.len()
     }
 
-    fn switch_values(&self, t: f64, u: &[f64], values: &mut [f64]) {
-        for (value, point) in values.iter_mut().zip(&self.points) {
-            *value = self.nearest(t, point, u).distance;
+    fn switch_values(&self, t: f64, u: &[f64], v: &[f64], values: &mut [f64]) {
+        let (distances, pulls) = values.split_at_mut(self.points.len());
+        for (distance, point) in distances.iter_mut().zip(&self.points) {
+            *distance = self.nearest(t, point, u).distance;
+        }
+        pulls.fill(f64::INFINITY);
+        if !pulls.is_empty() {
+            for Touch { k, point, nearest, rate, .. } in self.touches(t, u, v) {
+                pulls[k] = point.law.pull(nearest.distance, rate);
+            }
         }
     }
 
     fn hold_switches(&self, on: Option<&[bool]>) {
-        let Switches { are_held, on: held } = &self.switches;
-        for (held, &on) in held.iter().zip(on.into_iter().flatten()) {
+        let Switches { are_held, touch, push } = &self.switches;
+        for (held, &on) in touch.iter().chain(push).zip(on.into_iter().flatten()) {
             held.store(on, Ordering::Relaxed);
         }
         are_held.store(on.is_some(), Ordering::Relaxed);

@@ -37,7 +37,13 @@ pub(super) struct Law {
     pub(super) damping: f64,
     /// B_t (N s/m)
     pub(super) friction: f64,
-    pub(super) adhesion: bool,
+}
+
+impl Law {
+    /// K_p d + B_p d': the normal force (N), above 0 where it pulls.
+    pub(super) fn pull(&self, distance: f64, rate: f64) -> f64 {
+        self.stiffness * distance + self.damping * rate
+    }
 }
 
 impl Obstacle {
@@ -186,6 +192,11 @@ impl Obstacle {
         matches!(self.stiffness, Stiffness::Density(_))
     }
 
+    /// Whether normal forces may pull.
+    pub(super) fn has_adhesion(&self) -> bool {
+        self.adhesion
+    }
+
     /// The law for a point that stands for `area` (m^2; 1 for a node).
     pub(super) fn law(&self, area: f64) -> Law {
         let (Stiffness::PerNode(stiffness) | Stiffness::Density(stiffness)) = self.stiffness;
@@ -193,7 +204,6 @@ impl Obstacle {
             stiffness: area * stiffness,
             damping: area * self.damping,
             friction: area * self.friction,
-            adhesion: self.adhesion,
         }
     }
 

@@ -37,13 +37,14 @@ const STANDING: usize = 20;
 const PRECISION: f64 = 1e-12;
 
 impl Events {
-    /// From now on holds the switches of `system`, as they are at `t` and `u`, if they are `located`.
-    pub(super) fn begin(&mut self, system: &System, t: f64, u: &[f64], located: bool) {
+    /// From now on holds the switches of `system`, as they are at `t` and `state` = (u, v, ...), if
+    /// they are `located`.
+    pub(super) fn begin(&mut self, system: &System, t: f64, state: &[f64], located: bool) {
         self.clearances = vec![0.0; system.switches()];
         let count = if located { self.clearances.len() } else { 0 };
         (self.on, self.values) = (vec![false; count], vec![0.0; count]);
         system.hold_switches(None);
-        self.set(system, t, u);
+        self.set(system, t, state);
     }
 
     /// What the last step has met, from the state `before` at time `start` (s) to time `end` (s).
@@ -67,12 +68,12 @@ impl Events {
             v: [before, after].map(|state| &state[n..2 * n]),
         };
         let passage = system.passage(&step, tolerance, &mut self.clearances);
-        let mut event = self.change(system, end, &after[..n]).then_some(end);
+        let mut event = self.change(system, end, after).then_some(end);
         if let Some(t) = passage.filter(|&t| t > start && t < end) {
             // the step will not be taken as it is
             self.clearances.fill(0.0);
             stepper.interpolate(t, work)?;
-            match (self.change(stepper.system(), t, &work[..n]), event) {
+            match (self.change(stepper.system(), t, work), event) {
                 (true, _) => event = Some(t),
                 (false, None) => return Ok(Met::Passage(t)),
                 (false, Some(_)) => {}
@@ -93,7 +94,6 @@ impl Events {
         end: f64,
         work: &mut [f64],
     ) -> Result<f64, Failed> {
-        let n = stepper.system().dofs();
         let (mut before, mut after) = (start, end);
         while after - before > PRECISION * (end - start) {
             let middle = 0.5 * (before + after);
@@ -101,7 +101,7 @@ impl Events {
                 break;
             }
             stepper.interpolate(middle, work)?;
-            match self.change(stepper.system(), middle, &work[..n]) {
+            match self.change(stepper.system(), middle, work) {
                 true => after = middle,
                 false => before = middle,
             }
@@ -109,12 +109,12 @@ impl Events {
         Ok(after)
     }
 
-    /// Goes on after an event at (t, u), a `step` (s) after the one before.
-    pub(super) fn pass(&mut self, system: &System, t: f64, u: &[f64], step: f64) {
+    /// Goes on after an event at time `t` in `state`, a `step` (s) after the one before.
+    pub(super) fn pass(&mut self, system: &System, t: f64, state: &[f64], step: f64) {
         self.count += 1;
         self.standing = if step > 0.0 { 0 } else { self.standing + 1 };
         self.clearances.fill(0.0);
-        self.set(system, t, u);
+        self.set(system, t, state);
         if self.standing == STANDING {
             // a node that trembles at the edge
             system.hold_switches(None);
@@ -123,22 +123,28 @@ impl Events {
         }
     }
 
-    /// Whether a switch should change at (t, u).
-    fn change(&mut self, system: &System, t: f64, u: &[f64]) -> bool {
+    /// Whether a switch should change at time `t` in `state`.
+    fn change(&mut self, system: &System, t: f64, state: &[f64]) -> bool {
         if self.on.is_empty() {
             return false;
         }
-        system.switch_values(t, u, &mut self.values);
+        self.evaluate(system, t, state);
         self.on.iter().zip(&self.values).any(|(&on, &value)| on != (value <= 0.0))
     }
 
-    /// Sets the switches by their values at (t, u).
-    pub(super) fn set(&mut self, system: &System, t: f64, u: &[f64]) {
+    /// Sets the switches by their values at time `t` in `state`.
+    pub(super) fn set(&mut self, system: &System, t: f64, state: &[f64]) {
         if self.on.is_empty() {
             return;
         }
-        system.switch_values(t, u, &mut self.values);
+        system.hold_switches(None);
+        self.evaluate(system, t, state);
         self.on.iter_mut().zip(&self.values).for_each(|(on, &value)| *on = value <= 0.0);
         system.hold_switches(Some(&self.on));
+    }
+
+    fn evaluate(&mut self, system: &System, t: f64, state: &[f64]) {
+        let n = system.dofs();
+        system.switch_values(t, &state[..n], &state[n..2 * n], &mut self.values);
     }
 }

@@ -3,7 +3,9 @@
 mod auto;
 mod events;
 mod failure;
+mod leg;
 mod progress;
+mod records;
 mod run;
 mod sampling;
 mod stepper;

@@ -5,8 +5,10 @@ use std::time::Instant;
 use super::auto::{Plan, TRIAL};
 use super::events::{Events, Met};
 use super::failure::{STANDING, standing_still, too_many_steps};
+use super::leg::{Checkpoint, Ending, Leg, Outcome};
 use super::progress::{Observer, Progress};
-use super::sampling::{Sampling, Schedule};
+use super::records::{self, energy, project};
+use super::sampling::Sampling;
 use super::stepper::{Failed, Stepper};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
@@ -16,8 +18,8 @@ use crate::report::{Counts, PhaseReport, Report, creation};
 use crate::scene::{Phase, Scene};
 use crate::settings::{Method, Settings, Tolerances};
 use crate::state::ENERGIES;
-use crate::system::{Energy, System};
-use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
+use crate::system::System;
+use crate::trajectory::{IntegrationFailure, Interrupted, Trajectory};
 
 /// A scene on its way.
 pub(super) struct Run<'a> {
@@ -43,57 +45,8 @@ pub(super) struct Run<'a> {
     least_energy: f64,
 }
 
-/// A state to go back to.
-#[derive(Default)]
-struct Checkpoint {
-    time: f64,
-    state: Vec<f64>,
-    /// Sampling times of the phase, and samples of the run, that have been taken.
-    taken: usize,
-    samples: usize,
-    /// Error, rise and scale of the energy balance (J).
-    energies: [f64; 3],
-}
-
-/// How a leg ended.
-enum Ending {
-    /// At its end.
-    Reached,
-    /// At a contact event.
-    Event,
-    /// Before a step that would have passed through an obstacle, which it met at this time (s).
-    Passage(f64),
-    /// The energy balance tells that the method cannot be trusted.
-    Doubtful { instead: Plan },
-    /// Another method is better.
-    Better(Plan),
-}
-
-/// What became of a step.
-enum Outcome {
-    /// Its size (s).
-    Taken(f64),
-    /// Its size (s), up to a contact event.
-    CutOff(f64),
-    /// It was not taken, as it would have passed through an obstacle at this time (s).
-    Refused(f64),
-}
-
 /// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
 const WATCH: usize = 32;
-
-/// A phase on its way.
-struct Leg<'a> {
-    number: usize,
-    /// Sampling times of the phase, and the number of those that have been taken.
-    times: &'a Schedule,
-    taken: usize,
-    /// End of the leg (s): of the phase, or where a force breaks off.
-    stop: f64,
-    /// Steps that the phase may still take.
-    steps: usize,
-    events: Events,
-}
 
 impl<'a> Run<'a> {
     /// Runs `scene` under the `forces` of its phases.
@@ -144,7 +97,8 @@ impl<'a> Run<'a> {
     ) -> Result<Self, Error> {
         let mut state = [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat();
         project(solver, scene.first_phase()?, system, 0.0, &mut state);
-        let first = sample(0, system, 0.0, &state).map_err(|failure| scene.bad_start(failure))?;
+        let first =
+            records::sample(0, system, 0.0, &state).map_err(|failure| scene.bad_start(failure))?;
         if !first.energy.balance().is_finite() {
             let reason = "the energies are beyond the range of double precision";
             return Err(scene.bad_start(Failure::Recoverable(reason.into())).into());
@@ -185,12 +139,11 @@ impl<'a> Run<'a> {
         let times = sampling.within(self.time, phase.until);
         let mut plan = Plan::new(self.solver, &mut system, self.time, &self.state);
         let (steps, mut events) = (self.solver.max_steps, Events::default());
-        events.begin(&system, self.time, &self.state[..system.dofs()], plan.locates());
-        let mut leg = Leg { number, times: &times, taken: 0, stop: 0.0, steps, events };
+        events.begin(&system, self.time, &self.state, plan.locates());
+        let mut leg =
+            Leg { number, times: &times, taken: 0, stop: 0.0, inside: None, steps, events };
         let (mut counts, mut states) = (Counts::default(), 0);
-        let mut stops = self.scene.breaks(number);
-        stops.push(phase.until);
-        stops.reverse();
+        let mut stops = self.scene.breaks(number).into_iter().chain([phase.until]);
         let balance = energy(&system, self.time, &self.state).balance();
         if self.created(balance).is_some() {
             self.balance = balance;
@@ -200,18 +153,18 @@ impl<'a> Run<'a> {
         let result = loop {
             match ended {
                 Err(source) => break Err(source),
-                Ok(Ending::Reached) => match stops.pop() {
+                Ok(Ending::Reached) if leg.inside.take().is_some() => {}
+                Ok(Ending::Reached) => match stops.next() {
                     Some(stop) => leg.stop = stop,
                     None => break Ok(()),
                 },
-                Ok(Ending::Event) => {}
+                Ok(Ending::Event) => leg.inside = None,
                 // a step that ends within the obstacle feels it
-                Ok(Ending::Passage(t)) => stops.push(std::mem::replace(&mut leg.stop, t)),
+                Ok(Ending::Passage(t)) => leg.inside = Some(t),
                 Ok(Ending::Better(other)) => {
                     plan = other;
                     counts.notice = None;
-                    let u = &self.state[..system.dofs()];
-                    leg.events.begin(&system, self.time, u, plan.locates());
+                    leg.events.begin(&system, self.time, &self.state, plan.locates());
                 }
                 Ok(Ending::Doubtful { instead }) => {
                     self.go_back(&mut leg);
@@ -219,9 +172,14 @@ impl<'a> Run<'a> {
                     continue;
                 }
             }
+            if self.time >= leg.end() {
+                // an event, or a look at the method, just where the leg ends
+                ended = Ok(Ending::Reached);
+                continue;
+            }
             system.forget_counts();
             let stepper =
-                Stepper::new(system, &plan.solver, &self.atol, self.time, leg.stop, &self.state);
+                Stepper::new(system, &plan.solver, &self.atol, self.time, leg.end(), &self.state);
             let mut stepper = stepper.map_err(|source| (source, 0.0))?;
             ended = self.leg(&mut leg, &plan, &mut stepper, observer);
             counts.add(stepper.counts());
@@ -230,7 +188,7 @@ impl<'a> Run<'a> {
         };
         if result.is_err() && self.time > self.trajectory.last().time {
             // the state that the last step led to, unless the equations have no meaning there
-            let last = sample(number, &mut system, self.time, &self.state);
+            let last = records::sample(number, &mut system, self.time, &self.state);
             last.into_iter().for_each(|sample| self.trajectory.push(sample));
         }
         counts.contact_events = leg.events.count;
@@ -266,7 +224,7 @@ impl<'a> Run<'a> {
         let mut sample = vec![0.0; stepper.size()];
         // mean step sizes (s) of the last two trials
         let (mut steps, mut trial_began, mut means) = (0_usize, self.time, [f64::INFINITY; 2]);
-        while self.time < leg.stop {
+        while self.time < leg.end() {
             if leg.steps == 0 {
                 return Err(too_many_steps(self.solver.max_steps, &stepper.counts()));
             }
@@ -335,7 +293,7 @@ impl<'a> Run<'a> {
         sample: &mut [f64],
     ) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
-        let reached = stepper.step(leg.stop)?;
+        let reached = stepper.step(leg.end())?;
         let times = [self.time, reached];
         let event = match leg.events.met(stepper, &self.state, times, self.atol.position, sample)? {
             Met::Nothing => None,
@@ -354,7 +312,7 @@ impl<'a> Run<'a> {
         while let Some(t) = leg.times.get(leg.taken).filter(|&t| t <= time) {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
-            let taken = self::sample(leg.number, stepper.system_mut(), t, sample);
+            let taken = records::sample(leg.number, stepper.system_mut(), t, sample);
             self.trajectory.push(taken.map_err(Failure::into_error)?);
         }
         let (system, arrived) = arrival(stepper, event, sample)?;
@@ -363,7 +321,7 @@ impl<'a> Run<'a> {
         self.steps += 1;
         self.state.copy_from_slice(&arrived[..length]);
         if event.is_some() {
-            leg.events.pass(system, time, &self.state[..n], step);
+            leg.events.pass(system, time, &self.state, step);
         }
         let drift = system.drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
@@ -402,37 +360,4 @@ fn arrival<'s>(
     let Some(t) = event else { return Ok((stepper.system(), stepper.state())) };
     stepper.interpolate(t, sample)?;
     Ok((stepper.system(), sample))
-}
-
-/// The sample of `state` = (u, v, energies, ...) at `time`.
-fn sample(phase: usize, system: &mut System, time: f64, state: &[f64]) -> Result<Sample, Failure> {
-    let n = system.dofs();
-    let (u, v) = (&state[..n], &state[n..2 * n]);
-    let multipliers = system.multipliers(time, u, v)?.to_vec();
-    let energy = energy(system, time, state);
-    let constraint_drift = system.drift(time, u);
-    Ok(Sample { time, phase, u: u.to_vec(), v: v.to_vec(), multipliers, energy, constraint_drift })
-}
-
-/// Energies of `state` = (u, v, energies, ...) at `time`.
-fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
-    let n = system.dofs();
-    let (u, v) = (&state[..n], &state[n..2 * n]);
-    let (dissipated, supplied) = (state[2 * n], state[2 * n + 1]);
-    Energy { dissipated, supplied, ..system.energy(time, u, v) }
-}
-
-/// Projects the velocities of `state` on those that the constraints allow, if the phase asks for that or
-/// the method has an equation for velocities, which allows no others. What that takes from the kinetic
-/// energy, or gives to it, is supplied by the constraints.
-fn project(solver: &Settings, phase: &Phase, system: &mut System, time: f64, state: &mut [f64]) {
-    if !phase.projects_velocity && solver.method != Method::IdaIndexTwo {
-        return;
-    }
-    let n = system.dofs();
-    let (u, rest) = state.split_at_mut(n);
-    let (v, energies) = rest.split_at_mut(n);
-    let before = system.energy(time, u, v).kinetic;
-    system.project(time, v);
-    energies[1] += system.energy(time, u, v).kinetic - before;
 }

@@ -230,10 +230,10 @@ impl System {
     }
 
     /// Writes their values.
-    pub(crate) fn switch_values(&self, t: f64, u: &[f64], mut values: &mut [f64]) {
+    pub(crate) fn switch_values(&self, t: f64, u: &[f64], v: &[f64], mut values: &mut [f64]) {
         for force in &self.forces {
             let (own, rest) = values.split_at_mut(force.switches());
-            force.switch_values(t, u, own);
+            force.switch_values(t, u, v, own);
             values = rest;
         }
     }

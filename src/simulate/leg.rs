@@ -1,0 +1,63 @@
+//! Legs: the parts of a phase that are integrated without a new start, and what may end them.
+
+use super::auto::Plan;
+use super::events::Events;
+use super::sampling::Schedule;
+
+/// A state to go back to.
+#[derive(Default)]
+pub(super) struct Checkpoint {
+    pub(super) time: f64,
+    pub(super) state: Vec<f64>,
+    /// Sampling times of the phase, and samples of the run, that have been taken.
+    pub(super) taken: usize,
+    pub(super) samples: usize,
+    /// Error, rise and scale of the energy balance (J).
+    pub(super) energies: [f64; 3],
+}
+
+/// How a leg ended.
+pub(super) enum Ending {
+    /// At its end.
+    Reached,
+    /// At a contact event.
+    Event,
+    /// Before a step that would have passed through an obstacle, which it met at this time (s).
+    Passage(f64),
+    /// The energy balance tells that the method cannot be trusted.
+    Doubtful { instead: Plan },
+    /// Another method is better.
+    Better(Plan),
+}
+
+/// What became of a step.
+pub(super) enum Outcome {
+    /// Its size (s).
+    Taken(f64),
+    /// Its size (s), up to a contact event.
+    CutOff(f64),
+    /// It was not taken, as it would have passed through an obstacle at this time (s).
+    Refused(f64),
+}
+
+/// A phase on its way.
+pub(super) struct Leg<'a> {
+    pub(super) number: usize,
+    /// Sampling times of the phase, and the number of those that have been taken.
+    pub(super) times: &'a Schedule,
+    pub(super) taken: usize,
+    /// End of the leg (s): of the phase, or where a force breaks off.
+    pub(super) stop: f64,
+    /// When a step that was not taken would have been within an obstacle (s): the leg pauses there.
+    pub(super) inside: Option<f64>,
+    /// Steps that the phase may still take.
+    pub(super) steps: usize,
+    pub(super) events: Events,
+}
+
+impl Leg<'_> {
+    /// Where it ends, or pauses (s).
+    pub(super) fn end(&self) -> f64 {
+        self.inside.unwrap_or(self.stop)
+    }
+}
