@@ -174,7 +174,7 @@ enum Verdict {
     Good,
     /// `auto` said that it failed, or may be wrong.
     Said(String),
-    /// A reference failed: nothing to compare with.
+    /// The references failed, and `auto` did, too, or gave a warning.
     NoReference(String),
     Wrong(String),
 }
@@ -187,7 +187,17 @@ fn verdict(seed: u64) -> Verdict {
     };
     let references = match (run(Method::Rk, 1e-8), run(Method::CvodeAdams, 1e-8)) {
         (Ok(a), Ok(b)) => [a, b],
-        (Err(error), _) | (_, Err(error)) => return Verdict::NoReference(error.to_string()),
+        (Err(error), Err(_)) => {
+            return match run(Method::Auto, 1e-4) {
+                Ok(motion) if motion.report().warnings().is_empty() => {
+                    Verdict::Wrong(format!("auto goes on where both references end: {error}"))
+                }
+                _ => Verdict::NoReference(error.to_string()),
+            };
+        }
+        (Err(error), _) | (_, Err(error)) => {
+            return Verdict::Wrong(format!("only one reference ends: {error}"));
+        }
     };
     let (off, motion) = apart(&references[1], &references[0]);
     if off > APART * motion {
