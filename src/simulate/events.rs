@@ -2,6 +2,7 @@
 
 use super::stepper::{Failed, Stepper};
 use crate::force::Step;
+use crate::state::State;
 use crate::system::System;
 
 /// What a step has met.
@@ -61,12 +62,8 @@ impl Events {
             return Ok(Met::Nothing);
         }
         let (system, after) = (stepper.system(), stepper.state());
-        let n = system.dofs();
-        let step = Step {
-            times: [start, end],
-            u: [before, after].map(|state| &state[..n]),
-            v: [before, after].map(|state| &state[n..2 * n]),
-        };
+        let ends = [before, after].map(|state| State::of(state, system.dofs()));
+        let step = Step { times: [start, end], u: ends.map(|at| at.u), v: ends.map(|at| at.v) };
         let passage = system.passage(&step, tolerance, &mut self.clearances);
         let mut event = self.change(system, end, after).then_some(end);
         if let Some(t) = passage.filter(|&t| t > start && t < end) {
@@ -144,7 +141,7 @@ impl Events {
     }
 
     fn evaluate(&mut self, system: &System, t: f64, state: &[f64]) {
-        let n = system.dofs();
-        system.switch_values(t, &state[..n], &state[n..2 * n], &mut self.values);
+        let State { u, v, .. } = State::of(state, system.dofs());
+        system.switch_values(t, u, v, &mut self.values);
     }
 }

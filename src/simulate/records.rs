@@ -3,6 +3,7 @@
 use crate::ode::Failure;
 use crate::scene::Phase;
 use crate::settings::{Method, Settings};
+use crate::state::{State, StateMut};
 use crate::system::{Energy, System};
 use crate::trajectory::Sample;
 
@@ -13,8 +14,7 @@ pub(super) fn sample(
     time: f64,
     state: &[f64],
 ) -> Result<Sample, Failure> {
-    let n = system.dofs();
-    let (u, v) = (&state[..n], &state[n..2 * n]);
+    let State { u, v, .. } = State::of(state, system.dofs());
     let multipliers = system.multipliers(time, u, v)?.to_vec();
     let energy = energy(system, time, state);
     let constraint_drift = system.drift(time, u);
@@ -23,9 +23,7 @@ pub(super) fn sample(
 
 /// Energies of `state` = (u, v, energies, ...) at `time`.
 pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
-    let n = system.dofs();
-    let (u, v) = (&state[..n], &state[n..2 * n]);
-    let (dissipated, supplied) = (state[2 * n], state[2 * n + 1]);
+    let State { u, v, dissipated, supplied, .. } = State::of(state, system.dofs());
     Energy { dissipated, supplied, ..system.energy(time, u, v) }
 }
 
@@ -42,10 +40,8 @@ pub(super) fn project(
     if !phase.projects_velocity && solver.method != Method::IdaIndexTwo {
         return;
     }
-    let n = system.dofs();
-    let (u, rest) = state.split_at_mut(n);
-    let (v, energies) = rest.split_at_mut(n);
+    let StateMut { u, v, supplied, .. } = StateMut::of(state, system.dofs());
     let before = system.energy(time, u, v).kinetic;
     system.project(time, v);
-    energies[1] += system.energy(time, u, v).kinetic - before;
+    *supplied += system.energy(time, u, v).kinetic - before;
 }
