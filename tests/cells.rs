@@ -282,7 +282,7 @@ fn cells_that_are_turned_over_are_named() {
         let builder = Body::new(turned.unwrap(), RUBBER);
         let builder = if dimension == 2 { builder.thickness(THICKNESS) } else { builder };
         let message = builder.build().unwrap_err().to_string();
-        assert!(message.starts_with("cell 1 "), "{kind:?}: {message}");
+        assert!(message.starts_with("signed volume of cell 1 (nodes ["), "{kind:?}: {message}");
     }
 }
 
