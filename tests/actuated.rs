@@ -38,7 +38,7 @@ fn the_ring_walks() {
     assert!((centre(&trajectory, last)[0] - 11.1).abs() < 0.1);
     assert!((turned + 2.34).abs() < 0.02);
     let report = trajectory.report();
-    assert!(report.energy_error < 1e-4 * report.energy_scale, "{:e}", report.energy_error);
+    assert!(report.energy_error < 4e-6 * report.energy_scale, "{:e}", report.energy_error);
 }
 
 /// Hirai's 5 N pull A2 or A6 to length zero about 10 ms after they begin: every method says
@@ -50,7 +50,8 @@ fn five_newton_collapse_a_spring() {
         let result = scene.simulate(&solver(method, 1e-5), &Sampling::every(0.1));
         let Err(Error::Integration(failure)) = result else { panic!("{method}: no failure") };
         let message = failure.to_string();
-        assert!((failure.time - 0.21).abs() < 0.003, "{method}: {message}");
+        // all methods come to it within 5e-5 s
+        assert!((failure.time - 0.21).abs() < 2e-4, "{method}: {message}");
         assert!(
             message.contains("spring \"A2\"") || message.contains("spring \"A6\""),
             "{message}"
@@ -77,9 +78,9 @@ fn methods_agree() {
             let apart = difference(&found, &truth);
             let report = found.report();
             println!("{name}, {method}: {apart:.1e}, energy {:.1e}", report.energy_error);
-            // over the whole of the scene, up to 3 s
-            assert!(apart < 500.0 * 1e-7, "{name}, {method}: {apart:e}");
-            assert!(report.energy_error < 1e-4 * report.energy_scale, "{name}, {method}");
+            // measured: 8e-7 and 2.5e-6 at most
+            assert!(apart < 2e-6, "{name}, {method}: {apart:e}");
+            assert!(report.energy_error < 1e-5 * report.energy_scale, "{name}, {method}");
         }
     }
 }

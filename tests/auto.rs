@@ -61,8 +61,8 @@ fn it_changes_to_the_explicit_method_in_mid_phase() {
     let last = |run: &Trajectory| run.report().phases.last().unwrap().method;
     assert_eq!((last(&loose), last(&tight)), (Method::Arkode, Method::Rk));
     let reference = Settings { method: Method::CvodeAdams, rtol: 1e-10, ..Settings::default() };
-    // 8 cm of motion: a thousand rtol of it
-    assert!(distance(&tight, &run(&scene, &reference)) < 1e3 * 1e-9 * 0.08);
+    // measured: 9e-11 m, one rtol of 8 cm of motion
+    assert!(distance(&tight, &run(&scene, &reference)) < 3.0 * 1e-9 * 0.08);
 }
 
 /// With lumped inertia it is central differences that take over, and well before that; at a loose
@@ -81,7 +81,7 @@ fn it_changes_to_central_differences_where_inertia_is_lumped() {
     // (omega h)^2/24, below 1e-6 even in the tenth mode of bending
     let [loose, tight] = [&loose, &tight].map(|run| distance(run, &reference));
     println!("{loose:e} m, {tight:e} m");
-    assert!(tight < 1e-4 * 0.06 && loose > 10.0 * tight, "{loose:e} m, {tight:e} m");
+    assert!(tight < 1e-5 * 0.06 && loose > 10.0 * tight, "{loose:e} m, {tight:e} m");
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn errors_shrink_with_rtol() {
     let reference = run(&scene, &reference);
     let errors = [1e-3, 1e-5, 1e-7].map(|rtol| distance(&run(&scene, &auto(rtol)), &reference));
     // 8 cm of motion; a factor 100 in rtol gains a factor 10 at least
-    assert!(errors[0] < 0.02, "{errors:?}");
+    assert!(errors[0] < 2e-3, "{errors:?}"); // measured: 7e-4 m
     assert!(errors[1] < 0.1 * errors[0] && errors[2] < 0.1 * errors[1], "{errors:?}");
 }
 
@@ -121,7 +121,7 @@ fn a_choice_that_creates_energy_is_revoked() {
     assert_eq!(motion.report().warnings(), Vec::<String>::new());
     let reference = Settings { method: Method::Rk, rtol: 1e-9, ..Settings::default() };
     let apart = distance(&motion, &run(&scene, &reference));
-    assert!(apart < 1e-3, "{apart}");
+    assert!(apart < 2e-6, "{apart}"); // measured: 4e-7 m
 }
 
 /// With the order capped at 3, BDF runs away, and the run says so; the automatic choice does not.
@@ -185,6 +185,6 @@ fn what_an_obstacle_stores_when_it_begins_to_act_is_supplied() {
     assert!(!report.phases[1].reason.clone().unwrap().contains("created"));
     // four nodes, 1 cm inside springs of 1 kN/m
     let supplied = motion.last().energy.supplied;
-    assert!((supplied - 4.0 * 0.5 * 1e3 * 1e-4).abs() < 1e-12, "{supplied}");
-    assert!(report.energy_error < 1e-4 * report.energy_scale, "{:e}", report.energy_error);
+    assert!((supplied - 4.0 * 0.5 * 1e3 * 1e-4).abs() < 1e-15, "{supplied}");
+    assert!(report.energy_error < 3e-5 * report.energy_scale, "{:e}", report.energy_error);
 }

@@ -26,15 +26,15 @@ fn the_ring_comes_to_rest_with_its_heavy_half_down() {
     let trajectory = roll(RingRoll::default(), Method::CvodeBdf, 1e-6);
     assert!((degrees(&trajectory, 1.0) + 67.0).abs() < 0.6, "{}", degrees(&trajectory, 1.0));
     assert!((degrees(&trajectory, 2.0) + 76.0).abs() < 0.6, "{}", degrees(&trajectory, 2.0));
-    assert!((degrees(&trajectory, 5.0) + 90.0).abs() < 1.0, "{}", degrees(&trajectory, 5.0));
+    assert!((degrees(&trajectory, 5.0) + 90.0).abs() < 0.1, "{}", degrees(&trajectory, 5.0));
     assert!(trajectory.centre_of_mass(trajectory.last())[0] > 0.05);
-    assert!(trajectory.last().energy.kinetic < 1e-6);
+    assert!(trajectory.last().energy.kinetic < 1e-8);
     let report = trajectory.report();
-    assert!(report.energy_error < 1e-5 * report.energy_scale, "{:e}", report.energy_error);
+    assert!(report.energy_error < 1e-6 * report.energy_scale, "{:e}", report.energy_error);
 }
 
 /// Two implicit methods and the explicit one agree on half a second of rolling, under both laws of
-/// viscosity, and the nearer the tighter the tolerance.
+/// viscosity, and the nearer the tighter the tolerance: to 0.13 rtol at 1e-5 and 0.38 rtol at 1e-7.
 #[test]
 fn methods_agree_on_the_rolling_ring() {
     for viscosity in [Viscosity::Natural, Viscosity::Objective] {
@@ -44,7 +44,7 @@ fn methods_agree_on_the_rolling_ring() {
             let [coarse, fine] =
                 [1e-5, 1e-7].map(|rtol| difference(&roll(ring, method, rtol), &truth));
             println!("{viscosity:?} {method}: {coarse:.1e} at rtol 1e-5, {fine:.1e} at 1e-7");
-            assert!(fine < 500.0 * 1e-7, "{viscosity:?} {method}: {fine:e}");
+            assert!(fine < 1.5e-7, "{viscosity:?} {method}: {fine:e}");
             assert!(fine < coarse / 7.0, "{viscosity:?} {method}: {coarse:e} to {fine:e}");
         }
     }
@@ -64,7 +64,7 @@ fn the_ring_swells_under_cauchy_strain() {
     };
     let (cauchy, green) = (largest(Strain::Cauchy), largest(Strain::Green));
     println!("largest area: x {cauchy:.3} (Cauchy), x {green:.3} (Green)");
-    assert!(cauchy > 1.2 && green < 1.01, "{cauchy} {green}");
+    assert!(cauchy > 1.2 && green < 1.002, "{cauchy} {green}");
 }
 
 /// A stretched, spinning ring of Green strain in free flight keeps its momentum and its angular
@@ -84,16 +84,17 @@ fn a_flying_ring_keeps_its_spin() {
         let (start, end) = (&trajectory.samples()[0], trajectory.last());
         let [before, after] = [start, end].map(|s| trajectory.momentum(s));
         for axis in 0..2 {
-            assert!((after[axis] - before[axis]).abs() < 1e-9 * before[1], "{after:?}");
+            assert!((after[axis] - before[axis]).abs() < 3e-13 * before[1], "{after:?}");
         }
         let report = trajectory.report();
-        assert!(report.energy_error < 1e-5 * report.energy_scale, "{:e}", report.energy_error);
+        assert!(report.energy_error < 2e-7 * report.energy_scale, "{:e}", report.energy_error);
         let [before, after] = [start, end].map(|s| trajectory.angular_momentum(s)[0]);
         after / before
     };
     for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
         let kept = spin(Viscosity::Objective, method);
-        assert!((kept - 1.0).abs() < 1e-6, "{method}: {kept}");
+        // measured: 6e-8 at rtol 1e-8
+        assert!((kept - 1.0).abs() < 2e-7, "{method}: {kept}");
     }
     let braked = spin(Viscosity::Natural, Method::CvodeBdf);
     println!("natural viscosity leaves {braked:.4} of the spin after 0.3 s");

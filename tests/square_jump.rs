@@ -49,7 +49,8 @@ fn methods_agree() {
     }
 }
 
-/// In free flight, without gravity, momentum is constant. (Angular momentum is not: Cauchy strain
+/// In free flight, without gravity, momentum is constant: to 6e-11 with BDF, to 7e-12 and less with the
+/// others. (Angular momentum is not: Cauchy strain
 /// is not invariant to rotation.)
 #[test]
 fn flight_keeps_its_momentum() {
@@ -66,7 +67,7 @@ fn flight_keeps_its_momentum() {
             for momentum in &flight {
                 for axis in 0..2 {
                     let apart = (momentum[axis] - flight[0][axis]).abs();
-                    assert!(apart < 1e-7 * flight[0][1], "{method}, {nodes} nodes: {apart:e}");
+                    assert!(apart < 2e-10 * flight[0][1], "{method}, {nodes} nodes: {apart:e}");
                 }
             }
         }
@@ -86,7 +87,13 @@ fn energy_balance_closes() {
         println!(
             "{method}: energy error {fine:.1e} at rtol {tight:e}, {coarse:.1e} at a hundredfold"
         );
-        assert!(fine < global_error(method, tight) / 5.0, "{method}: {fine:e}");
+        // measured: 83 rtol, 19, and 7 at most
+        let bound = match method {
+            Method::CentralDifference => 250.0,
+            Method::CvodeBdf => 50.0,
+            _ => 20.0,
+        };
+        assert!(fine < bound * tight, "{method}: {fine:e}");
         assert!(fine < coarse / 7.0, "{method}: {coarse:e} to {fine:e}");
     }
 }

@@ -120,20 +120,34 @@ impl System {
                 return None;
             }
         }
-        // as many as there are rigid motions, and some more
-        let block = (d * (d + 1) / 2 + 2).min(dofs);
+        // as many as there are rigid motions of one piece, and some more
+        let mut block = (d * (d + 1) / 2 + 2).min(dofs);
         let mut basis: Vec<Vec<f64>> = (0..block).map(|k| noise(dofs, k)).collect();
         let (nowhere, mut mu) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut found: Option<(f64, Vec<f64>)> = None;
-        for _ in 0..SUBSPACE_ITERATIONS {
+        let mut iterations = 0;
+        while iterations < SUBSPACE_ITERATIONS {
             for x in &mut basis {
                 let mut image = vec![0.0; dofs];
                 self.model.inertia.add_product(d, 1.0, x, &mut image);
                 solver.solve(&self.rows, &image, &nowhere, x, &mut mu);
             }
             self.orthonormalize(&mut basis);
+            if basis.is_empty() {
+                return None; // numbers beyond double precision
+            }
             let values = self.ritz(&mut basis);
-            let lowest = values.iter().position(|&value| value > RIGID * highest)?;
+            let Some(lowest) = values.iter().position(|&value| value > RIGID * highest) else {
+                if basis.len() < block || block == dofs {
+                    return None;
+                }
+                // those of several pieces fill it
+                let filled = block;
+                block = (2 * block).min(dofs);
+                basis.extend((filled..block).map(|k| noise(dofs, k)));
+                continue;
+            };
+            iterations += 1;
             let before = found.replace((values[lowest], basis[lowest].clone()));
             if before.is_some_and(|(value, _)| (value - values[lowest]).abs() < 1e-3 * value) {
                 break;

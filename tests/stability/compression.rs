@@ -1,5 +1,5 @@
 //! g. St. Venant-Kirchhoff material under compression. Equilibria that collapse:
-//! `tests/equilibrium_stability.rs`; columns that buckle: `tests/compression.rs`.
+//! `tests/statics/stability.rs`; columns that buckle: `tests/compression.rs`.
 
 use pliant::{Error, Method, Strain};
 

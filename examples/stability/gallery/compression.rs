@@ -101,7 +101,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
     page.say(
         "**What works:** below the limit, everything: indefinite tangents are factorized by LU, and the report \
          counts them; beyond it, nothing does, because the model has no answer: the runs end with the cell, \
-         the time and the load that was reached, and keep the motion until then (`tests/equilibrium_stability.rs`, \
+         the time and the load that was reached, and keep the motion until then (`tests/statics/stability.rs`, \
          `tests/compression.rs`). Cauchy strain has no limit and no complaint, and is wrong for longer.",
     );
     Ok(())
