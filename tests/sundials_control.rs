@@ -1,11 +1,17 @@
 //! Steering an integration: roots, stop times, dense output, single steps, restarts, threads.
 
-use std::thread;
+use std::{
+    panic::{AssertUnwindSafe, catch_unwind},
+    thread,
+};
 
 use pliant::{
     ode::{BandMut, Borrowed, Dae, Failure, Ode, with_jacobian},
     samples::{Hires, Robertson},
-    sundials::{Cvode, CvodeOptions, Ida, IdaOptions, Jacobian, LinearSolver, Multistep, Reached},
+    sundials::{
+        Arkode, ArkodeOptions, Cvode, CvodeOptions, Error, Ida, IdaOptions, Jacobian, LinearSolver,
+        Multistep, Reached, Table,
+    },
 };
 
 /// y'' = -y as a system, with the exact solution (cos t, -sin t), and roots of y and of t - 5.
@@ -57,13 +63,18 @@ fn oscillator() -> Cvode<Oscillator> {
     Cvode::new(Oscillator::new(), 0.0, &[1.0, 0.0], &options).unwrap()
 }
 
+fn oscillator_by_runge_kutta(table: Table) -> Arkode<Oscillator> {
+    let options = ArkodeOptions::new(1e-9, 1e-9).table(table);
+    Arkode::new(Oscillator::new(), 0.0, &[1.0, 0.0], &options).unwrap()
+}
+
 fn oscillating_dae() -> Ida<Oscillator> {
     let options = IdaOptions::new(1e-9, 1e-9);
     Ida::new(Oscillator::new(), 0.0, &[1.0, 0.0], &[0.0, -1.0], &options).unwrap()
 }
 
-// The two integrators have the same methods; one text tests both.
-macro_rules! for_both {
+// The integrators have the same methods; one text tests all.
+macro_rules! for_multistep {
     ($solver:ident => $test:block) => {{
         {
             let mut $solver = oscillator();
@@ -76,10 +87,20 @@ macro_rules! for_both {
     }};
 }
 
+macro_rules! for_all {
+    ($solver:ident => $test:block) => {{
+        for_multistep!($solver => $test);
+        for table in [Table::implicit(4).unwrap(), Table::explicit(5).unwrap()] {
+            let mut $solver = oscillator_by_runge_kutta(table);
+            $test
+        }
+    }};
+}
+
 #[test]
 fn roots_are_found_with_their_direction() {
     use std::f64::consts::FRAC_PI_2;
-    for_both!(solver => {
+    for_all!(solver => {
         for (t, signs) in [(FRAC_PI_2, [-1, 0]), (3.0 * FRAC_PI_2, [1, 0]), (5.0, [0, 1])] {
             assert_eq!(solver.solve_to(7.0).unwrap(), Reached::Root);
             assert!((solver.t() - t).abs() < 1e-6, "{} is not {t}", solver.t());
@@ -94,7 +115,7 @@ fn roots_are_found_with_their_direction() {
 
 #[test]
 fn nothing_is_evaluated_beyond_a_stop_time() {
-    for_both!(solver => {
+    for_all!(solver => {
         solver.set_stop_time(Some(0.7)).unwrap();
         assert_eq!(solver.solve_to(1.0).unwrap(), Reached::StopTime);
         assert_eq!(solver.t(), 0.7);
@@ -116,7 +137,7 @@ fn nothing_is_evaluated_beyond_a_stop_time() {
 
 #[test]
 fn a_stop_time_that_is_taken_back_before_going_backwards() {
-    for_both!(solver => {
+    for_all!(solver => {
         solver.set_stop_time(Some(-0.7)).unwrap();
         solver.set_stop_time(None).unwrap();
         assert_eq!(solver.solve_to(-1.0).unwrap(), Reached::Time);
@@ -126,7 +147,7 @@ fn a_stop_time_that_is_taken_back_before_going_backwards() {
 
 #[test]
 fn dense_output_is_as_accurate_as_the_steps() {
-    for_both!(solver => {
+    for_multistep!(solver => {
         let mut out = [0.0; 2];
         let (mut at_steps, mut between, mut slopes) = (0f64, 0f64, 0f64);
         while solver.t() < 1.4 {
@@ -165,7 +186,7 @@ fn output_times_do_not_change_the_steps() {
 
 #[test]
 fn the_present_time_is_reached_without_a_step() {
-    for_both!(solver => {
+    for_all!(solver => {
         assert_eq!(solver.solve_to(0.0).unwrap(), Reached::Time);
         assert_eq!(solver.statistics().steps, 0);
     });
@@ -173,7 +194,7 @@ fn the_present_time_is_reached_without_a_step() {
 
 #[test]
 fn a_restart_repeats_the_run() {
-    for_both!(solver => {
+    for_all!(solver => {
         solver.solve_to(1.0).unwrap();
         let (y, statistics) = (solver.y().to_vec(), solver.statistics());
         solver.set_stop_time(Some(1.1)).unwrap();
@@ -185,11 +206,139 @@ fn a_restart_repeats_the_run() {
     });
 }
 
+#[test]
+fn without_a_step_only_the_start_itself_is_known() {
+    for_all!(solver => {
+        let mut out = [f64::NAN; 2];
+        for again in [false, true] {
+            if again {
+                solver.solve_to(1.0).unwrap();
+                restart(&mut solver);
+            }
+            assert_eq!(solver.last_step(), (0.0, 0.0));
+            solver.interpolate(0.0, 0, &mut out).unwrap();
+            assert_eq!(out, [1.0, 0.0]);
+            for (t, derivative) in [(0.0, 1), (1e-3, 0), (-1e-3, 0)] {
+                let error = solver.interpolate(t, derivative, &mut out).unwrap_err();
+                assert!(matches!(error, Error::Input { .. }), "{error:?}");
+            }
+            assert_eq!(out, [1.0, 0.0]);
+        }
+    });
+}
+
+#[test]
+fn a_restart_forgets_the_direction_of_time() {
+    for_all!(solver => {
+        // Set and lifted, before C knows of it and after.
+        for known in [0.0, 0.5] {
+            solver.set_stop_time(Some(5.0)).unwrap();
+            solver.solve_to(known).unwrap();
+            solver.set_stop_time(None).unwrap();
+            solver.solve_to(1.0).unwrap();
+            restart(&mut solver);
+            assert_eq!(solver.solve_to(-1.0).unwrap(), Reached::Time);
+            assert!((solver.y()[1] + (-1f64).sin()).abs() < 1e-6);
+            restart(&mut solver);
+            // ARKODE refuses a stop time in the first step after time has turned.
+            solver.solve_to(1.0).unwrap();
+            restart(&mut solver);
+        }
+        // One that C has reached, and one at the same time.
+        for _ in 0..2 {
+            solver.set_stop_time(Some(0.5)).unwrap();
+            assert_eq!(solver.solve_to(1.0).unwrap(), Reached::StopTime);
+            restart(&mut solver);
+        }
+    });
+}
+
+/// y'' = -y until it is stopped.
+struct Mortal {
+    end: f64,
+    how: fn() -> Failure,
+}
+
+impl Ode for Mortal {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        if t > self.end {
+            return Err((self.how)());
+        }
+        ydot.copy_from_slice(&[y[1], -y[0]]);
+        Ok(())
+    }
+}
+
+impl Dae for Mortal {
+    fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        self.rhs(t, y, r)?;
+        r.iter_mut().zip(yp).for_each(|(r, yp)| *r -= yp);
+        Ok(())
+    }
+}
+
+#[test]
+fn after_a_failure_time_and_state_belong_together() {
+    let fatal: fn() -> Failure = || std::fmt::Error.into();
+    let recoverable: fn() -> Failure = || Failure::Recoverable("no further".into());
+    let panicking: fn() -> Failure = || panic!("no further");
+    let (y0, yp0) = ([1.0, 0.0], [0.0, -1.0]);
+    macro_rules! fail {
+        ($solver:expr, $modes:ident) => {
+            for &one_by_one in $modes {
+                let mut solver = $solver;
+                let failed = catch_unwind(AssertUnwindSafe(|| match one_by_one {
+                    false => solver.solve_to(2.0).map(drop),
+                    true => (0..10_000).try_for_each(|_| solver.step(2.0).map(drop)),
+                }));
+                assert!(!matches!(failed, Ok(Ok(()))));
+                let (t, y) = (solver.t(), solver.y().to_vec());
+                assert!(t > 0.5 && t <= 1.0, "{t}");
+                // rtol is 1e-9; one step of the wrong time would be an error of 1e-2
+                assert!((y[0] - t.cos()).abs() < 1e-6, "{y:?} at {t}");
+                assert!((y[1] + t.sin()).abs() < 1e-6, "{y:?} at {t}");
+                assert_eq!(solver.last_step().1, t);
+                let mut out = [0.0; 2];
+                solver.interpolate(t, 0, &mut out).unwrap();
+                assert!((out[0] - y[0]).abs() < 1e-12, "{out:?} {y:?}");
+                // What else it gives has to be right.
+                let (start, _) = solver.last_step();
+                if solver.interpolate(start, 0, &mut out).is_ok() {
+                    assert!((out[0] - start.cos()).abs() < 1e-6, "{out:?} at {start}");
+                }
+                // And it can go on.
+                solver.system_mut().end = f64::INFINITY;
+                solver.solve_to(1.5).unwrap();
+                assert!((solver.y()[0] - 1.5f64.cos()).abs() < 1e-6);
+            }
+        };
+    }
+    // One by one, steps that may be repeated become ever smaller, and none fails.
+    let all: &[bool] = &[false, true];
+    for (how, modes) in [(fatal, all), (recoverable, &[false]), (panicking, all)] {
+        let system = || Mortal { end: 1.0, how };
+        let options = CvodeOptions::new(1e-9, 1e-9).method(Multistep::Adams);
+        fail!(Cvode::new(system(), 0.0, &y0, &options).unwrap(), modes);
+        let options = IdaOptions::new(1e-9, 1e-9);
+        fail!(Ida::new(system(), 0.0, &y0, &yp0, &options).unwrap(), modes);
+        for table in [Table::implicit(4).unwrap(), Table::explicit(5).unwrap()] {
+            let options = ArkodeOptions::new(1e-9, 1e-9).table(table);
+            fail!(Arkode::new(system(), 0.0, &y0, &options).unwrap(), modes);
+        }
+    }
+}
+
 trait Restart {
     fn restart(&mut self);
 }
 
 impl Restart for Cvode<Oscillator> {
+    fn restart(&mut self) {
+        self.reinit(0.0, &[1.0, 0.0]).unwrap();
+    }
+}
+
+impl Restart for Arkode<Oscillator> {
     fn restart(&mut self) {
         self.reinit(0.0, &[1.0, 0.0]).unwrap();
     }

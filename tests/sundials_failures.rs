@@ -377,3 +377,23 @@ fn unusable_input_is_named_before_c_sees_it() {
     solver.solve_to(2.0).unwrap();
     assert!((solver.y()[0] - (-2f64).exp()).abs() < 1e-5);
 }
+
+#[test]
+fn more_root_functions_than_c_can_count_are_refused() {
+    struct Crowded(usize);
+    impl Ode for Crowded {
+        fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+            decay(t, y, ydot)
+        }
+
+        fn root_count(&self) -> usize {
+            self.0
+        }
+    }
+    // The first is -1 as a count of C, the second none at all.
+    for count in [usize::MAX, 1 << 32] {
+        let options = CvodeOptions::new(1e-6, 1e-9);
+        let error = Cvode::new(Crowded(count), 0.0, &[1.0], &options).unwrap_err();
+        assert!(matches!(error, Error::Input { input: "root_count", .. }), "{error}");
+    }
+}

@@ -1,6 +1,6 @@
 //! Systems of second order, M u'' = f(t, u, u').
 
-use super::Failure;
+use super::failure::Failure;
 
 /// M u'' = f(t, u, u') with n displacements u, velocities v = u', and M symmetric and positive definite.
 ///

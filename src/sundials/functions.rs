@@ -47,6 +47,8 @@ pub(super) struct Functions {
     pub(super) free: unsafe extern "C" fn(*mut *mut c_void),
     pub(super) solve: Named<Solve>,
     pub(super) reinit: Named<Reinit>,
+    /// ARKODE does, and would refuse another one if the direction of time has turned.
+    pub(super) reinit_forgets_stop_time: bool,
     /// Codes of `solve` for a call that can not be made.
     pub(super) refusals: &'static [i32],
 

@@ -47,6 +47,8 @@ pub(super) struct Host<S> {
     pub(super) newton: Option<Newton<S>>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
+    /// Time that whole steps have reached, noted for ARKODE: it gives that of a stage after a failure.
+    pub(super) step_end: Option<f64>,
     pub(super) troubles: Troubles,
 }
 
@@ -124,7 +126,16 @@ impl<S> Host<S> {
         linear_solver: Option<LinearSolver>,
     ) -> Self {
         let troubles = Troubles::default();
-        Self { system, n, root_count, linear_solver, newton: None, setup_time: f64::NAN, troubles }
+        Self {
+            system,
+            n,
+            root_count,
+            linear_solver,
+            newton: None,
+            setup_time: f64::NAN,
+            step_end: None,
+            troubles,
+        }
     }
 
     /// Runs user code of a callback and translates its outcome for SUNDIALS.

@@ -51,11 +51,24 @@ impl LinearSolver {
     /// Stops what C would crash on.
     pub(super) fn check(&self, n: usize) -> Result<(), Error> {
         match self {
+            Self::Dense(_) if !is_addressable(n, n) => Err(Error::input(
+                "number of unknowns",
+                n,
+                "a dense matrix of that size does not fit into any memory: choose a band, a sparse \
+                 or a custom linear solver",
+            )),
             Self::Band { lower, upper, .. } if *lower >= n || *upper >= n => Err(Error::input(
                 "bandwidths (lower, upper)",
                 format!("({lower}, {upper})"),
                 format!("both have to be smaller than the number of unknowns, {n}"),
             )),
+            Self::Band { lower, upper, .. } if !is_addressable(n, band_rows(*lower, *upper)) => {
+                Err(Error::input(
+                    "bandwidths (lower, upper)",
+                    format!("({lower}, {upper})"),
+                    format!("with {n} unknowns the band does not fit into any memory"),
+                ))
+            }
             Self::Klu(pattern) if pattern.dimension() != n => Err(Error::input(
                 "dimension of the sparsity pattern",
                 pattern.dimension(),
@@ -72,6 +85,17 @@ impl LinearSolver {
             Self::Klu(_) | Self::Custom => true,
         }
     }
+}
+
+/// Rows of the stored band: as many diagonals as LU factorization with pivoting needs.
+fn band_rows(lower: usize, upper: usize) -> usize {
+    lower.saturating_mul(2).saturating_add(upper).saturating_add(1)
+}
+
+/// Whether C can count the bytes of a matrix of `n` columns of `rows` numbers.
+fn is_addressable(n: usize, rows: usize) -> bool {
+    let bytes = n.checked_mul(rows).and_then(|count| count.checked_mul(size_of::<f64>()));
+    bytes.is_some_and(|bytes| isize::try_from(bytes).is_ok())
 }
 
 /// Owns a `SUNLinearSolver` and the matrix it factorizes, freed in this order.
@@ -200,5 +224,23 @@ unsafe extern "C" fn solve<S>(
         RETRY => ffi::SUNLS_PACKAGE_FAIL_REC as i32,
         STOP => ffi::SUNLS_PACKAGE_FAIL_UNREC,
         _ => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Jacobian, LinearSolver};
+
+    /// n^2 numbers of 8 bytes are more than 2^63 from n = 2^30 on: products that C would not notice.
+    #[test]
+    fn matrices_whose_size_overflows_are_refused() {
+        let dense = LinearSolver::Dense(Jacobian::Supplied);
+        assert!(dense.check(1 << 29).is_ok());
+        assert!(dense.check(1 << 30).is_err());
+        let band =
+            |half| LinearSolver::Band { lower: half, upper: half, jacobian: Jacobian::Supplied };
+        assert!(band(1).check(1 << 40).is_ok());
+        assert!(band((1 << 40) - 1).check(1 << 40).is_err());
+        assert!(band(usize::MAX / 2).check(usize::MAX).is_err());
     }
 }

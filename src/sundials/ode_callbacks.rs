@@ -162,3 +162,29 @@ pub(super) unsafe extern "C" fn newton_setup<S: Ode>(
     unsafe { *current = i32::from(fresh) };
     outcome
 }
+
+/// `ARKExpStabFn`: notes the time that whole steps have reached, and sets no limit to the step size.
+pub(super) unsafe extern "C" fn note_time<S>(
+    _: ffi::N_Vector,
+    t: f64,
+    limit: *mut f64,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module; `limit` is a valid place for the result.
+    unsafe {
+        (*data.cast::<Host<S>>()).step_end = Some(t);
+        *limit = 0.0;
+    }
+    0
+}
+
+/// `ARKPostProcessFn`: the same for steps of a fixed size, which have no limit.
+pub(super) unsafe extern "C" fn note_step_end<S>(
+    t: f64,
+    _: ffi::N_Vector,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module.
+    unsafe { (*data.cast::<Host<S>>()).step_end = Some(t) };
+    0
+}

@@ -231,17 +231,25 @@ pub enum Reached {
 
 /// The stop time, and whether C has to be told.
 ///
-/// SUNDIALS 6.4.1 can not forget a stop time; one at the end of all time does the same.
+/// SUNDIALS 6.4.1 can not forget a stop time; one at the end of all time does the same, if it lies
+/// in the direction of time, which a new start may turn.
 #[derive(Debug, Default)]
 pub(super) struct StopTime {
     time: Option<f64>,
     stale: bool,
+    /// Whether C was ever given one.
+    in_c: bool,
 }
 
 impl StopTime {
     pub(super) fn set(&mut self, time: Option<f64>) {
-        self.stale |= time.is_some() || self.time.is_some();
+        self.stale = time.is_some() || self.in_c;
         self.time = time;
+    }
+
+    /// C has forgotten it.
+    pub(super) fn forget(&mut self) {
+        *self = Self::default();
     }
 
     pub(super) fn time(&self) -> Option<f64> {
@@ -250,8 +258,17 @@ impl StopTime {
 
     /// What to hand to C before it integrates from `t` towards `target`, if anything.
     pub(super) fn news(&mut self, t: f64, target: f64) -> Option<f64> {
+        self.in_c |= self.stale;
         std::mem::take(&mut self.stale).then(|| self.time.unwrap_or(f64::MAX.copysign(target - t)))
     }
+}
+
+/// Checks the number of root functions, before there is room made for them.
+pub(super) fn check_root_count(count: usize) -> Result<(), Error> {
+    if i32::try_from(count).is_ok() {
+        return Ok(());
+    }
+    Err(Error::input("root_count", count, "it is at most 2^31 - 1"))
 }
 
 /// Checks the start of an integration.

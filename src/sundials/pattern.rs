@@ -27,7 +27,7 @@ impl Pattern {
         n: usize,
         entries: impl IntoIterator<Item = (usize, usize)>,
     ) -> Result<Self, Error> {
-        let mut columns: Vec<Vec<i64>> = (0..n).map(|j| vec![j as i64]).collect();
+        let mut columns: Vec<Vec<usize>> = (0..n).map(|j| vec![j]).collect();
         for (row, column) in entries {
             if row >= n || column >= n {
                 return Err(Error::input(
@@ -36,7 +36,7 @@ impl Pattern {
                     format!("rows and columns of this matrix run from 0 to {}", n.wrapping_sub(1)),
                 ));
             }
-            columns[column].push(row as i64);
+            columns[column].push(row);
         }
         let mut column_pointers = vec![0];
         let mut row_indices = Vec::new();
@@ -44,9 +44,9 @@ impl Pattern {
             rows.sort_unstable();
             rows.dedup();
             row_indices.append(&mut rows);
-            column_pointers.push(row_indices.len() as i64);
+            column_pointers.push(row_indices.len());
         }
-        Self { column_pointers, row_indices }.checked()
+        Self::from_csc(&column_pointers, &row_indices)
     }
 
     /// The pattern of a matrix in CSC form: the rows of column j are
@@ -59,32 +59,25 @@ impl Pattern {
     /// column are not strictly increasing, or a diagonal entry is missing
     /// ([`from_entries`](Self::from_entries) sorts and completes).
     pub fn from_csc(column_pointers: &[usize], row_indices: &[usize]) -> Result<Self, Error> {
-        let signed = |indices: &[usize]| indices.iter().map(|&i| i as i64).collect();
-        Self { column_pointers: signed(column_pointers), row_indices: signed(row_indices) }
-            .checked()
-    }
-
-    fn checked(self) -> Result<Self, Error> {
-        let pointers = &self.column_pointers;
-        let total = self.row_indices.len() as i64;
-        if pointers.len() < 2
-            || pointers[0] != 0
-            || pointers.last() != Some(&total)
-            || pointers.windows(2).any(|pair| pair[1] < pair[0] || pair[1] > total)
+        let total = row_indices.len();
+        if column_pointers.len() < 2
+            || column_pointers[0] != 0
+            || column_pointers.last() != Some(&total)
+            || column_pointers.windows(2).any(|pair| pair[1] < pair[0])
         {
             return Err(Error::input(
                 "column_pointers",
-                format!("an array of {} with {total} rows", pointers.len()),
+                format!("an array of {} with {total} rows", column_pointers.len()),
                 "it starts with 0, does not decrease, and ends with the number of entries; a \
                  matrix has at least one column",
             ));
         }
-        let n = self.dimension();
-        for j in 0..n {
-            let rows = self.column(j);
-            if rows.iter().any(|&row| row >= n as i64)
+        let n = column_pointers.len() - 1;
+        for (j, ends) in column_pointers.windows(2).enumerate() {
+            let rows = &row_indices[ends[0]..ends[1]];
+            if rows.iter().any(|&row| row >= n)
                 || rows.windows(2).any(|pair| pair[0] >= pair[1])
-                || rows.binary_search(&(j as i64)).is_err()
+                || rows.binary_search(&j).is_err()
             {
                 return Err(Error::input(
                     "row_indices",
@@ -96,7 +89,9 @@ impl Pattern {
                 ));
             }
         }
-        Ok(self)
+        // All of them are lengths of slices at most, which fit.
+        let signed = |indices: &[usize]| indices.iter().map(|&i| i as i64).collect();
+        Ok(Self { column_pointers: signed(column_pointers), row_indices: signed(row_indices) })
     }
 
     /// Number of rows, which is the number of columns.
@@ -164,6 +159,9 @@ mod tests {
             (&[0, 1, 3], &[0, 1], "pointers beyond the rows"),
             (&[0], &[], "no columns"),
             (&[0, 2, 1, 3], &[0, 1, 2], "decreasing pointers"),
+            (&[0, 2, 3], &[usize::MAX, 0, 1], "a row that is -1 as an index of C"),
+            (&[0, 2, 3], &[1 << 63, 0, 1], "the most negative index of C"),
+            (&[0, usize::MAX, 2], &[0, 1], "a pointer that is -1 as an index of C"),
         ] {
             let refused = Pattern::from_csc(pointers, rows);
             assert!(refused.is_err(), "{why}: {refused:?}");

@@ -12,7 +12,7 @@ use super::{
     nonlinear::FixedPoint,
     options::{
         AbsoluteTolerance, Reached, StepOptions, StopTime, Tolerances, check_finite, check_length,
-        check_time,
+        check_root_count, check_time,
     },
     statistics::Statistics,
     vector::Vector,
@@ -32,6 +32,11 @@ pub(super) struct Session<S> {
     pub(super) context: Context,
     pub(super) t: f64,
     stop_time: StopTime,
+    /// Whether there is a step to interpolate in. C does not ask, and gives NaN or what the run
+    /// before has left.
+    has_step: bool,
+    /// Whether the last call failed in an integrator that gives the time of a stage then.
+    failed_within: bool,
     pub(super) roots_found: Vec<i32>,
 }
 
@@ -83,6 +88,7 @@ impl<S> Session<S> {
         let y = Vector::from_slice(start.y, &context)?;
         let yp = start.yp.map(|yp| Vector::from_slice(yp, &context)).transpose()?;
         let scratch = Vector::from_slice(start.y, &context)?;
+        check_root_count(start.root_count)?;
         let (n, root_count) = (start.y.len(), start.root_count);
         let mut host = HostBox::new(Host::new(system, n, root_count, solver));
         // Locals are dropped in reverse order, so on an error below the memory goes first.
@@ -105,6 +111,8 @@ impl<S> Session<S> {
             context,
             t: start.t,
             stop_time: StopTime::default(),
+            has_step: false,
+            failed_within: false,
             roots_found: vec![0; root_count],
         })
     }
@@ -247,7 +255,13 @@ impl<S> Session<S> {
         let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
         self.host.accept(name, code)?;
         self.t = t;
-        self.stop_time.set(None);
+        (self.has_step, self.failed_within) = (false, false);
+        let step_end = &mut self.host.get_mut().step_end;
+        *step_end = step_end.and(Some(t));
+        match self.memory.functions.reinit_forgets_stop_time {
+            true => self.stop_time.forget(),
+            false => self.stop_time.set(None),
+        }
         self.roots_found.fill(0);
         Ok(())
     }
@@ -270,6 +284,13 @@ impl<S> Session<S> {
         // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
         // keeps others away while callbacks use the host.
         let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
+        self.failed_within = false;
+        self.has_step = code >= 0 || self.step_statistics().steps > 0;
+        if let Some(end) = self.host.get().step_end.filter(|_| code < 0) {
+            // the time of `y`; C has that of a stage, and would interpolate as if the step ended there
+            self.t = end;
+            (self.has_step, self.failed_within) = (false, true);
+        }
         self.host.get_mut().troubles.resume_panic();
         match code {
             ffi::CV_ROOT_RETURN => {
@@ -324,6 +345,9 @@ impl<S> Session<S> {
     ) -> Result<(), Error> {
         check_length("length of out", out.len(), self.y.as_slice().len())?;
         check_time("t", t)?;
+        if !self.has_step {
+            return self.only_state(t, derivative, out);
+        }
         let order = derivative.min(i32::MAX as u32) as i32;
         let functions = self.memory.functions;
         let (name, get_dky) = functions.get_dky;
@@ -347,6 +371,21 @@ impl<S> Session<S> {
         }
         self.host.accept(name, code)?;
         out.copy_from_slice(self.scratch.as_slice());
+        Ok(())
+    }
+
+    /// Answers [`interpolate`](Self::interpolate) where there is no step to look into.
+    fn only_state(&self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        if t != self.t {
+            let mend =
+                format!("without a step to look into only the state at {:?} is known", self.t);
+            return Err(Error::input("t", t, mend));
+        }
+        if derivative > 0 {
+            let mend = "it takes a step: without one only the state itself is known";
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        out.copy_from_slice(self.y.as_slice());
         Ok(())
     }
 
@@ -412,6 +451,9 @@ impl<S> Session<S> {
             );
         }
         if steps == 0 {
+            // what the last run has left behind
+            (s.current_time, s.last_step) = (self.t, 0.0);
+        } else if self.failed_within {
             s.current_time = self.t;
         }
         s.steps = steps as u64;

@@ -11,7 +11,9 @@ use crate::{
         functions::Functions,
         linear::LinearSolver,
         nonlinear::NonlinearSolver,
-        ode_callbacks::{jacobian, newton_rhs, newton_setup_with_mass, rhs, roots},
+        ode_callbacks::{
+            jacobian, newton_rhs, newton_setup_with_mass, note_step_end, note_time, rhs, roots,
+        },
         options::check_start,
         session::{Session, Start},
     },
@@ -30,6 +32,7 @@ impl<S: Ode> Arkode<S> {
             // SAFETY: as above; the callback fits the host of the session.
             unsafe { ffi::ARKStepReInit(memory, None, Some(rhs::<S>), t, y) }
         }),
+        reinit_forgets_stop_time: true,
         refusals: &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T],
         set_error_handler: ("ARKStepSetErrHandlerFn", ffi::ARKStepSetErrHandlerFn),
         set_user_data: ("ARKStepSetUserData", ffi::ARKStepSetUserData),
@@ -136,6 +139,7 @@ pub(super) fn new<S: Ode>(
         let create = |y, context| ffi::ARKStepCreate(explicit, implicit, t0, y, context);
         Session::new(functions, ("ARKStepCreate", create), system, &start, solver)?
     };
+    session.host.get_mut().step_end = Some(t0);
     session.configure(&options.tolerances, &options.steps)?;
     let (implicit_id, explicit_id) = options.table.ids();
     let degree = options.interpolant_degree();
@@ -148,8 +152,15 @@ pub(super) fn new<S: Ode>(
         session.host.accept("ARKStepSetTableName", code)?;
         let set = ("ARKStepSetInterpolantDegree", ffi::ARKStepSetInterpolantDegree as _);
         session.set(set, degree as i32)?;
+        // The post-processing of steps would make ARKODE evaluate the right-hand side at their ends.
         if let Some(h) = options.fixed_step {
             session.set(("ARKStepSetFixedStep", ffi::ARKStepSetFixedStep), h)?;
+            let set = ("ARKStepSetPostprocessStepFn", ffi::ARKStepSetPostprocessStepFn as _);
+            session.set(set, Some(note_step_end::<S> as _))?;
+        } else {
+            let (memory, data) = (session.memory.raw, session.host.as_ptr());
+            let code = ffi::ARKStepSetStabilityFn(memory, Some(note_time::<S>), data);
+            session.host.accept("ARKStepSetStabilityFn", code)?;
         }
     }
     if is_implicit {

@@ -29,6 +29,7 @@ static FUNCTIONS: Functions = Functions {
         // SAFETY: as above.
         unsafe { ffi::CVodeReInit(memory, t, y) }
     }),
+    reinit_forgets_stop_time: false,
     refusals: &[ffi::CV_ILL_INPUT, ffi::CV_TOO_CLOSE, ffi::CV_BAD_T],
     set_error_handler: ("CVodeSetErrHandlerFn", ffi::CVodeSetErrHandlerFn),
     set_user_data: ("CVodeSetUserData", ffi::CVodeSetUserData),

@@ -1,0 +1,139 @@
+//! Systems that are lent to an integrator.
+
+use faer::MatMut;
+
+use super::band::BandMut;
+use super::dae::Dae;
+use super::failure::Failure;
+use super::first_order::Ode;
+
+/// A system lent to an integrator, which otherwise owns it.
+///
+/// (`&mut` of a struct can not be a system by itself: closures already are, and Rust takes
+/// `&mut closure` for a closure.)
+#[derive(Debug)]
+pub struct Borrowed<'a, S: ?Sized>(pub &'a mut S);
+
+impl<S: Ode + ?Sized> Ode for Borrowed<'_, S> {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.0.rhs(t, y, ydot)
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        self.0.dense_jacobian(t, y, ydot, jacobian)
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        self.0.banded_jacobian(t, y, ydot, jacobian)
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.sparse_jacobian(t, y, ydot, values)
+    }
+
+    fn newton_setup(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        gamma: f64,
+        reuse: bool,
+    ) -> Result<bool, Failure> {
+        self.0.newton_setup(t, y, ydot, gamma, reuse)
+    }
+
+    fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
+        self.0.newton_solve(gamma, r)
+    }
+
+    fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.0.newton_rhs(t, y, ydot)
+    }
+
+    fn root_count(&self) -> usize {
+        self.0.root_count()
+    }
+
+    fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        self.0.roots(t, y, g)
+    }
+}
+
+impl<S: Dae + ?Sized> Dae for Borrowed<'_, S> {
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.residual(t, y, yp, residual)
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        self.0.dense_jacobian(t, cj, y, yp, jacobian)
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        self.0.banded_jacobian(t, cj, y, yp, jacobian)
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.0.sparse_jacobian(t, cj, y, yp, values)
+    }
+
+    fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
+        self.0.newton_setup(t, cj, y, yp)
+    }
+
+    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
+        self.0.newton_solve(r)
+    }
+
+    fn root_count(&self) -> usize {
+        self.0.root_count()
+    }
+
+    fn roots(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        self.0.roots(t, y, yp, g)
+    }
+}

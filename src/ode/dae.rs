@@ -1,0 +1,92 @@
+//! Differential-algebraic equations.
+
+use faer::MatMut;
+
+use super::band::BandMut;
+use super::failure::{Failure, missing};
+
+/// F(t, y, y') = 0.
+///
+/// Only [`residual`](Self::residual) is required, as in [`Ode`].
+pub trait Dae {
+    /// Writes F(t, y, y') into `residual`.
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure>;
+
+    /// Writes dF/dy + cj dF/dy' into the dense matrix `jacobian` (zero on entry).
+    fn dense_jacobian(
+        &mut self,
+        _t: f64,
+        _cj: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        Err(missing("dense_jacobian"))
+    }
+
+    /// Writes dF/dy + cj dF/dy' into the band matrix `jacobian` (zero on entry).
+    fn banded_jacobian(
+        &mut self,
+        _t: f64,
+        _cj: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        Err(missing("banded_jacobian"))
+    }
+
+    /// Writes the values of dF/dy + cj dF/dy', column by column, for the sparsity pattern that
+    /// the linear solver was given (`values` is zero on entry).
+    fn sparse_jacobian(
+        &mut self,
+        _t: f64,
+        _cj: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _values: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("sparse_jacobian"))
+    }
+
+    /// Prepares to solve (dF/dy + cj dF/dy') x = r.
+    fn newton_setup(&mut self, _t: f64, _cj: f64, _y: &[f64], _yp: &[f64]) -> Result<(), Failure> {
+        Err(missing("newton_setup"))
+    }
+
+    /// Replaces the right-hand side `r` by the solution x of the system last set up.
+    fn newton_solve(&mut self, _r: &mut [f64]) -> Result<(), Failure> {
+        Err(missing("newton_solve"))
+    }
+
+    /// Number of root functions (events); 0 means none.
+    fn root_count(&self) -> usize {
+        0
+    }
+
+    /// Writes the root functions g(t, y, y').
+    fn roots(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _g: &mut [f64]) -> Result<(), Failure> {
+        Err(missing("roots"))
+    }
+}
+
+impl<F> Dae for F
+where
+    F: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        self(t, y, yp, residual)
+    }
+}

@@ -1,0 +1,101 @@
+//! Ordinary differential equations.
+
+use faer::MatMut;
+
+use super::band::BandMut;
+use super::failure::{Failure, missing};
+
+/// y' = f(t, y).
+///
+/// Only [`rhs`](Self::rhs) is required. The other methods are called when the integrator was
+/// configured to use them; their defaults fail with [`Failure::Fatal`].
+pub trait Ode {
+    /// Writes f(t, y) into `ydot` (same length as `y`).
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
+
+    /// Writes df/dy into the dense matrix `jacobian` (zero on entry); `ydot` is f(t, y).
+    fn dense_jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        _jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        Err(missing("dense_jacobian"))
+    }
+
+    /// Writes df/dy into the band matrix `jacobian` (zero on entry); `ydot` is f(t, y).
+    fn banded_jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        _jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        Err(missing("banded_jacobian"))
+    }
+
+    /// Writes the values of df/dy, column by column, for the sparsity pattern that the linear
+    /// solver was given (`values` is zero on entry); `ydot` is f(t, y).
+    fn sparse_jacobian(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        _values: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("sparse_jacobian"))
+    }
+
+    /// Prepares to solve (I - gamma df/dy) x = r at (t, y).
+    ///
+    /// `reuse` allows an older df/dy to be kept (only gamma changed). Returns whether df/dy is
+    /// current, that is, was evaluated at this (t, y).
+    fn newton_setup(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        _gamma: f64,
+        _reuse: bool,
+    ) -> Result<bool, Failure> {
+        Err(missing("newton_setup"))
+    }
+
+    /// Replaces the right-hand side `r` by the solution x of the system last set up.
+    ///
+    /// `gamma` is the step parameter by now, which may have changed a little since then. It matters
+    /// to systems with a [`newton_rhs`](Self::newton_rhs) of their own.
+    fn newton_solve(&mut self, _gamma: f64, _r: &mut [f64]) -> Result<(), Failure> {
+        Err(missing("newton_solve"))
+    }
+
+    /// As [`rhs`](Self::rhs), for the residual y - y0 - gamma f(t, y) of an implicit step, if
+    /// [`newton_solve`](Self::newton_solve) solves its linear systems.
+    ///
+    /// What is left out here, `newton_solve` has to add to its right-hand side, times `gamma`. So M y' = f
+    /// need not be solved for y' in each iteration, only for M x = M r + gamma f where M is a part
+    /// of the matrix anyway. Default: all of `rhs`.
+    fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.rhs(t, y, ydot)
+    }
+
+    /// Number of root functions (events); 0 means none.
+    fn root_count(&self) -> usize {
+        0
+    }
+
+    /// Writes the root functions g(t, y); the integrator stops where one of them changes sign.
+    fn roots(&mut self, _t: f64, _y: &[f64], _g: &mut [f64]) -> Result<(), Failure> {
+        Err(missing("roots"))
+    }
+}
+
+impl<F> Ode for F
+where
+    F: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self(t, y, ydot)
+    }
+}

@@ -1,0 +1,24 @@
+//! What an integrator is given: systems of ordinary differential equations (ODE), of
+//! differential-algebraic equations (DAE), and of [second order](SecondOrder).
+//!
+//! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method `rk`.
+//! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
+//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian; a struct implements
+//! the trait when it wants to hand over root functions or a linear solver of its own. An
+//! integrator owns its system; [`Borrowed`] lends it one instead.
+
+mod band;
+mod borrowed;
+mod closures;
+mod dae;
+mod failure;
+mod first_order;
+mod second_order;
+
+pub use band::BandMut;
+pub use borrowed::Borrowed;
+pub use closures::{WithJacobian, WithSparseJacobian, with_jacobian, with_sparse_jacobian};
+pub use dae::Dae;
+pub use failure::Failure;
+pub use first_order::Ode;
+pub use second_order::{EnergyBalance, Kick, Rates, SecondOrder};
