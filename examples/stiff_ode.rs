@@ -8,7 +8,7 @@ use faer::MatMut;
 use pliant::{
     ode::with_jacobian,
     samples::Robertson,
-    sundials::{Cvode, CvodeOptions, Error, Jacobian, LinearSolver},
+    sundials::{Cvode, CvodeOptions, Error, Integrator, Jacobian, LinearSolver},
 };
 
 fn main() -> Result<(), Error> {

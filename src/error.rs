@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use crate::equilibrium::NoEquilibrium;
 use crate::input::InputError;
+use crate::integrate;
 use crate::trajectory::IntegrationFailure;
 
 /// What went wrong, with which input, and how to mend it.
@@ -17,6 +18,10 @@ pub enum Error {
     /// The integrator gave up; what was computed until then is kept inside.
     #[error(transparent)]
     Integration(#[from] Box<IntegrationFailure>),
+
+    /// An integrator that was used on its own (`pliant::sundials`, `pliant::rk`) stopped.
+    #[error(transparent)]
+    Integrator(integrate::Error),
 
     /// No equilibrium was found; the last one on the way to it is kept inside.
     #[error(transparent)]
@@ -63,4 +68,13 @@ pub enum Error {
         /// Why not.
         source: std::io::Error,
     },
+}
+
+impl From<integrate::Error> for Error {
+    fn from(error: integrate::Error) -> Self {
+        match error {
+            integrate::Error::Input(error) => error.into(),
+            error => Self::Integrator(error),
+        }
+    }
 }

@@ -36,6 +36,7 @@ pub mod error;
 mod external;
 pub mod force;
 mod input;
+pub mod integrate;
 pub mod material;
 pub mod mesh;
 mod model;
@@ -68,13 +69,16 @@ pub use equilibrium::{Equilibrium, NoEquilibrium, Stability};
 pub use error::Error;
 pub use external::{Chamber, Obstacle, Shape, Spring};
 pub use input::InputError;
+pub use integrate::Integrator;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use report::{Counts, PhaseReport, Report};
 pub use scene::{Phase, Scene};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};
-pub use settings::{ContactEvents, Method, Settings, SettingsOption, SettingsValue, Tolerances};
+pub use settings::{
+    AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,
+};
 pub use simulate::Sampling;
 pub use statics::Statics;
 pub use system::{Energy, PhaseSummary, Spectrum};

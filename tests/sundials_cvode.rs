@@ -9,7 +9,7 @@ mod sundials_support;
 use pliant::{
     ode::Ode,
     samples::{Hires, Pendulum, Reference, Robertson, VanDerPol},
-    sundials::{Cvode, CvodeOptions, Jacobian, LinearSolver, Multistep, Statistics},
+    sundials::{Cvode, CvodeOptions, Integrator, Jacobian, LinearSolver, Multistep, Statistics},
 };
 use sundials_support::OwnSolver;
 

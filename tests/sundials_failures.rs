@@ -6,10 +6,11 @@ use std::{
 };
 
 use pliant::{
+    InputError,
     ode::{Dae, Failure, Ode},
     sundials::{
         Callback, Cause, Cvode, CvodeOptions, Error, Ida, IdaOptions, InitialCondition,
-        IntegrationError, Jacobian, LinearSolver, Multistep, Pattern,
+        IntegrationError, Integrator, Jacobian, LinearSolver, Multistep, Pattern,
     },
 };
 
@@ -220,7 +221,7 @@ fn an_overcome_failure_is_not_blamed_for_a_later_one() {
     let options = CvodeOptions::new(1e-6, 1e-9).max_steps(60);
     let error = integration_error(Cvode::new(system, 0.0, &[1.0], &options).unwrap().solve_to(1e3));
     assert!(error.t > 0.2);
-    assert_eq!(error.cause, Cause::TooManySteps);
+    assert!(matches!(error.cause, Cause::TooManySteps { .. }));
 }
 
 #[test]
@@ -236,7 +237,7 @@ fn nan_is_named_with_time_and_component() {
     )
     .unwrap();
     let error = integration_error(solver.solve_to(2.0));
-    let Cause::NotFinite { callback: Callback::Rhs, t, component: 1 } = error.cause else {
+    let Cause::NotFinite { callback: Callback::Rhs, t, component: 1, .. } = error.cause else {
         panic!("{:?}", error.cause)
     };
     assert!((t - 1.0).abs() < 0.01 && (error.t - 1.0).abs() < 0.01);
@@ -309,7 +310,7 @@ fn a_singular_newton_matrix_is_named() {
 fn too_many_steps_and_too_much_accuracy() {
     let options = CvodeOptions::new(1e-6, 1e-9).max_steps(3);
     let error = integration_error(Cvode::new(decay, 0.0, &[1.0], &options).unwrap().solve_to(10.0));
-    assert_eq!(error.cause, Cause::TooManySteps);
+    assert!(matches!(error.cause, Cause::TooManySteps { .. }));
     assert!(error.t > 0.0 && error.step > 0.0 && error.order >= 1);
 
     let options = CvodeOptions::new(1e-20, 1e-30);
@@ -321,7 +322,7 @@ fn too_many_steps_and_too_much_accuracy() {
 fn unusable_input_is_named_before_c_sees_it() {
     let good = CvodeOptions::new(1e-6, 1e-9);
     let refused = |y0: &[f64], options: &CvodeOptions| match Cvode::new(decay, 0.0, y0, options) {
-        Err(Error::Input { input, value, mend }) => {
+        Err(Error::Input(InputError { input, value, mend })) => {
             println!("{input} = {value}: {mend}");
             input
         }
@@ -371,7 +372,7 @@ fn unusable_input_is_named_before_c_sees_it() {
     ];
     for error in inputs {
         println!("{error}");
-        assert!(matches!(error, Error::Input { .. }), "{error:?}");
+        assert!(matches!(error, Error::Input(_)), "{error:?}");
     }
     // None of these has disturbed the solver.
     solver.solve_to(2.0).unwrap();
@@ -394,6 +395,6 @@ fn more_root_functions_than_c_can_count_are_refused() {
     for count in [usize::MAX, 1 << 32] {
         let options = CvodeOptions::new(1e-6, 1e-9);
         let error = Cvode::new(Crowded(count), 0.0, &[1.0], &options).unwrap_err();
-        assert!(matches!(error, Error::Input { input: "root_count", .. }), "{error}");
+        assert!(matches!(&error, Error::Input(input) if input.input == "root_count"), "{error}");
     }
 }

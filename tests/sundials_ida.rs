@@ -5,7 +5,9 @@ mod sundials_support;
 use pliant::{
     ode::Dae,
     samples::{Pendulum, Robertson},
-    sundials::{Cause, Error, Ida, IdaOptions, InitialCondition, Jacobian, LinearSolver},
+    sundials::{
+        Cause, Error, Ida, IdaOptions, InitialCondition, Integrator, Jacobian, LinearSolver,
+    },
 };
 use sundials_support::OwnSolver;
 
@@ -102,7 +104,7 @@ fn an_impossible_start_is_an_error() {
         println!("{error}");
         let Error::Integration(error) = error else { panic!("{error}") };
         assert_eq!(error.cause, Cause::InconsistentStart);
-        assert_eq!(error.solver, "IDA");
+        assert_eq!(error.integrator, "IDA");
     }
 }
 
@@ -127,7 +129,7 @@ fn unusable_input_is_named() {
         yp0,
         options,
     ) {
-        Err(Error::Input { input, .. }) => input,
+        Err(Error::Input(error)) => error.input,
         other => panic!("{other:?} is not an input error"),
     };
     let good = IdaOptions::new(1e-6, 1e-9);
@@ -147,11 +149,11 @@ fn unusable_input_is_named() {
     for error in [
         solver.consistent_start(InitialCondition::Algebraic, 1.0).unwrap_err(),
         solver.consistent_start(InitialCondition::State, 0.0).unwrap_err(),
-        solver.reinit(0.0, &Robertson::Y0, &[0.0]).unwrap_err(),
+        solver.reinit_with(0.0, &Robertson::Y0, &[0.0]).unwrap_err(),
     ] {
-        assert!(matches!(error, Error::Input { .. }), "{error:?}");
+        assert!(matches!(error, Error::Input(_)), "{error:?}");
     }
     solver.solve_to(1.0).unwrap();
     let error = solver.consistent_start(InitialCondition::State, 2.0).unwrap_err();
-    assert!(matches!(error, Error::Input { input: "steps taken", .. }));
+    assert!(matches!(error, Error::Input(error) if error.input == "steps taken"));
 }

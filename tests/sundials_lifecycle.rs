@@ -14,8 +14,8 @@ use pliant::{
     ode::Failure,
     samples::Robertson,
     sundials::{
-        Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, InitialCondition, Jacobian,
-        LinearSolver, Multistep, Pattern, Table,
+        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions,
+        InitialCondition, Integrator, Jacobian, LinearSolver, Multistep, Pattern,
     },
 };
 use sundials_support::OwnSolver;
@@ -62,7 +62,7 @@ fn cvode_solvers() {
 
 fn arkode_solvers() {
     each_linear_solver!(Arkode, ArkodeOptions);
-    let options = ArkodeOptions::new(1e-4, 1e-6).table(Table::explicit(5).unwrap());
+    let options = ArkodeOptions::new(1e-4, 1e-6).table(ButcherTable::explicit(5).unwrap());
     let mut solver = Arkode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
     solver.solve_to(1e-3).unwrap();
 }
@@ -77,7 +77,7 @@ fn ida_solvers() {
             Ida::new(Robertson::new(), 0.0, &Robertson::Y0, &[0.0; 3], &options).unwrap();
         solver.consistent_start(InitialCondition::Algebraic, 0.4).unwrap();
         solver.solve_to(0.4).unwrap();
-        solver.reinit(0.0, &Robertson::Y0, &Robertson::YP0).unwrap();
+        solver.reinit_with(0.0, &Robertson::Y0, &Robertson::YP0).unwrap();
         solver.solve_to(0.1).unwrap();
     }
     let options = IdaOptions::new(1e-4, ATOL).newton(LinearSolver::Custom);

@@ -3,7 +3,7 @@
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, mat};
 use pliant::ode::{Failure, Ode};
-use pliant::sundials::{Arkode, ArkodeOptions, Cvode, CvodeOptions, LinearSolver};
+use pliant::sundials::{Arkode, ArkodeOptions, Cvode, CvodeOptions, Integrator, LinearSolver};
 
 /// M y' = f(y), stiff and not linear.
 struct Heavy {

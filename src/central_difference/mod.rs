@@ -14,7 +14,7 @@
 //! Acta Numerica 12 (2003) 399-450). It pays with lumped inertia, where M^-1 is no work.
 //!
 //! ```
-//! use pliant::central_difference::{CentralDifference, Options};
+//! use pliant::central_difference::{CentralDifference, Integrator, Options};
 //! use pliant::ode::{Failure, Kick, Rates, SecondOrder};
 //!
 //! /// Masses of 1 kg in a row, with springs of stiffness `k` (N/m) between neighbours and to both walls.
@@ -45,7 +45,7 @@
 //! let k = 100.0_f64;
 //! let shape: Vec<f64> = (1..=9).map(|i| (std::f64::consts::PI * f64::from(i) / 10.0).sin()).collect();
 //! let start = [shape.as_slice(), &[0.0; 9]].concat();
-//! let options = Options::default().rtol(1e-6).atol(1e-6);
+//! let options = Options::new(1e-6, 1e-6);
 //! let mut solver = CentralDifference::new(Chain { k }, 0.0, &start, &options)?;
 //! solver.solve_to(1.0)?;
 //! let omega = 2.0 * k.sqrt() * (std::f64::consts::PI / 20.0).sin();
@@ -84,7 +84,5 @@ mod trial;
 pub use solver::CentralDifference;
 pub use stability::longest_step;
 
-pub use crate::rk::{Error, Options, Statistics};
-
-/// Order of the method.
-pub const ORDER: u32 = 2;
+pub use crate::integrate::{Error, Integrator, Reached, Statistics};
+pub use crate::rk::Options;

@@ -4,12 +4,18 @@ use std::mem::{swap, take};
 
 use super::control::Control;
 use super::stability::Stability;
+use crate::integrate::{
+    Callback, Cause, Error, IntegrationError, Integrator, Reached, Statistics, check_finite,
+    check_length, check_start, check_time,
+};
 use crate::ode::{Failure, SecondOrder};
-use crate::rk::{Error, Options, Statistics};
-use crate::sundials::Reached;
+use crate::rk::Options;
+
+/// Order of the method.
+const ORDER: u32 = 2;
 
 /// Steps in which the weights of the error norm are kept.
-const KEPT: usize = 16;
+const KEPT: u64 = 16;
 
 /// Integrates M u'' = f(t, u, u') forward in time by central differences.
 ///
@@ -51,7 +57,6 @@ pub struct CentralDifference<S> {
     /// Velocities in the middle of a step, and extrapolated to its end.
     pub(super) middle: Vec<f64>,
     pub(super) extrapolated: Vec<f64>,
-    atol: Vec<f64>,
     /// 1/(rtol |y| + atol) for displacements and velocities.
     pub(super) weights: Vec<f64>,
     pub(super) statistics: Statistics,
@@ -64,16 +69,18 @@ impl<S: SecondOrder> CentralDifference<S> {
     /// of the integrals are not used, for nothing depends on them.
     ///
     /// # Errors
-    /// [`Error::BadInput`] names what cannot be worked with; forces or constraints that have no meaning at
+    /// [`Error::Input`] names what cannot be used; [`Error::Integration`] for forces or constraints that have no meaning at
     /// the start.
     pub fn new(system: S, t: f64, y: &[f64], options: &Options) -> Result<Self, Error> {
+        check_start(t, y)?;
+        options.check(y)?;
         let integrals = system.integrals();
         let both = y.len().saturating_sub(integrals);
         if both == 0 || !both.is_multiple_of(2) {
             let mend = format!("as many displacements as velocities, and {integrals} integrals");
-            return Err(Error::bad_input("length of y", y.len(), mend));
+            return Err(Error::input("length of y0", y.len(), mend));
         }
-        let (n, atol) = (both / 2, options.check(y.len())?);
+        let n = both / 2;
         let (zeros, none) = (vec![0.0; n], vec![0.0; integrals]);
         let mut solver = Self {
             system,
@@ -99,140 +106,19 @@ impl<S: SecondOrder> CentralDifference<S> {
             step_before: None,
             middle: zeros.clone(),
             extrapolated: zeros,
-            atol,
             weights: vec![0.0; 2 * n],
             statistics: Statistics::default(),
         };
         solver.reinit(t, y)?;
-        solver.set_stop_time(options.stop_time)?;
         Ok(solver)
     }
 
-    /// Starts again at time `t` from `y`, with the same options and allocations, as after a jump of the
-    /// state or of the system. Counters start at zero; a stop time is forgotten.
-    ///
-    /// # Errors
-    /// [`Error::BadInput`] if `t` or `y` is not finite or `y` has the wrong length; forces or constraints that
-    /// have no meaning there.
-    pub fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
-        self.check_length("length of y", y)?;
-        if !t.is_finite() {
-            return Err(Error::bad_input("t", t, "give a finite time"));
-        }
-        if let Some(i) = y.iter().position(|y| !y.is_finite()) {
-            return Err(Error::bad_input(format!("component {i} of y"), y[i], FINITE));
-        }
-        let (u, v) = (&y[..self.n], &y[self.n..2 * self.n]);
-        let begun = self.system.start(t, u, v);
-        begun
-            .and_then(|()| self.system.forces(t, u, v, &mut self.force))
-            .map_err(|failure| stopped(failure, t, 0.0))?;
-        self.system.powers(v, &mut self.powers);
-        (self.t, self.t_before, self.rest, self.step_before) = (t, t, None, None);
-        self.y.copy_from_slice(y);
-        self.update_weights();
-        self.stability = Stability::new();
-        let limit = self.longest_step();
-        let first = self.options.initial_step.unwrap_or(f64::INFINITY);
-        self.control = Control::new(t, first, limit);
-        self.stop_time = None;
-        self.statistics = Statistics { rhs_evaluations: 1, ..Statistics::default() };
-        Ok(())
-    }
-
-    /// Sets, moves or (`None`) lifts the time that no step passes and that is hit exactly. Steps up to it
-    /// are equal, unless the motion asks for others.
-    ///
-    /// # Errors
-    /// [`Error::BadInput`] when it lies before the end of the last step.
-    pub fn set_stop_time(&mut self, stop_time: Option<f64>) -> Result<(), Error> {
-        if let Some(stop) = stop_time
-            && !(stop >= self.t && stop.is_finite())
-        {
-            let mend = format!("the steps have reached {}: give a later time", self.t);
-            return Err(Error::bad_input("stop_time", stop, mend));
-        }
-        self.stop_time = stop_time;
-        self.control.set_end(self.t, stop_time.unwrap_or(f64::INFINITY));
-        Ok(())
-    }
-
-    /// Integrates to time `t`, or to the stop time if it comes first.
-    ///
-    /// Steps go past `t`, but never past the stop time; so output times do not change the steps.
-    ///
-    /// # Errors
-    /// Any [`Error`]; `BadInput` when `t` lies before the last step or beyond the stop time.
-    pub fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
-        if !(t >= self.t_before && t.is_finite()) {
-            let mend =
-                format!("the last step began at {}: integration goes forward", self.t_before);
-            return Err(Error::bad_input("t", t, mend));
-        }
-        if let Some(stop) = self.stop_time.filter(|stop| t > *stop) {
-            let mend = format!("it lies beyond the stop time {stop}: set a later one");
-            return Err(Error::bad_input("t", t, mend));
-        }
-        let first = self.statistics.steps;
-        while self.t < t {
-            let steps = self.statistics.steps - first;
-            if steps == self.options.max_steps {
-                let step = self.statistics.last_step;
-                let stability_limited = None;
-                return Err(Error::TooManySteps {
-                    t: self.t,
-                    step,
-                    target: t,
-                    steps,
-                    stability_limited,
-                });
-            }
-            self.advance(t)?;
-        }
-        self.rest = None;
-        if t < self.t {
-            let mut output = take(&mut self.output);
-            let interpolated = self.interpolate(t, &mut output);
-            self.output = output;
-            interpolated?;
-            self.rest = Some(t);
-        }
-        Ok(self.reached())
-    }
-
-    /// Takes one step in the direction of time `towards`, which the step may pass. After a
-    /// [`solve_to`](Self::solve_to) that came to rest within a step, goes on to the end of that step.
-    ///
-    /// # Errors
-    /// Any [`Error`] but `TooManySteps`; `BadInput` when `towards` lies behind, or the stop time has been
-    /// reached.
-    pub fn step(&mut self, towards: f64) -> Result<Reached, Error> {
-        if self.rest.take().is_none() {
-            self.advance(towards)?;
-        }
-        Ok(self.reached())
-    }
-
-    fn reached(&self) -> Reached {
-        match self.stop_time == Some(self.t()) {
-            true => Reached::StopTime,
-            false => Reached::Time,
-        }
-    }
-
     fn advance(&mut self, towards: f64) -> Result<(), Error> {
-        if self.stop_time.is_some_and(|stop| self.t >= stop) {
-            let mend = "it has been reached: set a later one to go on";
-            return Err(Error::bad_input("stop_time", self.t, mend));
-        }
-        if !(towards > self.t && towards.is_finite()) {
-            let mend = format!("the steps have reached {}: integration goes forward", self.t);
-            return Err(Error::bad_input("towards", towards, mend));
-        }
+        let longest = self.max_step();
         let Self { system, stability, t, y, force, second, .. } = self;
         let step = *t - self.t_before;
         if let Some(limit) = stability.update(system, *t, y, force, second, step) {
-            self.control.set_limit(*t, limit.min(self.options.max_step));
+            self.control.set_limit(*t, limit.min(longest));
         }
         self.step_before = (step > 0.0).then_some(step);
         swap(&mut self.earlier, &mut self.first);
@@ -246,8 +132,8 @@ impl<S: SecondOrder> CentralDifference<S> {
             let h = next - t;
             if t + 0.1 * h == t {
                 return Err(match setback {
-                    Some(message) => Error::Refused { t, step: h, message },
-                    None => Error::StepUnderflow { t, step: h },
+                    Some(setback) => stopped(setback, t, h),
+                    None => failure(Cause::ErrorTest, t, h).into(),
                 });
             }
             match self.try_step(next, h) {
@@ -256,16 +142,16 @@ impl<S: SecondOrder> CentralDifference<S> {
                     return Ok(());
                 }
                 Ok(error) => {
-                    self.statistics.rejected_steps += 1;
+                    self.statistics.error_test_failures += 1;
                     self.control.reject(t, error);
                     // errors that grow from step to step are how a step that is too long shows
                     let limit = self.longest_step();
                     self.control.set_limit(t, limit);
                 }
-                Err(Failure::Recoverable(reason)) => {
+                Err(refusal @ Failure::Recoverable(_)) => {
                     self.statistics.refused_steps += 1;
                     self.control.refuse(t);
-                    setback = Some(reason);
+                    setback = Some(refusal);
                 }
                 Err(failure) => return Err(stopped(failure, t, h)),
             }
@@ -274,7 +160,7 @@ impl<S: SecondOrder> CentralDifference<S> {
 
     /// The longest step that is stable at the present state, and allowed.
     fn longest_step(&mut self) -> f64 {
-        self.stability.limit(&mut self.system, self.t, &self.y).min(self.options.max_step)
+        self.stability.limit(&mut self.system, self.t, &self.y).min(self.max_step())
     }
 
     /// From now on takes steps of size `h`, whatever the stability.
@@ -298,24 +184,16 @@ impl<S: SecondOrder> CentralDifference<S> {
     }
 
     fn update_weights(&mut self) {
-        for ((weight, y), atol) in self.weights.iter_mut().zip(&self.y).zip(&self.atol) {
-            *weight = 1.0 / (self.options.rtol * y.abs() + atol);
-        }
+        self.options.tolerances.weigh(&self.y, &mut self.weights);
     }
 
-    /// Writes the state at a time within the [last step](Self::last_step): cubic in u and in v, each with
-    /// its own derivative at both ends, linear in the integrals. Known components are what they are at
-    /// that time.
-    ///
-    /// # Errors
-    /// [`Error::BadInput`] when `t` lies outside the last step or `y` has another length; constraints that
-    /// have no meaning at `t`.
-    pub fn interpolate(&mut self, t: f64, y: &mut [f64]) -> Result<(), Error> {
-        self.check_length("length of y", y)?;
-        if !(self.t_before <= t && t <= self.t) {
-            let mend = format!("it lies outside the last step, [{}, {}]", self.t_before, self.t);
-            return Err(Error::bad_input("t", t, mend));
-        }
+    fn max_step(&self) -> f64 {
+        self.options.steps.max_step.unwrap_or(f64::INFINITY)
+    }
+
+    /// The state within the last step: cubic in u and in v, each with its own derivative at both ends,
+    /// linear in the integrals. Known components are what they are at that time.
+    fn interpolate_state(&mut self, t: f64, y: &mut [f64]) -> Result<(), Error> {
         if t == self.t {
             y.copy_from_slice(&self.y);
             return Ok(());
@@ -335,65 +213,184 @@ impl<S: SecondOrder> CentralDifference<S> {
         self.system.prescribe(t, u, v).map_err(|failure| stopped(failure, t, h))
     }
 
-    /// Time of the state [`y`](Self::y).
-    pub fn t(&self) -> f64 {
-        self.rest.unwrap_or(self.t)
-    }
-
-    /// The state (u, v, integrals) at time [`t`](Self::t).
-    pub fn y(&self) -> &[f64] {
-        if self.rest.is_some() { &self.output } else { &self.y }
-    }
-
-    /// Start and end of the last step: the times between which [`interpolate`](Self::interpolate)
-    /// works. Before the first step both are the start.
-    pub fn last_step(&self) -> (f64, f64) {
-        (self.t_before, self.t)
-    }
-
-    /// What has been done so far; evaluations are those of the forces.
-    pub fn statistics(&self) -> Statistics {
-        self.statistics
-    }
-
-    /// What there is to say about the steps: that energy grew by itself, or that decay rates, which
-    /// implicit methods do not mind, bound them.
-    pub fn notice(&self) -> Option<String> {
-        self.stability.notice()
-    }
-
-    /// The system being integrated.
-    pub fn system(&self) -> &S {
-        &self.system
-    }
-
-    /// The system being integrated, to be changed. After a change that makes forces jump,
-    /// [`reinit`](Self::reinit) is needed.
-    pub fn system_mut(&mut self) -> &mut S {
-        &mut self.system
-    }
-
-    /// Ends the integration and hands the system back.
-    pub fn into_system(self) -> S {
-        self.system
-    }
-
-    fn check_length(&self, input: &str, given: &[f64]) -> Result<(), Error> {
-        let length = self.y.len();
-        if given.len() == length {
-            return Ok(());
+    /// How a call ended.
+    fn reached(&mut self) -> Reached {
+        let t = self.t();
+        match self.stop_time.take_if(|stop| *stop == t) {
+            Some(_) => {
+                self.control.set_end(self.t, f64::INFINITY);
+                Reached::StopTime
+            }
+            None => Reached::Time,
         }
-        Err(Error::bad_input(input, given.len(), format!("the state has {length} components")))
     }
 }
 
-const FINITE: &str = "give a finite state";
+impl<S: SecondOrder> Integrator for CentralDifference<S> {
+    type System = S;
 
-/// Why forces or constraints end the integration in a step of size `step` from `t`.
-fn stopped(failure: Failure, t: f64, step: f64) -> Error {
-    match failure {
-        Failure::Recoverable(message) => Error::Refused { t, step, message },
-        Failure::Fatal(source) => Error::Rhs { t, step, source },
+    fn t(&self) -> f64 {
+        self.rest.unwrap_or(self.t)
+    }
+
+    fn y(&self) -> &[f64] {
+        if self.rest.is_some() { &self.output } else { &self.y }
+    }
+
+    fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
+        check_time("target time", t)?;
+        if t < self.t_before {
+            let mend = format!("the last step began at {}: {FORWARD_ONLY}", self.t_before);
+            return Err(Error::input("target time", t, mend));
+        }
+        let first = self.statistics.steps;
+        while self.t < t && self.stop_time != Some(self.t) {
+            let steps = self.statistics.steps - first;
+            if steps == u64::from(self.options.steps.max_steps) {
+                let cause = Cause::TooManySteps { steps, target: t, notice: self.notice() };
+                return Err(failure(cause, self.t, self.statistics.last_step).into());
+            }
+            self.advance(t)?;
+        }
+        self.rest = None;
+        if t < self.t {
+            let mut output = take(&mut self.output);
+            let interpolated = self.interpolate_state(t, &mut output);
+            self.output = output;
+            interpolated?;
+            self.rest = Some(t);
+        }
+        Ok(self.reached())
+    }
+
+    fn step(&mut self, towards: f64) -> Result<Reached, Error> {
+        check_time("target time", towards)?;
+        if towards == self.t() {
+            return Ok(Reached::Time);
+        }
+        if towards < self.t() {
+            let mend = format!("it lies behind {}: {FORWARD_ONLY}", self.t());
+            return Err(Error::input("target time", towards, mend));
+        }
+        if self.rest.take().is_none() {
+            self.advance(towards)?;
+        }
+        Ok(self.reached())
+    }
+
+    fn last_step(&self) -> (f64, f64) {
+        (self.t_before, self.t)
+    }
+
+    fn last_order(&self) -> u32 {
+        ORDER
+    }
+
+    fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        check_length("length of out", out.len(), self.y.len())?;
+        if derivative > 0 {
+            return Err(Error::input("derivative", derivative, "only the state itself is known"));
+        }
+        if !(self.t_before <= t && t <= self.t) {
+            let mend = format!("it lies outside the last step, [{}, {}]", self.t_before, self.t);
+            return Err(Error::input("t", t, mend));
+        }
+        self.interpolate_state(t, out)
+    }
+
+    /// Steps up to the stop time are equal, unless the motion asks for others.
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
+        if let Some(stop) = t {
+            check_time("stop time", stop)?;
+            if stop < self.t || stop == self.t() {
+                let mend = format!("the steps have reached {}: {FORWARD_ONLY}", self.t);
+                return Err(Error::input("stop time", stop, mend));
+            }
+        }
+        self.stop_time = t;
+        self.control.set_end(self.t, t.unwrap_or(f64::INFINITY));
+        Ok(())
+    }
+
+    fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+        check_length("length of y", y.len(), self.y.len())?;
+        check_time("t", t)?;
+        check_finite("y", y)?;
+        let (u, v) = (&y[..self.n], &y[self.n..2 * self.n]);
+        let begun = self.system.start(t, u, v);
+        begun
+            .and_then(|()| self.system.forces(t, u, v, &mut self.force))
+            .map_err(|failure| stopped(failure, t, 0.0))?;
+        self.system.powers(v, &mut self.powers);
+        (self.t, self.t_before, self.rest, self.step_before) = (t, t, None, None);
+        self.y.copy_from_slice(y);
+        self.update_weights();
+        self.stability = Stability::new();
+        let limit = self.longest_step();
+        let first = self.options.steps.initial_step.unwrap_or(f64::INFINITY);
+        self.control = Control::new(t, first, limit);
+        self.stop_time = None;
+        self.statistics = Statistics { evaluations: 1, ..Statistics::default() };
+        Ok(())
+    }
+
+    /// There are none in a system of second order.
+    fn roots_found(&self) -> &[i32] {
+        &[]
+    }
+
+    fn statistics(&self) -> Statistics {
+        Statistics {
+            last_order: ORDER,
+            current_order: ORDER,
+            current_time: self.t,
+            ..self.statistics.clone()
+        }
+    }
+
+    fn notice(&self) -> Option<String> {
+        self.stability.notice()
+    }
+
+    fn system(&self) -> &S {
+        &self.system
+    }
+
+    fn system_mut(&mut self) -> &mut S {
+        &mut self.system
+    }
+
+    fn into_system(self) -> S {
+        self.system
+    }
+}
+
+const FORWARD_ONLY: &str = "integration goes forward";
+
+/// The error for a failure of the system on a step from time `t`.
+fn stopped(refusal: Failure, t: f64, step: f64) -> Error {
+    let callback = Callback::Forces;
+    match refusal {
+        Failure::Recoverable(message) => {
+            failure(Cause::Rejected { callback, t: t + step, message }, t, step).into()
+        }
+        Failure::Fatal(source) => {
+            IntegrationError { source: Some(source), ..failure(Cause::Fatal(callback), t, step) }
+                .into()
+        }
+    }
+}
+
+fn failure(cause: Cause, t: f64, step: f64) -> IntegrationError {
+    let integrator = "central differences";
+    IntegrationError {
+        integrator,
+        cause,
+        t,
+        step,
+        order: ORDER,
+        message: String::new(),
+        source: None,
     }
 }
 

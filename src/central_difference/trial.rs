@@ -31,7 +31,7 @@ impl<S: SecondOrder> CentralDifference<S> {
         system.lead(&kick, middle, work);
 
         system.prescribe(next, u_next, extrapolated)?;
-        self.statistics.rhs_evaluations += 1;
+        self.statistics.evaluations += 1;
         system.forces(next, u_next, extrapolated, &mut self.trial_force)?;
         let kick = Kick { duration: half, force: &self.trial_force, before: middle };
         system.accelerations(&kick, &mut self.second);

@@ -113,10 +113,6 @@ impl StabilityMonitor {
         }
     }
 
-    pub fn limited_steps(&self) -> usize {
-        self.limited_steps
-    }
-
     pub fn limit(&self) -> Option<StabilityLimit> {
         self.limit.map(|limit| StabilityLimit { steps: self.limited_steps, ..limit })
     }

@@ -6,8 +6,10 @@
 
 use std::mem::{swap, take};
 
+use super::solver::DormandPrince;
+use super::stages::{fatal, stopped};
 use super::tableau::advance;
-use super::{DormandPrince, Error};
+use crate::integrate::{Callback, Cause, Error};
 use crate::ode::Ode;
 
 /// The root functions g of a system, as far as they have been followed.
@@ -217,14 +219,15 @@ impl<S: Ode> DormandPrince<S> {
     /// Writes g(t, `argument`).
     fn evaluate_roots(&mut self, t: f64, g: &mut [f64]) -> Result<(), Error> {
         self.statistics.root_evaluations += 1;
+        let place = [self.t, self.t - self.t_old];
         self.system
             .roots(t, &self.argument, g)
-            .map_err(|failure| Error::Roots { t, source: failure.into_error() })?;
+            .map_err(|failure| fatal(Callback::Roots, failure.into_error(), place))?;
         match g.iter().position(|value| !value.is_finite()) {
             None => Ok(()),
-            Some(i) => {
-                let source = format!("root function {i} is {}", g[i]).into();
-                Err(Error::Roots { t, source })
+            Some(component) => {
+                let (callback, value) = (Callback::Roots, g[component]);
+                Err(stopped(Cause::NotFinite { callback, t, component, value }, place))
             }
         }
     }

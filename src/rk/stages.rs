@@ -2,38 +2,20 @@
 
 use std::mem::swap;
 
+use super::solver::{DormandPrince, ORDER};
 use super::tableau::{A2, A3, A4, A5, A6, B, C, E, advance, norm};
-use super::{DormandPrince, Error};
+use crate::integrate::{Callback, Cause, Error, IntegrationError};
 use crate::ode::{Failure, Ode};
-
-/// Why a trial step gave no error estimate.
-pub(super) enum Setback {
-    Refused(String),
-    NonFinite { t: f64, component: usize, value: f64 },
-}
-
-impl Setback {
-    pub(super) fn into_error(self, t: f64, step: f64) -> Error {
-        match self {
-            Self::Refused(message) => Error::Refused { t, step, message },
-            Self::NonFinite { t, component, value } => {
-                Error::NonFinite { t, step, component, value }
-            }
-        }
-    }
-}
 
 impl<S: Ode> DormandPrince<S> {
     /// Evaluates f(t, y), where no smaller step can help.
     pub(super) fn evaluate_slope(&mut self) -> Result<(), Error> {
         let t = self.t;
-        self.statistics.rhs_evaluations += 1;
+        self.statistics.evaluations += 1;
         let outcome = self.system.rhs(t, &self.y, &mut self.k[0]);
-        if let Some(setback) = classify(outcome, t, 0.0)? {
-            return Err(setback.into_error(t, 0.0));
-        }
-        if let Some(setback) = non_finite(t, &self.k[0]) {
-            return Err(setback.into_error(t, 0.0));
+        let setback = classify(outcome, t, [t, 0.0])?;
+        if let Some(cause) = setback.or_else(|| not_finite(t, &self.k[0])) {
+            return Err(stopped(cause, [t, 0.0]));
         }
         self.slope_known = true;
         Ok(())
@@ -41,6 +23,7 @@ impl<S: Ode> DormandPrince<S> {
 
     /// Initial step size after HNW I, section II.4, "Starting step size".
     pub(super) fn estimate_initial_step(&mut self) -> Result<f64, Error> {
+        let max_step = self.max_step();
         let [slope, trial_slope, ..] = &mut self.k;
         let state_size = norm([1.0], [&self.y], &self.weight);
         let slope_size = norm([1.0], [slope], &self.weight);
@@ -49,15 +32,15 @@ impl<S: Ode> DormandPrince<S> {
         } else {
             0.01 * state_size / slope_size
         };
-        h = h.min(self.options.max_step);
+        h = h.min(max_step);
         let mut t_trial = self.t + h;
         if let Some(stop) = self.stop_time.filter(|stop| t_trial > *stop) {
             (t_trial, h) = (stop, stop - self.t);
         }
         advance(&mut self.argument, &self.y, h, [1.0], [slope]);
-        self.statistics.rhs_evaluations += 1;
+        self.statistics.evaluations += 1;
         let outcome = self.system.rhs(t_trial, &self.argument, trial_slope);
-        if classify(outcome, t_trial, h)?.is_some() {
+        if classify(outcome, t_trial, [self.t, h])?.is_some() {
             return Ok(h);
         }
         let curvature = norm([1.0, -1.0], [trial_slope, slope], &self.weight) / h;
@@ -73,13 +56,13 @@ impl<S: Ode> DormandPrince<S> {
     ///
     /// The inner result is the norm of the error estimate, at most 1 when the step will do, or why
     /// there is none.
-    pub(super) fn try_step(&mut self, t_new: f64, h: f64) -> Result<Result<f64, Setback>, Error> {
+    pub(super) fn try_step(&mut self, t_new: f64, h: f64) -> Result<Result<f64, Cause>, Error> {
         let (y, g, y_new) = (&self.y, &mut self.argument, &mut self.y_old);
         let [k1, k2, k3, k4, k5, k6, k7] = &mut self.k;
         let (t, statistics, system) = (self.t, &mut self.statistics, &mut self.system);
-        let mut rhs = |t: f64, y: &[f64], k: &mut [f64]| {
-            statistics.rhs_evaluations += 1;
-            classify(system.rhs(t, y, k), t, h)
+        let mut rhs = |at: f64, y: &[f64], k: &mut [f64]| {
+            statistics.evaluations += 1;
+            classify(system.rhs(at, y, k), at, [t, h])
         };
         macro_rules! stage {
             ($k:ident at $t:expr, $y:ident from $a:ident of $($other:ident),+) => {
@@ -100,7 +83,7 @@ impl<S: Ode> DormandPrince<S> {
             return Ok(Ok(error));
         }
         // Look for the first culprit only now that there is one.
-        let found = self.k.iter().zip(C).find_map(|(k, c)| non_finite(t + c * h, k));
+        let found = self.k.iter().zip(C).find_map(|(k, c)| not_finite(t + c * h, k));
         // Finite stages whose combination overflows: the step is far too long.
         Ok(found.map_or(Ok(f64::MAX), Err))
     }
@@ -114,12 +97,9 @@ impl<S: Ode> DormandPrince<S> {
         if distance > 0.0 { norm([1.0, -1.0], [k7, k6], &self.weight) / distance } else { 0.0 }
     }
 
-    /// Error weights 1/(rtol |y_i| + atol_i) at the start of the next step.
+    /// Error weights at the start of the next step.
     pub(super) fn update_weight(&mut self) {
-        let rtol = self.options.rtol;
-        for ((weight, y), atol) in self.weight.iter_mut().zip(&self.y).zip(&self.atol) {
-            *weight = 1.0 / (rtol * y.abs() + atol);
-        }
+        self.options.tolerances.weigh(&self.y, &mut self.weight);
     }
 
     pub(super) fn accept(&mut self, t_new: f64, h: f64) {
@@ -135,16 +115,45 @@ impl<S: Ode> DormandPrince<S> {
     }
 }
 
-/// Separates what a smaller step may heal from what ends the integration.
-fn classify(outcome: Result<(), Failure>, t: f64, step: f64) -> Result<Option<Setback>, Error> {
+/// Separates what a smaller step may heal from what ends the integration; `place` is the time reached and
+/// the step.
+fn classify(outcome: Result<(), Failure>, t: f64, place: [f64; 2]) -> Result<Option<Cause>, Error> {
+    let callback = Callback::Rhs;
     match outcome {
         Ok(()) => Ok(None),
-        Err(Failure::Recoverable(message)) => Ok(Some(Setback::Refused(message))),
-        Err(Failure::Fatal(source)) => Err(Error::Rhs { t, step, source }),
+        Err(Failure::Recoverable(message)) => Ok(Some(Cause::Rejected { callback, t, message })),
+        Err(Failure::Fatal(source)) => Err(fatal(callback, source, place)),
     }
 }
 
-fn non_finite(t: f64, slope: &[f64]) -> Option<Setback> {
+fn not_finite(t: f64, slope: &[f64]) -> Option<Cause> {
     let component = slope.iter().position(|value| !value.is_finite())?;
-    Some(Setback::NonFinite { t, component, value: slope[component] })
+    Some(Cause::NotFinite { callback: Callback::Rhs, t, component, value: slope[component] })
+}
+
+/// An integration that stopped at a time, with a step.
+pub(super) fn stopped(cause: Cause, [t, step]: [f64; 2]) -> Error {
+    IntegrationError {
+        integrator: "Dormand-Prince 5(4)",
+        cause,
+        t,
+        step,
+        order: ORDER,
+        message: String::new(),
+        source: None,
+    }
+    .into()
+}
+
+/// As [`stopped`], by an error of the system.
+pub(super) fn fatal(
+    callback: Callback,
+    source: Box<dyn std::error::Error + Send + Sync>,
+    place: [f64; 2],
+) -> Error {
+    let mut error = stopped(Cause::Fatal(callback), place);
+    if let Error::Integration(error) = &mut error {
+        error.source = Some(source);
+    }
+    error
 }

@@ -6,4 +6,4 @@ mod record;
 
 pub use method::{ContactEvents, Method};
 pub use options::{SettingsOption, SettingsValue};
-pub use record::{Settings, Tolerances};
+pub use record::{AbsoluteTolerances, Settings};

@@ -93,13 +93,13 @@ impl Settings {
     }
 
     /// The absolute tolerances in force for `body`.
-    pub fn tolerances(&self, body: &Body) -> Tolerances {
+    pub fn tolerances(&self, body: &Body) -> AbsoluteTolerances {
         const SMALL_STRAIN: f64 = 0.01;
         let (size, young) = (body.mesh().size(), body.material().young);
         let volume = body.volume();
         let position = self.rtol * SMALL_STRAIN * size;
         let velocity = self.rtol * SMALL_STRAIN * body.material().wave_speed();
-        Tolerances {
+        AbsoluteTolerances {
             position: self.atol_position.unwrap_or(position),
             velocity: self.atol_velocity.unwrap_or(velocity),
             energy: self.rtol * young * volume,
@@ -114,7 +114,7 @@ impl Settings {
 /// Those of the energies and of the multipliers are loose (as if strain were 1):
 /// enough that the Newton iteration looks after them, too little for them to rule the steps.
 #[derive(Debug, Clone, Copy)]
-pub struct Tolerances {
+pub struct AbsoluteTolerances {
     /// Displacements (m).
     pub position: f64,
     /// Velocities (m/s).

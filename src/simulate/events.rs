@@ -52,7 +52,7 @@ impl Events {
     /// Depths within obstacles below `tolerance` (m) do not matter. `work` has room for a state.
     pub(super) fn met(
         &mut self,
-        stepper: &mut Stepper,
+        stepper: &mut dyn Stepper,
         before: &[f64],
         [start, end]: [f64; 2],
         tolerance: f64,
@@ -86,7 +86,7 @@ impl Events {
     /// least has: by bisection.
     fn locate(
         &mut self,
-        stepper: &mut Stepper,
+        stepper: &mut dyn Stepper,
         start: f64,
         end: f64,
         work: &mut [f64],

@@ -9,14 +9,14 @@ use super::leg::{Checkpoint, Ending, Leg, Outcome};
 use super::progress::{Observer, Progress};
 use super::records::{self, energy, project};
 use super::sampling::Sampling;
-use super::stepper::{Failed, Stepper};
+use super::stepper::{self, Failed, Stepper};
 use crate::constraint::{Start, tell};
 use crate::error::Error;
 use crate::force::Forces;
 use crate::ode::Failure;
 use crate::report::{Counts, PhaseReport, Report, creation};
 use crate::scene::{Phase, Scene};
-use crate::settings::{Method, Settings, Tolerances};
+use crate::settings::{AbsoluteTolerances, Method, Settings};
 use crate::state::ENERGIES;
 use crate::system::System;
 use crate::trajectory::{IntegrationFailure, Interrupted, Trajectory};
@@ -25,7 +25,7 @@ use crate::trajectory::{IntegrationFailure, Interrupted, Trajectory};
 pub(super) struct Run<'a> {
     scene: &'a Scene,
     solver: &'a Settings,
-    atol: Tolerances,
+    atol: AbsoluteTolerances,
     /// Started with the run.
     clock: Instant,
     time: f64,
@@ -179,11 +179,11 @@ impl<'a> Run<'a> {
             }
             system.forget_counts();
             let stepper =
-                Stepper::new(system, &plan.solver, &self.atol, self.time, leg.end(), &self.state);
+                stepper::start(system, &plan.solver, &self.atol, self.time, leg.end(), &self.state);
             let mut stepper = stepper.map_err(|source| (source, 0.0))?;
-            ended = self.leg(&mut leg, &plan, &mut stepper, observer);
+            ended = self.leg(&mut leg, &plan, &mut *stepper, observer);
             counts.add(stepper.counts());
-            states = stepper.size();
+            states = stepper.state().len();
             system = stepper.into_system();
         };
         if result.is_err() && self.time > self.trajectory.last().time {
@@ -218,10 +218,10 @@ impl<'a> Run<'a> {
         &mut self,
         leg: &mut Leg,
         plan: &Plan,
-        stepper: &mut Stepper,
+        stepper: &mut dyn Stepper,
         observer: Observer,
     ) -> Result<Ending, Failed> {
-        let mut sample = vec![0.0; stepper.size()];
+        let mut sample = vec![0.0; stepper.state().len()];
         // mean step sizes (s) of the last two trials
         let (mut steps, mut trial_began, mut means) = (0_usize, self.time, [f64::INFINITY; 2]);
         while self.time < leg.end() {
@@ -289,7 +289,7 @@ impl<'a> Run<'a> {
     fn step(
         &mut self,
         leg: &mut Leg,
-        stepper: &mut Stepper,
+        stepper: &mut dyn Stepper,
         sample: &mut [f64],
     ) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
@@ -353,7 +353,7 @@ impl<'a> Run<'a> {
 
 /// Where a step has led, by its event or else by itself.
 fn arrival<'s>(
-    stepper: &'s mut Stepper,
+    stepper: &'s mut dyn Stepper,
     event: Option<f64>,
     sample: &'s mut [f64],
 ) -> Result<(&'s System, &'s [f64]), Failed> {

@@ -1,227 +1,89 @@
-//! One face for all integrators: step, look back into the step, count.
+//! The integrator of a phase: made by the settings, and used behind one face, whatever form of the
+//! equations it takes.
 
-use crate::central_difference::{self, CentralDifference};
+use crate::central_difference::CentralDifference;
+use crate::integrate::Integrator;
 use crate::ode::Failure;
 use crate::report::Counts;
 use crate::rk::{self, DormandPrince};
-use crate::settings::Tolerances;
-use crate::settings::{Method, Settings};
+use crate::settings::{AbsoluteTolerances, Method, Settings};
 use crate::state::ENERGIES;
 use crate::sundials::{
-    Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver, Multistep, Pattern,
-    Statistics, Table,
+    Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver,
+    Multistep, Pattern,
 };
-use crate::system::{DaeForm, Index, SecondOrderForm, System};
+use crate::system::{DaeForm, Form, Index, SecondOrderForm, System};
 
 pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// An integrator at work on the equations of one phase.
-pub(super) enum Stepper {
-    Arkode(Arkode<System>),
-    Cvode(Cvode<System>),
-    Ida(Ida<DaeForm>),
-    Rk(Box<DormandPrince<System>>),
-    CentralDifference(Box<CentralDifference<SecondOrderForm>>),
-}
-
-impl Stepper {
-    /// Starts at `t` with `state` = (u, v, energies) and will stop at `end`.
-    pub(super) fn new(
-        system: System,
-        solver: &Settings,
-        atol: &Tolerances,
-        t: f64,
-        end: f64,
-        state: &[f64],
-    ) -> Result<Self, Failed> {
-        let n = system.dofs();
-        let mut tolerances = vec![atol.position; n];
-        tolerances.resize(2 * n, atol.velocity);
-        tolerances.resize(2 * n + ENERGIES, atol.energy);
-        let longest = solver.max_step.unwrap_or(f64::INFINITY);
-        match solver.method {
-            // a plan names a method of its own
-            Method::Auto | Method::CvodeBdf => {
-                cvode(system, solver, Multistep::Bdf, tolerances, t, end, state)
-            }
-            Method::CvodeAdams => {
-                cvode(system, solver, Multistep::Adams, tolerances, t, end, state)
-            }
-            Method::Arkode => arkode(system, solver, tolerances, t, end, state),
-            Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
-                let rows = system.rows().len();
-                tolerances.resize(2 * n + ENERGIES + rows, atol.force);
-                if solver.method == Method::IdaIndexTwo {
-                    tolerances.resize(2 * n + ENERGIES + 2 * rows, atol.momentum);
-                }
-                ida(system, solver, tolerances, t, end, state)
-            }
-            Method::Rk => {
-                let options = rk::Options::default().rtol(solver.rtol).atol(tolerances);
-                let options = options.stop_time(end).max_step(longest);
-                Ok(Self::Rk(Box::new(DormandPrince::new(system, t, state, &options)?)))
-            }
-            Method::CentralDifference => {
-                let options = rk::Options::default().rtol(solver.rtol).atol(tolerances);
-                let options = options.stop_time(end).max_step(longest);
-                let form = SecondOrderForm::new(system);
-                let started = CentralDifference::new(form, t, state, &options)?;
-                Ok(Self::CentralDifference(Box::new(started)))
-            }
-        }
-    }
-
+pub(super) trait Stepper {
     /// Takes one step towards `end` and returns the time reached.
-    pub(super) fn step(&mut self, end: f64) -> Result<f64, Failed> {
-        match self {
-            Self::Arkode(arkode) => {
-                let _ = arkode.step(end)?;
-                Ok(arkode.t())
-            }
-            Self::Cvode(cvode) => {
-                let _ = cvode.step(end)?;
-                Ok(cvode.t())
-            }
-            Self::Ida(ida) => {
-                let _ = ida.step(end)?;
-                Ok(ida.t())
-            }
-            Self::Rk(rk) => {
-                let _ = rk.step()?;
-                Ok(rk.t())
-            }
-            Self::CentralDifference(central) => {
-                let _ = central.step(end)?;
-                Ok(central.t())
-            }
-        }
-    }
+    fn step(&mut self, end: f64) -> Result<f64, Failed>;
 
     /// The state at a time within the last step.
-    pub(super) fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
-        match self {
-            Self::Arkode(arkode) => Ok(arkode.interpolate(t, 0, state)?),
-            Self::Cvode(cvode) => Ok(cvode.interpolate(t, 0, state)?),
-            Self::Ida(ida) => Ok(ida.interpolate(t, 0, state)?),
-            Self::Rk(rk) => Ok(rk.interpolate(t, 0, state)?),
-            Self::CentralDifference(central) => Ok(central.interpolate(t, state)?),
-        }
-    }
+    fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed>;
 
     /// Order of the last step.
-    pub(super) fn last_order(&self) -> u32 {
-        match self {
-            Self::Arkode(arkode) => arkode.last_order(),
-            Self::Cvode(cvode) => cvode.last_order(),
-            Self::Ida(ida) => ida.last_order(),
-            Self::Rk(_) => rk::ORDER,
-            Self::CentralDifference(_) => central_difference::ORDER,
-        }
-    }
+    fn last_order(&self) -> u32;
 
-    /// Number of unknowns, all together.
-    pub(super) fn size(&self) -> usize {
-        self.state().len()
-    }
+    /// The state at the end of the last step: (u, v, energies, ...).
+    fn state(&self) -> &[f64];
 
-    /// The state at the end of the last step.
-    pub(super) fn state(&self) -> &[f64] {
-        match self {
-            Self::Arkode(arkode) => arkode.y(),
-            Self::Cvode(cvode) => cvode.y(),
-            Self::Ida(ida) => ida.y(),
-            Self::Rk(rk) => rk.y(),
-            Self::CentralDifference(central) => central.y(),
-        }
-    }
+    fn system(&self) -> &System;
 
-    pub(super) fn system(&self) -> &System {
-        match self {
-            Self::Arkode(arkode) => arkode.system(),
-            Self::Cvode(cvode) => cvode.system(),
-            Self::Ida(ida) => &ida.system().system,
-            Self::Rk(rk) => rk.system(),
-            Self::CentralDifference(central) => &central.system().system,
-        }
-    }
-
-    pub(super) fn system_mut(&mut self) -> &mut System {
-        match self {
-            Self::Arkode(arkode) => arkode.system_mut(),
-            Self::Cvode(cvode) => cvode.system_mut(),
-            Self::Ida(ida) => &mut ida.system_mut().system,
-            Self::Rk(rk) => rk.system_mut(),
-            Self::CentralDifference(central) => &mut central.system_mut().system,
-        }
-    }
+    fn system_mut(&mut self) -> &mut System;
 
     /// The equations, back from the integrator.
-    pub(super) fn into_system(self) -> System {
-        match self {
-            Self::Arkode(arkode) => arkode.into_system(),
-            Self::Cvode(cvode) => cvode.into_system(),
-            Self::Ida(ida) => ida.into_system().system,
-            Self::Rk(rk) => rk.into_system(),
-            Self::CentralDifference(central) => central.into_system().system,
-        }
+    fn into_system(self: Box<Self>) -> System;
+
+    /// What the integration has cost so far, and what it noticed.
+    fn counts(&self) -> Counts;
+}
+
+impl<I: Integrator<System: Form>> Stepper for I {
+    fn step(&mut self, end: f64) -> Result<f64, Failed> {
+        let _ = Integrator::step(self, end)?;
+        Ok(self.t())
     }
 
-    /// What the integration has cost so far, and what it has to say about itself.
-    pub(super) fn counts(&self) -> Counts {
-        let sundials = |s: Statistics, factorizations: usize, system: &System| Counts {
+    fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
+        Ok(Integrator::interpolate(self, t, 0, state)?)
+    }
+
+    fn last_order(&self) -> u32 {
+        Integrator::last_order(self)
+    }
+
+    fn state(&self) -> &[f64] {
+        self.y()
+    }
+
+    fn system(&self) -> &System {
+        Integrator::system(self).system()
+    }
+
+    fn system_mut(&mut self) -> &mut System {
+        Integrator::system_mut(self).system_mut()
+    }
+
+    fn into_system(self: Box<Self>) -> System {
+        Integrator::into_system(*self).into_system()
+    }
+
+    fn counts(&self) -> Counts {
+        let (s, system) = (self.statistics(), Stepper::system(self));
+        Counts {
             steps: s.steps as usize,
             evaluations: s.evaluations as usize,
-            jacobian_evaluations: self.system().tangent_evaluations(),
-            factorizations,
+            jacobian_evaluations: system.tangent_evaluations(),
+            factorizations: s.linear_setups as usize,
             error_test_failures: s.error_test_failures as usize,
-            convergence_failures: s.nonlinear_failures as usize,
+            convergence_failures: (s.nonlinear_failures + s.refused_steps) as usize,
             contact_events: 0,
             last_step: s.last_step,
             last_order: s.last_order,
-            notice: compression(system.indefinite()),
-        };
-        match self {
-            Self::Arkode(arkode) => {
-                sundials(arkode.statistics(), arkode.system().factorizations(), self.system())
-            }
-            Self::Cvode(cvode) => {
-                sundials(cvode.statistics(), cvode.system().factorizations(), self.system())
-            }
-            Self::Ida(ida) => {
-                let statistics = ida.statistics();
-                let setups = statistics.linear_setups as usize;
-                sundials(statistics, setups, self.system())
-            }
-            Self::Rk(rk) => {
-                let s = rk.statistics();
-                Counts {
-                    steps: s.steps,
-                    evaluations: s.rhs_evaluations,
-                    jacobian_evaluations: 0,
-                    factorizations: 0,
-                    error_test_failures: s.rejected_steps,
-                    convergence_failures: s.refused_steps,
-                    contact_events: 0,
-                    last_step: s.last_step,
-                    last_order: rk::ORDER,
-                    notice: s.stability_limited.map(|limit| limit.to_string()),
-                }
-            }
-            Self::CentralDifference(central) => {
-                let s = central.statistics();
-                Counts {
-                    steps: s.steps,
-                    evaluations: s.rhs_evaluations,
-                    jacobian_evaluations: central.system().system.tangent_evaluations(),
-                    factorizations: 0,
-                    error_test_failures: s.rejected_steps,
-                    convergence_failures: s.refused_steps,
-                    contact_events: 0,
-                    last_step: s.last_step,
-                    last_order: central_difference::ORDER,
-                    notice: central.notice(),
-                }
-            }
+            notice: self.notice().or_else(|| compression(system.indefinite())),
         }
     }
 }
@@ -236,93 +98,122 @@ fn compression(indefinite: usize) -> Option<String> {
     })
 }
 
-fn cvode(
+/// Starts the integrator that the settings name at `t` with `state` = (u, v, energies); it will stop at
+/// `end`.
+pub(super) fn start(
     system: System,
-    solver: &Settings,
-    method: Multistep,
-    tolerances: Vec<f64>,
+    settings: &Settings,
+    atol: &AbsoluteTolerances,
     t: f64,
     end: f64,
     state: &[f64],
-) -> Result<Stepper, Failed> {
-    let mut options = CvodeOptions::new(solver.rtol, tolerances)
+) -> Result<Box<dyn Stepper>, Failed> {
+    let n = system.dofs();
+    let longest = settings.max_step.unwrap_or(f64::INFINITY);
+    let mut tolerances = vec![atol.position; n];
+    tolerances.resize(2 * n, atol.velocity);
+    tolerances.resize(2 * n + ENERGIES, atol.energy);
+    match settings.method {
+        // a plan names a method of its own
+        Method::Auto | Method::CvodeBdf | Method::CvodeAdams => {
+            let options = cvode_options(settings, tolerances).max_step(longest);
+            until(end, Cvode::new(system, t, state, &options)?)
+        }
+        Method::Arkode => {
+            let options = arkode_options(settings, tolerances, system.is_linear())?;
+            let options = options.max_step(longest);
+            until(end, Arkode::new(system, t, state, &options)?)
+        }
+        Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
+            let rows = system.rows().len();
+            tolerances.resize(2 * n + ENERGIES + rows, atol.force);
+            let index = match settings.method {
+                Method::IdaIndexTwo => Index::Two,
+                _ => Index::One,
+            };
+            if index == Index::Two {
+                tolerances.resize(2 * n + ENERGIES + 2 * rows, atol.momentum);
+            }
+            let mut equations = DaeForm::new(system, index);
+            let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
+            let options = ida_options(settings, tolerances, &equations)?.max_step(longest);
+            until(end, Ida::new(equations, t, &y, &yp, &options)?)
+        }
+        Method::Rk => {
+            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+            until(end, DormandPrince::new(system, t, state, &options)?)
+        }
+        Method::CentralDifference => {
+            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+            until(end, CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?)
+        }
+    }
+}
+
+/// Sets the stop time of an integrator.
+fn until<I: Integrator<System: Form> + 'static>(
+    end: f64,
+    mut integrator: I,
+) -> Result<Box<dyn Stepper>, Failed> {
+    integrator.set_stop_time(Some(end))?;
+    Ok(Box::new(integrator))
+}
+
+fn cvode_options(settings: &Settings, tolerances: Vec<f64>) -> CvodeOptions {
+    let method = match settings.method {
+        Method::CvodeAdams => Multistep::Adams,
+        _ => Multistep::Bdf,
+    };
+    let options = CvodeOptions::new(settings.rtol, tolerances)
         .method(method)
         .newton(LinearSolver::Custom)
-        .stability_limit_detection(solver.stability_limit_detection);
-    if let Some(order) = solver.max_order {
-        options = options.max_order(order);
+        .stability_limit_detection(settings.stability_limit_detection);
+    match settings.max_order {
+        Some(order) => options.max_order(order),
+        None => options,
     }
-    if let Some(step) = solver.max_step {
-        options = options.max_step(step);
-    }
-    let mut cvode = Cvode::new(system, t, state, &options)?;
-    cvode.set_stop_time(Some(end))?;
-    Ok(Stepper::Cvode(cvode))
 }
 
 /// Steps after which ARKODE has a new Newton matrix, with new tangents, in any case: few enough that
-/// iterations converge in one or two, which pays on all Hirai's scenes.
+/// iterations converge in one or two, which pays on all the documents' scenes.
 const STEPS_BETWEEN_SETUPS: u32 = 2;
 
-fn arkode(
-    system: System,
-    solver: &Settings,
+fn arkode_options(
+    settings: &Settings,
     tolerances: Vec<f64>,
-    t: f64,
-    end: f64,
-    state: &[f64],
-) -> Result<Stepper, Failed> {
-    let table = solver.max_order.map_or(Ok(Table::default()), Table::implicit)?;
-    let mut options =
-        ArkodeOptions::new(solver.rtol, tolerances).table(table).newton(LinearSolver::Custom);
-    options = match system.is_linear() {
+    is_linear: bool,
+) -> Result<ArkodeOptions, Failed> {
+    let table = settings.max_order.map_or(Ok(ButcherTable::default()), ButcherTable::implicit)?;
+    let options =
+        ArkodeOptions::new(settings.rtol, tolerances).table(table).newton(LinearSolver::Custom);
+    Ok(match is_linear {
         true => options.linear(),
         false => options
             .max_steps_between_setups(STEPS_BETWEEN_SETUPS)
             .max_steps_between_jacobians(STEPS_BETWEEN_SETUPS),
-    };
-    if let Some(step) = solver.max_step {
-        options = options.max_step(step);
-    }
-    let mut arkode = Arkode::new(system, t, state, &options)?;
-    arkode.set_stop_time(Some(end))?;
-    Ok(Stepper::Arkode(arkode))
+    })
 }
 
-fn ida(
-    system: System,
-    solver: &Settings,
+fn ida_options(
+    settings: &Settings,
     tolerances: Vec<f64>,
-    t: f64,
-    end: f64,
-    state: &[f64],
-) -> Result<Stepper, Failed> {
-    let motion = 2 * system.dofs();
-    let index = match solver.method {
-        Method::IdaIndexTwo => Index::Two,
-        _ => Index::One,
-    };
-    let mut equations = DaeForm::new(system, index);
-    let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
+    equations: &DaeForm,
+) -> Result<IdaOptions, Failed> {
     // What is not marked as differential stays out of the error test: energies and multipliers.
-    let differential: Vec<bool> = (0..y.len()).map(|i| i < motion).collect();
-    let linear_solver = match solver.method {
-        Method::IdaKlu => LinearSolver::Klu(jacobian_pattern(&equations)?),
+    let motion = 2 * equations.system.dofs();
+    let differential: Vec<bool> = (0..equations.size()).map(|i| i < motion).collect();
+    let linear_solver = match settings.method {
+        Method::IdaKlu => LinearSolver::Klu(jacobian_pattern(equations)?),
         _ => LinearSolver::Custom,
     };
-    let mut options = IdaOptions::new(solver.rtol, tolerances)
+    let options = IdaOptions::new(settings.rtol, tolerances)
         .newton(linear_solver)
         .differential(differential)
         .suppress_algebraic(true);
-    if let Some(order) = solver.max_order {
-        options = options.max_order(order);
-    }
-    if let Some(step) = solver.max_step {
-        options = options.max_step(step);
-    }
-    let mut ida = Ida::new(equations, t, &y, &yp, &options)?;
-    ida.set_stop_time(Some(end))?;
-    Ok(Stepper::Ida(ida))
+    Ok(match settings.max_order {
+        Some(order) => options.max_order(order),
+        None => options,
+    })
 }
 
 fn jacobian_pattern(equations: &DaeForm) -> Result<Pattern, Failed> {

@@ -8,12 +8,13 @@ use faer::reborrow::ReborrowMut;
 use super::timing::Budget;
 use super::{Failed, Line, Measured, Point, Problem, fingerprint};
 use crate::error::Error;
+use crate::integrate::{self, Integrator};
 use crate::ode::{Dae, Failure, Ode};
 use crate::rk::{self, DormandPrince};
 use crate::samples::{Hires, Reference, Robertson, VanDerPol};
 use crate::sundials::{
-    Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian, LinearSolver, Multistep,
-    Statistics, Table,
+    Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
+    LinearSolver, Multistep,
 };
 
 /// A system of ordinary differential equations with a trusted end state, solved by the integrators
@@ -162,96 +163,61 @@ impl<S: Ode> Run<'_, S> {
         let options = CvodeOptions::new(rtol, atol.clone());
         match way {
             Way::Bdf { max_order, detects_stability_limit } => self.cvode(
-                &options
+                options
                     .max_order(max_order)
                     .stability_limit_detection(detects_stability_limit)
                     .newton(newton),
             ),
-            Way::Adams => self.cvode(&options.method(Multistep::Adams).newton(newton)),
+            Way::Adams => self.cvode(options.method(Multistep::Adams).newton(newton)),
             Way::Ida => self.ida(&IdaOptions::new(rtol, atol).newton(newton)),
             Way::Arkode { order } => {
-                let options = ArkodeOptions::new(rtol, atol).table(Table::implicit(order)?);
-                self.arkode(&options.newton(newton))
+                let table = ButcherTable::implicit(order)?;
+                let options = ArkodeOptions::new(rtol, atol).table(table).newton(newton);
+                self.run(|system, y0| Arkode::new(system, 0.0, y0, &options))
             }
-            Way::Rk => self.rk(&rk::Options::default().rtol(rtol).atol(atol)),
+            Way::Rk => {
+                let options = rk::Options::new(rtol, atol);
+                self.run(|system, y0| DormandPrince::new(system, 0.0, y0, &options))
+            }
         }
     }
 
-    fn cvode(self, options: &CvodeOptions) -> Result<Solved, Failed> {
-        let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
-        let mut cvode = Cvode::new(self.system, 0.0, self.y0, options)?;
-        cvode.set_stop_time(Some(end))?;
-        while cvode.t() < end {
-            let _ = cvode.step(end)?;
-            if budget.is_spent() {
-                return Err(too_long(cvode.statistics().steps as usize, cvode.t(), end));
-            }
-        }
-        Ok(solved(cvode.y(), cvode.statistics()))
-    }
-
-    fn arkode(self, options: &ArkodeOptions) -> Result<Solved, Failed> {
-        let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
-        let mut arkode = Arkode::new(self.system, 0.0, self.y0, options)?;
-        arkode.set_stop_time(Some(end))?;
-        while arkode.t() < end {
-            let _ = arkode.step(end)?;
-            if budget.is_spent() {
-                return Err(too_long(arkode.statistics().steps as usize, arkode.t(), end));
-            }
-        }
-        Ok(solved(arkode.y(), arkode.statistics()))
+    fn cvode(self, options: CvodeOptions) -> Result<Solved, Failed> {
+        self.run(|system, y0| Cvode::new(system, 0.0, y0, &options))
     }
 
     fn ida(mut self, options: &IdaOptions) -> Result<Solved, Failed> {
-        let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
         let mut slope = vec![0.0; self.y0.len()];
         self.system.rhs(0.0, self.y0, &mut slope).map_err(Failure::into_error)?;
-        let mut ida = Ida::new(Implicit(self.system), 0.0, self.y0, &slope, options)?;
-        ida.set_stop_time(Some(end))?;
-        while ida.t() < end {
-            let _ = ida.step(end)?;
-            if budget.is_spent() {
-                return Err(too_long(ida.statistics().steps as usize, ida.t(), end));
-            }
-        }
-        Ok(solved(ida.y(), ida.statistics()))
+        self.run(|system, y0| Ida::new(Implicit(system), 0.0, y0, &slope, options))
     }
 
-    fn rk(self, options: &rk::Options) -> Result<Solved, Failed> {
+    /// Integrates to the end by what `start` makes.
+    fn run<I: Integrator>(
+        self,
+        start: impl FnOnce(S, &[f64]) -> Result<I, integrate::Error>,
+    ) -> Result<Solved, Failed> {
         let (mut budget, end) = (Budget::new(self.limit), self.reference.t);
-        let mut rk =
-            DormandPrince::new(self.system, 0.0, self.y0, &options.clone().stop_time(end))?;
-        while rk.t() < end {
-            rk.step()?;
+        let mut integrator = start(self.system, self.y0)?;
+        integrator.set_stop_time(Some(end))?;
+        while integrator.t() < end {
+            let _ = integrator.step(end)?;
             if budget.is_spent() {
-                return Err(too_long(rk.statistics().steps, rk.t(), end));
+                let (steps, t) = (integrator.statistics().steps, integrator.t());
+                let reason = format!("given up after {steps} steps at t = {t:.3e} of {end:e}");
+                return Err(reason.into());
             }
         }
-        let statistics = rk.statistics();
+        let statistics = integrator.statistics();
         let cost = Measured {
             states: self.y0.len(),
-            steps: statistics.steps,
-            evaluations: statistics.rhs_evaluations,
+            steps: statistics.steps as usize,
+            evaluations: statistics.evaluations as usize,
+            factorizations: statistics.linear_setups as usize,
             ..Measured::default()
         };
-        Ok(Solved { y: rk.y().to_vec(), cost })
+        Ok(Solved { y: integrator.y().to_vec(), cost })
     }
-}
-
-fn too_long(steps: usize, t: f64, end: f64) -> Failed {
-    format!("given up after {steps} steps at t = {t:.3e} of {end:e}").into()
-}
-
-fn solved(y: &[f64], statistics: Statistics) -> Solved {
-    let cost = Measured {
-        states: y.len(),
-        steps: statistics.steps as usize,
-        evaluations: statistics.evaluations as usize,
-        factorizations: statistics.linear_setups as usize,
-        ..Measured::default()
-    };
-    Solved { y: y.to_vec(), cost }
 }
 
 /// y' = f(t, y) as the residual f(t, y) - y'.

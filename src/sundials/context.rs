@@ -2,7 +2,8 @@
 
 use std::ptr;
 
-use super::{error::Error, ffi};
+use super::ffi;
+use crate::integrate::Error;
 
 /// Owns one `SUNContext`. Contexts are not safe to share between threads, so each solver makes
 /// its own and drops it last.

@@ -6,13 +6,12 @@
 use std::ffi::c_void;
 
 use super::{
-    error::Callback,
     ffi,
     host::{Host, STOP},
     matrix::{self, Entries},
     vector::{slice, slice_mut},
 };
-use crate::ode::Dae;
+use crate::{integrate::Callback, ode::Dae};
 
 /// `IDAResFn`
 pub(super) unsafe extern "C" fn residual<S: Dae>(

@@ -43,7 +43,7 @@ type SetLinearSolver =
 /// functions of two integrators.
 pub(super) struct Functions {
     /// What errors call the integrator.
-    pub(super) solver: &'static str,
+    pub(super) integrator: &'static str,
     pub(super) free: unsafe extern "C" fn(*mut *mut c_void),
     pub(super) solve: Named<Solve>,
     pub(super) reinit: Named<Reinit>,

@@ -12,12 +12,11 @@ use std::{
     ptr::NonNull,
 };
 
-use super::{
-    error::{Callback, Cause, Error},
-    functions::Get,
-    linear::LinearSolver,
+use super::{functions::Get, linear_solver::LinearSolver};
+use crate::{
+    integrate::{Callback, Cause, Error},
+    ode::Failure,
 };
-use crate::ode::Failure;
 
 /// Return value of a callback that asks for a smaller step.
 pub(super) const RETRY: i32 = 1;
@@ -28,7 +27,7 @@ pub(super) const STOP: i32 = -1;
 pub(super) type NewtonSolve<S> = fn(&mut S, f64, &mut [f64]) -> Result<(), Failure>;
 
 /// How a user-supplied linear solver is called.
-pub(super) struct Newton<S> {
+pub(super) struct CustomSolve<S> {
     pub(super) solve: NewtonSolve<S>,
     /// Reads the step parameter of the integrator that `memory` belongs to.
     pub(super) step_parameter: Get<f64>,
@@ -44,7 +43,7 @@ pub(super) struct Host<S> {
     /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
     /// None for a fixed-point iteration.
-    pub(super) newton: Option<Newton<S>>,
+    pub(super) custom_solve: Option<CustomSolve<S>>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
     /// Time that whole steps have reached, noted for ARKODE: it gives that of a stage after a failure.
@@ -131,7 +130,7 @@ impl<S> Host<S> {
             n,
             root_count,
             linear_solver,
-            newton: None,
+            custom_solve: None,
             setup_time: f64::NAN,
             step_end: None,
             troubles,
@@ -182,7 +181,8 @@ impl<S> Host<S> {
             return 0;
         }
         let component = output.iter().position(|x| !x.is_finite()).unwrap_or_default();
-        self.troubles.retry(t, Cause::NotFinite { callback, t, component })
+        let value = output[component];
+        self.troubles.retry(t, Cause::NotFinite { callback, t, component, value })
     }
 }
 

@@ -4,8 +4,8 @@ use std::{ptr, slice};
 
 use faer::MatMut;
 
-use super::{context::Context, error::Error, ffi, linear::LinearSolver};
-use crate::ode::BandMut;
+use super::{context::Context, ffi, linear_solver::LinearSolver};
+use crate::{integrate::Error, ode::BandMut};
 
 /// Owns a `SUNMatrix`.
 pub(super) struct Matrix(ffi::SUNMatrix);

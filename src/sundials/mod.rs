@@ -6,7 +6,7 @@
 //! order, cause and what to try. Panics of the system pass through C unharmed.
 //!
 //! ```
-//! use pliant::sundials::{Cvode, CvodeOptions};
+//! use pliant::sundials::{Cvode, CvodeOptions, Integrator};
 //!
 //! // y' = -1000 (y - cos t): the solution is pulled to cos t within milliseconds.
 //! let system = |t: f64, y: &[f64], ydot: &mut [f64]| {
@@ -22,41 +22,43 @@
 //! # Ok::<(), pliant::sundials::Error>(())
 //! ```
 //!
-//! [`Cvode`] and [`Ida`] offer the same: [`solve_to`](Cvode::solve_to) a time or a single
-//! [`step`](Cvode::step), output between the steps by [`interpolate`](Cvode::interpolate), stop
-//! times, root functions, re-initialisation and [`Statistics`]. [`LinearSolver`] says how Newton's
-//! linear systems are solved: dense, band, sparse (KLU) or by the system itself.
-//!
-//! The functions of the C library that stand behind the methods are named in their
-//! documentation; the SUNDIALS user guide describes them in depth.
+//! [`Cvode`], [`Arkode`] and [`Ida`] are used by the methods of [`Integrator`]:
+//! [`solve_to`](Integrator::solve_to) a time or a single [`step`](Integrator::step), output between
+//! the steps by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and
+//! [`Statistics`]. [`LinearSolver`] says how Newton's linear systems are solved: dense, band, sparse (KLU)
+//! or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
 
 mod arkode;
 mod context;
 mod cvode;
 mod dae_callbacks;
-mod error;
 mod ffi;
 mod functions;
 mod host;
 mod ida;
 mod kernels;
 mod linear;
+mod linear_solver;
 mod matrix;
 mod nonlinear;
 mod ode_callbacks;
 mod options;
 mod pattern;
-mod session;
-mod statistics;
+mod report;
+mod solver;
+mod stepping;
+mod stop_time;
 mod vector;
 mod version;
 
-pub use arkode::{Arkode, ArkodeOptions, Predictor, Table};
+pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
 pub use cvode::{Cvode, CvodeOptions, Multistep};
-pub use error::{Callback, Cause, Error, IntegrationError};
 pub use ida::{Ida, IdaOptions, InitialCondition};
-pub use linear::{Jacobian, LinearSolver};
-pub use options::{AbsoluteTolerance, Reached};
+pub use linear_solver::{Jacobian, LinearSolver};
 pub use pattern::Pattern;
-pub use statistics::Statistics;
+pub use solver::Solver;
 pub use version::{suitesparse_version, version};
+
+pub use crate::integrate::{
+    AbsoluteTolerance, Callback, Cause, Error, IntegrationError, Integrator, Reached, Statistics,
+};

@@ -2,10 +2,13 @@
 
 use super::{
     context::Context,
-    error::Error,
     ffi,
-    linear::{Jacobian, LinearSolver},
+    linear_solver::{Jacobian, LinearSolver},
     vector::Vector,
+};
+use crate::{
+    input::InputError,
+    integrate::{Error, check_count},
 };
 
 #[derive(Clone, Debug)]
@@ -30,16 +33,14 @@ impl Default for NonlinearOptions {
 
 impl NonlinearOptions {
     /// Checks that `n` equations can be solved so.
-    pub(super) fn check(&self, n: usize) -> Result<(), Error> {
-        let frequency = self.max_steps_between_setups;
-        if frequency == Some(0) || frequency > Some(i32::MAX as u32) {
-            let mend = "it lies between 1 and 2^31 - 1";
-            return Err(Error::input("max_steps_between_setups", format!("{frequency:?}"), mend));
+    pub(super) fn check(&self, n: usize) -> Result<(), InputError> {
+        if let Some(steps) = self.max_steps_between_setups {
+            check_count("max_steps_between_setups", steps)?;
         }
         match &self.solver {
             NonlinearSolver::FixedPoint { acceleration } if *acceleration > 100 => {
                 let mend = "a few iterates are enough, at most 100";
-                Err(Error::input("acceleration", acceleration, mend))
+                Err(InputError::new("acceleration", acceleration, mend))
             }
             NonlinearSolver::FixedPoint { .. } => Ok(()),
             NonlinearSolver::Newton(solver) => solver.check(n),

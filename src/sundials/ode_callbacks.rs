@@ -6,13 +6,15 @@
 use std::ffi::c_void;
 
 use super::{
-    error::Callback,
     ffi,
     host::{Host, STOP},
     matrix::{self, Entries},
     vector::{slice, slice_mut},
 };
-use crate::ode::{Failure, Ode};
+use crate::{
+    integrate::Callback,
+    ode::{Failure, Ode},
+};
 
 /// `CVRhsFn`
 pub(super) unsafe extern "C" fn rhs<S: Ode>(

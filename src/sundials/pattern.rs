@@ -1,6 +1,6 @@
 //! Where the nonzeros of a sparse Jacobian are.
 
-use super::error::Error;
+use crate::input::InputError;
 
 /// The sparsity pattern of a square matrix in compressed sparse columns (CSC).
 ///
@@ -22,15 +22,15 @@ impl Pattern {
     /// with repetitions; missing diagonal entries are added.
     ///
     /// # Errors
-    /// [`Error::Input`] if `n` is 0 or an entry lies outside the matrix.
+    /// If `n` is 0 or an entry lies outside the matrix.
     pub fn from_entries(
         n: usize,
         entries: impl IntoIterator<Item = (usize, usize)>,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, InputError> {
         let mut columns: Vec<Vec<usize>> = (0..n).map(|j| vec![j]).collect();
         for (row, column) in entries {
             if row >= n || column >= n {
-                return Err(Error::input(
+                return Err(InputError::new(
                     "pattern entry",
                     format!("({row}, {column})"),
                     format!("rows and columns of this matrix run from 0 to {}", n.wrapping_sub(1)),
@@ -55,17 +55,17 @@ impl Pattern {
     /// Nothing is rearranged, so values that belong to these arrays keep their places.
     ///
     /// # Errors
-    /// [`Error::Input`] if the arrays do not fit together, a row is out of range, the rows of a
+    /// If the arrays do not fit together, a row is out of range, the rows of a
     /// column are not strictly increasing, or a diagonal entry is missing
     /// ([`from_entries`](Self::from_entries) sorts and completes).
-    pub fn from_csc(column_pointers: &[usize], row_indices: &[usize]) -> Result<Self, Error> {
+    pub fn from_csc(column_pointers: &[usize], row_indices: &[usize]) -> Result<Self, InputError> {
         let total = row_indices.len();
         if column_pointers.len() < 2
             || column_pointers[0] != 0
             || column_pointers.last() != Some(&total)
             || column_pointers.windows(2).any(|pair| pair[1] < pair[0])
         {
-            return Err(Error::input(
+            return Err(InputError::new(
                 "column_pointers",
                 format!("an array of {} with {total} rows", column_pointers.len()),
                 "it starts with 0, does not decrease, and ends with the number of entries; a \
@@ -79,7 +79,7 @@ impl Pattern {
                 || rows.windows(2).any(|pair| pair[0] >= pair[1])
                 || rows.binary_search(&j).is_err()
             {
-                return Err(Error::input(
+                return Err(InputError::new(
                     "row_indices",
                     format!("{rows:?} in column {j}"),
                     format!(

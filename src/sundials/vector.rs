@@ -2,7 +2,8 @@
 
 use std::slice;
 
-use super::{context::Context, error::Error, ffi, kernels};
+use super::{context::Context, ffi, kernels};
+use crate::integrate::Error;
 
 /// Owns a serial `N_Vector` of `len` numbers.
 pub(super) struct Vector {

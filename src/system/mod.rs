@@ -21,6 +21,7 @@
 mod at_rest;
 mod cholesky;
 mod dae;
+mod form;
 mod guide;
 mod mobility;
 mod newton;
@@ -39,6 +40,7 @@ use std::sync::Arc;
 
 pub(crate) use at_rest::{AtRest, Balance};
 pub(crate) use dae::{DaeForm, Index};
+pub(crate) use form::Form;
 use newton_matrix::NewtonMatrix;
 use reduced::{Coupling, Reduced, nodal_multipliers};
 pub(crate) use second_order::SecondOrderForm;
@@ -177,11 +179,6 @@ impl System {
     /// Starts the counts below from 0.
     pub(crate) fn forget_counts(&mut self) {
         self.newton.forget_counts();
-    }
-
-    /// Number of factorizations of the Newton matrix so far.
-    pub(crate) fn factorizations(&self) -> usize {
-        self.newton.factorizations()
     }
 
     /// Number of evaluations of the tangents so far; 0 where they are constant.

@@ -73,7 +73,6 @@ impl System {
     /// Factorizes N = M + gamma D + gamma^2 Kt.
     pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
-        self.newton.factorizations += 1;
         let NewtonMatrix { solver, stiffness, damping, is_damped, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.model.inertia;

@@ -18,8 +18,7 @@ pub(super) struct NewtonMatrix {
     pub(super) is_damped: bool,
     pub(super) gamma: f64,
     pub(super) tangent_evaluations: usize,
-    pub(super) factorizations: usize,
-    /// How many of them were not positive definite.
+    /// Factorizations of a matrix that was not positive definite.
     pub(super) indefinite: usize,
     /// f of the linear system, and its solution xv.
     pub(super) right: Vec<f64>,
@@ -78,7 +77,6 @@ impl NewtonMatrix {
             is_damped: model.damping.is_some(),
             gamma: f64::NAN,
             tangent_evaluations: 0,
-            factorizations: 0,
             indefinite: 0,
             right: vec![0.0; dofs],
             xv: vec![0.0; dofs],
@@ -89,11 +87,7 @@ impl NewtonMatrix {
 
     /// Starts all counts from 0.
     pub(super) fn forget_counts(&mut self) {
-        (self.tangent_evaluations, self.factorizations, self.indefinite) = (0, 0, 0);
-    }
-
-    pub(super) fn factorizations(&self) -> usize {
-        self.factorizations
+        (self.tangent_evaluations, self.indefinite) = (0, 0);
     }
 
     pub(super) fn tangent_evaluations(&self) -> usize {

@@ -2,7 +2,7 @@
 
 use pliant::ode::Failure;
 use pliant::output::Chart;
-use pliant::rk::{DormandPrince, Options};
+use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::{Pendulum, SQUARE_MATERIAL};
 use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings};
 
@@ -45,7 +45,7 @@ fn pendulum(alpha: f64) -> impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Fai
 /// How far the pendulum is from its length (m) at the end of each period of 2 s, and the steps in
 /// all. It is let go with the outward speed `outward` (m/s), which no constraint would allow.
 pub fn drift(alpha: f64, outward: f64, periods: usize) -> Outcome<(Vec<f64>, usize)> {
-    let options = Options::default().rtol(1e-4).atol(1e-4).max_steps(10_000_000);
+    let options = Options::new(1e-4, 1e-4).max_steps(10_000_000);
     let start = [1.0, 0.0, outward, 0.0];
     let mut solver = DormandPrince::new(pendulum(alpha), 0.0, &start, &options)?;
     let mut off = Vec::new();
@@ -54,7 +54,7 @@ pub fn drift(alpha: f64, outward: f64, periods: usize) -> Outcome<(Vec<f64>, usi
         let s = solver.y();
         off.push((s[0].hypot(s[1]) - 1.0).abs());
     }
-    Ok((off, solver.statistics().steps))
+    Ok((off, solver.statistics().steps as usize))
 }
 
 /// The section of the page.

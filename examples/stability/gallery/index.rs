@@ -3,7 +3,7 @@
 use pliant::ode::Dae;
 use pliant::output::Chart;
 use pliant::samples::Pendulum;
-use pliant::sundials::{Ida, IdaOptions, Jacobian, LinearSolver};
+use pliant::sundials::{Ida, IdaOptions, Integrator, Jacobian, LinearSolver};
 use pliant::{Axis, Error, Method, Phase, Sampling, Scene, Settings, Trajectory};
 
 use super::Outcome;

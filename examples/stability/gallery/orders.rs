@@ -4,7 +4,7 @@ use faer::Mat;
 use faer::linalg::solvers::{PartialPivLu, Solve};
 use pliant::output::Chart;
 use pliant::samples::{ClampedBeam, FLAG_MATERIAL};
-use pliant::sundials::{Cvode, CvodeOptions, Jacobian, LinearSolver};
+use pliant::sundials::{Cvode, CvodeOptions, Integrator, Jacobian, LinearSolver};
 use pliant::{
     Body, Cells, Error, InputError, Material, Mesh, Method, Sampling, Scene, Settings, Trajectory,
 };

@@ -3,7 +3,7 @@
 use pliant::ode::Failure;
 use pliant::output::Chart;
 use pliant::samples::BEAM_MATERIAL;
-use pliant::sundials::{Cvode, CvodeOptions};
+use pliant::sundials::{Cvode, CvodeOptions, Integrator};
 use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings};
 
 use super::Outcome;

@@ -1,11 +1,14 @@
 //! How ARKODE is to integrate.
 
-use super::table::Table;
-use crate::sundials::{
-    error::Error,
-    linear::LinearSolver,
-    nonlinear::{NonlinearOptions, NonlinearSolver},
-    options::{AbsoluteTolerance, StepOptions, Tolerances, builder_methods},
+use super::butcher_table::ButcherTable;
+use crate::{
+    input::InputError,
+    integrate::{AbsoluteTolerance, StepOptions, Tolerances, check_count, step_options},
+    sundials::{
+        linear_solver::LinearSolver,
+        nonlinear::{NonlinearOptions, NonlinearSolver},
+        options::{Limits, builder_methods},
+    },
 };
 
 /// Where the iteration for an implicit stage starts (`ARKStepSetPredictorMethod`).
@@ -28,20 +31,21 @@ pub enum Predictor {
 /// Tolerances, method and limits of an [`Arkode`](super::Arkode).
 ///
 /// ```
-/// use pliant::sundials::{ArkodeOptions, Jacobian, LinearSolver, Table};
+/// use pliant::sundials::{ArkodeOptions, Jacobian, LinearSolver, ButcherTable};
 ///
 /// let options = ArkodeOptions::new(1e-6, [1e-10, 1e-14, 1e-8])
-///     .table(Table::implicit(5)?)
+///     .table(ButcherTable::implicit(5)?)
 ///     .newton(LinearSolver::Dense(Jacobian::Supplied));
-/// # Ok::<(), pliant::sundials::Error>(())
+/// # Ok::<(), pliant::InputError>(())
 /// ```
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct ArkodeOptions {
     pub(super) tolerances: Tolerances,
     pub(super) steps: StepOptions,
+    pub(super) limits: Limits,
     pub(super) fixed_step: Option<f64>,
-    pub(super) table: Table,
+    pub(super) table: ButcherTable,
     pub(super) nonlinear: NonlinearOptions,
     pub(super) max_steps_between_jacobians: Option<u32>,
     pub(super) max_iterations: u32,
@@ -54,10 +58,11 @@ impl ArkodeOptions {
     /// quotients, and these tolerances: local errors are kept below `rtol |y_i| + atol_i`.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
-            tolerances: Tolerances { rtol, atol: atol.into() },
+            tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
+            limits: Limits::default(),
             fixed_step: None,
-            table: Table::default(),
+            table: ButcherTable::default(),
             nonlinear: NonlinearOptions::default(),
             max_steps_between_jacobians: None,
             max_iterations: 6,
@@ -66,9 +71,9 @@ impl ArkodeOptions {
         }
     }
 
-    /// The method. Default: [`Table::default`]. What follows about Newton's iteration is for
+    /// The method. Default: [`ButcherTable::default`]. What follows about Newton's iteration is for
     /// implicit methods; explicit ones have none.
-    pub fn table(mut self, table: Table) -> Self {
+    pub fn table(mut self, table: ButcherTable) -> Self {
         self.table = table;
         self
     }
@@ -109,7 +114,8 @@ impl ArkodeOptions {
         self
     }
 
-    builder_methods!(steps);
+    step_options!();
+    builder_methods!(limits);
 
     /// Degree of the polynomials between the steps. Those of degree 4 and 5 cost evaluations of
     /// the right-hand side at each use, in stiff systems also accuracy.
@@ -118,24 +124,21 @@ impl ArkodeOptions {
         (self.table.order() - 1).min(highest)
     }
 
-    pub(super) fn check(&self, y0: &[f64]) -> Result<(), Error> {
+    pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;
+        self.limits.check(self.steps.max_step)?;
         if let Some(h) = self.fixed_step
             && !(h.is_finite() && h != 0.0)
         {
             let mend = "it is finite, and negative when integrating backwards";
-            return Err(Error::input("fixed_step", h, mend));
+            return Err(InputError::new("fixed_step", h, mend));
         }
         for (input, value) in [
             ("max_steps_between_jacobians", self.max_steps_between_jacobians),
             ("max_iterations", Some(self.max_iterations)),
         ] {
-            if let Some(value) = value
-                && !(1..=i32::MAX as u32).contains(&value)
-            {
-                return Err(Error::input(input, value, "it lies between 1 and 2^31 - 1"));
-            }
+            value.map_or(Ok(()), |count| check_count(input, count))?;
         }
         self.nonlinear.check(y0.len())
     }

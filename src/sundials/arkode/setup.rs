@@ -2,27 +2,47 @@
 
 use std::{ffi::c_void, ptr};
 
-use super::{Arkode, options::ArkodeOptions};
+use super::options::ArkodeOptions;
 use crate::{
+    integrate::{Error, check_start},
     ode::Ode,
     sundials::{
-        error::Error,
         ffi,
         functions::Functions,
-        linear::LinearSolver,
+        linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{
             jacobian, newton_rhs, newton_setup_with_mass, note_step_end, note_time, rhs, roots,
         },
-        options::check_start,
-        session::{Session, Start},
+        solver::{InitialState, Solver},
     },
 };
+
+/// Integrates y' = f(t, y) by a Runge-Kutta method with variable step size.
+///
+/// Diagonally implicit methods are for stiff systems, among them lightly damped oscillations,
+/// which multistep methods of high order can not follow; explicit ones for systems that are not
+/// stiff. (`ARKStep`)
+///
+/// After a recoverable failure of the right-hand side implicit methods retry with a smaller step,
+/// explicit ones give up: SUNDIALS has no retry there.
+///
+/// Interpolation between the steps is by Hermite polynomials, of a degree one less than the order of the
+/// method, at most 3 for implicit and 5 for explicit methods. Degrees 4 and 5 evaluate the right-hand side.
+///
+/// Made by `Arkode::new`, used by the methods of [`Integrator`](crate::integrate::Integrator).
+///
+/// User guide: chapter "Using ARKODE", ARKStep.
+pub type Arkode<S> = Solver<ArkodeKind, S>;
+
+/// Makes a [`Solver`] one of ARKODE.
+#[derive(Debug)]
+pub struct ArkodeKind;
 
 impl<S: Ode> Arkode<S> {
     /// The functions for implicit methods.
     const IMPLICIT: &'static Functions = &Functions {
-        solver: "ARKODE",
+        integrator: "ARKODE",
         free: ffi::ARKStepFree,
         solve: ("ARKStepEvolve", |memory, target, t, y, _, task| {
             // SAFETY: whoever calls through the table vouches for the arguments.
@@ -117,100 +137,103 @@ unsafe extern "C" fn get_integrator_stats(
     }
 }
 
-pub(super) fn new<S: Ode>(
-    system: S,
-    t0: f64,
-    y0: &[f64],
-    options: &ArkodeOptions,
-) -> Result<Arkode<S>, Error> {
-    check_start(t0, y0)?;
-    options.check(y0)?;
+impl<S: Ode> Arkode<S> {
+    /// A solver for `system`, starting at time `t0` from `y0`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for options or initial values that cannot be used.
+    pub fn new(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
+        check_start(t0, y0)?;
+        options.check(y0)?;
 
-    let start = Start { t: t0, y: y0, yp: None, root_count: system.root_count() };
-    let is_implicit = options.table.is_implicit();
-    let (functions, explicit, implicit) = match is_implicit {
-        true => (Arkode::<S>::IMPLICIT, None, Some(rhs::<S> as _)),
-        false => (Arkode::<S>::EXPLICIT, Some(rhs::<S> as _), None),
-    };
-    let solver = options.nonlinear.linear_solver().filter(|_| is_implicit).cloned();
-    // SAFETY: the session passes a live context and a vector of its own, the table is that of
-    // ARKODE, and the callbacks fit the host that is registered as their data.
-    let mut session = unsafe {
-        let create = |y, context| ffi::ARKStepCreate(explicit, implicit, t0, y, context);
-        Session::new(functions, ("ARKStepCreate", create), system, &start, solver)?
-    };
-    session.host.get_mut().step_end = Some(t0);
-    session.configure(&options.tolerances, &options.steps)?;
-    let (implicit_id, explicit_id) = options.table.ids();
-    let degree = options.interpolant_degree();
-    // SAFETY: the callback fits the host; the memory is alive and reads the names, C strings, once;
-    // the other values are plain numbers.
-    unsafe {
-        session.watch_roots(("ARKStepRootInit", ffi::ARKStepRootInit), Some(roots::<S>))?;
-        let (implicit, explicit) = (implicit_id.as_ptr(), explicit_id.as_ptr());
-        let code = ffi::ARKStepSetTableName(session.memory.raw, implicit, explicit);
-        session.host.accept("ARKStepSetTableName", code)?;
-        let set = ("ARKStepSetInterpolantDegree", ffi::ARKStepSetInterpolantDegree as _);
-        session.set(set, degree as i32)?;
-        // The post-processing of steps would make ARKODE evaluate the right-hand side at their ends.
-        if let Some(h) = options.fixed_step {
-            session.set(("ARKStepSetFixedStep", ffi::ARKStepSetFixedStep), h)?;
-            let set = ("ARKStepSetPostprocessStepFn", ffi::ARKStepSetPostprocessStepFn as _);
-            session.set(set, Some(note_step_end::<S> as _))?;
-        } else {
-            let (memory, data) = (session.memory.raw, session.host.as_ptr());
-            let code = ffi::ARKStepSetStabilityFn(memory, Some(note_time::<S>), data);
-            session.host.accept("ARKStepSetStabilityFn", code)?;
+        let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
+        let is_implicit = options.table.is_implicit();
+        let (functions, explicit, implicit) = match is_implicit {
+            true => (Self::IMPLICIT, None, Some(rhs::<S> as _)),
+            false => (Self::EXPLICIT, Some(rhs::<S> as _), None),
+        };
+        let solver = options.nonlinear.linear_solver().filter(|_| is_implicit).cloned();
+        // SAFETY: `create` gets a live context and a vector of its own, the table is that of
+        // ARKODE, and the callbacks fit the host that is registered as their data.
+        let mut arkode = unsafe {
+            let create = |y, context| ffi::ARKStepCreate(explicit, implicit, t0, y, context);
+            Self::create(functions, ("ARKStepCreate", create), ArkodeKind, system, &start, solver)?
+        };
+        arkode.host.get_mut().step_end = Some(t0);
+        arkode.configure(&options.tolerances, &options.steps, &options.limits)?;
+        let (implicit_id, explicit_id) = options.table.ids();
+        let degree = options.interpolant_degree();
+        arkode.interpolant_degree = Some(degree);
+        // SAFETY: the callback fits the host; the memory is alive and reads the names, C strings, once;
+        // the other values are plain numbers.
+        unsafe {
+            arkode
+                .set_root_functions(("ARKStepRootInit", ffi::ARKStepRootInit), Some(roots::<S>))?;
+            let (implicit, explicit) = (implicit_id.as_ptr(), explicit_id.as_ptr());
+            let code = ffi::ARKStepSetTableName(arkode.memory.raw, implicit, explicit);
+            arkode.host.accept("ARKStepSetTableName", code)?;
+            let set = ("ARKStepSetInterpolantDegree", ffi::ARKStepSetInterpolantDegree as _);
+            arkode.set(set, degree as i32)?;
+            // The post-processing of steps would make ARKODE evaluate the right-hand side at their ends.
+            if let Some(h) = options.fixed_step {
+                arkode.set(("ARKStepSetFixedStep", ffi::ARKStepSetFixedStep), h)?;
+                let set = ("ARKStepSetPostprocessStepFn", ffi::ARKStepSetPostprocessStepFn as _);
+                arkode.set(set, Some(note_step_end::<S> as _))?;
+            } else {
+                let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
+                let code = ffi::ARKStepSetStabilityFn(memory, Some(note_time::<S>), data);
+                arkode.host.accept("ARKStepSetStabilityFn", code)?;
+            }
         }
+        if is_implicit {
+            solve_stages(&mut arkode, options)?;
+        }
+        Ok(arkode)
     }
-    if is_implicit {
-        solve_stages(&mut session, options)?;
-    }
-    Ok(Arkode { session, degree })
 }
 
 /// Says how the equations of implicit stages are solved.
-fn solve_stages<S: Ode>(session: &mut Session<S>, options: &ArkodeOptions) -> Result<(), Error> {
+fn solve_stages<S: Ode>(arkode: &mut Arkode<S>, options: &ArkodeOptions) -> Result<(), Error> {
     // SAFETY: the values are plain numbers.
     unsafe {
         let set = ("ARKStepSetPredictorMethod", ffi::ARKStepSetPredictorMethod as _);
-        session.set(set, options.predictor as i32)?;
+        arkode.set(set, options.predictor as i32)?;
         let set = ("ARKStepSetMaxNonlinIters", ffi::ARKStepSetMaxNonlinIters as _);
-        session.set(set, options.max_iterations as i32)?;
+        arkode.set(set, options.max_iterations as i32)?;
         // The slope of a stage follows from its equation: this spares an evaluation, which would
         // also stop the integration if it failed, and magnify errors of stiff components.
         let set = ("ARKStepSetDeduceImplicitRhs", ffi::ARKStepSetDeduceImplicitRhs as _);
-        session.set(set, 1)?;
+        arkode.set(set, 1)?;
         if options.linear {
-            session.set(("ARKStepSetLinear", ffi::ARKStepSetLinear as _), 0)?;
+            arkode.set(("ARKStepSetLinear", ffi::ARKStepSetLinear as _), 0)?;
         }
         if let Some(steps) = options.nonlinear.max_steps_between_setups {
             let set = ("ARKStepSetLSetupFrequency", ffi::ARKStepSetLSetupFrequency as _);
-            session.set(set, steps as i32)?;
+            arkode.set(set, steps as i32)?;
         }
     }
     // SAFETY: the callbacks fit the registered host, and the solvers live as long as the memory.
     unsafe {
         match &options.nonlinear.solver {
             NonlinearSolver::Newton(solver) => {
-                session.use_newton(solver, S::newton_solve)?;
+                arkode.set_newton(solver, S::newton_solve)?;
                 if matches!(solver, LinearSolver::Custom) {
                     let callback = Some(newton_setup_with_mass::<S> as _);
-                    session.set(("ARKStepSetLinSysFn", ffi::ARKStepSetLinSysFn), callback)?;
+                    arkode.set(("ARKStepSetLinSysFn", ffi::ARKStepSetLinSysFn), callback)?;
                     let callback = Some(newton_rhs::<S> as _);
-                    session.set(("ARKStepSetNlsRhsFn", ffi::ARKStepSetNlsRhsFn), callback)?;
+                    arkode.set(("ARKStepSetNlsRhsFn", ffi::ARKStepSetNlsRhsFn), callback)?;
                 } else if solver.has_jacobian_callback() {
                     let callback = Some(jacobian::<S> as _);
-                    session.set(("ARKStepSetJacFn", ffi::ARKStepSetJacFn), callback)?;
+                    arkode.set(("ARKStepSetJacFn", ffi::ARKStepSetJacFn), callback)?;
                 }
                 if let Some(steps) = options.max_steps_between_jacobians {
                     let set = ("ARKStepSetJacEvalFrequency", ffi::ARKStepSetJacEvalFrequency as _);
-                    session.set(set, i64::from(steps))?;
+                    arkode.set(set, i64::from(steps))?;
                 }
             }
             NonlinearSolver::FixedPoint { acceleration } => {
                 let set = ("ARKStepSetNonlinearSolver", ffi::ARKStepSetNonlinearSolver as _);
-                session.use_fixed_point(set, *acceleration)?;
+                arkode.set_fixed_point(set, *acceleration)?;
             }
         }
     }

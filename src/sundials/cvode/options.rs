@@ -1,10 +1,13 @@
 //! How CVODE is to integrate.
 
-use crate::sundials::{
-    error::Error,
-    linear::LinearSolver,
-    nonlinear::{NonlinearOptions, NonlinearSolver},
-    options::{AbsoluteTolerance, StepOptions, Tolerances, builder_methods},
+use crate::{
+    input::InputError,
+    integrate::{AbsoluteTolerance, StepOptions, Tolerances, step_options},
+    sundials::{
+        linear_solver::LinearSolver,
+        nonlinear::{NonlinearOptions, NonlinearSolver},
+        options::{Limits, builder_methods},
+    },
 };
 
 /// The two families of linear multistep methods.
@@ -31,6 +34,7 @@ pub enum Multistep {
 pub struct CvodeOptions {
     pub(super) tolerances: Tolerances,
     pub(super) steps: StepOptions,
+    pub(super) limits: Limits,
     pub(super) method: Multistep,
     pub(super) nonlinear: NonlinearOptions,
     pub(super) stability_limit_detection: bool,
@@ -41,8 +45,9 @@ impl CvodeOptions {
     /// tolerances: local errors are kept below `rtol |y_i| + atol_i`.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
-            tolerances: Tolerances { rtol, atol: atol.into() },
+            tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
+            limits: Limits::default(),
             method: Multistep::Bdf,
             nonlinear: NonlinearOptions::default(),
             stability_limit_detection: false,
@@ -64,17 +69,19 @@ impl CvodeOptions {
 
     builder_methods!(order);
     builder_methods!(nonlinear);
-    builder_methods!(steps);
+    step_options!();
+    builder_methods!(limits);
 
-    pub(super) fn check(&self, y0: &[f64]) -> Result<(), Error> {
+    pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;
-        self.steps.check_order(match self.method {
+        self.limits.check(self.steps.max_step)?;
+        self.limits.check_order(match self.method {
             Multistep::Bdf => 5,
             Multistep::Adams => 12,
         })?;
         if self.stability_limit_detection && self.method == Multistep::Adams {
-            return Err(Error::input("stability_limit_detection", true, "it belongs to BDF"));
+            return Err(InputError::new("stability_limit_detection", true, "it belongs to BDF"));
         }
         self.nonlinear.check(y0.len())
     }

@@ -1,25 +1,31 @@
 //! Building a CVODE solver.
 
-use super::{
-    Cvode,
-    options::{CvodeOptions, Multistep},
-};
+use super::options::{CvodeOptions, Multistep};
 use crate::{
+    integrate::{Error, check_start},
     ode::Ode,
     sundials::{
-        error::Error,
         ffi,
         functions::Functions,
-        linear::LinearSolver,
+        linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{jacobian, newton_rhs, newton_setup, rhs, roots},
-        options::check_start,
-        session::{Session, Start},
+        solver::{InitialState, Solver},
     },
 };
 
+/// Integrates y' = f(t, y) with variable step size and order; made by `Cvode::new`, used by the methods of
+/// [`Integrator`](crate::integrate::Integrator).
+///
+/// User guide: chapter "Using CVODE".
+pub type Cvode<S> = Solver<CvodeKind, S>;
+
+/// Makes a [`Solver`] one of CVODE.
+#[derive(Debug)]
+pub struct CvodeKind;
+
 static FUNCTIONS: Functions = Functions {
-    solver: "CVODE",
+    integrator: "CVODE",
     free: ffi::CVodeFree,
     solve: ("CVode", |memory, target, t, y, _, task| {
         // SAFETY: whoever calls through the table vouches for the arguments.
@@ -60,64 +66,65 @@ static FUNCTIONS: Functions = Functions {
     get_tolerance_scale: ffi::CVodeGetTolScaleFactor,
 };
 
-pub(super) fn new<S: Ode>(
-    system: S,
-    t0: f64,
-    y0: &[f64],
-    options: &CvodeOptions,
-) -> Result<Cvode<S>, Error> {
-    check_start(t0, y0)?;
-    options.check(y0)?;
+impl<S: Ode> Cvode<S> {
+    /// A solver for `system`, starting at time `t0` from `y0`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for options or initial values that cannot be used.
+    pub fn new(system: S, t0: f64, y0: &[f64], options: &CvodeOptions) -> Result<Self, Error> {
+        check_start(t0, y0)?;
+        options.check(y0)?;
 
-    let start = Start { t: t0, y: y0, yp: None, root_count: system.root_count() };
-    let method = match options.method {
-        Multistep::Bdf => ffi::CV_BDF,
-        Multistep::Adams => ffi::CV_ADAMS,
-    };
-    // SAFETY: the session passes a live context, and the table is that of CVODE.
-    let mut session = unsafe {
-        let create = ("CVodeCreate", |_, context| ffi::CVodeCreate(method, context));
-        let solver = options.nonlinear.linear_solver().cloned();
-        Session::new(&FUNCTIONS, create, system, &start, solver)?
-    };
-    // SAFETY: the memory is alive, the vector has the right length, and the callbacks fit the
-    // host that is registered as their data.
-    unsafe {
-        let code = ffi::CVodeInit(session.memory.raw, Some(rhs::<S>), t0, session.y.raw());
-        session.host.accept("CVodeInit", code)?;
-        session.configure(&options.tolerances, &options.steps)?;
-        session.watch_roots(("CVodeRootInit", ffi::CVodeRootInit), Some(roots::<S>))?;
-    }
-    // SAFETY: the values are plain numbers.
-    unsafe {
-        if options.stability_limit_detection {
-            session.set(("CVodeSetStabLimDet", ffi::CVodeSetStabLimDet), 1)?;
+        let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
+        let method = match options.method {
+            Multistep::Bdf => ffi::CV_BDF,
+            Multistep::Adams => ffi::CV_ADAMS,
+        };
+        // SAFETY: `create` gets a live context, and the table is that of CVODE.
+        let mut cvode = unsafe {
+            let create = ("CVodeCreate", |_, context| ffi::CVodeCreate(method, context));
+            let solver = options.nonlinear.linear_solver().cloned();
+            Self::create(&FUNCTIONS, create, CvodeKind, system, &start, solver)?
+        };
+        // SAFETY: the memory is alive, the vector has the right length, and the callbacks fit the
+        // host that is registered as their data.
+        unsafe {
+            let code = ffi::CVodeInit(cvode.memory.raw, Some(rhs::<S>), t0, cvode.y.raw());
+            cvode.host.accept("CVodeInit", code)?;
+            cvode.configure(&options.tolerances, &options.steps, &options.limits)?;
+            cvode.set_root_functions(("CVodeRootInit", ffi::CVodeRootInit), Some(roots::<S>))?;
         }
-        if let Some(steps) = options.nonlinear.max_steps_between_setups {
-            let function = ("CVodeSetLSetupFrequency", ffi::CVodeSetLSetupFrequency as _);
-            session.set(function, i64::from(steps))?;
+        // SAFETY: the values are plain numbers.
+        unsafe {
+            if options.stability_limit_detection {
+                cvode.set(("CVodeSetStabLimDet", ffi::CVodeSetStabLimDet), 1)?;
+            }
+            if let Some(steps) = options.nonlinear.max_steps_between_setups {
+                let function = ("CVodeSetLSetupFrequency", ffi::CVodeSetLSetupFrequency as _);
+                cvode.set(function, i64::from(steps))?;
+            }
         }
-    }
-    // SAFETY: the callbacks fit the registered host, and the solvers live as long as the memory.
-    unsafe {
-        match &options.nonlinear.solver {
-            NonlinearSolver::Newton(solver) => {
-                session.use_newton(solver, S::newton_solve)?;
-                if matches!(solver, LinearSolver::Custom) {
-                    let callback = Some(newton_setup::<S> as _);
-                    session.set(("CVodeSetLinSysFn", ffi::CVodeSetLinSysFn), callback)?;
-                    let callback = Some(newton_rhs::<S> as _);
-                    session.set(("CVodeSetNlsRhsFn", ffi::CVodeSetNlsRhsFn), callback)?;
-                } else if solver.has_jacobian_callback() {
-                    let callback = Some(jacobian::<S> as _);
-                    session.set(("CVodeSetJacFn", ffi::CVodeSetJacFn), callback)?;
+        // SAFETY: the callbacks fit the registered host, and the solvers live as long as the memory.
+        unsafe {
+            match &options.nonlinear.solver {
+                NonlinearSolver::Newton(solver) => {
+                    cvode.set_newton(solver, S::newton_solve)?;
+                    if matches!(solver, LinearSolver::Custom) {
+                        let callback = Some(newton_setup::<S> as _);
+                        cvode.set(("CVodeSetLinSysFn", ffi::CVodeSetLinSysFn), callback)?;
+                        let callback = Some(newton_rhs::<S> as _);
+                        cvode.set(("CVodeSetNlsRhsFn", ffi::CVodeSetNlsRhsFn), callback)?;
+                    } else if solver.has_jacobian_callback() {
+                        let callback = Some(jacobian::<S> as _);
+                        cvode.set(("CVodeSetJacFn", ffi::CVodeSetJacFn), callback)?;
+                    }
+                }
+                NonlinearSolver::FixedPoint { acceleration } => {
+                    let set = ("CVodeSetNonlinearSolver", ffi::CVodeSetNonlinearSolver as _);
+                    cvode.set_fixed_point(set, *acceleration)?;
                 }
             }
-            NonlinearSolver::FixedPoint { acceleration } => {
-                let set = ("CVodeSetNonlinearSolver", ffi::CVodeSetNonlinearSolver as _);
-                session.use_fixed_point(set, *acceleration)?;
-            }
         }
+        Ok(cvode)
     }
-    Ok(Cvode(session))
 }

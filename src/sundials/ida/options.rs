@@ -1,9 +1,12 @@
 //! How IDA is to integrate.
 
-use crate::sundials::{
-    error::Error,
-    linear::{Jacobian, LinearSolver},
-    options::{AbsoluteTolerance, StepOptions, Tolerances, builder_methods, check_length},
+use crate::{
+    input::InputError,
+    integrate::{AbsoluteTolerance, StepOptions, Tolerances, check_length, step_options},
+    sundials::{
+        linear_solver::{Jacobian, LinearSolver},
+        options::{Limits, builder_methods},
+    },
 };
 
 /// Tolerances and limits of an [`Ida`](super::Ida).
@@ -12,6 +15,7 @@ use crate::sundials::{
 pub struct IdaOptions {
     pub(super) tolerances: Tolerances,
     pub(super) steps: StepOptions,
+    pub(super) limits: Limits,
     pub(super) linear_solver: LinearSolver,
     pub(super) differential: Option<Vec<bool>>,
     pub(super) suppress_algebraic: bool,
@@ -22,8 +26,9 @@ impl IdaOptions {
     /// errors are kept below `rtol |y_i| + atol_i`.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
-            tolerances: Tolerances { rtol, atol: atol.into() },
+            tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
+            limits: Limits::default(),
             linear_solver: LinearSolver::Dense(Jacobian::DifferenceQuotients),
             differential: None,
             suppress_algebraic: false,
@@ -54,17 +59,19 @@ impl IdaOptions {
     }
 
     builder_methods!(order);
-    builder_methods!(steps);
+    step_options!();
+    builder_methods!(limits);
 
-    pub(super) fn check(&self, y0: &[f64]) -> Result<(), Error> {
+    pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;
-        self.steps.check_order(5)?;
+        self.limits.check(self.steps.max_step)?;
+        self.limits.check_order(5)?;
         if let Some(differential) = &self.differential {
             check_length("length of differential", differential.len(), y0.len())?;
         } else if self.suppress_algebraic {
             let mend = "it needs `differential` to say which unknowns are algebraic";
-            return Err(Error::input("suppress_algebraic", true, mend));
+            return Err(InputError::new("suppress_algebraic", true, mend));
         }
         self.linear_solver.check(y0.len())
     }

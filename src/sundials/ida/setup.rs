@@ -1,21 +1,32 @@
 //! Building an IDA solver.
 
-use super::{Ida, options::IdaOptions};
+use super::options::IdaOptions;
 use crate::{
+    integrate::{Error, check_finite, check_length, check_start},
     ode::Dae,
     sundials::{
         dae_callbacks::{jacobian, residual, roots},
-        error::Error,
         ffi,
         functions::Functions,
-        options::{check_finite, check_length, check_start},
-        session::{Session, Start},
+        solver::{InitialState, Solver},
         vector::Vector,
     },
 };
 
+/// Integrates F(t, y, y') = 0 with variable step size and order; made by `Ida::new`, used by the methods of
+/// [`Integrator`](crate::integrate::Integrator).
+///
+/// User guide: chapter "Using IDA".
+pub type Ida<S> = Solver<IdaKind, S>;
+
+/// Makes a [`Solver`] one of IDA.
+#[derive(Debug)]
+pub struct IdaKind {
+    pub(super) knows_algebraic: bool,
+}
+
 static FUNCTIONS: Functions = Functions {
-    solver: "IDA",
+    integrator: "IDA",
     free: ffi::IDAFree,
     solve: ("IDASolve", |memory, target, t, y, yp, task| {
         // SAFETY: whoever calls through the table vouches for the arguments.
@@ -56,47 +67,55 @@ static FUNCTIONS: Functions = Functions {
     get_tolerance_scale: ffi::IDAGetTolScaleFactor,
 };
 
-pub(super) fn new<S: Dae>(
-    system: S,
-    t0: f64,
-    y0: &[f64],
-    yp0: &[f64],
-    options: &IdaOptions,
-) -> Result<Ida<S>, Error> {
-    check_start(t0, y0)?;
-    check_length("length of yp0", yp0.len(), y0.len())?;
-    check_finite("yp0", yp0)?;
-    options.check(y0)?;
+impl<S: Dae> Ida<S> {
+    /// A solver for `system`, starting at time `t0` from the state `y0` and its time derivative
+    /// `yp0`, which have to satisfy the equations (see [`consistent_start`](Self::consistent_start)).
+    ///
+    /// # Errors
+    /// [`Error::Input`] for options or initial values that cannot be used.
+    pub fn new(
+        system: S,
+        t0: f64,
+        y0: &[f64],
+        yp0: &[f64],
+        options: &IdaOptions,
+    ) -> Result<Self, Error> {
+        check_start(t0, y0)?;
+        check_length("length of yp0", yp0.len(), y0.len())?;
+        check_finite("yp0", yp0)?;
+        options.check(y0)?;
 
-    let start = Start { t: t0, y: y0, yp: Some(yp0), root_count: system.root_count() };
-    let solver = &options.linear_solver;
-    // SAFETY: the session passes a live context, and the table is that of IDA.
-    let mut session = unsafe {
-        let create = ("IDACreate", |_, context| ffi::IDACreate(context));
-        Session::new(&FUNCTIONS, create, system, &start, Some(solver.clone()))?
-    };
-    let (ida, y, yp) = (session.memory.raw, session.y.raw(), session.raw_yp());
-    // SAFETY: the memory is alive, vectors have the right length, and the callbacks fit the host
-    // that is registered as their data.
-    unsafe {
-        let code = ffi::IDAInit(ida, Some(residual::<S>), t0, y, yp);
-        session.host.accept("IDAInit", code)?;
-        session.configure(&options.tolerances, &options.steps)?;
-        session.watch_roots(("IDARootInit", ffi::IDARootInit), Some(roots::<S>))?;
-        session.use_newton(solver, |system, _, r| system.newton_solve(r))?;
-        if solver.has_jacobian_callback() {
-            session.set(("IDASetJacFn", ffi::IDASetJacFn), Some(jacobian::<S> as _))?;
-        }
-    }
-    if let Some(differential) = &options.differential {
-        let id: Vec<f64> = differential.iter().map(|&d| f64::from(u8::from(d))).collect();
-        let id = Vector::from_slice(&id, &session.context)?;
-        // SAFETY: IDA keeps a copy of the vector, whose length was checked.
+        let start = InitialState { t: t0, y: y0, yp: Some(yp0), root_count: system.root_count() };
+        let solver = &options.linear_solver;
+        let kind = IdaKind { knows_algebraic: options.differential.is_some() };
+        // SAFETY: `create` gets a live context, and the table is that of IDA.
+        let mut ida = unsafe {
+            let create = ("IDACreate", |_, context| ffi::IDACreate(context));
+            Self::create(&FUNCTIONS, create, kind, system, &start, Some(solver.clone()))?
+        };
+        let (memory, y, yp) = (ida.memory.raw, ida.y.raw(), ida.raw_yp());
+        // SAFETY: the memory is alive, vectors have the right length, and the callbacks fit the host
+        // that is registered as their data.
         unsafe {
-            session.set(("IDASetId", ffi::IDASetId), id.raw())?;
-            let suppress = i32::from(options.suppress_algebraic);
-            session.set(("IDASetSuppressAlg", ffi::IDASetSuppressAlg), suppress)?;
+            let code = ffi::IDAInit(memory, Some(residual::<S>), t0, y, yp);
+            ida.host.accept("IDAInit", code)?;
+            ida.configure(&options.tolerances, &options.steps, &options.limits)?;
+            ida.set_root_functions(("IDARootInit", ffi::IDARootInit), Some(roots::<S>))?;
+            ida.set_newton(solver, |system, _, r| system.newton_solve(r))?;
+            if solver.has_jacobian_callback() {
+                ida.set(("IDASetJacFn", ffi::IDASetJacFn), Some(jacobian::<S> as _))?;
+            }
         }
+        if let Some(differential) = &options.differential {
+            let id: Vec<f64> = differential.iter().map(|&d| f64::from(u8::from(d))).collect();
+            let id = Vector::from_slice(&id, &ida.context)?;
+            // SAFETY: IDA keeps a copy of the vector, whose length was checked.
+            unsafe {
+                ida.set(("IDASetId", ffi::IDASetId), id.raw())?;
+                let suppress = i32::from(options.suppress_algebraic);
+                ida.set(("IDASetSuppressAlg", ffi::IDASetSuppressAlg), suppress)?;
+            }
+        }
+        Ok(ida)
     }
-    Ok(Ida { session, knows_algebraic: options.differential.is_some() })
 }

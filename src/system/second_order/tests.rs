@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::*;
-use crate::central_difference::{CentralDifference, Options};
+use crate::central_difference::{CentralDifference, Integrator, Options};
 use crate::constraint::Start;
 use crate::vector::dot;
 use crate::{
@@ -28,8 +28,9 @@ fn form(scene: &Scene) -> SecondOrderForm {
 fn fixed(scene: &Scene, h: f64) -> CentralDifference<SecondOrderForm> {
     let [u, v] = scene.start();
     let (y, end) = ([u, v, &[0.0; 2]].concat(), scene.phases()[0].until);
-    let options = Options::default().rtol(1.0).atol(1e300).stop_time(end);
+    let options = Options::new(0.5, 1e300);
     let mut central = CentralDifference::new(form(scene), 0.0, &y, &options).unwrap();
+    central.set_stop_time(Some(end)).unwrap();
     central.fix_steps(h);
     central
 }

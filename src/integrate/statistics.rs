@@ -1,18 +1,19 @@
 //! What an integration cost.
 
-/// Counters and state of an integrator since it was made or re-initialised.
+/// Counters and state of an integrator since it was made or re-initialised. What does not apply to a
+/// method is 0.
 ///
 /// In a Newton iteration every iteration solves one linear system, so `nonlinear_iterations` is
 /// also the number of linear solves.
 ///
-/// User guide: "Optional output functions" of CVODE and IDA.
+/// SUNDIALS user guide: "Optional output functions" of CVODE, IDA and ARKODE.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Statistics {
     /// Steps taken.
     pub steps: u64,
-    /// Evaluations of the right-hand side (ODE) or residual (DAE), without those of difference
-    /// quotients.
+    /// Evaluations of the right-hand side (ODE), residual (DAE) or forces (second order), without
+    /// those of difference quotients.
     pub evaluations: u64,
     /// Evaluations spent on difference quotients for the Jacobian.
     pub difference_quotient_evaluations: u64,
@@ -26,6 +27,9 @@ pub struct Statistics {
     pub nonlinear_failures: u64,
     /// Steps repeated with a smaller size because the nonlinear iteration failed.
     pub step_failures: u64,
+    /// Steps that an explicit method repeated with a smaller size because the right-hand side or the
+    /// forces could not be evaluated: they failed recoverably or were not finite.
+    pub refused_steps: u64,
     /// Steps repeated because the local error was too large.
     pub error_test_failures: u64,
     /// Evaluations of the root functions.
@@ -44,6 +48,7 @@ pub struct Statistics {
     pub current_step: f64,
     /// Time that the steps have reached; `solve_to` may have returned an earlier one.
     pub current_time: f64,
-    /// Factor by which the tolerances should be raised if they ask for too much accuracy; 1 if not.
+    /// Factor by which the tolerances should be raised if they ask for too much accuracy; 1 if not
+    /// (SUNDIALS).
     pub tolerance_scale: f64,
 }

@@ -2,7 +2,7 @@
 
 use std::{ffi::CStr, fmt, str::FromStr};
 
-use crate::sundials::error::Error;
+use crate::input::InputError;
 
 /// A Runge-Kutta method, by its table of coefficients: one of those that SUNDIALS comes with.
 ///
@@ -12,31 +12,31 @@ use crate::sundials::error::Error;
 /// end with their last stage.
 ///
 /// ```
-/// use pliant::sundials::Table;
+/// use pliant::sundials::ButcherTable;
 ///
-/// let table: Table = "ESDIRK436L2SA_6_3_4".parse()?;
+/// let table: ButcherTable = "ESDIRK436L2SA_6_3_4".parse()?;
 /// assert_eq!((table.order(), table.is_implicit()), (4, true));
-/// assert_eq!(Table::explicit(5)?.name(), "DORMAND_PRINCE_7_4_5");
-/// # Ok::<(), pliant::sundials::Error>(())
+/// assert_eq!(ButcherTable::explicit(5)?.name(), "DORMAND_PRINCE_7_4_5");
+/// # Ok::<(), pliant::InputError>(())
 /// ```
 ///
 /// User guide: "Using ARKODE", appendix "Butcher tables".
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Table {
+pub struct ButcherTable {
     id: &'static CStr,
     order: u32,
     implicit: bool,
 }
 
-const fn dirk(id: &'static CStr, order: u32) -> Table {
-    Table { id, order, implicit: true }
+const fn dirk(id: &'static CStr, order: u32) -> ButcherTable {
+    ButcherTable { id, order, implicit: true }
 }
 
-const fn erk(id: &'static CStr, order: u32) -> Table {
-    Table { id, order, implicit: false }
+const fn erk(id: &'static CStr, order: u32) -> ButcherTable {
+    ButcherTable { id, order, implicit: false }
 }
 
-impl Table {
+impl ButcherTable {
     /// All tables: diagonally implicit ones, then explicit ones.
     ///
     /// Left out is the one without an error estimate.
@@ -83,22 +83,22 @@ impl Table {
     /// The diagonally implicit method to take for an order, 2 to 5.
     ///
     /// # Errors
-    /// [`Error::Input`] for another order.
-    pub fn implicit(order: u32) -> Result<Self, Error> {
+    /// For another order.
+    pub fn implicit(order: u32) -> Result<Self, InputError> {
         match order {
             2 => "TRBDF2_3_3_2".parse(),
             3 => "ESDIRK325L2SA_5_2_3".parse(),
             4 => Ok(Self::default()),
             5 => "ESDIRK547L2SA2_7_4_5".parse(),
-            _ => Err(Error::input("order", order, "implicit methods have orders 2 to 5")),
+            _ => Err(InputError::new("order", order, "implicit methods have orders 2 to 5")),
         }
     }
 
     /// The explicit method to take for an order: 2 to 6, or 8.
     ///
     /// # Errors
-    /// [`Error::Input`] for another order.
-    pub fn explicit(order: u32) -> Result<Self, Error> {
+    /// For another order.
+    pub fn explicit(order: u32) -> Result<Self, InputError> {
         match order {
             2 => "HEUN_EULER_2_1_2".parse(),
             3 => "BOGACKI_SHAMPINE_4_2_3".parse(),
@@ -106,7 +106,7 @@ impl Table {
             5 => "DORMAND_PRINCE_7_4_5".parse(),
             6 => "VERNER_8_5_6".parse(),
             8 => "FEHLBERG_13_7_8".parse(),
-            _ => Err(Error::input("order", order, "explicit methods have orders 2 to 6, and 8")),
+            _ => Err(InputError::new("order", order, "explicit methods have orders 2 to 6, and 8")),
         }
     }
 
@@ -140,34 +140,34 @@ impl Table {
 
 const PREFIX: &str = "ARKODE_";
 
-impl Default for Table {
+impl Default for ButcherTable {
     /// The implicit method of order 4.
     fn default() -> Self {
         dirk(c"ARKODE_ARK437L2SA_DIRK_7_3_4", 4)
     }
 }
 
-impl FromStr for Table {
-    type Err = Error;
+impl FromStr for ButcherTable {
+    type Err = InputError;
 
     /// Reads a name, with or without the prefix `ARKODE_`.
-    fn from_str(name: &str) -> Result<Self, Error> {
+    fn from_str(name: &str) -> Result<Self, InputError> {
         let short = name.strip_prefix(PREFIX).unwrap_or(name);
         Self::ALL.into_iter().find(|table| table.name() == short).ok_or_else(|| {
             let known = Self::ALL.map(Self::name).join(", ");
-            Error::input("table", format!("\"{name}\""), format!("it is one of {known}"))
+            InputError::new("table", format!("\"{name}\""), format!("it is one of {known}"))
         })
     }
 }
 
-impl fmt::Display for Table {
+impl fmt::Display for ButcherTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
     }
 }
 
-impl fmt::Debug for Table {
+impl fmt::Debug for ButcherTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Table({self})")
+        write!(f, "ButcherTable({self})")
     }
 }

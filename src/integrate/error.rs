@@ -4,26 +4,21 @@ use std::{error, fmt};
 
 use thiserror::Error;
 
-/// An error of the SUNDIALS layer.
+use crate::input::InputError;
+
+/// An error of an integrator.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A value that was handed in can not be used; nothing was computed.
-    #[error("{input} = {value} can not be used: {mend}")]
-    Input {
-        /// Name of the input.
-        input: &'static str,
-        /// The value that came.
-        value: String,
-        /// What is accepted instead.
-        mend: String,
-    },
+    /// A value that was handed in cannot be used; nothing was computed.
+    #[error(transparent)]
+    Input(#[from] InputError),
 
-    /// The integration stopped. The solver keeps the last state it accepted.
+    /// The integration stopped. The integrator keeps the last state it accepted.
     #[error(transparent)]
     Integration(Box<IntegrationError>),
 
-    /// A SUNDIALS function refused a call for a reason of its own.
+    /// A function of the library SUNDIALS refused a call.
     #[error("{function} failed with code {code}{}{message}", if message.is_empty() { "" } else { ": " })]
     Call {
         /// The C function.
@@ -36,19 +31,22 @@ pub enum Error {
 }
 
 impl Error {
-    pub(super) fn input(
-        input: &'static str,
+    /// `input` = `value` cannot be used: `mend`.
+    pub(crate) fn input(
+        input: impl Into<String>,
         value: impl fmt::Display,
         mend: impl Into<String>,
     ) -> Self {
-        Self::Input { input, value: value.to_string(), mend: mend.into() }
+        InputError::new(input, value, mend).into()
     }
 
-    pub(super) fn call(function: &'static str, code: i32) -> Self {
+    /// A C function that returned `code`.
+    pub(crate) fn call(function: &'static str, code: i32) -> Self {
         Self::Call { function, code, message: String::new() }
     }
 
-    pub(super) fn out_of_memory(function: &'static str) -> Self {
+    /// A C function that returned nothing.
+    pub(crate) fn out_of_memory(function: &'static str) -> Self {
         Self::Call { function, code: 0, message: "no memory".into() }
     }
 }
@@ -69,6 +67,8 @@ pub enum Callback {
     NewtonSolve,
     /// `roots`
     Roots,
+    /// The forces and constraints of a [`SecondOrder`](crate::ode::SecondOrder) system.
+    Forces,
 }
 
 impl fmt::Display for Callback {
@@ -80,6 +80,7 @@ impl fmt::Display for Callback {
             Self::NewtonSetup => "newton_setup",
             Self::NewtonSolve => "newton_solve",
             Self::Roots => "the root functions",
+            Self::Forces => "the equations of motion",
         })
     }
 }
@@ -107,9 +108,19 @@ pub enum Cause {
         t: f64,
         /// First component concerned (for a Jacobian: the position among its stored values).
         component: usize,
+        /// Its value.
+        value: f64,
     },
-    /// The step limit was reached before the output time.
-    TooManySteps,
+    /// One call took as many steps as it may. Calling again goes on.
+    TooManySteps {
+        /// Steps taken by the call.
+        steps: u64,
+        /// Time asked for.
+        target: f64,
+        /// What the integrator noticed about its steps
+        /// ([`Integrator::notice`](super::Integrator::notice)).
+        notice: Option<String>,
+    },
     /// The tolerances ask for more digits than double precision has.
     TooMuchAccuracy,
     /// The local error stayed too large down to the smallest step.
@@ -120,7 +131,7 @@ pub enum Cause {
     LinearSolver,
     /// The initial values of a DAE do not satisfy its equations, or none could be found.
     InconsistentStart,
-    /// Anything else; the message of SUNDIALS tells.
+    /// Anything else; the message of the library tells.
     Other,
 }
 
@@ -131,16 +142,18 @@ impl Cause {
             Self::Rejected { callback, t, message } => {
                 format!("{callback} kept rejecting the trial points, last at t = {t:?}: {message}")
             }
-            Self::NotFinite { callback, t, component } => {
-                format!("{callback} returned NaN or infinity at t = {t:?} in component {component}")
+            Self::NotFinite { callback, t, component, value } => {
+                format!("{callback} returned {value} at t = {t:?} in component {component}")
             }
-            Self::TooManySteps => "too many steps before the output time".into(),
+            Self::TooManySteps { steps, target, .. } => {
+                format!("{steps} steps taken, and still short of t = {target:?}")
+            }
             Self::TooMuchAccuracy => "the tolerances ask for more than double precision".into(),
             Self::ErrorTest => "the local error stays too large at the smallest step".into(),
             Self::Convergence => {
                 "the nonlinear iteration does not converge at the smallest step".into()
             }
-            Self::LinearSolver => "the Newton matrix can not be factorized".into(),
+            Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
             Self::InconsistentStart => "the initial values do not satisfy the equations".into(),
             Self::Other => "SUNDIALS gave up".into(),
         }
@@ -148,7 +161,7 @@ impl Cause {
 
     /// The likely reason and what to try.
     #[must_use]
-    pub fn advice(&self) -> &'static str {
+    pub fn advice(&self) -> &str {
         match self {
             Self::Fatal(_) => "see the source of this error",
             Self::Rejected { .. } => {
@@ -158,7 +171,8 @@ impl Cause {
                 "look for a division by zero, a root or logarithm of a negative number, or an \
                  overflow in this component"
             }
-            Self::TooManySteps => {
+            Self::TooManySteps { notice: Some(notice), .. } => notice,
+            Self::TooManySteps { .. } => {
                 "raise max_steps if the step size is reasonable; if it is tiny, look for a \
                  discontinuity, a fast oscillation or a tolerance that is too tight"
             }
@@ -186,8 +200,8 @@ impl Cause {
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct IntegrationError {
-    /// The integrator: "CVODE" or "IDA".
-    pub solver: &'static str,
+    /// The integrator, such as "CVODE".
+    pub integrator: &'static str,
     /// Why it stopped.
     pub cause: Cause,
     /// Time that was reached.
@@ -196,28 +210,26 @@ pub struct IntegrationError {
     pub step: f64,
     /// Order that was being tried.
     pub order: u32,
-    /// Return code of SUNDIALS.
-    pub code: i32,
-    /// What SUNDIALS said.
+    /// What SUNDIALS said, with its return code; empty for the others.
     pub message: String,
     /// The error that the user's system gave, for [`Cause::Fatal`].
     pub source: Option<Box<dyn error::Error + Send + Sync>>,
 }
 
+impl From<IntegrationError> for Error {
+    fn from(error: IntegrationError) -> Self {
+        Self::Integration(Box::new(error))
+    }
+}
+
 impl fmt::Display for IntegrationError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} stopped at t = {:?} (step size {:.3e}, order {}): {}; {}",
-            self.solver,
-            self.t,
-            self.step,
-            self.order,
-            self.cause.describe(),
-            self.cause.advice()
-        )?;
-        if !self.message.is_empty() {
-            write!(f, " [SUNDIALS, code {}: {}]", self.code, self.message)?;
+        let Self { integrator, cause, t, step, order, message, .. } = self;
+        let (what, advice) = (cause.describe(), cause.advice());
+        write!(f, "{integrator} stopped at t = {t:?} (step size {step:.3e}, order {order}): ")?;
+        write!(f, "{what}; {advice}")?;
+        if !message.is_empty() {
+            write!(f, " [{message}]")?;
         }
         Ok(())
     }

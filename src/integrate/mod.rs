@@ -1,0 +1,19 @@
+//! What all integrators have in common: what they can do ([`Integrator`]), how accurate they are to be
+//! ([`Tolerances`]), what they cost ([`Statistics`]) and how they fail ([`Error`]).
+//!
+//! The integrators are those of [`sundials`](crate::sundials) and [`rk`](crate::rk); what they integrate is
+//! in [`ode`](crate::ode).
+
+mod error;
+mod integrator;
+mod options;
+mod statistics;
+mod tolerances;
+
+pub use error::{Callback, Cause, Error, IntegrationError};
+pub use integrator::{Integrator, Reached};
+pub(crate) use options::{
+    StepOptions, check_count, check_finite, check_length, check_start, check_time, step_options,
+};
+pub use statistics::Statistics;
+pub use tolerances::{AbsoluteTolerance, Tolerances};

@@ -1,0 +1,100 @@
+//! Options that all integrators share, and the checks of their input.
+
+use crate::input::InputError;
+
+/// Options of the step sizes.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct StepOptions {
+    pub(crate) initial_step: Option<f64>,
+    pub(crate) max_step: Option<f64>,
+    pub(crate) max_steps: u32,
+}
+
+impl Default for StepOptions {
+    fn default() -> Self {
+        Self { initial_step: None, max_step: None, max_steps: 100_000 }
+    }
+}
+
+impl StepOptions {
+    pub(crate) fn check(&self) -> Result<(), InputError> {
+        if let Some(h) = self.max_step
+            && !(h > 0.0 && h.is_finite())
+        {
+            return Err(InputError::new("max_step", h, "it is positive and finite"));
+        }
+        if let Some(h) = self.initial_step
+            && !(h.is_finite() && h != 0.0)
+        {
+            let mend = "it is finite, and negative when integrating backwards";
+            return Err(InputError::new("initial_step", h, mend));
+        }
+        check_count("max_steps", self.max_steps)
+    }
+}
+
+/// Builder methods for the field `steps`, a [`StepOptions`].
+macro_rules! step_options {
+    () => {
+        /// Size of the first step; negative when integrating backwards. Default: estimated.
+        pub fn initial_step(mut self, h: f64) -> Self {
+            self.steps.initial_step = Some(h);
+            self
+        }
+
+        /// Upper bound of |step size|, for systems with short pulses that a long step would not see.
+        /// Default: none, which is infinity.
+        pub fn max_step(mut self, h: f64) -> Self {
+            self.steps.max_step = (h != f64::INFINITY).then_some(h);
+            self
+        }
+
+        /// Steps allowed in one call of `solve_to`. Default: 100,000.
+        pub fn max_steps(mut self, steps: u32) -> Self {
+            self.steps.max_steps = steps;
+            self
+        }
+    };
+}
+pub(crate) use step_options;
+
+/// Checks the start of an integration.
+pub(crate) fn check_start(t0: f64, y0: &[f64]) -> Result<(), InputError> {
+    check_time("t0", t0)?;
+    if y0.is_empty() {
+        return Err(InputError::new("length of y0", 0, "there is at least one unknown"));
+    }
+    check_finite("y0", y0)
+}
+
+/// Checks that a time is finite.
+pub(crate) fn check_time(input: &str, t: f64) -> Result<(), InputError> {
+    if t.is_finite() { Ok(()) } else { Err(InputError::new(input, t, "times are finite")) }
+}
+
+/// Checks that every number of an input is finite.
+pub(crate) fn check_finite(input: &str, values: &[f64]) -> Result<(), InputError> {
+    match values.iter().position(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(i) => {
+            let value = format!("{} in component {i}", values[i]);
+            Err(InputError::new(input, value, "all components are finite"))
+        }
+    }
+}
+
+/// Checks the length of an input.
+pub(crate) fn check_length(input: &str, len: usize, n: usize) -> Result<(), InputError> {
+    if len == n {
+        return Ok(());
+    }
+    Err(InputError::new(input, len, format!("there are {n} unknowns")))
+}
+
+/// Checks a count that C takes as an `int`.
+pub(crate) fn check_count(input: &str, count: u32) -> Result<(), InputError> {
+    if (1..=i32::MAX as u32).contains(&count) {
+        return Ok(());
+    }
+    Err(InputError::new(input, count, "it lies between 1 and 2^31 - 1"))
+}

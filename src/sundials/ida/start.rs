@@ -1,0 +1,90 @@
+//! Where IDA starts: states and their time derivatives, and how they are made to fit.
+
+use super::setup::Ida;
+use crate::{
+    integrate::{Error, Integrator, check_finite, check_length, check_time},
+    ode::Dae,
+    sundials::{ffi, vector::Vector},
+};
+
+/// Which initial values [`Ida::consistent_start`] may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InitialCondition {
+    /// The algebraic unknowns and the derivatives of the differential ones; differential unknowns
+    /// stay (`IDA_YA_YDP_INIT`). Needs [`IdaOptions::differential`].
+    Algebraic,
+    /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`).
+    State,
+}
+
+impl<S: Dae> Ida<S> {
+    /// Corrects the initial values so that they satisfy the equations; call it before the first
+    /// step. `first_output` is a time at which output will be wanted: it tells the direction and
+    /// scale of time. [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
+    ///
+    /// # Errors
+    /// [`Error::Integration`] with [`Cause::InconsistentStart`](crate::integrate::Cause::InconsistentStart) if no such values were found;
+    /// [`Error::Input`] if steps were taken already, or it is not known which unknowns are
+    /// algebraic.
+    ///
+    /// # Panics
+    /// A panic of the system passes through.
+    pub fn consistent_start(
+        &mut self,
+        unknown: InitialCondition,
+        first_output: f64,
+    ) -> Result<(), Error> {
+        check_time("first_output", first_output)?;
+        if first_output == self.t {
+            let mend = "it is a later time than the start";
+            return Err(Error::input("first_output", first_output, mend));
+        }
+        if unknown == InitialCondition::Algebraic && !self.kind.knows_algebraic {
+            let mend = "the option `differential` has to say which unknowns are algebraic";
+            return Err(Error::input("unknown", "InitialCondition::Algebraic", mend));
+        }
+        if self.statistics().steps > 0 {
+            let mend = "initial values can only be corrected before the first step";
+            return Err(Error::input("steps taken", self.statistics().steps, mend));
+        }
+        let task = match unknown {
+            InitialCondition::Algebraic => ffi::IDA_YA_YDP_INIT,
+            InitialCondition::State => ffi::IDA_Y_INIT,
+        };
+        self.host.get_mut().troubles.clear();
+        // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
+        // others away while callbacks use the host.
+        let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, first_output) };
+        self.host.get_mut().troubles.resume_panic();
+        if code < 0 {
+            return Err(self.stopped(code, first_output));
+        }
+        // SAFETY: memory and vectors are alive.
+        let code = unsafe { ffi::IDAGetConsistentIC(self.memory.raw, self.y.raw(), self.raw_yp()) };
+        self.host.accept("IDAGetConsistentIC", code)
+    }
+
+    /// As [`reinit`](Integrator::reinit), from `y` and its time derivative `yp`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if a number is not finite or a length is wrong.
+    pub fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
+        check_length("length of yp", yp.len(), self.y().len())?;
+        check_finite("yp", yp)?;
+        let before = self.yp().to_vec();
+        if let Some(vector) = &mut self.yp {
+            vector.as_mut_slice().copy_from_slice(yp);
+        }
+        let outcome = self.reinit(t, y);
+        if let (Err(_), Some(vector)) = (&outcome, &mut self.yp) {
+            vector.as_mut_slice().copy_from_slice(&before);
+        }
+        outcome
+    }
+
+    /// The time derivative of the state at time [`t`](Integrator::t).
+    #[must_use]
+    pub fn yp(&self) -> &[f64] {
+        self.yp.as_ref().map_or(&[], Vector::as_slice)
+    }
+}

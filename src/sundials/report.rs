@@ -1,0 +1,128 @@
+//! What an integrator of SUNDIALS tells: its statistics, and why it stopped.
+
+use std::ffi::c_void;
+
+use super::{
+    ffi,
+    solver::{Memory, Solver},
+};
+use crate::integrate::{Cause, Error, IntegrationError, Statistics};
+
+impl<K, S> Solver<K, S> {
+    pub(super) fn all_statistics(&self) -> Statistics {
+        let Memory { raw: memory, functions } = self.memory;
+        let mut s = self.step_statistics();
+        let [mut iterations, mut nonlinear_fails] = [0; 2];
+        let count = |get: unsafe extern "C" fn(*mut c_void, *mut i64) -> i32| {
+            let mut count = 0;
+            // SAFETY: the memory is alive, the result has a place. Functions which do not apply,
+            // say to a solver without Jacobian, leave it untouched.
+            unsafe { get(memory, &raw mut count) };
+            count as u64
+        };
+        // SAFETY: the memory is alive, every result has a place.
+        unsafe {
+            (functions.get_nonlinear_stats)(memory, &raw mut iterations, &raw mut nonlinear_fails);
+            (functions.get_tolerance_scale)(memory, &raw mut s.tolerance_scale);
+        }
+        s.nonlinear_iterations = iterations as u64;
+        s.nonlinear_failures = nonlinear_fails as u64;
+        s.step_failures = count(functions.get_step_failures);
+        s.jacobian_evaluations = count(functions.get_jacobian_evaluations);
+        s.difference_quotient_evaluations = count(functions.get_quotient_evaluations);
+        s.root_evaluations = count(functions.get_root_evaluations);
+        s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
+        s
+    }
+
+    /// The statistics that one call tells, among them those of the last step: cheap enough to be
+    /// asked for at every step.
+    pub(super) fn step_statistics(&self) -> Statistics {
+        let mut s = Statistics::default();
+        let [mut steps, mut evaluations, mut setups, mut error_fails] = [0; 4];
+        let [mut last_order, mut current_order] = [0; 2];
+        // SAFETY: the memory is alive, every result has a place.
+        unsafe {
+            (self.memory.functions.get_integrator_stats)(
+                self.memory.raw,
+                &raw mut steps,
+                &raw mut evaluations,
+                &raw mut setups,
+                &raw mut error_fails,
+                &raw mut last_order,
+                &raw mut current_order,
+                &raw mut s.initial_step,
+                &raw mut s.last_step,
+                &raw mut s.current_step,
+                &raw mut s.current_time,
+            );
+        }
+        if steps == 0 {
+            // C still has the last step of the run before
+            (s.current_time, s.last_step) = (self.t, 0.0);
+        } else if self.failed_within {
+            s.current_time = self.t;
+        }
+        s.steps = steps as u64;
+        s.evaluations = evaluations as u64;
+        s.linear_setups = setups as u64;
+        s.error_test_failures = error_fails as u64;
+        s.last_order = last_order as u32;
+        s.current_order = current_order as u32;
+        s
+    }
+
+    /// Whether the last factorization found a singular matrix.
+    fn is_singular(&self) -> bool {
+        let mut flag = 0;
+        // SAFETY: the memory is alive, the result has a place.
+        let code =
+            unsafe { (self.memory.functions.get_linear_flag)(self.memory.raw, &raw mut flag) };
+        let singular = [ffi::SUNLS_LUFACT_FAIL, ffi::SUNLS_PACKAGE_FAIL_REC];
+        code == 0 && singular.iter().any(|&code| i64::from(code) == flag)
+    }
+
+    /// The error for a return code of the integrator on its way to `target`.
+    pub(super) fn stopped(&mut self, code: i32, target: f64) -> Error {
+        // first of all: asking the linear solver for its flag may leave a message, too
+        let mut message = self.host.get_mut().troubles.message().to_owned();
+        if !message.is_empty() {
+            message = format!("SUNDIALS, code {code}: {message}");
+        }
+        let statistics = self.step_statistics();
+        let is_dae = self.yp.is_some();
+        let (otherwise, blame_retries) = match code {
+            ffi::CV_TOO_MUCH_WORK => {
+                let steps = u64::from(self.max_steps);
+                (Cause::TooManySteps { steps, target, notice: None }, true)
+            }
+            ffi::CV_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
+            ffi::IDA_LINESEARCH_FAIL | ffi::IDA_NO_RECOVERY if is_dae => {
+                (Cause::InconsistentStart, true)
+            }
+            ffi::CV_CONV_FAILURE if self.is_singular() => (Cause::LinearSolver, true),
+            ffi::CV_ERR_FAILURE | ffi::CV_CONV_FAILURE if is_dae && statistics.steps == 0 => {
+                (Cause::InconsistentStart, true)
+            }
+            ffi::CV_ERR_FAILURE => (Cause::ErrorTest, false),
+            ffi::CV_CONV_FAILURE => (Cause::Convergence, true),
+            ffi::CV_LINIT_FAIL | ffi::CV_LSETUP_FAIL | ffi::CV_LSOLVE_FAIL => {
+                (Cause::LinearSolver, true)
+            }
+            _ => (Cause::Other, true),
+        };
+        let troubles = &mut self.host.get_mut().troubles;
+        let place = (statistics.current_time, statistics.current_step);
+        let (cause, source) = troubles.cause(place, blame_retries, otherwise);
+        IntegrationError {
+            integrator: self.memory.functions.integrator,
+            cause,
+            t: self.t,
+            step: statistics.current_step,
+            order: statistics.current_order,
+            message,
+            source,
+        }
+        .into()
+    }
+}

@@ -1,0 +1,209 @@
+//! An integrator of SUNDIALS at work.
+
+use super::{ffi, solver::Solver};
+use crate::integrate::{
+    Error, Integrator, Reached, Statistics, check_finite, check_length, check_time,
+};
+
+impl<K, S> Integrator for Solver<K, S> {
+    type System = S;
+
+    fn t(&self) -> f64 {
+        self.t
+    }
+
+    fn y(&self) -> &[f64] {
+        self.y.as_slice()
+    }
+
+    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_NORMAL`.
+    fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
+        self.integrate(t, ffi::CV_NORMAL)
+    }
+
+    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_ONE_STEP`.
+    fn step(&mut self, towards: f64) -> Result<Reached, Error> {
+        self.integrate(towards, ffi::CV_ONE_STEP)
+    }
+
+    fn last_step(&self) -> (f64, f64) {
+        let statistics = self.step_statistics();
+        (statistics.current_time - statistics.last_step, statistics.current_time)
+    }
+
+    fn last_order(&self) -> u32 {
+        self.step_statistics().last_order
+    }
+
+    /// `CVodeGetDky`, `ARKStepGetDky` or `IDAGetDky`.
+    fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        check_length("length of out", out.len(), self.y().len())?;
+        check_time("t", t)?;
+        if !self.has_step {
+            return self.only_state(t, derivative, out);
+        }
+        if let Some(degree) = self.interpolant_degree.filter(|degree| derivative > *degree) {
+            let mend = format!("the polynomials between the steps are of degree {degree}");
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        let order = derivative.min(i32::MAX as u32) as i32;
+        let functions = self.memory.functions;
+        let (name, get_dky) = functions.get_dky;
+        let (memory, scratch) = (self.memory.raw, self.scratch.raw());
+        self.host.get_mut().troubles.clear();
+        // SAFETY: memory and vector are alive; `&mut self` keeps others away while ARKODE evaluates
+        // the right-hand side.
+        let code = unsafe { get_dky(memory, t, order, scratch) };
+        self.host.get_mut().troubles.resume_panic();
+        if code == functions.bad_time {
+            let (start, end) = self.last_step();
+            return Err(Error::input("t", t, format!("the last step is [{start}, {end}]")));
+        }
+        if code == functions.bad_derivative {
+            let mend = format!("the last step was of order {}", self.last_order());
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        if code == ffi::CV_RHSFUNC_FAIL {
+            return Err(self.stopped(code, t));
+        }
+        self.host.accept(name, code)?;
+        out.copy_from_slice(self.scratch.as_slice());
+        Ok(())
+    }
+
+    /// `CVodeSetStopTime`, `ARKStepSetStopTime` or `IDASetStopTime`, with the next step.
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
+        if let Some(t) = t {
+            check_time("stop time", t)?;
+            let statistics = self.step_statistics();
+            if (t - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
+                let mend = format!("the steps have reached {} already", statistics.current_time);
+                return Err(Error::input("stop time", t, mend));
+            }
+        }
+        self.stop_time.set(t);
+        Ok(())
+    }
+
+    /// `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
+    fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+        check_length("length of y", y.len(), self.y().len())?;
+        check_time("t", t)?;
+        check_finite("y", y)?;
+        self.y.as_mut_slice().copy_from_slice(y);
+        let (name, reinit) = self.memory.functions.reinit;
+        // SAFETY: memory and vectors are alive; the integrator copies the vectors.
+        let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
+        self.host.accept(name, code)?;
+        self.t = t;
+        (self.has_step, self.failed_within) = (false, false);
+        let step_end = &mut self.host.get_mut().step_end;
+        *step_end = step_end.and(Some(t));
+        match self.memory.functions.reinit_forgets_stop_time {
+            true => self.stop_time.forget(),
+            false => self.stop_time.set(None),
+        }
+        self.roots_found.fill(0);
+        Ok(())
+    }
+
+    fn roots_found(&self) -> &[i32] {
+        &self.roots_found
+    }
+
+    fn statistics(&self) -> Statistics {
+        self.all_statistics()
+    }
+
+    fn system(&self) -> &S {
+        &self.host.get().system
+    }
+
+    fn system_mut(&mut self) -> &mut S {
+        &mut self.host.get_mut().system
+    }
+
+    fn into_system(self) -> S {
+        drop(self.memory);
+        self.host.into_system()
+    }
+}
+
+impl<K, S> Solver<K, S> {
+    /// Integrates to `target` (`CV_NORMAL`) or by one step (`CV_ONE_STEP`).
+    fn integrate(&mut self, target: f64, task: i32) -> Result<Reached, Error> {
+        check_time("target time", target)?;
+        if target == self.t {
+            return Ok(Reached::Time);
+        }
+        self.check_target(target, task)?;
+        let functions = self.memory.functions;
+        if let Some(time) = self.stop_time.take_update(self.t, target) {
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_stop_time, time)? };
+        }
+        let (name, solve) = functions.solve;
+        let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
+        self.host.get_mut().troubles.clear();
+        // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
+        // keeps others away while callbacks use the host.
+        let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
+        self.failed_within = false;
+        self.has_step = code >= 0 || self.step_statistics().steps > 0;
+        if let Some(end) = self.host.get().step_end.filter(|_| code < 0) {
+            // the time of `y`; C has that of a stage, and would interpolate as if the step ended there
+            self.t = end;
+            (self.has_step, self.failed_within) = (false, true);
+        }
+        self.host.get_mut().troubles.resume_panic();
+        match code {
+            ffi::CV_ROOT_RETURN => {
+                let roots = self.roots_found.as_mut_ptr();
+                // SAFETY: there are as many places as root functions.
+                unsafe { self.set(functions.get_root_info, roots)? };
+                Ok(Reached::Root)
+            }
+            code if code >= 0 => {
+                let stopped = self.stop_time.time() == Some(self.t);
+                if stopped {
+                    self.stop_time.set(None);
+                }
+                Ok(if stopped { Reached::StopTime } else { Reached::Time })
+            }
+            code if functions.refusals.contains(&code) => {
+                self.host.accept(name, code).map(|()| Reached::Time)
+            }
+            code => Err(self.stopped(code, target)),
+        }
+    }
+
+    /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
+    /// step, `step` cannot.
+    fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
+        let statistics = self.step_statistics();
+        let earliest = match task {
+            ffi::CV_ONE_STEP => self.t,
+            _ => statistics.current_time - statistics.last_step,
+        };
+        if (target - earliest) * statistics.last_step < 0.0 {
+            let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
+            return Err(Error::input("target time", target, mend));
+        }
+        Ok(())
+    }
+
+    /// Answers [`interpolate`](Integrator::interpolate) where there is no step to look into.
+    fn only_state(&self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        if t != self.t {
+            let mend =
+                format!("without a step to look into only the state at {:?} is known", self.t);
+            return Err(Error::input("t", t, mend));
+        }
+        if derivative > 0 {
+            let mend = "it takes a step: without one only the state itself is known";
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        out.copy_from_slice(self.y());
+        Ok(())
+    }
+}
