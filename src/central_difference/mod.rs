@@ -84,5 +84,4 @@ mod trial;
 pub use solver::CentralDifference;
 pub use stability::longest_step;
 
-pub use crate::integrate::{Error, Integrator, Reached, Statistics};
-pub use crate::rk::Options;
+pub use crate::integrate::{Error, ExplicitOptions as Options, Integrator, Reached, Statistics};

@@ -5,11 +5,10 @@ use std::mem::{swap, take};
 use super::control::Control;
 use super::stability::Stability;
 use crate::integrate::{
-    Callback, Cause, Error, IntegrationError, Integrator, Reached, Statistics, check_finite,
-    check_length, check_start, check_time,
+    Callback, Cause, Error, ExplicitOptions, FORWARD_ONLY, IntegrationError, Integrator, Reached,
+    Statistics, check_finite, check_length, check_start, check_time,
 };
 use crate::ode::{Failure, SecondOrder};
-use crate::rk::Options;
 
 /// Order of the method.
 const ORDER: u32 = 2;
@@ -24,7 +23,7 @@ const KEPT: u64 = 16;
 #[derive(Debug)]
 pub struct CentralDifference<S> {
     pub(super) system: S,
-    options: Options,
+    options: ExplicitOptions,
     /// Number of displacements.
     pub(super) n: usize,
     control: Control,
@@ -71,7 +70,7 @@ impl<S: SecondOrder> CentralDifference<S> {
     /// # Errors
     /// [`Error::Input`] names what cannot be used; [`Error::Integration`] for forces or constraints that have no meaning at
     /// the start.
-    pub fn new(system: S, t: f64, y: &[f64], options: &Options) -> Result<Self, Error> {
+    pub fn new(system: S, t: f64, y: &[f64], options: &ExplicitOptions) -> Result<Self, Error> {
         check_start(t, y)?;
         options.check(y)?;
         let integrals = system.integrals();
@@ -364,8 +363,6 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
         self.system
     }
 }
-
-const FORWARD_ONLY: &str = "integration goes forward";
 
 /// The error for a failure of the system on a step from time `t`.
 fn stopped(refusal: Failure, t: f64, step: f64) -> Error {

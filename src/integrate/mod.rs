@@ -5,12 +5,15 @@
 //! in [`ode`](crate::ode).
 
 mod error;
+mod explicit_options;
 mod integrator;
 mod options;
 mod statistics;
 mod tolerances;
 
 pub use error::{Callback, Cause, Error, IntegrationError};
+pub use explicit_options::ExplicitOptions;
+pub(crate) use explicit_options::FORWARD_ONLY;
 pub use integrator::{Integrator, Reached};
 pub(crate) use options::{
     StepOptions, check_count, check_finite, check_length, check_start, check_time, step_options,

@@ -25,14 +25,14 @@
 //! ```
 
 mod control;
-mod options;
+mod dormand_prince;
+mod rootfinding;
 mod roots;
-mod solver;
 mod stages;
+mod stepping;
 mod tableau;
 
 pub use control::StabilityLimit;
-pub use options::Options;
-pub use solver::DormandPrince;
+pub use dormand_prince::DormandPrince;
 
-pub use crate::integrate::{Error, Integrator, Reached, Statistics};
+pub use crate::integrate::{Error, ExplicitOptions as Options, Integrator, Reached, Statistics};

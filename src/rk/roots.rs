@@ -4,27 +4,23 @@
 //! its two points (K. L. Hiebert, L. F. Shampine, "Implicitly defined output points for solutions of
 //! ODEs", Sandia report SAND80-0180, 1980; CVODE user guide, "Rootfinding").
 
-use std::mem::{swap, take};
+use std::mem::swap;
 
-use super::solver::DormandPrince;
-use super::stages::{fatal, stopped};
-use super::tableau::advance;
-use crate::integrate::{Callback, Cause, Error};
-use crate::ode::Ode;
+use crate::integrate::Error;
 
 /// The root functions g of a system, as far as they have been followed.
 #[derive(Debug, Default)]
 pub(super) struct Roots {
     /// Whether g was evaluated at the start.
-    started: bool,
+    pub(super) started: bool,
     /// Whether there is a root at `low`.
-    rests: bool,
+    pub(super) rests: bool,
     /// Up to where sign changes were looked for, and g there.
-    low: f64,
-    at_low: Vec<f64>,
+    pub(super) low: f64,
+    pub(super) at_low: Vec<f64>,
     /// g at the end of the interval that holds a sign change.
     at_high: Vec<f64>,
-    trial: Vec<f64>,
+    pub(super) trial: Vec<f64>,
     /// Functions that are 0 and stay so are left out until they leave it.
     active: Vec<bool>,
     /// For each function 0, or the sign of its change at the root last found.
@@ -67,7 +63,7 @@ impl Roots {
     }
 
     /// Goes on with the values a little later, in `trial`, where a function is 0 at `low`.
-    fn leave_zeros(&mut self) {
+    pub(super) fn leave_zeros(&mut self) {
         for (i, at_low) in self.at_low.iter_mut().enumerate().filter(|(_, value)| **value == 0.0) {
             *at_low = self.trial[i];
             self.active[i] = self.trial[i] != 0.0;
@@ -76,7 +72,7 @@ impl Roots {
 
     /// Finds the first sign change between `low` and `high`, to within `tolerance`, or else goes on to
     /// `high`.
-    fn search(
+    pub(super) fn search(
         &mut self,
         mut high: f64,
         tolerance: f64,
@@ -155,80 +151,4 @@ impl Roots {
 /// Whether the signs of two numbers differ, neither of which is 0.
 fn differ(a: f64, b: f64) -> bool {
     (a < 0.0) != (b < 0.0)
-}
-
-impl<S: Ode> DormandPrince<S> {
-    /// Evaluates the root functions at the start; `step` is the size of the first step.
-    ///
-    /// One that is 0 there is a root no longer, and followed from its value a tenth of a step later.
-    pub(super) fn start_roots(&mut self, step: f64) -> Result<(), Error> {
-        if self.roots.started || self.roots.found.is_empty() {
-            return Ok(());
-        }
-        let mut roots = take(&mut self.roots);
-        (roots.started, roots.low) = (true, self.t);
-        self.argument.copy_from_slice(&self.y);
-        let mut result = self.evaluate_roots(self.t, &mut roots.at_low);
-        if result.is_ok() && roots.at_low.contains(&0.0) {
-            let ahead = f64::max(0.1 * step, self.time_tolerance(step));
-            advance(&mut self.argument, &self.y, ahead, [1.0], [&self.k[0]]);
-            result = self.evaluate_roots(self.t + ahead, &mut roots.trial);
-            roots.leave_zeros();
-        }
-        self.roots = roots;
-        result
-    }
-
-    /// Leaves the root last found behind.
-    pub(super) fn pass_root(&mut self) -> Result<(), Error> {
-        let mut roots = take(&mut self.roots);
-        let mut result = Ok(());
-        if take(&mut roots.rests) && roots.at_low.contains(&0.0) {
-            let t = roots.low + self.time_tolerance(self.t - self.t_old);
-            result = self.evaluate_roots_within_step(t, &mut roots.trial);
-            roots.leave_zeros();
-        }
-        self.roots = roots;
-        result
-    }
-
-    /// The time of the first root from where the search ended to `high`, within the last step.
-    pub(super) fn find_root(&mut self, high: f64) -> Result<Option<f64>, Error> {
-        if !self.roots.started || high <= self.roots.low {
-            return Ok(None);
-        }
-        let tolerance = self.time_tolerance(self.t - self.t_old);
-        let mut roots = take(&mut self.roots);
-        let found = roots.search(high, tolerance, |t, g| self.evaluate_roots_within_step(t, g));
-        self.roots = roots;
-        found
-    }
-
-    /// To how much of the time a root is found.
-    fn time_tolerance(&self, step: f64) -> f64 {
-        100.0 * f64::EPSILON * (self.t.abs() + step)
-    }
-
-    fn evaluate_roots_within_step(&mut self, t: f64, g: &mut [f64]) -> Result<(), Error> {
-        let mut y = take(&mut self.argument);
-        self.interpolate_state(t, &mut y);
-        self.argument = y;
-        self.evaluate_roots(t, g)
-    }
-
-    /// Writes g(t, `argument`).
-    fn evaluate_roots(&mut self, t: f64, g: &mut [f64]) -> Result<(), Error> {
-        self.statistics.root_evaluations += 1;
-        let place = [self.t, self.t - self.t_old];
-        self.system
-            .roots(t, &self.argument, g)
-            .map_err(|failure| fatal(Callback::Roots, failure.into_error(), place))?;
-        match g.iter().position(|value| !value.is_finite()) {
-            None => Ok(()),
-            Some(component) => {
-                let (callback, value) = (Callback::Roots, g[component]);
-                Err(stopped(Cause::NotFinite { callback, t, component, value }, place))
-            }
-        }
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::mem::swap;
 
-use super::solver::{DormandPrince, ORDER};
+use super::dormand_prince::{DormandPrince, ORDER};
 use super::tableau::{A2, A3, A4, A5, A6, B, C, E, advance, norm};
 use crate::integrate::{Callback, Cause, Error, IntegrationError};
 use crate::ode::{Failure, Ode};

@@ -1,12 +1,15 @@
-//! What may be chosen before the integration starts.
+//! Options of explicit methods.
 
+use super::options::{StepOptions, step_options};
+use super::tolerances::{AbsoluteTolerance, Tolerances};
 use crate::input::InputError;
-use crate::integrate::{AbsoluteTolerance, StepOptions, Tolerances, step_options};
 
-pub(super) const FORWARD_ONLY: &str =
+/// What explicit methods say to whoever would go back.
+pub(crate) const FORWARD_ONLY: &str =
     "integration goes forward only; to go back, integrate dy/ds = -f(-s, y) with s = -t";
 
-/// Tolerances and limits of [`DormandPrince`](super::DormandPrince).
+/// Tolerances and limits of an explicit method: [`DormandPrince`](crate::rk::DormandPrince) or
+/// [`CentralDifference`](crate::central_difference::CentralDifference), which export it as `Options`.
 ///
 /// ```
 /// use pliant::rk::Options;
@@ -15,19 +18,19 @@ pub(super) const FORWARD_ONLY: &str =
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 #[must_use]
-pub struct Options {
+pub struct ExplicitOptions {
     pub(crate) tolerances: Tolerances,
     pub(crate) steps: StepOptions,
 }
 
-impl Default for Options {
+impl Default for ExplicitOptions {
     /// Tolerances rtol 1e-6 and atol 1e-9.
     fn default() -> Self {
         Self::new(1e-6, 1e-9)
     }
 }
 
-impl Options {
+impl ExplicitOptions {
     /// These tolerances: local errors are kept below `rtol |y_i| + atol_i` in the root mean square, the
     /// norm of CVODE.
     ///
