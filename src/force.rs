@@ -1,5 +1,6 @@
 //! Nodal forces, and the trait of what exerts them.
 
+use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
@@ -146,6 +147,9 @@ impl Step<'_> {
 }
 
 /// A force that depends on time t (s), displacements u (m) and velocities v (m/s) of the nodes.
+///
+/// [`Scene::force`](crate::Scene::force) adds one of any crate to a scene. Vectors have dimension components for
+/// each node.
 pub trait Force: Send + Sync {
     /// Adds the force at (t, u, v).
     ///
@@ -224,6 +228,12 @@ pub trait Force: Send + Sync {
     /// Pairs of nodes (counted from 0) that the tangents couple though they may share no cell.
     fn couplings(&self) -> Vec<[usize; 2]> {
         Vec::new()
+    }
+}
+
+impl fmt::Debug for dyn Force {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Force")
     }
 }
 

@@ -226,7 +226,7 @@ impl BlockMatrix {
     }
 
     /// The block of two coupled nodes, row by row.
-    pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> Option<&mut [f64]> {
+    pub fn block_mut(&mut self, row: usize, column: usize) -> Option<&mut [f64]> {
         let size = self.dimension * self.dimension;
         let entry = self.pattern.find(row, column)?;
         Some(&mut self.values[entry * size..][..size])

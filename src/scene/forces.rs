@@ -27,6 +27,7 @@ impl Scene {
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }
+        forces.extend_from_slice(&self.forces);
         Ok(forces)
     }
 

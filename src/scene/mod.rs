@@ -11,7 +11,7 @@ pub use phase::Phase;
 use crate::body::Body;
 use crate::constraint::{Row, Start, rows, tell};
 use crate::external::{Chamber, Contact, Obstacle, Spring};
-use crate::force::{Forces, NodalForces};
+use crate::force::{Force, Forces, NodalForces};
 use crate::input::{InputError, finite};
 use crate::ode::Failure;
 use crate::vector::largest;
@@ -39,6 +39,8 @@ pub struct Scene {
     springs: Vec<Spring>,
     chambers: Vec<Chamber>,
     obstacles: Vec<Obstacle>,
+    /// Other forces.
+    forces: Forces,
     phases: Vec<Phase>,
     /// Displacements and velocities at t = 0.
     start: [Vec<f64>; 2],
@@ -54,6 +56,7 @@ impl Scene {
             springs: Vec::new(),
             chambers: Vec::new(),
             obstacles: Vec::new(),
+            forces: Forces::new(),
             phases: Vec::new(),
             start: [rest.clone(), rest],
         }
@@ -93,6 +96,13 @@ impl Scene {
     /// Adds an obstacle, which acts in every phase that does not exclude it.
     pub fn obstacle(mut self, obstacle: Obstacle) -> Self {
         self.obstacles.push(obstacle);
+        self
+    }
+
+    /// Adds any other force, which acts in every phase: a field, a wind, a coupling to something that is not
+    /// of this crate.
+    pub fn force(mut self, force: impl Force + 'static) -> Self {
+        self.forces.push(Arc::new(force));
         self
     }
 
