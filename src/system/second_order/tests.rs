@@ -217,6 +217,7 @@ fn a_path_without_numbers_within_a_step_is_an_error() {
     let body = Body::new(Mesh::bar(1.0, 5).unwrap(), crate::samples::SQUARE_MATERIAL).area(1.0);
     let scene = Scene::new(body.inertia(Inertia::Lumped).build().unwrap())
         .phase(Phase::until(1.0).follow("left", Axis::X, path));
-    let error = fixed(&scene, 0.01).step(1.0).unwrap_err().to_string();
-    assert!(error.contains("b' = NaN"), "{error}");
+    let error = fixed(&scene, 0.01).step(1.0).unwrap_err();
+    let source = std::error::Error::source(&error).unwrap().to_string();
+    assert!(source.contains("b' = NaN"), "{source}");
 }
