@@ -44,7 +44,7 @@ pub enum Coefficients {
 }
 
 /// Green forces of a body of triangles by direct computation: a second way to the forces that
-/// [`Body::add_green_forces`] sums up cell by cell, equal to it but for round-off.
+/// [`Body::add_elastic_forces`] sums up cell by cell, equal to it but for round-off.
 ///
 /// It does not notice cells that are inverted.
 ///
