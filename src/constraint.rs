@@ -154,16 +154,16 @@ impl Row {
 }
 
 /// Where the rows of a phase start from.
-pub(crate) struct Start<'a> {
+pub(crate) struct PhaseStart<'a> {
     /// Time (s).
     pub(crate) time: f64,
-    /// Displacements (m), those that the phase before prescribed as it [told](tell) them to be.
+    /// Displacements (m), with what the phase before prescribed put [where it should be](prescribe).
     pub(crate) u: &'a [f64],
 }
 
 /// Puts the nodes that `rows` prescribe where they should be at time `t`: a constraint that is
 /// continued does not take over the error of the stabilization.
-pub(crate) fn tell(rows: &[Row], t: f64, u: &mut [f64]) {
+pub(crate) fn prescribe(rows: &[Row], t: f64, u: &mut [f64]) {
     for row in rows {
         if let Some((dof, coefficient)) = row.nodal() {
             u[dof] = row.prescribed(t).displacement / coefficient;
@@ -180,7 +180,7 @@ pub(crate) fn rows(
     constraints: &[Constraint],
     mesh: &Mesh,
     phase: &str,
-    start: &Start,
+    start: &PhaseStart,
 ) -> Result<Vec<Row>, InputError> {
     let dimension = mesh.dimension();
     let mut rows: Vec<Row> = Vec::new();
@@ -217,7 +217,7 @@ pub(crate) fn rows(
     Ok(rows)
 }
 
-fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &Start) -> Row {
+fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &PhaseStart) -> Row {
     let linear = |velocity: f64| RowMotion::Linear {
         start: terms.iter().map(|&(dof, coefficient)| coefficient * start.u[dof]).sum(),
         since: start.time,

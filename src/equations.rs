@@ -16,7 +16,7 @@
 
 use std::fmt;
 
-use crate::constraint::{Prescribed, Row, Start};
+use crate::constraint::{PhaseStart, Prescribed, Row};
 use crate::input::InputError;
 use crate::ode::Failure;
 use crate::scene::Scene;
@@ -57,7 +57,7 @@ impl Scene {
         }
         let time = phase.checked_sub(1).map_or(0.0, |before| self.phases()[before].end());
         // positions follow b(t) exactly here, so that no stabilization is needed
-        let system = self.system(&model, own, forces, &Start { time, u }, 0.0)?;
+        let system = self.system(&model, own, forces, &PhaseStart { time, u }, 0.0)?;
         match system.rows().iter().find(|row| row.nodal().is_none()) {
             None => Ok(Equations { system }),
             Some(row) => Err(InputError::new(

@@ -49,12 +49,12 @@ impl Trajectory {
     }
 
     pub(crate) fn push(&mut self, sample: Sample) {
-        self.watch(&sample.energy);
+        self.note_energy(&sample.energy);
         self.samples.push(sample);
     }
 
     /// Takes note of the energies of a state.
-    pub(crate) fn watch(&mut self, energy: &Energy) {
+    pub(crate) fn note_energy(&mut self, energy: &Energy) {
         let start = self.samples.first().map_or(energy.balance(), |s| s.energy.balance());
         let (report, change) = (&mut self.report, energy.balance() - start);
         report.energy_error = report.energy_error.max(change.abs());

@@ -21,5 +21,5 @@ pub use obstacle::Obstacle;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
-pub(crate) use signal::{Signal, Table, VectorSignal};
+pub(crate) use signal::{Signal, TimeTable, VectorSignal};
 pub use spring::Spring;

@@ -9,13 +9,13 @@ use crate::ode::Failure;
 /// Vectors at given times (s). In between they change along straight lines; before the first time
 /// and after the last they are constant.
 #[derive(Debug, Clone)]
-pub(crate) struct Table {
+pub(crate) struct TimeTable {
     times: Vec<f64>,
     /// The components at each time.
     values: Vec<Vec<f64>>,
 }
 
-impl Table {
+impl TimeTable {
     pub(crate) fn new(times: Vec<f64>, values: Vec<Vec<f64>>) -> Self {
         Self { times, values }
     }
@@ -71,7 +71,7 @@ impl Table {
 pub(crate) enum Signal {
     Constant(f64),
     Function(Arc<dyn Fn(f64) -> f64 + Send + Sync>),
-    Table(Table),
+    TimeTable(TimeTable),
 }
 
 impl Signal {
@@ -83,7 +83,7 @@ impl Signal {
         match self {
             Self::Constant(value) => *value,
             Self::Function(function) => function(t),
-            Self::Table(table) => table.at(t, 0),
+            Self::TimeTable(table) => table.at(t, 0),
         }
     }
 
@@ -91,7 +91,7 @@ impl Signal {
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {
             Self::Constant(_) | Self::Function(_) => &[],
-            Self::Table(table) => &table.times,
+            Self::TimeTable(table) => &table.times,
         }
     }
 
@@ -100,7 +100,7 @@ impl Signal {
         match self {
             Self::Constant(value) => finite(input, &[*value]),
             Self::Function(_) => Ok(()),
-            Self::Table(table) => table.validate(input, 1),
+            Self::TimeTable(table) => table.validate(input, 1),
         }
     }
 }
@@ -110,7 +110,7 @@ impl fmt::Debug for Signal {
         match self {
             Self::Constant(value) => write!(f, "{value}"),
             Self::Function(_) => f.write_str("function of time"),
-            Self::Table(table) => table.fmt(f),
+            Self::TimeTable(table) => table.fmt(f),
         }
     }
 }
@@ -137,7 +137,7 @@ type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
 #[derive(Clone)]
 pub(crate) enum VectorSignal {
     Function { dimension: usize, write: Arc<WriteVector> },
-    Table(Table),
+    TimeTable(TimeTable),
 }
 
 impl VectorSignal {
@@ -152,7 +152,7 @@ impl VectorSignal {
     pub(super) fn at(&self, t: f64, vector: &mut [f64]) {
         match self {
             Self::Function { write, .. } => write(t, vector),
-            Self::Table(table) => {
+            Self::TimeTable(table) => {
                 vector.iter_mut().enumerate().for_each(|(i, x)| *x = table.at(t, i));
             }
         }
@@ -162,7 +162,7 @@ impl VectorSignal {
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {
             Self::Function { .. } => &[],
-            Self::Table(table) => &table.times,
+            Self::TimeTable(table) => &table.times,
         }
     }
 
@@ -175,7 +175,7 @@ impl VectorSignal {
                 format!("it must give {needed} component(s) (N)"),
             )),
             Self::Function { .. } => Ok(()),
-            Self::Table(table) => table.validate(input, needed),
+            Self::TimeTable(table) => table.validate(input, needed),
         }
     }
 }
@@ -184,7 +184,7 @@ impl fmt::Debug for VectorSignal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Function { .. } => f.write_str("function of time"),
-            Self::Table(table) => table.fmt(f),
+            Self::TimeTable(table) => table.fmt(f),
         }
     }
 }
@@ -195,8 +195,10 @@ mod tests {
 
     #[test]
     fn tables_run_along_straight_lines() {
-        let table =
-            Table::new(vec![0.5, 1.0, 3.0], vec![vec![2.0, 0.0], vec![-1.0, 4.0], vec![0.0, 5.0]]);
+        let table = TimeTable::new(
+            vec![0.5, 1.0, 3.0],
+            vec![vec![2.0, 0.0], vec![-1.0, 4.0], vec![0.0, 5.0]],
+        );
         table.validate("f", 2).unwrap();
         let expected = |t: f64| match t {
             t if t <= 0.5 => [2.0, 0.0],
@@ -204,7 +206,7 @@ mod tests {
             t if t <= 3.0 => [-1.0 + 0.5 * (t - 1.0), 4.0 + 0.5 * (t - 1.0)],
             _ => [0.0, 5.0],
         };
-        let signal = VectorSignal::Table(table);
+        let signal = VectorSignal::TimeTable(table);
         for k in 0..=35 {
             let (t, mut found) = (0.1 * f64::from(k), [f64::NAN; 2]);
             signal.at(t, &mut found);
@@ -213,7 +215,7 @@ mod tests {
             }
         }
         assert_eq!(signal.breaks(), [0.5, 1.0, 3.0]);
-        let ramp = Signal::Table(Table::of_numbers(vec![0.0, 0.1], vec![0.0, -1.0]));
+        let ramp = Signal::TimeTable(TimeTable::of_numbers(vec![0.0, 0.1], vec![0.0, -1.0]));
         assert_eq!([-1.0, 0.0, 0.025, 0.1, 2.0].map(|t| ramp.at(t)), [0.0, 0.0, -0.25, -1.0, -1.0]);
     }
 }

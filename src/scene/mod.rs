@@ -9,7 +9,7 @@ use std::sync::Arc;
 pub use phase::Phase;
 
 use crate::body::Body;
-use crate::constraint::{Row, Start, rows, tell};
+use crate::constraint::{PhaseStart, Row, prescribe, rows};
 use crate::external::{Chamber, Contact, Obstacle, Spring};
 use crate::force::{Force, Forces, NodalForces};
 use crate::input::{InputError, finite};
@@ -249,9 +249,9 @@ impl Scene {
         }
         let (mut time, mut u) = (0.0, self.start[0].clone());
         let forces = self.phases.iter().map(|phase| {
-            let rows = self.rows(phase, &Start { time, u: &u })?;
+            let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
             time = phase.until;
-            tell(&rows, time, &mut u);
+            prescribe(&rows, time, &mut u);
             self.forces_in(phase)
         });
         forces.collect()
@@ -263,7 +263,7 @@ impl Scene {
     }
 
     /// The rows of the constraints of a phase.
-    pub(crate) fn rows(&self, phase: &Phase, start: &Start) -> Result<Vec<Row>, InputError> {
+    pub(crate) fn rows(&self, phase: &Phase, start: &PhaseStart) -> Result<Vec<Row>, InputError> {
         rows(&phase.constraints, self.body.mesh(), &phase.name, start)
     }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
-use crate::external::{Obstacle, Signal, Table, VectorSignal};
+use crate::external::{Obstacle, Signal, TimeTable, VectorSignal};
 use crate::input::InputError;
 use crate::mesh::Selection;
 
@@ -153,8 +153,8 @@ impl Phase {
         times: impl Into<Vec<f64>>,
         forces: impl IntoIterator<Item: Into<Vec<f64>>>,
     ) -> Self {
-        let table = Table::new(times.into(), forces.into_iter().map(Into::into).collect());
-        self.loads.push((nodes.into(), Load::Varying(VectorSignal::Table(table))));
+        let table = TimeTable::new(times.into(), forces.into_iter().map(Into::into).collect());
+        self.loads.push((nodes.into(), Load::Varying(VectorSignal::TimeTable(table))));
         self
     }
 
@@ -185,8 +185,8 @@ impl Phase {
         times: impl Into<Vec<f64>>,
         forces: impl Into<Vec<f64>>,
     ) -> Self {
-        let table = Table::of_numbers(times.into(), forces.into());
-        self.actuated(springs, Signal::Table(table))
+        let table = TimeTable::of_numbers(times.into(), forces.into());
+        self.actuated(springs, Signal::TimeTable(table))
     }
 
     /// A constant pressure (Pa) in a chamber; a positive one enlarges it. Pressures in the same
@@ -212,7 +212,10 @@ impl Phase {
         times: impl Into<Vec<f64>>,
         values: impl Into<Vec<f64>>,
     ) -> Self {
-        self.pressurized(chamber, Signal::Table(Table::of_numbers(times.into(), values.into())))
+        self.pressurized(
+            chamber,
+            Signal::TimeTable(TimeTable::of_numbers(times.into(), values.into())),
+        )
     }
 
     /// No obstacle acts in this phase.

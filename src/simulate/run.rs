@@ -10,7 +10,7 @@ use super::progress::{Observer, Progress};
 use super::records::{self, energy, project};
 use super::sampling::Sampling;
 use super::stepper::{self, Failed, Stepper};
-use crate::constraint::{Start, tell};
+use crate::constraint::{PhaseStart, prescribe};
 use crate::error::Error;
 use crate::force::Forces;
 use crate::ode::Failure;
@@ -63,14 +63,14 @@ impl<'a> Run<'a> {
         let mut forces = forces.into_iter();
         let mut equations = |phase: &Phase, time: f64, u: &[f64]| {
             let forces = forces.next().unwrap_or_default();
-            scene.system(&model, phase, forces, &Start { time, u }, solver.alpha)
+            scene.system(&model, phase, forces, &PhaseStart { time, u }, solver.alpha)
         };
         let mut system = equations(scene.first_phase()?, 0.0, scene.start()[0])?;
         let mut run = Self::new(scene, solver, clock, &mut system)?;
         for (number, phase) in scene.phases().iter().enumerate() {
             if number > 0 {
                 let mut u = run.state[..n].to_vec();
-                tell(system.rows(), run.time, &mut u);
+                prescribe(system.rows(), run.time, &mut u);
                 let next = equations(phase, run.time, &u)?;
                 // an obstacle that begins or ceases to act with nodes inside it changes what is stored:
                 // that comes from outside
@@ -236,7 +236,7 @@ impl<'a> Run<'a> {
             };
             if self.steps.is_multiple_of(WATCH) || self.time >= leg.stop {
                 let energy = energy(stepper.system(), self.time, &self.state);
-                self.trajectory.watch(&energy);
+                self.trajectory.note_energy(&energy);
                 if plan.is_on_trial() {
                     let created = self.created(energy.balance());
                     match created.and_then(|trouble| plan.instead(&trouble)) {
@@ -245,7 +245,7 @@ impl<'a> Run<'a> {
                     }
                 }
             }
-            self.tell(leg.number, step, stepper.last_order(), observer)?;
+            self.report_progress(leg.number, step, stepper.last_order(), observer)?;
             if is_event {
                 return Ok(Ending::Event);
             }
@@ -330,7 +330,13 @@ impl<'a> Run<'a> {
     }
 
     /// Tells how far the run has come.
-    fn tell(&self, phase: usize, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
+    fn report_progress(
+        &self,
+        phase: usize,
+        step: f64,
+        order: u32,
+        observer: Observer,
+    ) -> Result<(), Failed> {
         let Self { time, steps, .. } = *self;
         let name = &self.scene.phases()[phase].name;
         let answer = observer(&Progress { time, phase, name, steps, step, order });

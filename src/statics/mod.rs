@@ -22,7 +22,7 @@ use std::time::Instant;
 use newton::{Search, Stuck};
 pub use options::Statics;
 
-use crate::constraint::Start;
+use crate::constraint::PhaseStart;
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
 use crate::input::InputError;
@@ -56,7 +56,7 @@ impl Scene {
         let mut forces = self.forces()?;
         let model = self.model(&forces);
         let phase = self.first_phase()?;
-        let start = Start { time: 0.0, u: &vec![0.0; self.body().dofs()] };
+        let start = PhaseStart { time: 0.0, u: &vec![0.0; self.body().dofs()] };
         let system = self.system(&model, phase, forces.swap_remove(0), &start, 0.0)?;
         let free =
             rigid::free_motions(self.body().mesh(), self.body().inertia().pattern(), system.rows());

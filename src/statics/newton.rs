@@ -237,7 +237,7 @@ fn reason(failure: Failure) -> String {
 mod tests {
     use super::*;
     use crate::body::{Body, Strain};
-    use crate::constraint::Start;
+    use crate::constraint::PhaseStart;
     use crate::mesh::Mesh;
     use crate::samples::BEAM_MATERIAL;
     use crate::scene::{Phase, Scene};
@@ -250,7 +250,7 @@ mod tests {
         let body = Body::new(mesh, BEAM_MATERIAL).area(2e-4).strain(Strain::Green).build();
         let phase = Phase::until(1.0).hold("left").load("right", [1.0]);
         let scene = Scene::new(body.unwrap()).phase(phase.clone());
-        let start = Start { time: 0.0, u: &[0.0; 3] };
+        let start = PhaseStart { time: 0.0, u: &[0.0; 3] };
         let mut forces = scene.forces().unwrap();
         let model = scene.model(&forces);
         let system = scene.system(&model, &phase, forces.remove(0), &start, 0.0).unwrap();

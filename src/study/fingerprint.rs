@@ -3,7 +3,7 @@
 use std::fmt::{self, Write};
 use std::hash::{DefaultHasher, Hasher};
 
-use crate::constraint::Start;
+use crate::constraint::PhaseStart;
 use crate::error::Error;
 use crate::ode::Ode;
 use crate::scene::Scene;
@@ -48,7 +48,7 @@ fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Er
     let model = scene.model(&forces);
     let mut time = 0.0;
     for (phase, forces) in scene.phases().iter().zip(forces) {
-        let start = Start { time, u: &state[..scene.body().dofs()] };
+        let start = PhaseStart { time, u: &state[..scene.body().dofs()] };
         let mut system = scene.system(&model, phase, forces, &start, 1.0)?;
         for k in 0..=4 {
             let t = time + 0.25 * f64::from(k) * (phase.end() - time);

@@ -291,7 +291,7 @@ fn is_load(force: &dyn Force) -> bool {
 mod tests {
     use super::*;
     use crate::body::{Body, Strain};
-    use crate::constraint::Start;
+    use crate::constraint::PhaseStart;
     use crate::external::{Chamber, Obstacle, Spring};
     use crate::mesh::{Cells, Mesh};
     use crate::model::Model;
@@ -402,7 +402,7 @@ mod tests {
             .phase(phase.clone());
         let forces = scene.forces().unwrap();
         let (model, start) = (scene.model(&forces), vec![0.0; scene.body().dofs()]);
-        let start = Start { time: 0.0, u: &start };
+        let start = PhaseStart { time: 0.0, u: &start };
         let forces = forces.into_iter().next().unwrap();
         let system = scene.system(&model, &phase, forces, &start, 0.0).unwrap();
         AtRest::new(system, 1.0, "test").unwrap()

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{Spectrum, System};
-use crate::constraint::Start;
+use crate::constraint::PhaseStart;
 use crate::force::Forces;
 use crate::input::InputError;
 use crate::model::Model;
@@ -22,7 +22,7 @@ impl Scene {
         model: &Arc<Model>,
         phase: &Phase,
         forces: Forces,
-        start: &Start,
+        start: &PhaseStart,
         alpha: f64,
     ) -> Result<System, InputError> {
         System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
@@ -46,7 +46,7 @@ impl Scene {
         let rest = vec![0.0; self.body().dofs()];
         let mut time = 0.0;
         let spectra = self.phases().iter().zip(forces).map(|(phase, forces)| {
-            let start = Start { time, u: &rest };
+            let start = PhaseStart { time, u: &rest };
             let mut system = self.system(&model, phase, forces, &start, 0.0)?;
             let spectrum = system.spectrum(time, &rest, &rest);
             time = phase.until;

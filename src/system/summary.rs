@@ -1,7 +1,7 @@
 //! What a scene contains, phase by phase.
 
 use super::Spectrum;
-use crate::constraint::Start;
+use crate::constraint::PhaseStart;
 use crate::external::Obstacle;
 use crate::input::InputError;
 use crate::scene::{Phase, Scene};
@@ -48,7 +48,7 @@ impl Scene {
         start: f64,
         spectrum: Spectrum,
     ) -> Result<PhaseSummary, InputError> {
-        let rows = self.rows(phase, &Start { time: start, u: self.start()[0] })?;
+        let rows = self.rows(phase, &PhaseStart { time: start, u: self.start()[0] })?;
         let mut loaded_nodes = 0;
         for (selection, _) in &phase.loads {
             loaded_nodes += self.body().mesh().select(selection)?.len();

@@ -4,7 +4,7 @@ use faer::Mat;
 use faer::prelude::Solve;
 
 use super::{DaeForm, Index, System};
-use crate::constraint::{Axis, Start};
+use crate::constraint::{Axis, PhaseStart};
 use crate::ode::{Dae, Ode};
 use crate::samples::SQUARE_MATERIAL;
 use crate::state::ENERGIES;
@@ -29,11 +29,11 @@ fn system() -> System {
         .obstacle(floor.stiffness(5e3).damping(20.0).friction(30.0))
         .phase(phase);
     let natural = vec![0.0; scene.body().dofs()];
-    let start = Start { time: 0.0, u: &natural };
+    let start = PhaseStart { time: 0.0, u: &natural };
     first_phase(&scene, &start).unwrap()
 }
 
-fn first_phase(scene: &Scene, start: &Start) -> Result<System, InputError> {
+fn first_phase(scene: &Scene, start: &PhaseStart) -> Result<System, InputError> {
     let mut forces = scene.forces()?;
     let model = scene.model(&forces);
     scene.system(&model, &scene.phases()[0], forces.remove(0), start, ALPHA)
@@ -250,7 +250,7 @@ fn a_row_that_follows_from_others_is_named() {
         .hold([1]);
     let scene = Scene::new(body).phase(phase);
     let natural = vec![0.0; 32];
-    let start = Start { time: 0.0, u: &natural };
+    let start = PhaseStart { time: 0.0, u: &natural };
     let Err(error) = first_phase(&scene, &start) else { panic!("accepted") };
     let message = error.to_string();
     assert!(message.contains("pull") && message.contains("node 6 x + node 7 x"), "{message}");

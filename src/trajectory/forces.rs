@@ -1,7 +1,7 @@
 //! Forces that a sample does not carry but that follow from it.
 
 use super::{Sample, Trajectory};
-use crate::constraint::Start;
+use crate::constraint::PhaseStart;
 use crate::force::{Force, NodalForces};
 use crate::input::InputError;
 use crate::mesh::Selection;
@@ -37,7 +37,7 @@ impl Trajectory {
         let mut forces = vec![0.0; self.body().dofs()];
         // where the rows start from tells what they prescribe, not which components they tie
         let before = self.scene.phases()[..sample.phase].last();
-        let start = Start { time: before.map_or(0.0, Phase::end), u: &forces };
+        let start = PhaseStart { time: before.map_or(0.0, Phase::end), u: &forces };
         let rows = self.scene.rows(phase, &start)?;
         if rows.len() != sample.multipliers.len() {
             return Err(foreign(sample));

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use super::*;
 use crate::central_difference::{CentralDifference, Integrator, Options};
-use crate::constraint::Start;
+use crate::constraint::PhaseStart;
 use crate::vector::dot;
 use crate::{
     Axis, Body, Cells, Inertia, Material, Mesh, Method, Obstacle, Phase, Prescribed, Sampling,
@@ -16,7 +16,7 @@ const ALPHA: f64 = 1e12;
 
 fn form(scene: &Scene) -> SecondOrderForm {
     let natural = vec![0.0; scene.body().dofs()];
-    let start = Start { time: 0.0, u: &natural };
+    let start = PhaseStart { time: 0.0, u: &natural };
     let forces = scene.forces().unwrap();
     let model = scene.model(&forces);
     let of_phase = forces.into_iter().next().unwrap();
