@@ -67,7 +67,7 @@ pub use constraint::{Axis, Prescribed};
 pub use equations::Equations;
 pub use equilibrium::{Equilibrium, NoEquilibrium, Stability};
 pub use error::Error;
-pub use external::{Chamber, Obstacle, Shape, Spring};
+pub use external::*;
 pub use input::InputError;
 pub use integrate::Integrator;
 pub use material::{Lame, Material, Plane};
