@@ -175,7 +175,7 @@ fn cvode_options(settings: &Settings, tolerances: Vec<f64>) -> CvodeOptions {
 }
 
 /// Steps after which ARKODE has a new Newton matrix, with new tangents, in any case: few enough that
-/// iterations converge in one or two, which pays on all the documents' scenes.
+/// iterations converge in one or two, which pays on all Hirai's scenes.
 const STEPS_BETWEEN_SETUPS: u32 = 2;
 
 fn arkode_options(

@@ -5,6 +5,9 @@
 //! a Cholesky solve with the free part of X. General rows, few of them, are met by a Schur
 //! complement as large as their number.
 
+#[cfg(test)]
+mod tests;
+
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::{
     LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,

@@ -1,0 +1,88 @@
+//! Jacobians against difference quotients.
+
+use faer::Mat;
+
+use super::*;
+
+/// The dense Jacobian, the sparse one and central difference quotients agree at `y`.
+fn check_ode(mut system: impl Ode, pattern: &Pattern, y: &[f64]) {
+    let n = y.len();
+    let (mut dense, mut values) = (Mat::zeros(n, n), vec![0.0; pattern.entry_count()]);
+    system.dense_jacobian(0.0, y, &[], dense.as_mut()).unwrap();
+    system.sparse_jacobian(0.0, y, &[], &mut values).unwrap();
+    let rhs = |y: &[f64]| {
+        let mut ydot = vec![0.0; n];
+        system.rhs(0.0, y, &mut ydot).unwrap();
+        ydot
+    };
+    check_columns(n, &dense, pattern, &values, rhs, |j, h| {
+        let mut moved = y.to_vec();
+        moved[j] += h * y[j].abs();
+        (moved, 2.0 * h * y[j].abs())
+    });
+}
+
+/// `shifted(j, h)` moves unknown j by h, and returns the distance between the moves by h and -h.
+fn check_columns(
+    n: usize,
+    dense: &Mat<f64>,
+    pattern: &Pattern,
+    values: &[f64],
+    mut function: impl FnMut(&[f64]) -> Vec<f64>,
+    shifted: impl Fn(usize, f64) -> (Vec<f64>, f64),
+) {
+    for j in 0..n {
+        let (forth, distance) = shifted(j, 1e-4);
+        let (back, _) = shifted(j, -1e-4);
+        let (forth, back) = (function(&forth), function(&back));
+        for i in 0..n {
+            // All right-hand sides are at most cubic: 1e-8 is left of the truncation.
+            let quotient = (forth[i] - back[i]) / distance;
+            let error = (dense[(i, j)] - quotient).abs();
+            assert!(error <= 1e-6 * (1.0 + quotient.abs()), "({i}, {j}): {quotient}");
+            let sparse = pattern.position(i, j).map_or(0.0, |k| values[k]);
+            assert_eq!(sparse, dense[(i, j)], "({i}, {j})");
+        }
+    }
+}
+
+#[test]
+fn jacobians_are_derivatives() {
+    let hires = Hires::new();
+    let y = [0.7, 0.3, 0.2, 0.5, 0.9, 0.4, 0.1, 0.6];
+    check_ode(hires.clone(), hires.pattern(), &y);
+    let robertson = Robertson::new();
+    check_ode(robertson.clone(), robertson.pattern(), &[0.7, 3e-2, 0.3]);
+    let oscillator = VanDerPol::new();
+    check_ode(oscillator.clone(), oscillator.pattern(), &[1.3, -0.7]);
+}
+
+#[test]
+fn jacobian_of_the_dae_is_a_derivative() {
+    let (mut system, cj, y, n) = (Robertson::new(), 7.0, [0.7, 3e-2, 0.3], 3);
+    let pattern = system.pattern().clone();
+    let (mut dense, mut values) = (Mat::zeros(n, n), vec![0.0; pattern.entry_count()]);
+    Dae::dense_jacobian(&mut system, 0.0, cj, &y, &[], dense.as_mut()).unwrap();
+    Dae::sparse_jacobian(&mut system, 0.0, cj, &y, &[], &mut values).unwrap();
+    // A move of y by d goes with a move of y' by cj d.
+    let residual = |moved: &[f64]| {
+        let yp: Vec<f64> = (0..n).map(|i| cj * (moved[i] - y[i])).collect();
+        let mut residual = vec![0.0; n];
+        system.residual(0.0, moved, &yp, &mut residual).unwrap();
+        residual
+    };
+    check_columns(n, &dense, &pattern, &values, residual, |j, h| {
+        let mut moved = y.to_vec();
+        moved[j] += h * y[j];
+        (moved, 2.0 * h * y[j])
+    });
+}
+
+#[test]
+fn references_satisfy_what_is_conserved() {
+    let hires = Hires::REFERENCE.y;
+    assert!((hires[6] + hires[7] - Hires::Y0[7]).abs() < 1e-15);
+    for reference in [Robertson::REFERENCE, Robertson::LATE_REFERENCE] {
+        assert!((reference.y.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+    }
+}
