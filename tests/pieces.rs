@@ -80,17 +80,17 @@ fn equilibria_are_those_of_the_pieces_alone() {
     let held = || Phase::until(1.0).hold([1]).hold([10]).hold("bob").load([6], [0.3]);
     let equilibrium = scene(held()).equilibrium(&Statics::default()).unwrap();
     let u = equilibrium.displacements();
-    for node in 0..6 {
+    for (node, u) in u[..6].iter().enumerate() {
         // F x/(E A) + rho g (L x - x^2/2)/E
         let x = CELL * node as f64;
         let exact = 0.3 * x / STIFFNESS + 9.8e3 * (0.1 * x - 0.5 * x * x) / 5e4;
-        assert!((u[node] - exact).abs() < 3e-17, "node {}: {}", node + 1, u[node]);
+        assert!((u - exact).abs() < 3e-17, "node {}: {u}", node + 1);
     }
-    for node in 6..10 {
+    for (node, u) in u[..10].iter().enumerate().skip(6) {
         // standing on its end: compressed towards it
         let x = CELL * (9 - node) as f64;
         let exact = 9.8e3 * (0.06 * x - 0.5 * x * x) / 5e4;
-        assert!((u[node] - exact).abs() < 1e-15, "node {}: {}", node + 1, u[node]);
+        assert!((u - exact).abs() < 1e-15, "node {}: {u}", node + 1);
     }
     assert_eq!(u[10], 0.0);
     // supports carry load and weights, each its own

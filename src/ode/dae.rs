@@ -7,7 +7,7 @@ use super::failure::{Failure, missing};
 
 /// F(t, y, y') = 0.
 ///
-/// Only [`residual`](Self::residual) is required, as in [`Ode`].
+/// Only [`residual`](Self::residual) is required, as in [`Ode`](super::Ode).
 pub trait Dae {
     /// Writes F(t, y, y') into `residual`.
     fn residual(

@@ -11,7 +11,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InitialCondition {
     /// The algebraic unknowns and the derivatives of the differential ones; differential unknowns
-    /// stay (`IDA_YA_YDP_INIT`). Needs [`IdaOptions::differential`].
+    /// stay (`IDA_YA_YDP_INIT`). Needs [`IdaOptions::differential`](super::IdaOptions::differential).
     Algebraic,
     /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`).
     State,

@@ -98,7 +98,7 @@ fn all_at_once(factor: f64) -> AtRest {
     let disc = Obstacle::disc([0.1, 0.38], 0.1).velocity([0.01 * factor, -0.03 * factor]);
     let phase = Phase::until(1.0)
         .hold("bottom")
-        .load([16], [2.0 * factor, -1.0 * factor])
+        .load([16], [2.0 * factor, -factor])
         .load_total("right", [0.0, 3.0 * factor])
         .load_with("left", move |t| [factor * t, 0.0])
         .load_table("top", [0.0, 2.0], [[0.0, 0.0], [4.0 * factor, 0.0]])

@@ -4,7 +4,7 @@ use faer::Mat;
 use faer::prelude::Solve;
 
 use super::{Coupling, Reduced, Source, nodal_multipliers};
-use crate::constraint::{Axis, Row, Start};
+use crate::constraint::{Axis, PhaseStart, Row};
 use crate::samples::SQUARE_MATERIAL;
 use crate::{Body, Cells, Inertia, Mesh, Phase, Scene};
 
@@ -41,7 +41,8 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let model = scene.model(&forces);
     let (body, n) = (scene.body(), scene.body().dofs());
     let natural = vec![0.0; n];
-    let rows: Vec<Row> = scene.rows(&scene.phases()[0], &Start { time: 0.0, u: &natural }).unwrap();
+    let rows: Vec<Row> =
+        scene.rows(&scene.phases()[0], &PhaseStart { time: 0.0, u: &natural }).unwrap();
     let mut reduced = Reduced::new(&model, &rows, coupling);
     let is_definite = reduced
         .factorize(|Source { entry, transposed, axes }| {
@@ -128,7 +129,7 @@ fn rows_that_follow_from_others_are_found() {
         let forces = scene.forces().unwrap();
         let model = scene.model(&forces);
         let natural = vec![0.0; scene.body().dofs()];
-        let start = Start { time: 0.0, u: &natural };
+        let start = PhaseStart { time: 0.0, u: &natural };
         let rows = scene.rows(&scene.phases()[0], &start).unwrap();
         let mut reduced = Reduced::new(&model, &rows, Coupling::SameAxis);
         assert!(reduced.factorize(|source| model.inertia.values[source.entry]).is_err());
