@@ -5,7 +5,7 @@ use divan::counter::ItemsCount;
 use pliant::body::GreenPolynomial;
 use pliant::force::NodalForces;
 use pliant::samples::SQUARE_MATERIAL;
-use pliant::{Body, Cells, Mesh};
+use pliant::{Body, Cells, Mesh, Strain};
 
 fn main() {
     divan::main();
@@ -16,7 +16,7 @@ const NODES: [usize; 6] = [4, 10, 32, 100, 316, 708];
 
 fn body(nodes: usize) -> Body {
     let mesh = Mesh::rectangle([0.3, 0.3], [nodes, nodes], Cells::Triangles).unwrap();
-    Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap()
+    Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green).build().unwrap()
 }
 
 /// A shear with some waves, far from turning cells inside out.

@@ -306,7 +306,7 @@ fn static_tells_what_it_cannot_hold() {
     let loose = bar(1.0).replace("hold = [{ nodes = \"left\" }]", "");
     let output = place.run(&["static", place.scene(&loose)]);
     assert_eq!(output.status.code(), Some(2));
-    says(&stderr(&output), &["pliant: phase `pull`", "hold more of its nodes"]);
+    says(&stderr(&output), &["pliant: constraints of phase \"pull\"", "hold more of its nodes"]);
     assert_eq!(place.files("."), ["scene.toml"]);
 
     // pressed together by far more than it can bear

@@ -2,7 +2,7 @@
 
 use pliant::body::{Coefficients, GreenPolynomial};
 use pliant::force::NodalForces;
-use pliant::{Body, CellSelection, Cells, Material, Mesh, Plane};
+use pliant::{Body, CellSelection, Cells, Material, Mesh, Plane, Strain};
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 
@@ -107,6 +107,7 @@ fn forces_are_those_of_the_sum_over_cells() {
             let stiff = Material { young: 7e6, poisson: 0.3, ..RUBBER };
             let mut body = Body::new(mesh.clone(), RUBBER)
                 .thickness(0.01)
+                .strain(Strain::Green)
                 .plane(plane)
                 .region(CellSelection::Numbers(vec![2, 3]), stiff);
             if with_point {

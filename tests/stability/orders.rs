@@ -56,17 +56,17 @@ fn stability_limit_detection_does_not_replace_the_cap() {
     assert_eq!((with.0, with.2), (without.0, 0));
 }
 
-/// What a scene's solver asks for reaches CVODE, which finds something to do where damping is next to
-/// none, and nothing where there is more.
+/// The setting reaches CVODE: orders that are unstable where damping is next to none cost steps, which
+/// the detection saves; where there is more damping it changes nothing.
 #[test]
 fn scenes_are_integrated_with_the_detection() {
     let steps = |ratio: f64, stability_limit_detection: bool| {
-        let (method, rtol) = (Method::CvodeBdf, 1e-4);
+        let (method, rtol) = (Method::CvodeBdf, 1e-5);
         let solver = Settings { method, rtol, stability_limit_detection, ..Settings::default() };
-        let scene = beam([22, 3], ratio, 0.2).unwrap();
+        let scene = beam([22, 3], ratio, 1.0).unwrap();
         scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps()
     };
     let [light, strong] = [1e-4, 0.03].map(|ratio| [true, false].map(|on| steps(ratio, on)));
     println!("{light:?} {strong:?}");
-    assert!(light[0] != light[1] && strong[0] == strong[1], "{light:?} {strong:?}");
+    assert!(10 * light[0] < 9 * light[1] && strong[0] == strong[1], "{light:?} {strong:?}");
 }
