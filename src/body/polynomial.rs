@@ -44,7 +44,8 @@ pub enum Coefficients {
 }
 
 /// Green forces of a body of triangles by direct computation: a second way to the forces that
-/// [`Body::add_elastic_forces`] sums up cell by cell, equal to it but for round-off.
+/// [`Body::add_elastic_forces`] of a body with Green strain sums up cell by cell, equal to it but for
+/// round-off.
 ///
 /// It does not notice cells that are inverted.
 ///

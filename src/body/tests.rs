@@ -184,6 +184,21 @@ fn at_rest_the_tangents_are_k_and_b() {
     }
 }
 
+/// Two ways to linear forces: element by element, and by the assembled K.
+#[test]
+fn elastic_forces_of_cauchy_bodies_are_k_u() {
+    for (name, body) in bodies(Strain::Cauchy) {
+        let u = noise(body.dofs(), 0.05, 4.0);
+        let (mut forces, mut by_k) = (NodalForces::zeros(body.dofs()), vec![0.0; body.dofs()]);
+        body.add_elastic_forces(&u, &mut forces).unwrap();
+        body.stiffness().add_product(-1.0, &u, &mut by_k);
+        let scale = by_k.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+        let apart = by_k.iter().zip(forces.conservative.iter()).map(|(a, b)| (a - b).abs());
+        // round-off of the largest force
+        assert!(apart.fold(0.0, f64::max) < 1e-13 * scale, "{name}");
+    }
+}
+
 /// Slides, "Calculating based on Cauchy strain": a body turned by theta is strained by
 /// cos(theta) - 1 along both axes; its stress is 2 (lambda + mu) (cos theta - 1).
 #[test]
