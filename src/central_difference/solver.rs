@@ -5,8 +5,8 @@ use std::mem::{swap, take};
 use super::control::Control;
 use super::stability::Stability;
 use crate::integrate::{
-    Callback, Cause, Error, ExplicitOptions, FORWARD_ONLY, IntegrationError, Integrator, Reached,
-    Statistics, check_finite, check_length, check_start, check_time,
+    Callback, Cause, Error, ExplicitOptions, IntegrationError, Integrator, Reached, Statistics,
+    check_finite, check_length, check_start, check_stop_time, check_target, check_time,
 };
 use crate::ode::{Failure, SecondOrder};
 
@@ -237,11 +237,7 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
     }
 
     fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
-        check_time("target time", t)?;
-        if t < self.t_before {
-            let mend = format!("the last step began at {}: {FORWARD_ONLY}", self.t_before);
-            return Err(Error::input("target time", t, mend));
-        }
+        check_target(t, "the last step began at", self.t_before)?;
         let first = self.statistics.steps;
         while self.t < t && self.stop_time != Some(self.t) {
             let steps = self.statistics.steps - first;
@@ -263,13 +259,9 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
     }
 
     fn step(&mut self, towards: f64) -> Result<Reached, Error> {
-        check_time("target time", towards)?;
+        check_target(towards, "it lies behind", self.t())?;
         if towards == self.t() {
             return Ok(Reached::Time);
-        }
-        if towards < self.t() {
-            let mend = format!("it lies behind {}: {FORWARD_ONLY}", self.t());
-            return Err(Error::input("target time", towards, mend));
         }
         if self.rest.take().is_none() {
             self.advance(towards)?;
@@ -300,11 +292,7 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
     /// Steps up to the stop time are equal, unless the motion asks for others.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(stop) = t {
-            check_time("stop time", stop)?;
-            if stop < self.t || stop == self.t() {
-                let mend = format!("the steps have reached {}: {FORWARD_ONLY}", self.t);
-                return Err(Error::input("stop time", stop, mend));
-            }
+            check_stop_time(stop, self.t, self.t())?;
         }
         self.stop_time = t;
         self.control.set_end(self.t, t.unwrap_or(f64::INFINITY));

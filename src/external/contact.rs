@@ -11,7 +11,7 @@ use crate::force::{Force, NodalForces, Reservoir, Step};
 use crate::input::InputError;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
-use crate::vector::dot;
+use crate::vector::{dot, norm};
 
 /// The forces of one obstacle on the boundary of a body.
 pub(crate) struct Contact {
@@ -151,7 +151,7 @@ impl Contact {
     /// Checks what a user's function has given.
     fn check(&self, t: f64, touch: &Touch) -> Result<(), Failure> {
         let Nearest { distance, normal, .. } = &touch.nearest;
-        let length = dot(normal, normal).sqrt();
+        let length = norm(normal);
         if !self.is_custom || distance.is_finite() && (length - 1.0).abs() < 1e-3 {
             return Ok(());
         }
@@ -288,7 +288,7 @@ impl Force for Contact {
 
     fn passage(&self, step: &Step, tolerance: f64, clearances: &mut [f64]) -> Option<f64> {
         let (d, [start, end]) = (self.dimension, step.times);
-        let reach = step.reach(d) + (end - start) * dot(&self.drift, &self.drift).sqrt();
+        let reach = step.reach(d) + (end - start) * norm(&self.drift);
         let mut first: Option<f64> = None;
         for (point, clearance) in self.points.iter().zip(clearances) {
             *clearance -= reach;

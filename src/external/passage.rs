@@ -8,7 +8,7 @@
 //! d_1; a convex one (that of a convex shape) also above its tangent plane at either end.
 
 use super::shape::{Kind, Shape};
-use crate::vector::dot;
+use crate::vector::{dot, norm};
 
 /// Halvings of a path after which the search ends.
 const HALVINGS: u32 = 10;
@@ -107,10 +107,6 @@ impl Search {
 
 fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] - b[i])
-}
-
-fn norm(x: &[f64; 3]) -> f64 {
-    dot(x, x).sqrt()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::input::{InputError, finite, positive};
-use crate::vector::dot;
+use crate::vector::{dot, norm};
 
 type Distance = dyn Fn(&[f64], &mut [f64]) -> f64 + Send + Sync;
 
@@ -55,7 +55,7 @@ impl Nearest {
     /// At a point `away` from its nearest point on a core (a centre, a line along `axis`).
     /// In the core itself, where all directions are alike, the first axis is taken for n.
     fn around(away: [f64; 3], axis: [f64; 3]) -> Self {
-        let distance = dot(&away, &away).sqrt();
+        let distance = norm(&away);
         if distance == 0.0 {
             return Self::flat(0.0, [1.0, 0.0, 0.0]);
         }
@@ -193,7 +193,7 @@ impl Shape {
             Kind::HalfPlane { point, normal } => {
                 vector("point", point)?;
                 vector("normal", normal)?;
-                let length = dot(normal, normal).sqrt();
+                let length = norm(normal);
                 if length == 0.0 {
                     let value = format!("{normal:?}");
                     return Err(InputError::new(input("normal"), value, "it must not be zero"));

@@ -6,7 +6,7 @@ use crate::input::{InputError, not_negative, positive};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
-use crate::vector::dot;
+use crate::vector::{dot, norm};
 
 /// A spring that is shorter than this fraction of its natural length after a step has collapsed:
 /// its direction, and with it the force, is about to flip.
@@ -122,7 +122,7 @@ impl Spring {
         for (i, x) in natural.iter_mut().take(mesh.dimension()).enumerate() {
             *x = mesh.position(nodes[1])[i] - mesh.position(nodes[0])[i];
         }
-        let distance = dot(&natural, &natural).sqrt();
+        let distance = norm(&natural);
         let length = match self.length {
             Some(length) => positive(&input("length"), length, "m")?,
             None => distance,
@@ -204,7 +204,7 @@ impl Line {
     fn length(&self, u: &[f64]) -> (f64, [f64; 3]) {
         let moved = self.difference(u);
         let along: [f64; 3] = std::array::from_fn(|i| self.natural[i] + moved[i]);
-        (dot(&along, &along).sqrt(), along)
+        (norm(&along), along)
     }
 
     fn collapsed(&self, t: f64, how: &str) -> Failure {

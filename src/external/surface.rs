@@ -2,7 +2,7 @@
 
 use crate::body::Body;
 use crate::mesh::FaceKind;
-use crate::vector::{cross, dot};
+use crate::vector::{cross, norm};
 
 /// A point that moves with some nodes.
 pub(super) struct SurfacePoint {
@@ -98,14 +98,13 @@ pub(super) fn pieces(face: FaceKind) -> (&'static [&'static [usize]], f64) {
 
 /// Length of a segment, area of a triangle, 1 of a point.
 fn measure(body: &Body, corners: &[usize]) -> f64 {
-    let length = |x: [f64; 3]| dot(&x, &x).sqrt();
     let edge = |a: usize, b: usize| -> [f64; 3] {
         let (a, b) = (body.mesh().position(a), body.mesh().position(b));
         std::array::from_fn(|i| if i < a.len() { b[i] - a[i] } else { 0.0 })
     };
     match *corners {
-        [a, b] => length(edge(a, b)),
-        [a, b, c] => 0.5 * length(cross(&edge(a, b), &edge(a, c))),
+        [a, b] => norm(&edge(a, b)),
+        [a, b, c] => 0.5 * norm(&cross(&edge(a, b), &edge(a, c))),
         _ => 1.0,
     }
 }

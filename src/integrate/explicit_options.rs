@@ -1,12 +1,35 @@
 //! Options of explicit methods.
 
-use super::options::{StepOptions, step_options};
+use super::options::{StepOptions, check_time, step_options};
 use super::tolerances::{AbsoluteTolerance, Tolerances};
 use crate::input::InputError;
 
 /// What explicit methods say to whoever would go back.
-pub(crate) const FORWARD_ONLY: &str =
+const FORWARD_ONLY: &str =
     "integration goes forward only; to go back, integrate dy/ds = -f(-s, y) with s = -t";
+
+/// Checks that a target time `t` is finite and not before `earliest`, which is what `limit` says.
+pub(crate) fn check_target(t: f64, limit: &str, earliest: f64) -> Result<(), InputError> {
+    const INPUT: &str = "target time";
+    check_time(INPUT, t)?;
+    if t < earliest {
+        let mend = format!("{limit} {earliest}: {FORWARD_ONLY}");
+        return Err(InputError::new(INPUT, t, mend));
+    }
+    Ok(())
+}
+
+/// Checks that a stop time is finite and ahead, where the steps have reached `reached` and the state in hand
+/// is that of the time `t`.
+pub(crate) fn check_stop_time(stop: f64, reached: f64, t: f64) -> Result<(), InputError> {
+    const INPUT: &str = "stop time";
+    check_time(INPUT, stop)?;
+    if stop < reached || stop == t {
+        let mend = format!("the steps have reached {reached}: {FORWARD_ONLY}");
+        return Err(InputError::new(INPUT, stop, mend));
+    }
+    Ok(())
+}
 
 /// Tolerances and limits of an explicit method: [`DormandPrince`](crate::rk::DormandPrince) or
 /// [`CentralDifference`](crate::central_difference::CentralDifference), which export it as `Options`.

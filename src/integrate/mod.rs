@@ -13,7 +13,7 @@ mod tolerances;
 
 pub use error::{Callback, Cause, Error, IntegrationError};
 pub use explicit_options::ExplicitOptions;
-pub(crate) use explicit_options::FORWARD_ONLY;
+pub(crate) use explicit_options::{check_stop_time, check_target};
 pub use integrator::{Integrator, Reached};
 pub(crate) use options::{
     StepOptions, check_count, check_finite, check_length, check_start, check_time, step_options,

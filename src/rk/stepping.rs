@@ -6,8 +6,8 @@ use super::control::{Controller, StabilityMonitor};
 use super::dormand_prince::{DormandPrince, ORDER};
 use super::stages::stopped;
 use crate::integrate::{
-    Cause, Error, FORWARD_ONLY, Integrator, Reached, Statistics, check_finite, check_length,
-    check_time,
+    Cause, Error, Integrator, Reached, Statistics, check_finite, check_length, check_stop_time,
+    check_target, check_time,
 };
 use crate::ode::Ode;
 
@@ -92,13 +92,9 @@ impl<S: Ode> Integrator for DormandPrince<S> {
     }
 
     fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
-        check_time("target time", t)?;
+        check_target(t, "the last step began at", self.t_old)?;
         if t == self.t() {
             return Ok(Reached::Time);
-        }
-        if t < self.t_old {
-            let mend = format!("the last step began at {}: {FORWARD_ONLY}", self.t_old);
-            return Err(Error::input("target time", t, mend));
         }
         self.pass_root()?;
         let first = self.statistics.steps;
@@ -121,13 +117,9 @@ impl<S: Ode> Integrator for DormandPrince<S> {
     }
 
     fn step(&mut self, towards: f64) -> Result<Reached, Error> {
-        check_time("target time", towards)?;
+        check_target(towards, "it lies behind", self.t())?;
         if towards == self.t() {
             return Ok(Reached::Time);
-        }
-        if towards < self.t() {
-            let mend = format!("it lies behind {}: {FORWARD_ONLY}", self.t());
-            return Err(Error::input("target time", towards, mend));
         }
         self.pass_root()?;
         if self.rest.is_none() {
@@ -165,11 +157,7 @@ impl<S: Ode> Integrator for DormandPrince<S> {
 
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(stop) = t {
-            check_time("stop time", stop)?;
-            if stop < self.t || stop == self.t() {
-                let mend = format!("the steps have reached {}: {FORWARD_ONLY}", self.t);
-                return Err(Error::input("stop time", stop, mend));
-            }
+            check_stop_time(stop, self.t, self.t())?;
         }
         self.stop_time = t;
         Ok(())
