@@ -43,7 +43,7 @@ docs: setup ## Documentation of the library
 # The runner of the test binary is valgrind; PLIANT_LIFECYCLES sets the rounds of 21 solvers.
 valgrind: ## Thousands of SUNDIALS solvers under valgrind: no leak, no invalid access
 	@scripts/setup.sh valgrind
-	cargo test --test sundials_lifecycle --config 'target."cfg(all())".runner = "$(VALGRIND)"'
+	cargo test --test integrators lifecycle --config 'target."cfg(all())".runner = "$(VALGRIND)"'
 
 clean: ## Remove everything built and every picture made
 	cargo clean

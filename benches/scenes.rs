@@ -12,22 +12,22 @@ fn main() {
 #[divan::bench(args = Method::ALL, consts = [4, 10], sample_count = 10)]
 fn square_jump_by_method<const NODES: usize>(bencher: Bencher, method: &Method) {
     let scene = square_jump(NODES).unwrap();
-    let solver = Settings { method: *method, rtol: 1e-6, ..Settings::default() };
-    bencher.bench(|| scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps());
+    let settings = Settings { method: *method, rtol: 1e-6, ..Settings::default() };
+    bencher.bench(|| scene.simulate(&settings, &Sampling::phase_ends()).unwrap().report().steps());
 }
 
 /// The same by CVODE's BDF, mesh by mesh: `nodes` x `nodes`.
 #[divan::bench(args = [4, 7, 10, 19, 37], sample_count = 3)]
 fn square_jump_by_mesh(bencher: Bencher, nodes: usize) {
     let scene = square_jump(nodes).unwrap();
-    let solver = Settings { rtol: 1e-4, ..Settings::default() };
-    bencher.bench(|| scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps());
+    let settings = Settings { rtol: 1e-4, ..Settings::default() };
+    bencher.bench(|| scene.simulate(&settings, &Sampling::phase_ends()).unwrap().report().steps());
 }
 
 /// Fig. 4.1 by CVODE's BDF, tolerance by tolerance.
 #[divan::bench(args = [1e-4, 1e-6, 1e-8], sample_count = 30)]
 fn beam_jump_by_rtol(bencher: Bencher, rtol: f64) {
     let scene = beam_jump().unwrap();
-    let solver = Settings { rtol, ..Settings::default() };
-    bencher.bench(|| scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps());
+    let settings = Settings { rtol, ..Settings::default() };
+    bencher.bench(|| scene.simulate(&settings, &Sampling::phase_ends()).unwrap().report().steps());
 }

@@ -60,11 +60,11 @@ fn step(cells: usize, method: Method, rtol: f64, until: f64) -> Result<f64, Erro
     };
     // no vibration is damped: order 2 for BDF
     let max_order = (method == Method::CvodeBdf).then_some(2);
-    let solver = Settings { method, rtol, max_order, ..Settings::default() };
+    let settings = Settings { method, rtol, max_order, ..Settings::default() };
     let run = |until: f64| -> Result<(f64, f64), Error> {
         let scene = scene(cells, inertia, until)?;
         let clock = Instant::now();
-        let steps = scene.simulate(&solver, &Sampling::phase_ends())?.report().steps();
+        let steps = scene.simulate(&settings, &Sampling::phase_ends())?.report().steps();
         Ok((clock.elapsed().as_secs_f64(), steps as f64))
     };
     let (half, whole) = (run(0.5 * until)?, run(until)?);

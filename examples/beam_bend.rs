@@ -35,7 +35,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         .axes("time (s)", "vertical displacement (m)");
     for strain in [Strain::Cauchy, Strain::Green] {
         let scene = beam_bend(strain, holds_tip)?;
-        let trajectory = scene.simulate(&common.solver(), &Sampling::every(0.005))?;
+        let trajectory = scene.simulate(&common.settings(), &Sampling::every(0.005))?;
         println!("Bent beam, {strain:?} strain\n{}", trajectory.report());
         if let Some(bent) = trajectory.samples().iter().find(|sample| sample.time == 5.0) {
             let ratios = trajectory.body().volume_ratios(&bent.u);

@@ -34,7 +34,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let &Arguments { gravity, ref common } = arguments;
     let trajectory = BeamJump { gravity, ..BeamJump::default() }
         .scene()?
-        .simulate(&common.solver(), &Sampling::every(0.0005))?;
+        .simulate(&common.settings(), &Sampling::every(0.0005))?;
     println!("Jumping beam\n{}", trajectory.report());
 
     match gravity {

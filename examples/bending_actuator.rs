@@ -47,7 +47,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         println!("{pressure:>13} {:>10.3} {:>10.3}", 1e3 * u[0], 1e3 * u[1]);
     }
 
-    let trajectory = scene.simulate(&arguments.common.solver(), &Sampling::every(0.005))?;
+    let trajectory = scene.simulate(&arguments.common.settings(), &Sampling::every(0.005))?;
     println!("\n{}", trajectory.report());
 
     let directory = arguments.common.out.join("bending_actuator");

@@ -30,7 +30,7 @@ fn run(common: &Common) -> Result<(), Error> {
     let mut chart =
         Chart::new("Inflated membranes").axes("time (s)", "rise of the centre of mass (m)");
     for (name, scene) in [("strip", membrane()?), ("arch", membrane_arch()?)] {
-        let trajectory = scene.simulate(&common.solver(), &Sampling::every(0.01))?;
+        let trajectory = scene.simulate(&common.settings(), &Sampling::every(0.01))?;
         println!("{name}\n{}", trajectory.report());
         let natural = trajectory.centre_of_mass(&trajectory.samples()[0])[1];
         let rise = |sample: &Sample| trajectory.centre_of_mass(sample)[1] - natural;

@@ -31,7 +31,7 @@ fn run(common: &Common) -> Result<(), Error> {
     let mut areas = Chart::new("Area of the ring").axes("time (s)", "area / natural area");
     for strain in [Strain::Green, Strain::Cauchy] {
         let scene = RingRoll { strain, ..RingRoll::default() }.scene()?;
-        let trajectory = scene.simulate(&common.solver(), &Sampling::every(0.01))?;
+        let trajectory = scene.simulate(&common.settings(), &Sampling::every(0.01))?;
         let series = |value: &dyn Fn(&Sample) -> f64| -> Vec<(f64, f64)> {
             trajectory.samples().iter().map(|sample| (sample.time, value(sample))).collect()
         };

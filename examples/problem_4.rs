@@ -38,7 +38,7 @@ fn run(common: &Common) -> Result<(), Error> {
             .axes("time (s)", "distance (m)");
         for friction in [0.02, 0.2, 2.0, 20.0, 200.0] {
             let ring = RingRoll { friction, viscosity, until: 2.0, ..RingRoll::default() };
-            let trajectory = ring.scene()?.simulate(&common.solver(), &Sampling::every(0.01))?;
+            let trajectory = ring.scene()?.simulate(&common.settings(), &Sampling::every(0.01))?;
             let start = trajectory.centre_of_mass(&trajectory.samples()[0])[0];
             let distance = |sample: &Sample| trajectory.centre_of_mass(sample)[0] - start;
             let (last, steps) = (trajectory.last(), trajectory.report().steps());

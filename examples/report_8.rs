@@ -26,7 +26,7 @@ fn main() {
 }
 
 fn run(common: &Common) -> Result<(), Error> {
-    let trajectory = report_8()?.simulate(&common.solver(), &Sampling::every(0.005))?;
+    let trajectory = report_8()?.simulate(&common.settings(), &Sampling::every(0.005))?;
     println!("Rectangle between two forces\n{}", trajectory.report());
     let node = |number: usize| -> Vec<(f64, f64)> {
         trajectory.samples().iter().map(|s| (s.time, s.u[2 * (number - 1)])).collect()

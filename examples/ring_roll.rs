@@ -48,7 +48,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
         Law::Objective => (Viscosity::Objective, "objective"),
     };
     let scene = RingRoll { viscosity, friction, until, ..RingRoll::default() }.scene()?;
-    let trajectory = scene.simulate(&common.solver(), &Sampling::every(0.01))?;
+    let trajectory = scene.simulate(&common.settings(), &Sampling::every(0.01))?;
     println!("Rolling ring, {name} viscosity\n{}", trajectory.report());
     let centre = |sample: &Sample| trajectory.centre_of_mass(sample);
     let degrees = |sample: &Sample| trajectory.rotation(sample).unwrap_or(0.0).to_degrees();

@@ -42,7 +42,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
             (ring_springs(force)?, "ring_springs", 0.02, times)
         }
     };
-    let trajectory = scene.simulate(&common.solver(), &Sampling::every(step))?;
+    let trajectory = scene.simulate(&common.settings(), &Sampling::every(step))?;
     println!("Ring with eight springs\n{}", trajectory.report());
     let centre = |sample: &Sample| trajectory.centre_of_mass(sample);
     let last = trajectory.last();

@@ -48,7 +48,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let &Arguments { nodes, cells, floor, gravity, until, ref common } = arguments;
     let scene =
         SquareJump { nodes, cells, floor, gravity, until, ..SquareJump::default() }.scene()?;
-    let trajectory = scene.simulate(&common.solver(), &Sampling::every(0.005))?;
+    let trajectory = scene.simulate(&common.settings(), &Sampling::every(0.005))?;
 
     println!("Jumping square, {nodes} x {nodes} nodes\n{}", trajectory.report());
     print_jump(&trajectory);

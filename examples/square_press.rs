@@ -31,7 +31,7 @@ fn main() {
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
     let &Arguments { nodes, ref common } = arguments;
-    let trajectory = square_press(nodes)?.simulate(&common.solver(), &Sampling::every(0.005))?;
+    let trajectory = square_press(nodes)?.simulate(&common.settings(), &Sampling::every(0.005))?;
     println!("Pressed square, {nodes} x {nodes} nodes\n{}", trajectory.report());
 
     let mut forces = Vec::new();

@@ -39,7 +39,7 @@ impl Axis {
     }
 }
 
-/// A constraint as the user of a phase says it.
+/// A constraint as the user of a phase gives it.
 #[derive(Clone, Debug)]
 pub(crate) struct Constraint {
     pub(crate) what: Constrained,

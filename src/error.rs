@@ -27,7 +27,7 @@ pub enum Error {
     #[error(transparent)]
     Statics(#[from] Box<NoEquilibrium>),
 
-    /// A scene file says something that cannot be used.
+    /// A scene file holds something that cannot be used.
     #[error("{}:{line}: {message}", path.display())]
     SceneFile {
         /// The file.

@@ -67,7 +67,7 @@ impl NodalForces {
     }
 }
 
-/// Nodal forces (N) of one kind: a slice that knows when nothing was added, and then costs nothing.
+/// Nodal forces (N) of one kind: a slice that remembers whether anything was added, and costs nothing if not.
 #[derive(Debug, Clone)]
 pub struct ForceVector {
     values: Vec<f64>,

@@ -183,7 +183,7 @@ pub struct IntegrationFailure {
     pub time: f64,
     /// Last step size (s).
     pub step: f64,
-    /// What the integrator said, with the likely cause and what to try; [`Interrupted`] if it was
+    /// The error of the integrator, with the likely cause and what to try; [`Interrupted`] if it was
     /// stopped from outside.
     pub source: Box<dyn Error + Send + Sync>,
     /// The motion until then, down to the last step.
@@ -202,7 +202,7 @@ impl IntegrationFailure {
         self.source.is::<Interrupted>()
     }
 
-    /// What the integrator said, with all that lies behind it.
+    /// The error of the integrator, with its sources.
     pub fn cause(&self) -> String {
         let mut said = self.source.to_string();
         let mut behind = self.source.source();

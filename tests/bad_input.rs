@@ -123,8 +123,8 @@ fn nan_in_a_path() {
     };
     says(simulate(&scene(0.0)), &["probe", "node 14 y", "(NaN, -0, -0.02)", "t = 0 s"]);
     for method in Method::ALL {
-        let solver = Settings { method, ..Settings::default() };
-        let result = scene(0.25).simulate(&solver, &Sampling::every(0.1));
+        let settings = Settings { method, ..Settings::default() };
+        let result = scene(0.25).simulate(&settings, &Sampling::every(0.1));
         let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
         // the last sample before 0.25 s is kept
         let times: Vec<f64> = failure.trajectory.samples().iter().map(|s| s.time).collect();
@@ -176,9 +176,9 @@ fn starts() {
     };
     let inverted = ["initial displacement = up to 6e-1 m", "cell 1 (nodes [1, 2, 5]) is inverted"];
     for method in Method::ALL {
-        let solver = Settings { method, ..Settings::default() };
+        let settings = Settings { method, ..Settings::default() };
         let scene = green().initial_displacement(turned);
-        says(scene.simulate(&solver, &Sampling::phase_ends()), &inverted);
+        says(scene.simulate(&settings, &Sampling::phase_ends()), &inverted);
     }
     says(green().initial_displacement(turned).validate(), &inverted);
     says(green().initial_displacement(turned).summary(), &inverted);
@@ -312,7 +312,7 @@ fn closed_surfaces() {
 #[test]
 fn solvers_and_samplings() {
     let scene = square_press(4).unwrap();
-    let with = |solver: Settings| scene.simulate(&solver, &Sampling::phase_ends());
+    let with = |settings: Settings| scene.simulate(&settings, &Sampling::phase_ends());
     let good = Settings::default;
     says(with(Settings { rtol: 0.0, ..good() }), &["rtol = 0", "above 0"]);
     says(with(Settings { rtol: f64::NAN, ..good() }), &["rtol = NaN"]);
@@ -367,8 +367,8 @@ fn statics() {
 fn step_limits() {
     let scene = square_press(4).unwrap();
     for method in Method::ALL {
-        let solver = Settings { method, max_steps: 100, alpha: 1e4, ..Settings::default() };
-        let result = scene.simulate(&solver, &Sampling::every(1e-3));
+        let settings = Settings { method, max_steps: 100, alpha: 1e4, ..Settings::default() };
+        let result = scene.simulate(&settings, &Sampling::every(1e-3));
         let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
         assert!(failure.trajectory.samples().len() > 1, "{method}");
         assert_eq!(failure.trajectory.report().steps(), 100, "{method}");

@@ -119,7 +119,7 @@ fn run_writes_the_motion_and_how_it_was_computed() {
     assert_eq!(rows.len(), 151);
     // the very numbers of the same run in Rust
     let file = SceneFile::read(shipped("square-jump.toml")).unwrap();
-    let motion = file.scene.simulate(&file.solver, &file.output.sampling()).unwrap();
+    let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
     let expected = place.path("expected.csv");
     write_csv(&motion, &expected, file.output.track.as_ref()).unwrap();
     let written = fs::read(place.path("out/square-jump/trajectory.csv")).unwrap();

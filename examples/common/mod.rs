@@ -24,8 +24,8 @@ pub struct Common {
 }
 
 impl Common {
-    /// The solver they ask for.
-    pub fn solver(&self) -> Settings {
+    /// The settings they ask for.
+    pub fn settings(&self) -> Settings {
         let &Self { method, rtol, alpha, .. } = self;
         Settings { method, rtol, alpha, ..Settings::default() }
     }

@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use pliant::samples::{self, ClampedBeam, RingRoll};
-use pliant::study::{General, Problem, Scenes, all_solvers};
+use pliant::study::{General, Problem, Scenes, all_methods};
 use pliant::{Cells, Error, Inertia, InputError, Method, Scene, Settings, Strain};
 
 /// In the order of the page.
@@ -98,10 +98,10 @@ impl Sample {
             Self::VanDerPol => return Ok(Box::new(General::van_der_pol().tolerances(tolerances))),
         };
         let scenes = Scenes::new(self.title(), scene?).tolerances(tolerances);
-        let all = all_solvers().into_iter();
-        // KLU takes the steps of the structured solver
-        let solvers = all.filter(|(_, solver)| solver.method != Method::IdaKlu);
-        Ok(Box::new(solvers.fold(scenes, |scenes, (name, solver)| scenes.solver(name, solver))))
+        let all = all_methods().into_iter();
+        // KLU takes the steps of the structured settings
+        let lines = all.filter(|(_, settings)| settings.method != Method::IdaKlu);
+        Ok(Box::new(lines.fold(scenes, |scenes, (name, settings)| scenes.line(name, settings))))
     }
 }
 
@@ -112,7 +112,7 @@ fn meshes(title: &str) -> Result<Scenes, Error> {
         ClampedBeam { nodes, cells, viscosity: LIGHT, ..ClampedBeam::default() }.scene()
     };
     // The integration is much more precise than any of these meshes.
-    let solver = Settings { rtol: 1e-5, ..Settings::default() };
+    let settings = Settings { rtol: 1e-5, ..Settings::default() };
     let mut scenes = Scenes::new(title, beam(Cells::Triangles6, [140, 8])?)
         .checked_by(beam(Cells::Triangles6, [105, 6])?)
         .finest(1e-3);
@@ -125,7 +125,7 @@ fn meshes(title: &str) -> Result<Scenes, Error> {
             Ok((format!("{along} x {across}"), beam(cells, [along, across])?))
         };
         let meshes = grids.into_iter().map(mesh).collect::<Result<Vec<_>, Error>>()?;
-        scenes = scenes.meshes(cells.name(), meshes, &solver);
+        scenes = scenes.meshes(cells.name(), meshes, &settings);
     }
     Ok(scenes)
 }

@@ -1,4 +1,4 @@
-//! Elements behind a face that knows neither kind nor dimension.
+//! Elements behind an interface without kind and dimension.
 
 use super::elements::ElementsOf;
 use super::fields::Fields;

@@ -92,7 +92,7 @@ struct Rows<V> {
 }
 
 impl<V: Clone> Rows<V> {
-    /// Zeros where `columns` of each row say.
+    /// Zeros in the `columns` of each row.
     fn zeros(rows: impl Iterator<Item = Vec<u32>>, zero: V) -> Self {
         let (mut offsets, mut columns) = (vec![0], Vec::new());
         for mut row in rows {

@@ -20,7 +20,7 @@ pub(super) struct Control {
     from: f64,
     /// The stop time; infinite if there is none.
     end: f64,
-    /// Step size asked for (s), and number and size of the equal ones.
+    /// Step size wanted (s), and number and size of the equal ones.
     planned: f64,
     count: f64,
     step: f64,

@@ -11,7 +11,7 @@
 //! One evaluation of the forces per step, order 2. Without damping the method is symplectic: a
 //! modified energy is conserved, and the energy proper does not drift (T. Belytschko et al.,
 //! *Nonlinear Finite Elements for Continua and Structures*, chapter 6; E. Hairer, C. Lubich, G. Wanner,
-//! Acta Numerica 12 (2003) 399-450). It pays with lumped inertia, where M^-1 is no work.
+//! Acta Numerica 12 (2003) 399-450). It is fastest with lumped inertia, where M^-1 is a division.
 //!
 //! ```
 //! use pliant::central_difference::{CentralDifference, Integrator, Options};

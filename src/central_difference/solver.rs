@@ -1,4 +1,4 @@
-//! The integrator: its state, its steps and what a user may ask of it.
+//! The integrator: its state, its steps and its public methods.
 
 use std::mem::{swap, take};
 
@@ -289,7 +289,7 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
         self.interpolate_state(t, out)
     }
 
-    /// Steps up to the stop time are equal, unless the motion asks for others.
+    /// Steps up to the stop time are equal, unless the motion needs others.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(stop) = t {
             check_stop_time(stop, self.t, self.t())?;

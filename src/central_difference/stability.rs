@@ -126,7 +126,7 @@ impl Stability {
         creates
     }
 
-    /// What there is to say: that energy grew, or that viscosity rules.
+    /// The notice: that energy grew, or that viscosity bounds the step.
     pub(super) fn notice(&self) -> Option<String> {
         let Rates { frequency, decay } = self.rates;
         let viscous = || {

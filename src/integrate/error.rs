@@ -1,4 +1,4 @@
-//! What can go wrong, told with time, step size, order, likely cause and what to try.
+//! What can go wrong, with time, step size, order, likely cause and what to try.
 
 use std::{error, fmt};
 
@@ -25,7 +25,7 @@ pub enum Error {
         function: &'static str,
         /// Its return code.
         code: i32,
-        /// What SUNDIALS said, or empty.
+        /// The message of SUNDIALS, or empty.
         message: String,
     },
 }
@@ -131,7 +131,7 @@ pub enum Cause {
     LinearSolver,
     /// The initial values of a DAE do not satisfy its equations, or none could be found.
     InconsistentStart,
-    /// Anything else; the message of the library tells.
+    /// Anything else; see the message of the library.
     Other,
 }
 
@@ -210,7 +210,7 @@ pub struct IntegrationError {
     pub step: f64,
     /// Order that was being tried.
     pub order: u32,
-    /// What SUNDIALS said, with its return code; empty for the others.
+    /// The message of SUNDIALS, with its return code; empty for the others.
     pub message: String,
     /// The error that the user's system gave, for [`Cause::Fatal`].
     pub source: Option<Box<dyn error::Error + Send + Sync>>,

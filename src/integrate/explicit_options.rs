@@ -4,11 +4,11 @@ use super::options::{StepOptions, check_time, step_options};
 use super::tolerances::{AbsoluteTolerance, Tolerances};
 use crate::input::InputError;
 
-/// What explicit methods say to whoever would go back.
+/// Error message of explicit methods for a time before the present one.
 const FORWARD_ONLY: &str =
     "integration goes forward only; to go back, integrate dy/ds = -f(-s, y) with s = -t";
 
-/// Checks that a target time `t` is finite and not before `earliest`, which is what `limit` says.
+/// Checks that a target time `t` is finite and not before `earliest`, which `limit` names.
 pub(crate) fn check_target(t: f64, limit: &str, earliest: f64) -> Result<(), InputError> {
     const INPUT: &str = "target time";
     check_time(INPUT, t)?;

@@ -111,7 +111,7 @@ pub trait Integrator {
 pub enum Reached {
     /// At the requested time, or, for a single step, at the end of the step.
     Time,
-    /// Where a root function changes sign; [`Integrator::roots_found`] tells which.
+    /// Where a root function changes sign; [`Integrator::roots_found`] gives which.
     Root,
     /// At the stop time, which is then no longer set.
     StopTime,

@@ -1,8 +1,8 @@
-//! Why a system could not do what it was asked for.
+//! Why a callback of a system failed.
 
 use std::error::Error;
 
-/// Why a callback could not do what it was asked for.
+/// Why a callback of a system failed.
 ///
 /// Any `std` error converts into [`Failure::Fatal`], so `?` works inside callbacks.
 #[derive(Debug)]
@@ -14,7 +14,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// What it has to say, as an error, where there is nothing left to retry.
+    /// The error by itself, where there is nothing left to retry.
     pub(crate) fn into_error(self) -> Box<dyn Error + Send + Sync> {
         match self {
             Self::Recoverable(message) => message.into(),

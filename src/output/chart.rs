@@ -17,7 +17,7 @@ use crate::input::InputError;
 
 /// Size of a chart (px).
 const SIZE: [u32; 2] = [800, 440];
-/// The plotting library knows whole pixels only: it draws on a finer grid by this factor.
+/// The plotting library has whole pixels only: it draws on a finer grid by this factor.
 const FINE: u32 = 8;
 /// Colours that stay apart for colour-blind eyes and in grey (after Okabe and Ito).
 const COLOURS: [RGBColor; 6] = [

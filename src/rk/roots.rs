@@ -32,7 +32,7 @@ enum Change {
     None,
     /// One or more become 0 at the later time.
     Zero,
-    /// The sign of this one changes, the earliest of all as far as secants tell.
+    /// The sign of this one changes, the earliest of all by their secants.
     Sign(usize),
 }
 

@@ -21,7 +21,7 @@ impl<S: Ode> DormandPrince<S> {
         }
     }
 
-    /// Has `t()` and `y()` tell the state at a time within the last step.
+    /// Makes `t()` and `y()` the state at a time within the last step.
     fn rest_at(&mut self, t: f64) {
         self.rest = (t != self.t).then_some(t);
         if self.rest.is_some() {

@@ -27,7 +27,7 @@
 //!     until = 0.2
 //! "#;
 //! let file = SceneFile::parse(text, Path::new("fall.toml"))?;
-//! let trajectory = file.scene.simulate(&file.solver, &file.output.sampling())?;
+//! let trajectory = file.scene.simulate(&file.settings, &file.output.sampling())?;
 //! assert_eq!(trajectory.last().time, 0.2);
 //! # Ok::<(), pliant::Error>(())
 //! ```
@@ -87,7 +87,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simulate::Sampling;
 
-/// What a scene file says.
+/// The contents of a scene file.
 #[derive(Debug, Clone)]
 pub struct SceneFile {
     /// Title of the scene; empty without one.
@@ -95,7 +95,7 @@ pub struct SceneFile {
     /// The scene.
     pub scene: Scene,
     /// How it is integrated.
-    pub solver: Settings,
+    pub settings: Settings,
     /// What is to be written.
     pub output: OutputRequest,
 }
@@ -198,7 +198,7 @@ impl SceneFile {
     }
 }
 
-/// Adds what a table says to a scene.
+/// Adds a table to a scene.
 type Add = fn(Scene, &Value) -> Result<Scene, Error>;
 
 fn convert(top: &Table) -> Result<SceneFile, Error> {
@@ -227,10 +227,10 @@ fn convert(top: &Table) -> Result<SceneFile, Error> {
     if scene.phases().is_empty() {
         return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
     }
-    let solver = top.optional("solver", "the table [solver]", settings::solver)?;
+    let settings = top.optional("solver", "the table [solver]", settings::solver)?;
     let output = top.optional("output", "the table [output]", |value| {
         settings::output(value, scene.body().mesh())
     })?;
-    let (solver, output) = (solver.unwrap_or_default(), output.unwrap_or_default());
-    Ok(SceneFile { title: title.into(), scene, solver, output })
+    let (settings, output) = (settings.unwrap_or_default(), output.unwrap_or_default());
+    Ok(SceneFile { title: title.into(), scene, settings, output })
 }

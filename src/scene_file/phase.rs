@@ -24,7 +24,7 @@ const KEYS: &[&str] = &[
     "project_velocity",
 ];
 
-/// Adds what a table inside of a phase says.
+/// Adds a table inside of a phase.
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: key, meaning, their own keys, what they add.

@@ -1,4 +1,4 @@
-//! Values of a scene file, read with errors that say what was expected instead.
+//! Values of a scene file, read with errors that name what was expected.
 
 use std::fmt::Display;
 use std::ops::Range;

@@ -14,7 +14,7 @@ use crate::system::{Spectrum, System};
 /// How a phase is integrated from now on.
 pub(super) struct Plan {
     /// As asked for, with a method of its own in place of [`Method::Auto`].
-    pub(super) solver: Settings,
+    pub(super) settings: Settings,
     /// Highest order that was asked for.
     max_order: Option<u32>,
     /// Why this method, and those before it in the phase, if they were chosen.
@@ -56,10 +56,10 @@ impl Plan {
     /// The plan for a phase whose equations are `system`, from time `t` and `state` = (u, v, ...).
     pub(super) fn new(asked: &Settings, system: &mut System, t: f64, state: &[f64]) -> Self {
         if asked.method != Method::Auto {
-            let solver = asked.clone();
+            let settings = asked.clone();
             return Self {
-                max_order: solver.max_order,
-                solver,
+                max_order: settings.max_order,
+                settings,
                 reason: None,
                 explicit_step: 0.0,
                 central_step: 0.0,
@@ -71,7 +71,7 @@ impl Plan {
         let (method, reason) = choose(&spectrum);
         let alpha = if system.rows().is_empty() { 0.0 } else { asked.alpha };
         Self {
-            solver: Settings { method, max_order: cap(method, asked.max_order), ..asked.clone() },
+            settings: Settings { method, max_order: cap(method, asked.max_order), ..asked.clone() },
             max_order: asked.max_order,
             reason: Some(reason),
             explicit_step: explicit_step(&spectrum, alpha),
@@ -82,13 +82,13 @@ impl Plan {
 
     /// Whether contact events are located.
     pub(super) fn locates(&self) -> bool {
-        let pays = || match self.solver.method {
+        let pays = || match self.settings.method {
             // one step after another: a new start costs nothing, and errors become much smaller
             Method::Rk => true,
             Method::CentralDifference => false,
-            _ => self.solver.rtol < FINE,
+            _ => self.settings.rtol < FINE,
         };
-        match self.solver.contact_events {
+        match self.settings.contact_events {
             ContactEvents::Auto => self.reason.is_some() && pays(),
             ContactEvents::StepOver => false,
             ContactEvents::Locate => true,
@@ -106,7 +106,7 @@ impl Plan {
         if !self.is_on_trial() {
             return None;
         }
-        Some(match self.solver.method {
+        Some(match self.settings.method {
             Method::Arkode => self.followed_by(Method::CvodeBdf, Some(2), trouble),
             _ => self.followed_by(Method::Arkode, self.max_order, trouble),
         })
@@ -131,7 +131,7 @@ impl Plan {
             );
             Some(Self { patience: 4 * self.patience, central_step, ..plan })
         };
-        match self.solver.method {
+        match self.settings.method {
             Method::Arkode if below(WORTH_EXPLICIT * bound) && below(central) => {
                 explicit(Method::Rk)
             }
@@ -151,7 +151,7 @@ impl Plan {
         let max_order = cap(method, max_order);
         let before = self.reason.as_deref().unwrap_or_default();
         Self {
-            solver: Settings { method, max_order, ..self.solver.clone() },
+            settings: Settings { method, max_order, ..self.settings.clone() },
             reason: Some(format!("{before}; then {method}, as {reason}")),
             ..*self
         }
@@ -159,7 +159,7 @@ impl Plan {
 
     /// Whether this is what other plans end in: order 2 of BDF, which damps all vibrations.
     fn is_last_resort(&self) -> bool {
-        self.solver.method == Method::CvodeBdf && self.solver.max_order == Some(2)
+        self.settings.method == Method::CvodeBdf && self.settings.max_order == Some(2)
     }
 }
 

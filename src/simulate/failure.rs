@@ -1,4 +1,4 @@
-//! What is said of runs that come to no end.
+//! Error messages of runs that do not reach their end.
 
 use super::stepper::Failed;
 use crate::report::Counts;

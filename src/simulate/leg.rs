@@ -24,7 +24,7 @@ pub(super) enum Ending {
     Event,
     /// Before a step that would have passed through an obstacle, which it met at this time (s).
     Passage(f64),
-    /// The energy balance tells that the method cannot be trusted.
+    /// The energy balance shows that the method cannot be trusted.
     Doubtful { instead: Plan },
     /// Another method is better.
     Better(Plan),

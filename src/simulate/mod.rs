@@ -23,7 +23,7 @@ use crate::settings::Settings;
 use crate::trajectory::Trajectory;
 
 impl Scene {
-    /// Runs the scene, from rest in its natural shape if nothing else was said.
+    /// Runs the scene, from rest in its natural shape unless a start was given.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings};
@@ -41,8 +41,8 @@ impl Scene {
     /// # Errors
     /// Bad input before anything is computed; [`Error::Integration`] with the motion until then
     /// when the integrator gives up.
-    pub fn simulate(&self, solver: &Settings, sampling: &Sampling) -> Result<Trajectory, Error> {
-        self.simulate_with(solver, sampling, |_| ControlFlow::Continue(()))
+    pub fn simulate(&self, settings: &Settings, sampling: &Sampling) -> Result<Trajectory, Error> {
+        self.simulate_with(settings, sampling, |_| ControlFlow::Continue(()))
     }
 
     /// As [`simulate`](Self::simulate), calling `observer` after each step with the progress of the
@@ -76,14 +76,14 @@ impl Scene {
     /// too, which says so: [`is_interruption`](crate::IntegrationFailure::is_interruption).
     pub fn simulate_with(
         &self,
-        solver: &Settings,
+        settings: &Settings,
         sampling: &Sampling,
         mut observer: impl FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<Trajectory, Error> {
         let clock = Instant::now();
-        solver.validate()?;
+        settings.validate()?;
         let forces = self.forces_from_start()?;
         sampling.validate(self.end())?;
-        Run::all(self, solver, clock, forces, sampling, &mut observer)
+        Run::all(self, settings, clock, forces, sampling, &mut observer)
     }
 }

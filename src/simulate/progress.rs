@@ -1,4 +1,4 @@
-//! How far a run has come, for those who watch it.
+//! Progress of a run, for observers.
 
 use std::ops::ControlFlow;
 

@@ -31,13 +31,13 @@ pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
 /// the method has an equation for velocities, which allows no others. What that takes from the kinetic
 /// energy, or gives to it, is supplied by the constraints.
 pub(super) fn project(
-    solver: &Settings,
+    settings: &Settings,
     phase: &Phase,
     system: &mut System,
     time: f64,
     state: &mut [f64],
 ) {
-    if !phase.projects_velocity && solver.method != Method::IdaIndexTwo {
+    if !phase.projects_velocity && settings.method != Method::IdaIndexTwo {
         return;
     }
     let StateMut { u, v, supplied, .. } = StateMut::of(state, system.dofs());

@@ -24,7 +24,7 @@ use crate::trajectory::{IntegrationFailure, Interrupted, Trajectory};
 /// A scene on its way.
 pub(super) struct Run<'a> {
     scene: &'a Scene,
-    solver: &'a Settings,
+    settings: &'a Settings,
     atol: AbsoluteTolerances,
     /// Started with the run.
     clock: Instant,
@@ -52,7 +52,7 @@ impl<'a> Run<'a> {
     /// Runs `scene` under the `forces` of its phases.
     pub(super) fn all(
         scene: &'a Scene,
-        solver: &'a Settings,
+        settings: &'a Settings,
         clock: Instant,
         forces: Vec<Forces>,
         sampling: &Sampling,
@@ -63,10 +63,10 @@ impl<'a> Run<'a> {
         let mut forces = forces.into_iter();
         let mut equations = |phase: &Phase, time: f64, u: &[f64]| {
             let forces = forces.next().unwrap_or_default();
-            scene.system(&model, phase, forces, &PhaseStart { time, u }, solver.alpha)
+            scene.system(&model, phase, forces, &PhaseStart { time, u }, settings.alpha)
         };
         let mut system = equations(scene.first_phase()?, 0.0, scene.start()[0])?;
-        let mut run = Self::new(scene, solver, clock, &mut system)?;
+        let mut run = Self::new(scene, settings, clock, &mut system)?;
         for (number, phase) in scene.phases().iter().enumerate() {
             if number > 0 {
                 let mut u = run.state[..n].to_vec();
@@ -78,7 +78,7 @@ impl<'a> Run<'a> {
                     [&system, &next].map(|system| energy(system, run.time, &run.state).balance());
                 run.state[2 * n + 1] += after - before;
                 system = next;
-                project(solver, phase, &mut system, run.time, &mut run.state);
+                project(settings, phase, &mut system, run.time, &mut run.state);
             }
             system = match run.phase(number, phase, system, sampling, observer) {
                 Ok(system) => system,
@@ -91,12 +91,12 @@ impl<'a> Run<'a> {
     /// A run at its start, which `system` is sampled at.
     fn new(
         scene: &'a Scene,
-        solver: &'a Settings,
+        settings: &'a Settings,
         clock: Instant,
         system: &mut System,
     ) -> Result<Self, Error> {
         let mut state = [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat();
-        project(solver, scene.first_phase()?, system, 0.0, &mut state);
+        project(settings, scene.first_phase()?, system, 0.0, &mut state);
         let first =
             records::sample(0, system, 0.0, &state).map_err(|failure| scene.bad_start(failure))?;
         if !first.energy.balance().is_finite() {
@@ -104,15 +104,15 @@ impl<'a> Run<'a> {
             return Err(scene.bad_start(Failure::Recoverable(reason.into())).into());
         }
         let report = Report {
-            method: solver.method,
-            rtol: solver.rtol,
-            alpha: solver.alpha,
+            method: settings.method,
+            rtol: settings.rtol,
+            alpha: settings.alpha,
             ..Report::default()
         };
         Ok(Self {
             scene,
-            solver,
-            atol: solver.tolerances(scene.body()),
+            settings,
+            atol: settings.tolerances(scene.body()),
             clock,
             time: 0.0,
             state,
@@ -137,8 +137,8 @@ impl<'a> Run<'a> {
     ) -> Result<System, (Failed, f64)> {
         let clock = Instant::now();
         let times = sampling.within(self.time, phase.until);
-        let mut plan = Plan::new(self.solver, &mut system, self.time, &self.state);
-        let (steps, mut events) = (self.solver.max_steps, Events::default());
+        let mut plan = Plan::new(self.settings, &mut system, self.time, &self.state);
+        let (steps, mut events) = (self.settings.max_steps, Events::default());
         events.begin(&system, self.time, &self.state, plan.locates());
         let mut leg =
             Leg { number, times: &times, taken: 0, stop: 0.0, inside: None, steps, events };
@@ -178,8 +178,14 @@ impl<'a> Run<'a> {
                 continue;
             }
             system.forget_counts();
-            let stepper =
-                stepper::start(system, &plan.solver, &self.atol, self.time, leg.end(), &self.state);
+            let stepper = stepper::start(
+                system,
+                &plan.settings,
+                &self.atol,
+                self.time,
+                leg.end(),
+                &self.state,
+            );
             let mut stepper = stepper.map_err(|source| (source, 0.0))?;
             ended = self.leg(&mut leg, &plan, &mut *stepper, observer);
             counts.add(stepper.counts());
@@ -192,7 +198,7 @@ impl<'a> Run<'a> {
             last.into_iter().for_each(|sample| self.trajectory.push(sample));
         }
         counts.contact_events = leg.events.count;
-        if plan.reason.is_some() && plan.solver.method == Method::Rk {
+        if plan.reason.is_some() && plan.settings.method == Method::Rk {
             // what it notices of stability, the choice of methods looks after
             counts.notice = None;
         }
@@ -205,7 +211,7 @@ impl<'a> Run<'a> {
             end: self.time,
             states,
             wall_seconds: clock.elapsed().as_secs_f64(),
-            method: plan.solver.method,
+            method: plan.settings.method,
             reason: plan.reason,
             counts,
         });
@@ -226,7 +232,7 @@ impl<'a> Run<'a> {
         let (mut steps, mut trial_began, mut means) = (0_usize, self.time, [f64::INFINITY; 2]);
         while self.time < leg.end() {
             if leg.steps == 0 {
-                return Err(too_many_steps(self.solver.max_steps, &stepper.counts()));
+                return Err(too_many_steps(self.settings.max_steps, &stepper.counts()));
             }
             leg.steps -= 1;
             let (step, is_event) = match self.step(leg, stepper, &mut sample)? {
@@ -347,7 +353,7 @@ impl<'a> Run<'a> {
     fn failure(self, phase: &Phase, source: Failed, step: f64) -> Error {
         Box::new(IntegrationFailure {
             phase: phase.name.clone(),
-            method: self.solver.method,
+            method: self.settings.method,
             time: self.time,
             step,
             source,

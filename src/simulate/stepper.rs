@@ -88,7 +88,7 @@ impl<I: Integrator<System: Form>> Stepper for I {
     }
 }
 
-/// What Newton matrices that are not positive definite tell.
+/// A notice if Newton matrices were not positive definite.
 fn compression(indefinite: usize) -> Option<String> {
     (indefinite > 0).then(|| {
         format!(
@@ -175,7 +175,7 @@ fn cvode_options(settings: &Settings, tolerances: Vec<f64>) -> CvodeOptions {
 }
 
 /// Steps after which ARKODE has a new Newton matrix, with new tangents, in any case: few enough that
-/// iterations converge in one or two, which pays on all Hirai's scenes.
+/// iterations converge in one or two, which is the fastest on all of Hirai's scenes.
 const STEPS_BETWEEN_SETUPS: u32 = 2;
 
 fn arkode_options(

@@ -3,7 +3,7 @@
 use super::options::Statics;
 use crate::equilibrium::Stability;
 use crate::ode::Failure;
-use crate::system::{AtRest, Balance};
+use crate::system::{AtRest, ForceBalance};
 use crate::vector::{dot, largest};
 
 /// The search stopped: why, and the largest unbalanced force (N).
@@ -33,12 +33,12 @@ pub(super) struct Search<'a> {
     pub(super) u: Vec<f64>,
     /// Constraint forces there.
     pub(super) mu: Vec<f64>,
-    pub(super) at: Balance,
+    pub(super) at: ForceBalance,
     pub(super) residual: f64,
     pub(super) iterations: usize,
     pub(super) load_steps: usize,
     pub(super) failed_steps: usize,
-    trial: Balance,
+    trial: ForceBalance,
     x: Vec<f64>,
     d: Vec<f64>,
     work: Vec<f64>,
@@ -70,12 +70,12 @@ impl<'a> Search<'a> {
             tried: 0.0,
             u,
             mu: vec![0.0; rows],
-            at: Balance::zeros(dofs),
+            at: ForceBalance::zeros(dofs),
             residual: 0.0,
             iterations: 0,
             load_steps: 0,
             failed_steps: 0,
-            trial: Balance::zeros(dofs),
+            trial: ForceBalance::zeros(dofs),
             x: vec![0.0; dofs],
             d: vec![0.0; rows],
             work: vec![0.0; dofs],

@@ -9,7 +9,7 @@ use crate::ode::Ode;
 use crate::scene::Scene;
 use crate::state;
 
-/// A hash of everything that a scene says of itself, of what its functions of time do at a few
+/// A hash of all data of a scene, of what its functions of time do at a few
 /// times, and of the version of this library.
 pub(super) fn of_scene(scene: &Scene) -> u64 {
     let mut hasher = DefaultHasher::new();
@@ -40,7 +40,7 @@ fn add_text(hasher: &mut DefaultHasher, text: fmt::Arguments<'_>) {
 }
 
 /// Accelerations of the body at rest in its natural shape, at a few times of each phase: loads,
-/// pressures, actuation and paths are functions that say nothing of themselves.
+/// pressures, actuation and paths are functions, whose code cannot be compared.
 fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Error> {
     let state = vec![0.0; state::length(scene.body().dofs())];
     let mut change = state.clone();

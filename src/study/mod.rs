@@ -11,7 +11,7 @@
 //!
 //! let mut scenes = Scenes::new("Jumping beam", beam_jump()?).tolerances([1e-3, 1e-5]);
 //! for method in [Method::CvodeBdf, Method::Rk] {
-//!     scenes = scenes.solver(method.name(), Settings { method, ..Settings::default() });
+//!     scenes = scenes.line(method.name(), Settings { method, ..Settings::default() });
 //! }
 //! let findings = Study::new(&mut scenes).run(&mut |stage| println!("{stage}"))?;
 //! println!("{}", findings.fastest());
@@ -59,7 +59,7 @@ pub use findings::{Findings, LineFindings};
 pub use general::General;
 pub use row::Row;
 pub use runner::{Stage, Study};
-pub use scenes::{Scenes, all_solvers};
+pub use scenes::{Scenes, all_methods};
 
 use std::time::Duration;
 

@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 use crate::simulate::Sampling;
 
-/// A scene that is solved in several ways: by several solvers at several tolerances, with another
+/// A scene that is solved in several ways: by several methods at several tolerances, with another
 /// strain model or other cells, on finer and finer meshes.
 ///
 /// All ways are compared with the exact motion of the scene given to [`new`](Self::new). Where a line
@@ -37,7 +37,7 @@ pub struct Scenes {
 struct Run {
     /// Position among the scenes.
     scene: usize,
-    solver: Settings,
+    settings: Settings,
 }
 
 #[derive(Debug)]
@@ -89,47 +89,47 @@ impl Scenes {
         self
     }
 
-    /// Adds a line: the scene by `solver`, tolerance by tolerance. Its method is its family.
+    /// Adds a line: the scene by `settings`, tolerance by tolerance. Its method is its family.
     #[must_use]
-    pub fn solver(self, name: impl Into<String>, solver: Settings) -> Self {
-        let family = match solver.method {
+    pub fn line(self, name: impl Into<String>, settings: Settings) -> Self {
+        let family = match settings.method {
             Method::IdaKlu | Method::IdaIndexTwo => Method::Ida,
             method => method,
         };
-        self.by_tolerance(name.into(), family.name(), 0, solver)
+        self.by_tolerance(name.into(), family.name(), 0, settings)
     }
 
-    /// Adds a line for each of [`all_solvers`].
+    /// Adds a line for each of [`all_methods`].
     #[must_use]
     pub fn all_methods(self) -> Self {
         let alpha = self.alpha;
-        all_solvers()
-            .into_iter()
-            .fold(self, |scenes, (name, solver)| scenes.solver(name, Settings { alpha, ..solver }))
+        all_methods().into_iter().fold(self, |scenes, (name, settings)| {
+            scenes.line(name, Settings { alpha, ..settings })
+        })
     }
 
-    /// Adds a line: another scene by `solver`, tolerance by tolerance. The name is its family.
+    /// Adds a line: another scene by `settings`, tolerance by tolerance. The name is its family.
     #[must_use]
-    pub fn variant(mut self, name: impl Into<String>, scene: Scene, solver: Settings) -> Self {
+    pub fn variant(mut self, name: impl Into<String>, scene: Scene, settings: Settings) -> Self {
         let name = name.into();
         let scene = self.add(scene);
-        self.by_tolerance(name.clone(), &name, scene, solver)
+        self.by_tolerance(name.clone(), &name, scene, settings)
     }
 
     /// Adds a line: the scene on finer and finer meshes, each with the name of the mesh, by
-    /// `solver`. Its name is its family.
+    /// `settings`. Its name is its family.
     #[must_use]
     pub fn meshes<N: Into<String>>(
         mut self,
         name: impl Into<String>,
         meshes: impl IntoIterator<Item = (N, Scene)>,
-        solver: &Settings,
+        settings: &Settings,
     ) -> Self {
         let name = name.into();
         let (mut points, mut runs) = (Vec::new(), Vec::new());
         for (mesh, scene) in meshes {
-            points.push(Point { name: mesh.into(), rtol: solver.rtol });
-            runs.push(Run { scene: self.add(scene), solver: solver.clone() });
+            points.push(Point { name: mesh.into(), rtol: settings.rtol });
+            runs.push(Run { scene: self.add(scene), settings: settings.clone() });
         }
         self.lines.push(Line { family: name.clone(), name, points });
         self.runs.push(runs);
@@ -150,10 +150,16 @@ impl Scenes {
         self.scenes.len() - 1
     }
 
-    fn by_tolerance(mut self, name: String, family: &str, scene: usize, solver: Settings) -> Self {
+    fn by_tolerance(
+        mut self,
+        name: String,
+        family: &str,
+        scene: usize,
+        settings: Settings,
+    ) -> Self {
         let point = |&rtol: &f64| Point { name: format!("{rtol:e}"), rtol };
         let points = self.tolerances.iter().map(point).collect();
-        let run = |&rtol: &f64| Run { scene, solver: Settings { rtol, ..solver.clone() } };
+        let run = |&rtol: &f64| Run { scene, settings: Settings { rtol, ..settings.clone() } };
         self.runs.push(self.tolerances.iter().map(run).collect());
         self.lines.push(Line { name, family: family.into(), points });
         self
@@ -179,7 +185,7 @@ impl Scenes {
                 return Err(InputError::new("name of a line", format!("\"{}\"", line.name), mend));
             }
         }
-        self.runs.iter().flatten().try_for_each(|run| run.solver.validate())
+        self.runs.iter().flatten().try_for_each(|run| run.settings.validate())
     }
 
     fn find_reference(
@@ -201,31 +207,31 @@ impl Scenes {
     }
 }
 
-/// Name and solver of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up
+/// Name and settings of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up
 /// to 2 only, which suits motion that is hardly damped, and one that detects the stability limits
 /// of higher orders; for ARKODE one for each of the
 /// orders 3 and 5 beside 4.
 #[must_use]
-pub fn all_solvers() -> Vec<(String, Settings)> {
-    let mut solvers = Vec::new();
+pub fn all_methods() -> Vec<(String, Settings)> {
+    let mut lines = Vec::new();
     for method in Method::ALL {
-        let solver = Settings { method, ..Settings::default() };
-        solvers.push((method.name().to_owned(), solver.clone()));
+        let settings = Settings { method, ..Settings::default() };
+        lines.push((method.name().to_owned(), settings.clone()));
         let orders: &[u32] = match method {
             Method::CvodeBdf => &[2],
             Method::Arkode => &[3, 5],
             _ => &[],
         };
         for order in orders {
-            let solver = Settings { max_order: Some(*order), ..solver.clone() };
-            solvers.push((format!("{method}, order {order}"), solver));
+            let settings = Settings { max_order: Some(*order), ..settings.clone() };
+            lines.push((format!("{method}, order {order}"), settings));
         }
         if method == Method::CvodeBdf {
-            let solver = Settings { stability_limit_detection: true, ..solver };
-            solvers.push((format!("{method}, stability limit"), solver));
+            let settings = Settings { stability_limit_detection: true, ..settings };
+            lines.push((format!("{method}, stability limit"), settings));
         }
     }
-    solvers
+    lines
 }
 
 impl Problem for Scenes {
@@ -238,11 +244,11 @@ impl Problem for Scenes {
     }
 
     fn fingerprint(&self, line: usize, point: usize) -> u64 {
-        let Run { scene, solver } = &self.runs[line][point];
+        let Run { scene, settings } = &self.runs[line][point];
         let scenes = [*scene, 0].into_iter().chain(self.check);
         let fingerprints: Vec<u64> = scenes.map(|scene| self.fingerprints[scene]).collect();
         fingerprint::of_text(
-            format_args!("{solver:?} {} {}", self.alpha, self.finest),
+            format_args!("{settings:?} {} {}", self.alpha, self.finest),
             &fingerprints,
         )
     }
@@ -253,11 +259,11 @@ impl Problem for Scenes {
     }
 
     fn measure(&mut self, line: usize, point: usize, limit: Duration) -> Result<Measured, Failed> {
-        let Run { scene, solver } = &self.runs[line][point];
+        let Run { scene, settings } = &self.runs[line][point];
         let Reference { truth, probes } =
             self.reference.as_ref().ok_or("the study was not prepared")?;
         let (motion, trajectory) =
-            probes[*scene].run(&self.scenes[*scene], solver, limit).map_err(reason)?;
+            probes[*scene].run(&self.scenes[*scene], settings, limit).map_err(reason)?;
         let distance = truth.error(&motion);
         let report = trajectory.report();
         Ok(Measured {
@@ -273,9 +279,9 @@ impl Problem for Scenes {
     }
 
     fn time(&mut self, line: usize, point: usize) -> Result<f64, Failed> {
-        let Run { scene, solver } = &self.runs[line][point];
+        let Run { scene, settings } = &self.runs[line][point];
         let trajectory =
-            self.scenes[*scene].simulate(solver, &Sampling::phase_ends()).map_err(reason)?;
+            self.scenes[*scene].simulate(settings, &Sampling::phase_ends()).map_err(reason)?;
         Ok(trajectory.report().wall_seconds)
     }
 }

@@ -1,4 +1,4 @@
-//! Times that can be trusted, or that say that they cannot.
+//! Times, with a warning if they cannot be trusted.
 
 use std::hint::black_box;
 use std::iter;

@@ -51,12 +51,12 @@ impl Probe {
     pub(super) fn run(
         &self,
         scene: &Scene,
-        solver: &Settings,
+        settings: &Settings,
         limit: Duration,
     ) -> Result<(Motion, Trajectory), Error> {
         let mut budget = Budget::new(limit);
         let sampling = Sampling::at(self.times.clone());
-        let trajectory = scene.simulate_with(solver, &sampling, |_| match budget.is_spent() {
+        let trajectory = scene.simulate_with(settings, &sampling, |_| match budget.is_spent() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         })?;
@@ -170,9 +170,9 @@ impl Truth {
             pair = [first, second];
         }
         if let Some((scene, probe)) = check {
-            tell(&format!("reference: the check, {} at rtol {rtol:.0e}", pair[0].solver.method));
+            tell(&format!("reference: the check, {} at rtol {rtol:.0e}", pair[0].settings.method));
             let (motion, _) =
-                probe.run(scene, &Settings { rtol, ..pair[0].solver.clone() }, limit)?;
+                probe.run(scene, &Settings { rtol, ..pair[0].settings.clone() }, limit)?;
             let distance = truth.error(&motion).mean;
             truth.resolution = truth.resolution.max(distance);
         }
@@ -196,7 +196,7 @@ impl Truth {
 /// A solution of the scene by one method.
 #[derive(Debug)]
 struct Way {
-    solver: Settings,
+    settings: Settings,
     motion: Motion,
     /// Processor time.
     time: Duration,
@@ -206,14 +206,14 @@ impl Way {
     fn find(
         scene: &Scene,
         probe: &Probe,
-        solver: Settings,
+        settings: Settings,
         limit: Duration,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, Error> {
-        tell(&format!("reference: {} at rtol {:.0e}", solver.method, solver.rtol));
+        tell(&format!("reference: {} at rtol {:.0e}", settings.method, settings.rtol));
         let budget = Budget::new(limit);
-        let (motion, _) = probe.run(scene, &solver, limit)?;
-        Ok(Self { solver, motion, time: Duration::from_secs_f64(budget.spent()) })
+        let (motion, _) = probe.run(scene, &settings, limit)?;
+        Ok(Self { settings, motion, time: Duration::from_secs_f64(budget.spent()) })
     }
 
     fn again(
@@ -224,15 +224,15 @@ impl Way {
         limit: Duration,
         tell: &mut dyn FnMut(&str),
     ) -> Result<Self, Error> {
-        Self::find(scene, probe, Settings { rtol, ..self.solver.clone() }, limit, tell)
+        Self::find(scene, probe, Settings { rtol, ..self.settings.clone() }, limit, tell)
     }
 }
 
-/// The solutions by the two fastest methods, in all else as `solver` has it.
+/// The solutions by the two fastest methods, in all else as `settings` has it.
 fn fastest_two(
     scene: &Scene,
     probe: &Probe,
-    solver: &Settings,
+    settings: &Settings,
     limit: Duration,
     tell: &mut dyn FnMut(&str),
 ) -> Result<[Way; 2], Error> {
@@ -240,8 +240,8 @@ fn fastest_two(
     for (method, max_order) in METHODS {
         // nobody waits for the third
         let limit = found.get(1).map_or(limit, |second| second.time);
-        let solver = Settings { method, max_order, ..solver.clone() };
-        match Way::find(scene, probe, solver, limit, tell) {
+        let settings = Settings { method, max_order, ..settings.clone() };
+        match Way::find(scene, probe, settings, limit, tell) {
             Ok(way) => found.push(way),
             Err(error @ Error::Integration(_)) => failures.push(reason(error).to_string()),
             Err(error) => return Err(error),
@@ -250,7 +250,7 @@ fn fastest_two(
         found.truncate(2);
     }
     <[Way; 2]>::try_from(found).map_err(|_| Error::Reference {
-        rtol: solver.rtol,
+        rtol: settings.rtol,
         failures: failures.join("; "),
         mend: "allow more time, or ask for less accuracy".into(),
     })

@@ -1,4 +1,4 @@
-//! The simulation context that SUNDIALS asks for in every constructor.
+//! The simulation context that every constructor of SUNDIALS needs.
 
 use std::ptr;
 

@@ -1,7 +1,7 @@
 //! What every C callback gets as its user data: the user's system, and a place for its troubles.
 //!
 //! A callback must not unwind into C. [`Host::guard`] runs the user's code, keeps whatever went
-//! wrong, and tells SUNDIALS by the return value; the integrator picks the trouble up after C has
+//! wrong, and the return value stops SUNDIALS; the integrator takes the error up after C has
 //! returned.
 
 use std::{

@@ -68,7 +68,7 @@ impl Drop for RawSolver {
 }
 
 /// A linear solver whose factorization happens in the integrator's matrix callback and whose
-/// `solve` asks the user's system.
+/// `solve` calls the user's system.
 ///
 /// # Safety
 /// `context` is alive, and `data` is a [`Host<S>`] that outlives the result.

@@ -1,4 +1,4 @@
-//! Matrices: the storage of the Newton matrix, and what a Jacobian callback sees of it.
+//! Matrices: the storage of the Newton matrix, and the view that a Jacobian callback fills.
 
 use std::{ptr, slice};
 
@@ -49,7 +49,7 @@ impl Drop for Matrix {
     }
 }
 
-/// A matrix without storage: SUNDIALS asks for one wherever a Newton matrix is set up, and a
+/// A matrix without storage: SUNDIALS needs one wherever a Newton matrix is set up, and a
 /// user-supplied solver keeps its own.
 ///
 /// # Safety

@@ -2,7 +2,7 @@
 //! differential-algebraic equations (IDA), nothing about bodies.
 //!
 //! The system is a closure or a struct, see [`crate::ode`]; the solver owns it, chooses its steps
-//! by the tolerances, and answers failures with a typed [`Error`] that tells time, step size,
+//! by the tolerances, and answers failures with a typed [`Error`] that names time, step size,
 //! order, cause and what to try. Panics of the system pass through C unharmed.
 //!
 //! ```
@@ -25,7 +25,7 @@
 //! [`Cvode`], [`Arkode`] and [`Ida`] are used by the methods of [`Integrator`]:
 //! [`solve_to`](Integrator::solve_to) a time or a single [`step`](Integrator::step), output between
 //! the steps by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and
-//! [`Statistics`]. [`LinearSolver`] says how Newton's linear systems are solved: dense, band, sparse (KLU)
+//! [`Statistics`]. [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU)
 //! or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
 
 mod arkode;

@@ -1,4 +1,4 @@
-//! What an integrator of SUNDIALS tells: its statistics, and why it stopped.
+//! Statistics of an integrator of SUNDIALS, and why it stopped.
 
 use std::ffi::c_void;
 
@@ -35,7 +35,7 @@ impl<K, S> Solver<K, S> {
         s
     }
 
-    /// The statistics that one call tells, among them those of the last step: cheap enough to be
+    /// The statistics of one call, among them those of the last step: cheap enough to be
     /// asked for at every step.
     pub(super) fn step_statistics(&self) -> Statistics {
         let mut s = Statistics::default();

@@ -17,7 +17,7 @@ use super::{
 use crate::integrate::{AbsoluteTolerance, Error, StepOptions, Tolerances};
 
 /// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or
-/// [`Ida`](super::Ida), as the parameter `K` says. What all of them can do is in
+/// [`Ida`](super::Ida), by the parameter `K`. What all of them can do is in
 /// [`Integrator`](crate::integrate::Integrator).
 ///
 /// It owns the system `S`; [`Borrowed`](crate::ode::Borrowed) lends it one. It can be sent to another

@@ -2,7 +2,7 @@
 
 use std::mem;
 
-/// The stop time, and whether C has to be told.
+/// The stop time, and whether C has yet to get it.
 ///
 /// SUNDIALS 6.4.1 cannot forget a stop time; one at the end of all time does the same, if it lies
 /// in the direction of time, which a new start may turn.

@@ -4,7 +4,7 @@ use std::ffi::{CStr, c_char};
 
 use super::ffi;
 
-/// Version of SUNDIALS, as the linked library tells it, such as "6.4.1". (`SUNDIALSGetVersion`)
+/// Version of SUNDIALS, of the linked library, such as "6.4.1". (`SUNDIALSGetVersion`)
 #[must_use]
 pub fn version() -> String {
     const LENGTH: usize = 64;
@@ -18,7 +18,7 @@ pub fn version() -> String {
     text.to_string_lossy().into_owned()
 }
 
-/// Version of SuiteSparse, which KLU belongs to, as the linked library tells it, such as "5.12.0".
+/// Version of SuiteSparse, which KLU belongs to, of the linked library, such as "5.12.0".
 /// (`SuiteSparse_version`)
 #[must_use]
 pub fn suitesparse_version() -> String {

@@ -39,7 +39,7 @@ pub(crate) struct AtRest {
 
 /// Forces and energy at some displacements.
 #[derive(Clone)]
-pub(crate) struct Balance {
+pub(crate) struct ForceBalance {
     /// Sum of all nodal forces but those of the constraints (N).
     pub(crate) total: Vec<f64>,
     /// Those among them that have no potential.
@@ -52,7 +52,7 @@ pub(crate) struct Balance {
     pub(crate) scale: f64,
 }
 
-impl Balance {
+impl ForceBalance {
     pub(crate) fn zeros(dofs: usize) -> Self {
         let zeros = vec![0.0; dofs];
         Self { total: zeros.clone(), unbound: zeros, potential: 0.0, terms: 0.0, scale: 0.0 }
@@ -60,7 +60,7 @@ impl Balance {
 
     /// Energy (J) at `self` less that at `from`, a step of `factor` `x` before. The work of forces
     /// without a potential is that of their mean: exact for constant ones.
-    pub(crate) fn energy_since(&self, from: &Balance, factor: f64, x: &[f64]) -> f64 {
+    pub(crate) fn energy_since(&self, from: &ForceBalance, factor: f64, x: &[f64]) -> f64 {
         let work = 0.5 * factor * (dot(&self.unbound, x) + dot(&from.unbound, x));
         self.potential - from.potential - work
     }
@@ -156,7 +156,7 @@ impl AtRest {
         &mut self,
         fraction: f64,
         u: &[f64],
-        at: &mut Balance,
+        at: &mut ForceBalance,
     ) -> Result<(), Failure> {
         at.clear();
         if let Some(stiffness) = &self.system.model.stiffness {

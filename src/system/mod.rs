@@ -38,7 +38,7 @@ mod tests;
 
 use std::sync::Arc;
 
-pub(crate) use at_rest::{AtRest, Balance};
+pub(crate) use at_rest::{AtRest, ForceBalance};
 pub(crate) use dae::{DaeForm, Index};
 pub(crate) use form::Form;
 use newton_matrix::NewtonMatrix;

@@ -68,8 +68,8 @@ pub fn names_are_text(browser: &mut Browser) -> Outcome {
 
 /// What makes a result doubtful stands above the picture.
 pub fn warnings_are_shown(browser: &mut Browser) -> Outcome {
-    let solver = Settings { method: Method::Rk, ..Settings::default() };
-    let trajectory = beam_jump()?.simulate(&solver, &Sampling::every(0.01))?;
+    let settings = Settings { method: Method::Rk, ..Settings::default() };
+    let trajectory = beam_jump()?.simulate(&settings, &Sampling::every(0.01))?;
     let warnings = trajectory.report().warnings();
     assert!(!warnings.is_empty(), "the explicit method finds the beam stiff");
     let _page = shown(browser, &trajectory)?;

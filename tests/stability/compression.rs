@@ -1,5 +1,5 @@
 //! g. St. Venant-Kirchhoff material under compression. Equilibria that collapse:
-//! `tests/statics/stability.rs`; columns that buckle: `tests/compression.rs`.
+//! `tests/bodies/statics/stability.rs`; columns that buckle: `tests/scenes/compression.rs`.
 
 use pliant::{Error, Method, Strain};
 

@@ -1,4 +1,4 @@
-//! e. Penalty contact. Located events against closed forms: `tests/contact_events.rs`.
+//! e. Penalty contact. Located events against closed forms: `tests/scenes/contact_events.rs`.
 
 use pliant::{ContactEvents, Method};
 

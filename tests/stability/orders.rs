@@ -1,5 +1,5 @@
 //! c. BDF near the imaginary axis. That a cap of 3 runs away, that the report says so, and that the
-//! automatic choice does not: `tests/auto.rs`.
+//! automatic choice does not: `tests/scenes/auto.rs`.
 
 use pliant::{Method, Sampling, Settings};
 
@@ -62,9 +62,9 @@ fn stability_limit_detection_does_not_replace_the_cap() {
 fn scenes_are_integrated_with_the_detection() {
     let steps = |ratio: f64, stability_limit_detection: bool| {
         let (method, rtol) = (Method::CvodeBdf, 1e-5);
-        let solver = Settings { method, rtol, stability_limit_detection, ..Settings::default() };
+        let settings = Settings { method, rtol, stability_limit_detection, ..Settings::default() };
         let scene = beam([22, 3], ratio, 1.0).unwrap();
-        scene.simulate(&solver, &Sampling::phase_ends()).unwrap().report().steps()
+        scene.simulate(&settings, &Sampling::phase_ends()).unwrap().report().steps()
     };
     let [light, strong] = [1e-4, 0.03].map(|ratio| [true, false].map(|on| steps(ratio, on)));
     println!("{light:?} {strong:?}");

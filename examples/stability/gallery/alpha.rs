@@ -24,8 +24,8 @@ pub fn pressed(projected: bool) -> Result<Scene, Error> {
 
 /// Steps taken and largest |R| (m) of the square.
 pub fn square(method: Method, alpha: f64, projected: bool) -> Result<(usize, f64), Error> {
-    let solver = Settings { method, alpha, ..Settings::default() };
-    let motion = pressed(projected)?.simulate(&solver, &Sampling::phase_ends())?;
+    let settings = Settings { method, alpha, ..Settings::default() };
+    let motion = pressed(projected)?.simulate(&settings, &Sampling::phase_ends())?;
     Ok((motion.report().steps(), motion.report().constraint_drift))
 }
 
@@ -47,14 +47,14 @@ fn pendulum(alpha: f64) -> impl FnMut(f64, &[f64], &mut [f64]) -> Result<(), Fai
 pub fn drift(alpha: f64, outward: f64, periods: usize) -> Outcome<(Vec<f64>, usize)> {
     let options = Options::new(1e-4, 1e-4).max_steps(10_000_000);
     let start = [1.0, 0.0, outward, 0.0];
-    let mut solver = DormandPrince::new(pendulum(alpha), 0.0, &start, &options)?;
+    let mut settings = DormandPrince::new(pendulum(alpha), 0.0, &start, &options)?;
     let mut off = Vec::new();
     for period in 1..=periods {
-        solver.solve_to(Pendulum::PERIOD * period as f64)?;
-        let s = solver.y();
+        settings.solve_to(Pendulum::PERIOD * period as f64)?;
+        let s = settings.y();
         off.push((s[0].hypot(s[1]) - 1.0).abs());
     }
-    Ok((off, solver.statistics().steps as usize))
+    Ok((off, settings.statistics().steps as usize))
 }
 
 /// The section of the page.

@@ -65,9 +65,9 @@ pub fn held_at(stretch: f64) -> Result<(f64, f64), Error> {
 pub fn crushed(strain: Strain, part: f64, method: Method) -> Result<Trajectory, Error> {
     let load = [[0.0], [-part * limit()]];
     let phase = Phase::until(1.0).named("crush").hold("left");
-    let solver = Settings { method, ..Settings::default() };
+    let settings = Settings { method, ..Settings::default() };
     let scene = bar(strain)?.phase(phase.load_table("right", [0.0, 1.0], load));
-    scene.simulate(&solver, &Sampling::every(0.01))
+    scene.simulate(&settings, &Sampling::every(0.01))
 }
 
 /// Least volume of a cell over its natural volume at the end of a motion.
@@ -81,8 +81,8 @@ pub fn column(time: f64, method: Method) -> Result<Trajectory, Error> {
     let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.4, viscosity: 40.0 };
     let body = Body::new(mesh, rubber).thickness(0.01).strain(Strain::Green).build()?;
     let squeeze = Phase::until(time).hold("left").move_nodes("right", [-0.03 / time, 0.0]);
-    let solver = Settings { method, rtol: 1e-4, ..Settings::default() };
-    Scene::new(body).phase(squeeze).simulate(&solver, &Sampling::every(0.05 * time))
+    let settings = Settings { method, rtol: 1e-4, ..Settings::default() };
+    Scene::new(body).phase(squeeze).simulate(&settings, &Sampling::every(0.05 * time))
 }
 
 /// The section of the page.
@@ -101,8 +101,8 @@ pub fn section(page: &mut Page) -> Outcome<()> {
     page.say(
         "**What works:** below the limit, everything: indefinite tangents are factorized by LU, and the report \
          counts them; beyond it, nothing does, because the model has no answer: the runs end with the cell, \
-         the time and the load that was reached, and keep the motion until then (`tests/statics/stability.rs`, \
-         `tests/compression.rs`). Cauchy strain has no limit and no complaint, and is wrong for longer.",
+         the time and the load that was reached, and keep the motion until then (`tests/bodies/statics/stability.rs`, \
+         `tests/scenes/compression.rs`). Cauchy strain has no limit and no complaint, and is wrong for longer.",
     );
     Ok(())
 }

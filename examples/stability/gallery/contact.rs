@@ -34,8 +34,8 @@ pub fn fall(
     contact_events: ContactEvents,
     rtol: f64,
 ) -> Result<Trajectory, Error> {
-    let solver = Settings { method, rtol, contact_events, ..Settings::default() };
-    falling(stiffness)?.simulate(&solver, &Sampling::every(0.001))
+    let settings = Settings { method, rtol, contact_events, ..Settings::default() };
+    falling(stiffness)?.simulate(&settings, &Sampling::every(0.001))
 }
 
 /// Depth of the lowest node below the floor (m).
@@ -73,9 +73,9 @@ pub fn restitution(zeta: f64, adhesion: bool) -> Result<f64, Error> {
         .obstacle(floor.damping(damping).adhesion(adhesion))
         .initial_velocity(|_| vec![-1.0])
         .phase(Phase::until(0.05));
-    let solver = Settings { method: Method::CvodeBdf, rtol: 1e-7, ..Settings::default() };
-    let solver = Settings { contact_events: ContactEvents::Locate, ..solver };
-    let motion = scene.simulate(&solver, &Sampling::phase_ends())?;
+    let settings = Settings { method: Method::CvodeBdf, rtol: 1e-7, ..Settings::default() };
+    let settings = Settings { contact_events: ContactEvents::Locate, ..settings };
+    let motion = scene.simulate(&settings, &Sampling::phase_ends())?;
     Ok(motion.mean_velocity(motion.last())[0])
 }
 
@@ -108,8 +108,8 @@ pub fn bar(hardness: f64, cells: usize) -> Result<Trajectory, Error> {
         .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(floor(hardness)))
         .initial_velocity(move |_| vec![-speed])
         .phase(Phase::until(until));
-    let solver = Settings { method: Method::Rk, rtol: 1e-6, ..Settings::default() };
-    scene.simulate(&solver, &Sampling::every(until / 1000.0))
+    let settings = Settings { method: Method::Rk, rtol: 1e-6, ..Settings::default() };
+    scene.simulate(&settings, &Sampling::every(until / 1000.0))
 }
 
 fn floor(hardness: f64) -> f64 {
@@ -142,7 +142,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
         "**What works:** a floor some ten times as stiff as the body, no more; the balance of energies, \
          which tells how well a bounce was integrated; rtol 1e-6 or below for bounces on hard floors; \
          `adhesion(false)` where damping must not pull; located events with Runge-Kutta and \
-         few contacts (`tests/contact_events.rs`).",
+         few contacts (`tests/scenes/contact_events.rs`).",
     );
     Ok(())
 }

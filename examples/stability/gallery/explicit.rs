@@ -34,8 +34,8 @@ pub fn released(nodes: usize, viscosity: f64, inertia: Inertia) -> Result<Scene,
 
 /// Steps that a method takes for it at a tolerance.
 pub fn steps(scene: &Scene, method: Method, rtol: f64) -> Result<usize, Error> {
-    let solver = Settings { method, rtol, ..Settings::default() };
-    Ok(scene.simulate(&solver, &Sampling::phase_ends())?.report().steps())
+    let settings = Settings { method, rtol, ..Settings::default() };
+    Ok(scene.simulate(&settings, &Sampling::phase_ends())?.report().steps())
 }
 
 /// The same square as matrices.
@@ -51,12 +51,12 @@ pub fn at_fixed_steps(body: &Linear, part: f64, steps: usize) -> Outcome<Vec<f64
     let options = Options::new(0.5, 1e300).initial_step(h).max_step(h);
     let mut start = vec![1.0; body.size()];
     start.resize(2 * body.size(), 0.0);
-    let mut solver = DormandPrince::new(Dense(body.jacobian()), 0.0, &start, &options)?;
+    let mut settings = DormandPrince::new(Dense(body.jacobian()), 0.0, &start, &options)?;
     let mut sizes = Vec::new();
     for _ in 0..steps {
-        solver.step(f64::MAX)?;
+        settings.step(f64::MAX)?;
         // displacements alone: velocities have another unit
-        let u = &solver.y()[..body.size()];
+        let u = &settings.y()[..body.size()];
         sizes.push(u.iter().fold(0.0, |most, u| f64::max(most, u.abs())));
     }
     Ok(sizes)

@@ -31,11 +31,11 @@ pub struct Run {
 const LIMIT: u64 = 10_000;
 
 /// One step, or why there is none.
-fn step<S: Dae>(solver: &mut Ida<S>, end: f64) -> Option<String> {
-    if solver.statistics().steps == LIMIT {
-        return Some(format!("{LIMIT} steps, at t = {} s", solver.t()));
+fn step<S: Dae>(settings: &mut Ida<S>, end: f64) -> Option<String> {
+    if settings.statistics().steps == LIMIT {
+        return Some(format!("{LIMIT} steps, at t = {} s", settings.t()));
     }
-    solver.step(end).err().map(|error| error.to_string())
+    settings.step(end).err().map(|error| error.to_string())
 }
 
 /// The pendulum, let go from the horizontal, for `periods` of 2 s. The multipliers take part in the
@@ -51,23 +51,23 @@ pub fn pendulum(form: Form, tested: bool, rtol: f64, periods: usize) -> Outcome<
     let options =
         IdaOptions::new(rtol, rtol).differential(differential).suppress_algebraic(!tested);
     let options = options.newton(LinearSolver::Dense(Jacobian::Supplied));
-    let mut solver = Ida::new(PendulumForm(form), 0.0, &y, &yp, &options)?;
+    let mut settings = Ida::new(PendulumForm(form), 0.0, &y, &yp, &options)?;
     let mut result = Run::default();
     let end = Pendulum::PERIOD * periods as f64;
-    solver.set_stop_time(Some(end))?;
-    while solver.t() < end {
-        if let Some(failure) = step(&mut solver, end) {
+    settings.set_stop_time(Some(end))?;
+    while settings.t() < end {
+        if let Some(failure) = step(&mut settings, end) {
             result.failure = Some(failure);
             break;
         }
-        let s = solver.y();
+        let s = settings.y();
         result.drift = result.drift.max((s[0].hypot(s[1]) - 1.0).abs());
     }
-    let s = solver.y();
+    let s = settings.y();
     result.error = (s[0] - 1.0).hypot(s[1]);
     let exact = 3.0 * -Pendulum::GRAVITY * s[1];
     result.multiplier_error = (s[4] - exact).abs() / (3.0 * Pendulum::GRAVITY);
-    Ok(result.counted(&solver.statistics()))
+    Ok(result.counted(&settings.statistics()))
 }
 
 impl Run {
@@ -81,8 +81,8 @@ impl Run {
 pub fn pressed() -> Result<Trajectory, Error> {
     let push = Phase::until(PRESS[0]).hold("bottom").hold_axes([14, 15], [Axis::X]);
     let scene = Scene::new(square_body()?).phase(push.follow([14, 15], Axis::Y, path));
-    let solver = Settings { method: Method::Rk, rtol: 1e-10, ..Settings::default() };
-    scene.simulate(&solver, &Sampling::phase_ends())
+    let settings = Settings { method: Method::Rk, rtol: 1e-10, ..Settings::default() };
+    scene.simulate(&settings, &Sampling::phase_ends())
 }
 
 /// The pressed square in a form, held against its scene.
@@ -101,29 +101,31 @@ pub fn square(form: Form, tested: bool, rtol: f64, exact: &Trajectory) -> Outcom
     let differential: Vec<bool> = (0..y.len()).map(|i| i < 2 * n).collect();
     let options =
         IdaOptions::new(rtol, atol).differential(differential).suppress_algebraic(!tested);
-    let mut solver = Ida::new(system, 0.0, &y, &yp, &options)?;
+    let mut settings = Ida::new(system, 0.0, &y, &yp, &options)?;
     let mut result = Run::default();
     let end = PRESS[0];
-    solver.set_stop_time(Some(end))?;
-    while solver.t() < end {
-        if let Some(failure) = step(&mut solver, end) {
+    settings.set_stop_time(Some(end))?;
+    while settings.t() < end {
+        if let Some(failure) = step(&mut settings, end) {
             result.failure = Some(failure);
             break;
         }
-        let (t, y, system) = (solver.t(), solver.y(), solver.system());
+        let (t, y, system) = (settings.t(), settings.y(), settings.system());
         for (k, &dof) in system.rows.iter().enumerate() {
             let off = (y[dof] - system.prescribed(k, t).displacement).abs();
             result.drift = result.drift.max(off);
         }
     }
-    let (y, sample) = (solver.y(), exact.last());
+    let (y, sample) = (settings.y(), exact.last());
     let apart = y[..n].iter().zip(&sample.u).map(|(a, b)| (a - b).abs());
     result.error = apart.fold(0.0, f64::max);
-    let force: f64 =
-        (0..m).filter(|k| [27, 29].contains(&solver.system().rows[*k])).map(|k| y[2 * n + k]).sum();
+    let force: f64 = (0..m)
+        .filter(|k| [27, 29].contains(&settings.system().rows[*k]))
+        .map(|k| y[2 * n + k])
+        .sum();
     let reading = exact.constraint_force(sample, [14, 15])?[1];
     result.multiplier_error = ((force - reading) / reading).abs();
-    Ok(result.counted(&solver.statistics()))
+    Ok(result.counted(&settings.statistics()))
 }
 
 /// What IDA says to a start of a form that it integrates from a consistent one: a pendulum that is
@@ -135,8 +137,8 @@ pub fn refusals() -> Outcome<[String; 3]> {
         let options = IdaOptions::new(1e-6, 1e-6)
             .differential((0..y.len()).map(|i| i < 4).collect::<Vec<_>>())
             .suppress_algebraic(form == Form::StabilizedTwo);
-        let mut solver = Ida::new(PendulumForm(form), 0.0, y, yp, &options)?;
-        Ok(match solver.solve_to(1.0) {
+        let mut settings = Ida::new(PendulumForm(form), 0.0, y, yp, &options)?;
+        Ok(match settings.solve_to(1.0) {
             Ok(_) => "accepted".into(),
             Err(error) => error.to_string(),
         })

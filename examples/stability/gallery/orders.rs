@@ -41,13 +41,13 @@ pub struct Run {
     pub time: f64,
 }
 
-fn solver(method: Method, max_order: Option<u32>, rtol: f64, max_steps: usize) -> Settings {
+fn settings(method: Method, max_order: Option<u32>, rtol: f64, max_steps: usize) -> Settings {
     Settings { method, max_order, rtol, max_steps, ..Settings::default() }
 }
 
 /// What the others are held against: diagonally implicit Runge-Kutta, a thousandth of their tolerance.
 pub fn reference(scene: &Scene, rtol: f64) -> Result<Trajectory, Error> {
-    scene.simulate(&solver(Method::Arkode, None, 1e-3 * rtol, 10_000_000), &Sampling::every(0.05))
+    scene.simulate(&settings(Method::Arkode, None, 1e-3 * rtol, 10_000_000), &Sampling::every(0.05))
 }
 
 /// BDF with its order capped, no more than `max_steps`.
@@ -58,8 +58,8 @@ pub fn bdf(
     max_steps: usize,
     reference: &Trajectory,
 ) -> Result<Run, Error> {
-    let solver = solver(Method::CvodeBdf, Some(order), rtol, max_steps);
-    let motion = match scene.simulate(&solver, &Sampling::every(0.05)) {
+    let settings = settings(Method::CvodeBdf, Some(order), rtol, max_steps);
+    let motion = match scene.simulate(&settings, &Sampling::every(0.05)) {
         Ok(motion) => motion,
         Err(Error::Integration(end)) => end.trajectory,
         Err(other) => return Err(other),
@@ -124,14 +124,14 @@ impl LinearBeam {
             .stability_limit_detection(detection)
             .max_steps(50_000);
         let system = Dense(self.system.jacobian());
-        let mut solver = Cvode::new(system.clone(), 0.0, &self.start, &options)?;
-        if solver.solve_to(1.0).is_err() {
+        let mut settings = Cvode::new(system.clone(), 0.0, &self.start, &options)?;
+        if settings.solve_to(1.0).is_err() {
             return Ok(None);
         }
         let exact = exponential(&system.0) * Mat::from_fn(2 * n, 1, |i, _| self.start[i]);
         let scale = self.start.iter().take(n).fold(0.0_f64, |most, u| most.max(u.abs()));
-        let apart = solver.y().iter().enumerate().take(n).map(|(i, y)| (y - exact[(i, 0)]).abs());
-        let statistics = solver.statistics();
+        let apart = settings.y().iter().enumerate().take(n).map(|(i, y)| (y - exact[(i, 0)]).abs());
+        let statistics = settings.statistics();
         Ok(Some((
             statistics.steps as usize,
             apart.fold(0.0, f64::max) / scale,
@@ -177,7 +177,7 @@ pub fn section(page: &mut Page) -> Outcome<()> {
     page.say(
         "**What works:** a cap of 2 below a damping ratio of about 1 %, or a method that is stable there at high \
          order (`arkode`); order 5 above, where it is both cheaper and more precise. `Method::Auto` measures the \
-         damping ratio, chooses between them, and goes back if the energy balance shows creation (`tests/auto.rs`).",
+         damping ratio, chooses between them, and goes back if the energy balance shows creation (`tests/scenes/auto.rs`).",
     );
     Ok(())
 }

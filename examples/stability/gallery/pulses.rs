@@ -57,10 +57,10 @@ impl Pulse {
             true => phase.load_table("left", times, forces.map(|force| [force])),
             false => phase.load_with("left", move |t| [force(t)]),
         };
-        let solver = Settings { method, rtol, ..Settings::default() };
+        let settings = Settings { method, rtol, ..Settings::default() };
         let speed = if vibrates { 0.1 } else { 0.0 };
         let scene = Scene::new(body).initial_velocity(|x| vec![speed * (20.0 * x[0] - 1.0)]);
-        let motion = scene.phase(phase).simulate(&solver, &Sampling::phase_ends())?;
+        let motion = scene.phase(phase).simulate(&settings, &Sampling::phase_ends())?;
         Ok(motion.momentum(motion.last())[0] / IMPULSE)
     }
 }
@@ -74,19 +74,19 @@ pub fn general(width: f64, told: bool, rtol: f64) -> Outcome<f64> {
         ydot.copy_from_slice(&[y[1], force(t) / mass]);
         Ok::<(), Failure>(())
     };
-    let mut solver = Cvode::new(system, 0.0, &[0.0; 2], &CvodeOptions::new(rtol, rtol))?;
+    let mut settings = Cvode::new(system, 0.0, &[0.0; 2], &CvodeOptions::new(rtol, rtol))?;
     let breaks = pulse(width).0;
     for stop in breaks.into_iter().filter(|_| told) {
-        solver.set_stop_time(Some(stop))?;
-        while solver.t() < stop {
-            solver.step(stop)?;
+        settings.set_stop_time(Some(stop))?;
+        while settings.t() < stop {
+            settings.step(stop)?;
         }
         // the law changes here: what was learnt of it does not count any more
-        let y = solver.y().to_vec();
-        solver.reinit(stop, &y)?;
+        let y = settings.y().to_vec();
+        settings.reinit(stop, &y)?;
     }
-    solver.solve_to(END)?;
-    Ok(mass * solver.y()[1] / IMPULSE)
+    settings.solve_to(END)?;
+    Ok(mass * settings.y()[1] / IMPULSE)
 }
 
 /// The section of the page.

@@ -52,8 +52,8 @@ impl Square {
             .initial_displacement(|x| vec![stretch * (x[0] - 0.15), 0.0])
             .initial_velocity(|x| vec![-SPIN * (x[1] - 0.15), SPIN * (x[0] - 0.15)])
             .phase(Phase::until(until));
-        let solver = Settings { method: Method::Arkode, rtol: self.rtol, ..Settings::default() };
-        scene.simulate(&solver, &Sampling::every(0.01))
+        let settings = Settings { method: Method::Arkode, rtol: self.rtol, ..Settings::default() };
+        scene.simulate(&settings, &Sampling::every(0.01))
     }
 }
 

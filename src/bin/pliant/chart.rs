@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pliant::ContactEvents;
-use pliant::study::{Scenes, Stage, Study, all_solvers};
+use pliant::study::{Scenes, Stage, Study, all_methods};
 use pliant::{Method, Scene, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
@@ -101,51 +101,51 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The scene by all solvers that are asked for, then the variants.
+/// The scene by all settings that are asked for, then the variants.
 fn problem(arguments: &Arguments, title: &str, file: &SceneFile) -> Result<Scenes, Failure> {
-    let solvers = solvers(arguments, &file.solver);
+    let lines = lines(arguments, &file.settings);
     let end = |scene: Scene| match arguments.until {
         Some(end) => scene.ended_at(end),
         None => scene,
     };
     let mut scenes = Scenes::new(title, end(file.scene.clone()))
-        .alpha(arguments.alpha.first().copied().unwrap_or(file.solver.alpha))
+        .alpha(arguments.alpha.first().copied().unwrap_or(file.settings.alpha))
         .tolerances(arguments.rtol.clone());
-    for (name, solver) in &solvers {
-        scenes = scenes.solver(name, solver.clone());
+    for (name, settings) in &lines {
+        scenes = scenes.line(name, settings.clone());
     }
     for path in &arguments.variants {
         let (variant, stem) = (SceneFile::read(path)?, stem(path));
-        for (name, solver) in &solvers {
+        for (name, settings) in &lines {
             let scene = end(variant.scene.clone());
-            scenes = scenes.variant(format!("{stem}: {name}"), scene, solver.clone());
+            scenes = scenes.variant(format!("{stem}: {name}"), scene, settings.clone());
         }
     }
     Ok(scenes)
 }
 
-/// Name and solver of all lines: methods, alpha and contact events combined.
-fn solvers(arguments: &Arguments, file: &Settings) -> Vec<(String, Settings)> {
+/// Name and settings of all lines: methods, alpha and contact events combined.
+fn lines(arguments: &Arguments, file: &Settings) -> Vec<(String, Settings)> {
     let Arguments { methods, max_order, alpha, contact_events, .. } = arguments;
-    let mut solvers = match methods[..] {
-        [] => all_solvers(),
+    let mut lines = match methods[..] {
+        [] => all_methods(),
         _ => {
-            let solver = |&method: &Method| Settings { method, ..Settings::default() };
-            methods.iter().map(|method| (method.to_string(), solver(method))).collect()
+            let settings = |&method: &Method| Settings { method, ..Settings::default() };
+            methods.iter().map(|method| (method.to_string(), settings(method))).collect()
         }
     };
     if !max_order.is_empty() {
-        solvers = combined(solvers, max_order, |solver, order| {
-            solver.max_order = Some(order);
+        lines = combined(lines, max_order, |settings, order| {
+            settings.max_order = Some(order);
             format!("order {order}")
         });
     }
-    solvers = combined(solvers, or(alpha, &file.alpha), |solver, alpha| {
-        solver.alpha = alpha;
+    lines = combined(lines, or(alpha, &file.alpha), |settings, alpha| {
+        settings.alpha = alpha;
         format!("alpha {alpha:e}")
     });
-    combined(solvers, or(contact_events, &file.contact_events), |solver, events| {
-        solver.contact_events = events;
+    combined(lines, or(contact_events, &file.contact_events), |settings, events| {
+        settings.contact_events = events;
         events.to_string()
     })
 }
@@ -157,19 +157,19 @@ fn or<'a, T>(values: &'a [T], default: &'a T) -> &'a [T] {
 
 /// Each of `solvers` with each of `values`, named after the value if there are several.
 fn combined<T: Copy>(
-    solvers: Vec<(String, Settings)>,
+    lines: Vec<(String, Settings)>,
     values: &[T],
     set: impl Fn(&mut Settings, T) -> String,
 ) -> Vec<(String, Settings)> {
-    let with = |(name, solver): &(String, Settings), value: T| {
-        let mut solver = solver.clone();
-        let said = set(&mut solver, value);
+    let with = |(name, settings): &(String, Settings), value: T| {
+        let mut settings = settings.clone();
+        let said = set(&mut settings, value);
         match values {
-            [_] => (name.clone(), solver),
-            _ => (format!("{name}, {said}"), solver),
+            [_] => (name.clone(), settings),
+            _ => (format!("{name}, {said}"), settings),
         }
     };
-    solvers.iter().flat_map(|solver| values.iter().map(|value| with(solver, *value))).collect()
+    lines.iter().flat_map(|settings| values.iter().map(|value| with(settings, *value))).collect()
 }
 
 fn stem(path: &Path) -> String {

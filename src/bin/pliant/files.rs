@@ -9,7 +9,7 @@ use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
 
 use crate::failure::{Failure, print};
 
-/// Flags that say what is written.
+/// Flags that choose what is written.
 #[derive(Args)]
 pub struct OutputArguments {
     /// Directory for the results [default: out/ and the name of the scene file]
@@ -38,7 +38,7 @@ fn format(name: &str) -> Result<Format, String> {
 }
 
 impl OutputArguments {
-    /// Has them override what the file says.
+    /// Has them override the scene file.
     pub fn apply(&self, file: &mut SceneFile) -> Result<(), Failure> {
         if let Some(nodes) = &self.track {
             file.scene.body().mesh().select(nodes)?;

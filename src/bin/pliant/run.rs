@@ -22,7 +22,7 @@ pub struct Arguments {
     #[arg(value_name = "FILE")]
     scene: PathBuf,
     #[command(flatten)]
-    solver: SettingsArguments,
+    settings: SettingsArguments,
     /// Time between rows of trajectory.csv (s)
     #[arg(long, value_name = "SECONDS")]
     step: Option<f64>,
@@ -34,19 +34,19 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene: path, solver, step, until, output } = arguments;
+    let Arguments { scene: path, settings, step, until, output } = arguments;
     let mut file = SceneFile::read(path)?;
-    solver.apply(&mut file.solver)?;
+    settings.apply(&mut file.settings)?;
     output.apply(&mut file)?;
     file.output.step = step.or(file.output.step);
     if let Some(end) = *until {
         file.scene = file.scene.ended_at(end);
     }
-    let SceneFile { title, scene, solver, output: request } = &file;
+    let SceneFile { title, scene, settings, output: request } = &file;
     let mut directory = output.directory(path, "")?;
 
     let mut watch = Watch::new(scene.end(), output.quiet)?;
-    let result = scene.simulate_with(solver, &request.sampling(), |progress| watch.see(progress));
+    let result = scene.simulate_with(settings, &request.sampling(), |progress| watch.see(progress));
     watch.finish();
     let outcome = match &result {
         Ok(trajectory) => Ok(trajectory),

@@ -28,7 +28,7 @@ const SCRIPT: &str = concat!(
 /// coloured by stress or strain energy density, obstacles, springs (coloured while an actuator
 /// pulls or pushes), point masses, held and moved nodes; below it the energies over time and how
 /// the motion was computed, with the warnings of the report. `title` is its heading. Obstacles that
-/// only a function knows are not drawn.
+/// are given by a function are not drawn.
 ///
 /// Between samples the page interpolates linearly. Of long runs it holds a part of the samples,
 /// evenly spread over their order: a few hundred at most, for a file of about 2 MB at most unless

@@ -19,7 +19,7 @@ pub(super) enum Outline {
     Cavity(Vec<Point>),
 }
 
-/// The obstacles at time `t`; none in space, and none that only a function knows.
+/// The obstacles at time `t`; none in space, and none that is given by a function.
 pub(super) fn outlines(trajectory: &Trajectory, t: f64) -> Vec<Outline> {
     let mut outlines = Vec::new();
     for obstacle in trajectory.scene().obstacles() {

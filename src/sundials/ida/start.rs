@@ -19,7 +19,7 @@ pub enum InitialCondition {
 
 impl<S: Dae> Ida<S> {
     /// Corrects the initial values so that they satisfy the equations; call it before the first
-    /// step. `first_output` is a time at which output will be wanted: it tells the direction and
+    /// step. `first_output` is a time at which output will be wanted: it gives the direction and
     /// scale of time. [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
     ///
     /// # Errors

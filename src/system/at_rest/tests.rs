@@ -67,7 +67,7 @@ fn partial_loads_have_partial_tangents() {
         let h = 1e-6;
         for j in 0..3 {
             let mut at = |by: f64| {
-                let (mut moved, mut balance) = (u, Balance::zeros(3));
+                let (mut moved, mut balance) = (u, ForceBalance::zeros(3));
                 moved[j] += by;
                 rest.evaluate(part, &moved, &mut balance).unwrap();
                 balance
@@ -128,7 +128,7 @@ fn a_part_of_the_load_is_the_load_made_smaller() {
     let dofs = rest.system.dofs();
     let u: Vec<f64> = (0..dofs).map(|i| 0.01 * (i as f64 * 1.7 + 0.3).sin()).collect();
     let evaluate = |rest: &mut AtRest, part: f64, u: &[f64]| {
-        let mut balance = Balance::zeros(dofs);
+        let mut balance = ForceBalance::zeros(dofs);
         rest.evaluate(part, u, &mut balance).unwrap();
         balance
     };

@@ -198,8 +198,8 @@ fn work_along_a_path_is_booked() {
     };
     let scene = Scene::new(body).phase(Phase::until(3.3).follow("left", Axis::X, wave));
     let method = Method::CentralDifference;
-    let solver = Settings { method, rtol: 1e-2, ..Settings::default() };
-    let motion = scene.simulate(&solver, &Sampling::phase_ends()).unwrap();
+    let settings = Settings { method, rtol: 1e-2, ..Settings::default() };
+    let motion = scene.simulate(&settings, &Sampling::phase_ends()).unwrap();
     let report = motion.report();
     let supplied = motion.last().energy.supplied;
     println!("{:e} of {:e}, {supplied:e} J supplied", report.energy_error, report.energy_scale);

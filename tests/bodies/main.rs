@@ -1,0 +1,12 @@
+//! Meshes, the matrices and forces of bodies, and their equilibria.
+
+mod cells;
+mod equations;
+mod frequencies;
+mod matrices;
+mod meshes;
+mod pieces;
+mod polynomial;
+mod solids;
+mod spectrum;
+mod statics;

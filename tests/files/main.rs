@@ -1,0 +1,10 @@
+//! What is read and written: scene files, meshes from Gmsh, tables, pictures, reports.
+
+mod documentation;
+mod gmsh;
+mod output;
+mod output_of_cells;
+mod report;
+mod scene_file_errors;
+mod scene_file_words;
+mod scene_files;

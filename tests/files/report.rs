@@ -1,0 +1,165 @@
+//! `report.json`: every key, and the numbers of the run itself.
+
+use std::fs;
+use std::ops::ControlFlow;
+
+use pliant::IntegrationFailure;
+use pliant::output::{write_report, write_static_report};
+use pliant::samples::{SQUARE_MATERIAL, ring_springs, square_jump};
+use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings, Statics, Strain};
+use pliant::{Trajectory, sundials};
+use serde_json::{Value, json};
+
+const COSTS: [&str; 11] = [
+    "method",
+    "rtol",
+    "alpha",
+    "states",
+    "steps",
+    "rhs_evaluations",
+    "jacobian_evaluations",
+    "factorizations",
+    "error_test_failures",
+    "convergence_failures",
+    "wall_seconds",
+];
+
+fn keys(value: &Value) -> Vec<&str> {
+    value.as_object().unwrap().keys().map(String::as_str).collect()
+}
+
+fn written(run: Result<&Trajectory, &IntegrationFailure>) -> Value {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("new/report.json");
+    write_report(run, &path).unwrap();
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn sum(report: &Value, key: &str) -> f64 {
+    report["phases"].as_array().unwrap().iter().map(|phase| phase[key].as_f64().unwrap()).sum()
+}
+
+#[test]
+fn a_finished_run() {
+    let settings =
+        Settings { method: Method::Ida, rtol: 1e-4, alpha: 500.0, ..Settings::default() };
+    let run = square_jump(4).unwrap().simulate(&settings, &Sampling::every(0.01)).unwrap();
+    let report = written(Ok(&run));
+    let rest = ["energy_balance_error", "energy_created", "energy_scale", "max_constraint_drift"];
+    let all = [&["status", "failure"][..], &COSTS, &["phases"], &rest, &["warnings", "versions"]];
+    assert_eq!(keys(&report), all.concat());
+    let phases = report["phases"].as_array().unwrap();
+    for (phase, (name, end)) in phases.iter().zip([("push", 0.5), ("hold", 1.0), ("free", 1.5)]) {
+        let rest = ["contact_events", "last_step", "last_order"];
+        let all = [&["name", "end"][..], &["method", "reason"], &COSTS[1..], &rest].concat();
+        assert_eq!(keys(phase), all);
+        assert_eq!((&phase["name"], &phase["end"]), (&json!(name), &json!(end)));
+        assert!((1..=5).contains(&phase["last_order"].as_u64().unwrap()));
+        assert!(phase["last_step"].as_f64().unwrap() > 0.0);
+    }
+    assert_eq!(phases.len(), 3);
+    assert_eq!((&report["status"], &report["failure"]), (&json!("finished"), &Value::Null));
+    assert_eq!((&report["method"], &report["rtol"]), (&json!("ida"), &json!(1e-4)));
+    assert_eq!(report["alpha"], 500.0);
+    // 16 nodes: displacements, velocities, two energies, and 12 multipliers while it is held
+    assert_eq!((&report["states"], &phases[0]["states"]), (&json!(66), &json!(78)));
+    for key in &COSTS[4..10] {
+        assert_eq!(report[key].as_f64().unwrap(), sum(&report, key), "{key}");
+    }
+    assert!(report["wall_seconds"].as_f64().unwrap() >= sum(&report, "wall_seconds"));
+    // the energy balance, once more from the samples
+    let balance = run.samples().iter().map(|sample| sample.energy.balance().abs());
+    let error = report["energy_balance_error"].as_f64().unwrap();
+    assert!((error - balance.fold(0.0, f64::max)).abs() < 1e-12, "{error}");
+    assert!(error < 0.01 * report["energy_scale"].as_f64().unwrap());
+    assert_eq!(report["warnings"], json!([]));
+    let drift = report["max_constraint_drift"].as_f64().unwrap();
+    assert!(drift > 0.0 && run.samples().iter().all(|sample| sample.constraint_drift <= drift));
+    assert_eq!(keys(&report["versions"]), ["pliant", "sundials", "suitesparse"]);
+    assert_eq!(report["versions"]["sundials"], sundials::version());
+}
+
+#[test]
+fn runs_that_end_early() {
+    let failed = ring_springs(5.0).unwrap().simulate(&Settings::default(), &Sampling::every(0.01));
+    let Err(Error::Integration(failure)) = failed else { panic!("no failure") };
+    let report = written(Err(&failure));
+    assert_eq!(report["status"], "failed");
+    assert_eq!(keys(&report["failure"]), ["phase", "time", "step", "cause"]);
+    // the springs A2 and A6 shrink to nothing 10 ms after they begin to
+    assert!((report["failure"]["time"].as_f64().unwrap() - 0.21).abs() < 0.003);
+    let cause = report["failure"]["cause"].as_str().unwrap();
+    assert!(cause.contains("spring \"A2\"") || cause.contains("spring \"A6\""), "{cause}");
+    assert_eq!(report["phases"].as_array().unwrap().len(), 2);
+    assert_eq!(report["phases"][1]["end"], report["failure"]["time"]);
+
+    let stopped = square_jump(4).unwrap().simulate_with(
+        &Settings::default(),
+        &Sampling::phase_ends(),
+        |_| ControlFlow::Break(()),
+    );
+    let Err(Error::Integration(end)) = stopped else { panic!("not stopped") };
+    let report = written(Err(&end));
+    assert_eq!((&report["status"], &report["steps"]), (&json!("interrupted"), &json!(1)));
+    assert_eq!(report["failure"]["cause"], "interrupted");
+}
+
+/// Rough tolerances make energy from nothing: the report says so.
+#[test]
+fn warnings_are_told() {
+    let bar = Mesh::bar(0.1, 6).unwrap();
+    let material = pliant::Material { viscosity: 0.0, ..pliant::samples::BEAM_MATERIAL };
+    let body = Body::new(bar, material).area(2e-4).build().unwrap();
+    let scene = Scene::new(body)
+        .initial_velocity(|x| vec![20.0 * x[0]])
+        .phase(Phase::until(0.5).hold("left"));
+    let rough = Settings { method: Method::CvodeBdf, rtol: 0.5, ..Settings::default() };
+    let run = scene.simulate(&rough, &Sampling::every(0.01)).unwrap();
+    let report = written(Ok(&run));
+    let warning = report["warnings"][0].as_str().unwrap();
+    assert!(warning.contains("the integrator created"), "{warning}");
+    assert!(run.report().to_string().contains(&format!("WARNING: {warning}")));
+    // Runge and Kutta's notice that stability bounds the steps
+    let stiff = Settings { method: Method::Rk, alpha: 1e5, ..Settings::default() };
+    let run = square_jump(4).unwrap().simulate(&stiff, &Sampling::phase_ends()).unwrap();
+    let report = written(Ok(&run));
+    let warning = report["warnings"][0].as_str().unwrap();
+    assert!(warning.contains("phase \"push\""), "{warning}");
+}
+
+#[test]
+fn equilibria() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("report.json");
+    let read = || -> Value { serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap() };
+    let scene = |strain, force: f64| {
+        let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(strain);
+        let phase = Phase::until(1.0).hold("bottom").load_total("top", [0.0, force]);
+        Scene::new(body.build().unwrap()).phase(phase)
+    };
+    let found = scene(Strain::Cauchy, -100.0).equilibrium(&Statics::default()).unwrap();
+    write_static_report(Ok(&found), &path).unwrap();
+    let report = read();
+    let all = "status failure method states stability residual force_scale iterations \
+               factorizations load_steps failed_steps wall_seconds max_constraint_drift versions";
+    assert_eq!(keys(&report), all.split_whitespace().collect::<Vec<_>>());
+    assert_eq!((&report["status"], &report["method"]), (&json!("finished"), &json!("static")));
+    assert_eq!(report["states"], 32);
+    assert_eq!(report["stability"]["kind"], "stable");
+    let frequency = report["stability"]["frequency"].as_f64().unwrap();
+    let lowest = scene(Strain::Cauchy, 0.0).spectrum().unwrap()[0].lowest_frequency.unwrap();
+    // both iterations end at three digits
+    assert!((std::f64::consts::TAU * frequency / lowest - 1.0).abs() < 1e-3, "{frequency}");
+
+    // pressed by ten times its stiffness, a St. Venant-Kirchhoff square collapses
+    let lost = scene(Strain::Green, -5e4).equilibrium(&Statics::default());
+    let Err(Error::Statics(lost)) = lost else { panic!("no failure") };
+    write_static_report(Err(&lost), &path).unwrap();
+    let report = read();
+    assert_eq!(report["status"], "failed");
+    assert_eq!(keys(&report["failure"]), ["phase", "fraction", "tried", "cause"]);
+    let (fraction, tried) = (&report["failure"]["fraction"], &report["failure"]["tried"]);
+    assert!(fraction.as_f64().unwrap() < tried.as_f64().unwrap());
+    assert_eq!((&report["stability"], &report["load_steps"]), (&Value::Null, &Value::Null));
+}

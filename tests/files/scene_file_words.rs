@@ -1,0 +1,133 @@
+//! Every word of scene files means what it means in the API: scenes that use all of them, built both
+//! ways, move alike, bit by bit.
+
+use std::path::Path;
+
+use pliant::scene_file::Format;
+use pliant::{
+    Axis, Body, CellSelection, Cells, Chamber, ContactEvents, Material, Mesh, Method, Obstacle,
+    OutputRequest, Phase, Scene, SceneFile, Selection, Settings, Shape, SolidCells, Spring, Strain,
+};
+
+fn read(name: &str) -> SceneFile {
+    SceneFile::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)).unwrap()
+}
+
+#[track_caller]
+fn agree(file: &SceneFile, scene: &Scene) {
+    let run = |scene: &Scene| scene.simulate(&file.settings, &file.output.sampling()).unwrap();
+    assert_eq!(run(&file.scene).samples(), run(scene).samples());
+}
+
+fn corners<const D: usize>(min: [f64; D], max: [f64; D]) -> Selection {
+    Selection::Box { min: min.into(), max: max.into() }
+}
+
+#[test]
+fn in_the_plane() {
+    let file = read("rich.toml");
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    let body = Body::new(Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap(), rubber)
+        .thickness(0.01)
+        .strain(Strain::Green)
+        .region(CellSelection::inside([0.0, 0.0], [0.1, 0.3]), Material { young: 2e6, ..rubber })
+        .point_mass("mass", [0.15, 0.5], 0.01)
+        .build();
+    let push = Phase::until(0.5)
+        .hold("bottom")
+        .move_axis([14, 15], Axis::Y, -0.16)
+        .path([16], Axis::X, [0.0, 0.3, 0.5], [0.0, 0.02, 0.01])
+        .load_total("right", [1.0, 0.0])
+        .pressure("cell", 100.0)
+        .actuate_table(["A1"], [0.0, 0.2, 0.5], [0.0, -0.1, 0.0])
+        .without_contact();
+    let scene = Scene::new(body.unwrap())
+        .gravity([0.0, -9.8])
+        .spring(Spring::between([14], "mass").named("A1").stiffness(20.0))
+        .chamber(Chamber::within("cell", [6, 7, 11, 10]))
+        .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0))
+        .phase(push.named("push"))
+        .phase(Phase::until(1.0).contact_with(["floor"]));
+    agree(&file, &scene);
+    assert_eq!(file.title, "A bit of everything");
+    assert_eq!(
+        file.settings,
+        Settings { method: Method::CvodeBdf, rtol: 1e-5, ..Settings::default() }
+    );
+    let output = OutputRequest {
+        step: Some(0.01),
+        track: Some(corners([0.0, 0.2], [0.3, 0.3])),
+        formats: vec![Format::Csv, Format::Vtk],
+    };
+    assert_eq!(file.output, output);
+    assert_eq!(file.scene.breaks(0), [0.2, 0.3]);
+    assert!(file.scene.breaks(1).is_empty());
+}
+
+#[test]
+fn in_space() {
+    let file = read("solid.toml");
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.4, viscosity: 100.0 };
+    let mesh = Mesh::cuboid([0.1, 0.1, 0.2], [3, 3, 3], SolidCells::Hexahedra).unwrap();
+    let mesh = mesh.translated(&[-0.05, -0.05, 0.0]).unwrap();
+    let floor = Obstacle::half_plane([0.0, 0.0, -0.001], [0.0, 0.0, 2.0]).stiffness_density(1e7);
+    let ball = Obstacle::disc([0.06, 0.0, 0.1], 0.02).named("ball").stiffness(200.0);
+    let step = Shape::box_between([-0.2, -0.2, -1.0], [-0.04, 0.2, 0.01]);
+    let rail = Obstacle::capsule([0.0, -1.0, 0.21], [0.0, 1.0, 0.21], 0.015).named("rail");
+    let times = [0.0, 0.022, 0.03];
+    let press = Phase::until(0.03)
+        .project_velocity()
+        .hold(corners([-1.0, -1.0, 0.0], [1.0, 1.0, 0.0]))
+        .move_axis("top", Axis::X, 0.05)
+        .move_axis("top", Axis::Z, -0.1)
+        .load_table("left", times, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+    let scene = Scene::new(Body::new(mesh, rubber).strain(Strain::Green).build().unwrap())
+        .gravity([0.0, 0.0, -9.8])
+        .obstacle(floor.damping(1e3).friction(1e4).adhesion(false))
+        .obstacle(ball.velocity([-0.1, 0.0, 0.0]))
+        .obstacle(Obstacle::cavity([0.0, 0.0, 0.1], 0.12).named("hull").stiffness(50.0))
+        .obstacle(Obstacle::new(step).named("step").stiffness(100.0))
+        .obstacle(rail.stiffness(100.0))
+        .phase(Phase::until(0.02).named("fall").contact_with(["floor", "hull"]))
+        .phase(press);
+    agree(&file, &scene);
+    let settings = Settings {
+        method: Method::CvodeBdf,
+        rtol: 1e-4,
+        atol_position: Some(1e-7),
+        atol_velocity: Some(1e-5),
+        alpha: 500.0,
+        max_order: Some(4),
+        stability_limit_detection: true,
+        contact_events: ContactEvents::Locate,
+        max_step: Some(0.01),
+        max_steps: 5000,
+    };
+    assert_eq!(file.settings, settings);
+    assert_eq!(file.output, OutputRequest::default());
+    assert_eq!(file.scene.breaks(1), [0.022]);
+}
+
+#[test]
+fn a_string_in_the_plane() {
+    let file = read("string.toml");
+    let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.0, viscosity: 10.0 };
+    let mesh = Mesh::bar(0.2, 9).unwrap().mapped(|x| [x[0], 0.0]).unwrap();
+    let mesh = mesh.translated(&[-0.1, 0.05]).unwrap();
+    let body = Body::new(mesh, rubber).area(1e-5).point_mass("weight", [0.0, -0.05], 0.01).build();
+    let bag = Chamber::within("bag", [9, 8, 7, 6, 5, 4, 3, 2, 1, 10]).thickness(0.01);
+    let phase = Phase::until(0.1)
+        .hold("weight")
+        .path([1], Axis::X, [0.0, 0.05, 0.1], [0.0, -0.01, -0.01])
+        .path([1], Axis::Y, [0.0, 0.05, 0.1], [0.0, 0.0, 0.02])
+        .path([9], Axis::X, [0.0, 0.1], [0.0, 0.01])
+        .path([9], Axis::Y, [0.0, 0.1], [0.0, 0.0])
+        .pressure_table("bag", [0.02, 0.08], [0.0, 50.0])
+        .actuate(["spring 1"], -0.01);
+    let scene = Scene::new(body.unwrap())
+        .spring(Spring::between([5], "weight").stiffness(2.0).damping(0.1))
+        .chamber(bag)
+        .phase(phase);
+    agree(&file, &scene);
+    assert_eq!(file.scene.breaks(0), [0.02, 0.05, 0.08]);
+}

@@ -1,0 +1,144 @@
+//! Scene files give what the same scenes give that are built in Rust, bit by bit: both end in the
+//! same `Scene`.
+
+use std::path::{Path, PathBuf};
+
+use pliant::samples::{self, BeamJump, RingRoll, SquareJump};
+use pliant::{Cells, Error, Mesh, Scene, SceneFile, Statics, Strain, Trajectory, Viscosity};
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+/// The motion that a scene file asks for, and the message of the error that ends it.
+fn run(file: &SceneFile) -> (Trajectory, Option<String>) {
+    match file.scene.simulate(&file.settings, &file.output.sampling()) {
+        Ok(trajectory) => (trajectory, None),
+        Err(Error::Integration(failure)) => {
+            let message = failure.to_string();
+            (failure.trajectory, Some(message))
+        }
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// `file` and the `sample` move alike. Returns the motion and the error that ends it.
+#[track_caller]
+fn agree(file: &SceneFile, sample: Scene) -> (Trajectory, Option<String>) {
+    let (found, error) = run(file);
+    let (expected, expected_error) = run(&SceneFile { scene: sample, ..file.clone() });
+    assert_eq!(error, expected_error);
+    assert_eq!(found.samples().len(), expected.samples().len());
+    for (found, expected) in found.samples().iter().zip(expected.samples()) {
+        assert_eq!(found, expected);
+    }
+    (found, error)
+}
+
+/// Steps per phase after which long motions have been compared enough.
+const MAX_STEPS: usize = 4000;
+
+/// Tests of scenes by the name of their file. They run to their ends, or to the most steps of a phase.
+macro_rules! motions {
+    ($($test:ident: $file:literal, $sample:expr;)*) => {
+        const MOTIONS: &[&str] = &[$($file),*];
+        $(#[test]
+        fn $test() {
+            let mut file = SceneFile::read(path(concat!("scenes/", $file, ".toml"))).unwrap();
+            file.settings.max_steps = MAX_STEPS;
+            let (trajectory, error) = agree(&file, $sample.unwrap());
+            match error {
+                None => assert_eq!(trajectory.last().time, file.scene.end()),
+                Some(error) => assert!(error.contains("as many as max_steps allows"), "{error}"),
+            }
+        })*
+    };
+}
+
+motions! {
+    beam_jump: "beam-jump", samples::beam_jump();
+    beam_jump_gravity: "beam-jump-gravity", BeamJump { gravity: 9.8, ..BeamJump::default() }.scene();
+    square_press: "square-press", samples::square_press(4);
+    square_press_10: "square-press-10", samples::square_press(10);
+    square_jump: "square-jump", samples::square_jump(4);
+    square_jump_10: "square-jump-10", samples::square_jump(10);
+    square_jump_hard: "square-jump-hard",
+        SquareJump { floor: 4e6, gravity: 9.8, until: 3.0, ..SquareJump::default() }.scene();
+    square_jump_rect: "square-jump-rect",
+        SquareJump { cells: Cells::Rectangles, ..SquareJump::default() }.scene();
+    membrane: "membrane", samples::membrane();
+    membrane_arch: "membrane-arch", samples::membrane_arch();
+    beam_bend_cauchy: "beam-bend-cauchy", samples::beam_bend(Strain::Cauchy, false);
+    beam_bend_cauchy_held: "beam-bend-cauchy-held", samples::beam_bend(Strain::Cauchy, true);
+    beam_bend_green: "beam-bend-green", samples::beam_bend(Strain::Green, false);
+    beam_bend_green_held: "beam-bend-green-held", samples::beam_bend(Strain::Green, true);
+    ring_roll: "ring-roll", RingRoll::default().scene();
+    ring_roll_objective: "ring-roll-objective",
+        RingRoll { viscosity: Viscosity::Objective, ..RingRoll::default() }.scene();
+    problem_2: "problem-2", RingRoll { strain: Strain::Cauchy, ..RingRoll::default() }.scene();
+    problem_4: "problem-4",
+        RingRoll { viscosity: Viscosity::Objective, friction: 0.2, until: 2.0, ..RingRoll::default() }
+            .scene();
+    ring_springs: "ring-springs", samples::ring_springs(1.0);
+    ring_jump: "ring-jump", samples::ring_jump();
+    report_8: "report-8", samples::report_8();
+    bending_actuator: "bending-actuator",
+        samples::bending_actuator(Mesh::read_gmsh(path("scenes/meshes/bending-actuator.msh")).unwrap());
+}
+
+/// Hirai's 5 N are too much: the run ends where it should, and says so.
+#[test]
+fn ring_springs_collapse() {
+    let file = SceneFile::read(path("scenes/ring-springs-5N.toml")).unwrap();
+    let (trajectory, error) = agree(&file, samples::ring_springs(5.0).unwrap());
+    let message = error.expect("springs of no length");
+    assert!(message.contains("\"A2\"") || message.contains("\"A6\""), "{message}");
+    assert!((0.2..0.25).contains(&trajectory.last().time));
+}
+
+#[test]
+fn equilibria() {
+    for (name, sample) in [
+        ("static-square", samples::static_square(Strain::Cauchy)),
+        ("beam-static-cauchy", samples::beam_static(Strain::Cauchy)),
+        ("beam-static-green", samples::beam_static(Strain::Green)),
+    ] {
+        let file = SceneFile::read(path(&format!("scenes/{name}.toml"))).unwrap();
+        let solve = |scene: &Scene| scene.equilibrium(&Statics::default()).unwrap();
+        let (found, expected) = (solve(&file.scene), solve(&sample.unwrap()));
+        assert_eq!(found.sample(), expected.sample(), "{name}");
+        if name != "static-square" {
+            // the force has 5 digits
+            assert!((found.displacements()[2 * 21 + 1] + 0.05).abs() < 1e-6, "{name}");
+        }
+    }
+}
+
+/// Scenes written to the first description of the format.
+#[test]
+fn scenes_of_the_page() {
+    for (name, sample) in [
+        ("beam-jump", samples::beam_jump()),
+        ("square-jump", samples::square_jump(4)),
+        ("ring-roll", RingRoll::default().scene()),
+    ] {
+        let file = SceneFile::read(path(&format!("tests/data/page/{name}.toml"))).unwrap();
+        let (trajectory, error) = agree(&file, sample.unwrap());
+        assert_eq!(error, None, "{name}");
+        assert_eq!(trajectory.last().time, file.scene.end(), "{name}");
+    }
+}
+
+/// No scene file is left out above.
+#[test]
+fn all_scenes_are_run() {
+    let other = ["ring-springs-5N", "static-square", "beam-static-cauchy", "beam-static-green"];
+    for entry in std::fs::read_dir(path("scenes")).unwrap() {
+        let file = entry.unwrap().path();
+        if file.is_dir() {
+            continue;
+        }
+        let name = file.file_stem().unwrap().to_str().unwrap();
+        assert!(MOTIONS.contains(&name) || other.contains(&name), "{name}");
+    }
+}

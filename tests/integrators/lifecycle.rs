@@ -1,0 +1,122 @@
+//! Creates, uses and drops solvers of every kind, in every way a solver can end.
+//!
+//! Meant to be run under valgrind (`make valgrind`), where `PLIANT_LIFECYCLES` sets the number of
+//! rounds; each round makes 21 solvers.
+
+use std::{
+    hint::black_box,
+    panic::{self, AssertUnwindSafe, catch_unwind},
+};
+
+use crate::support::OwnSolver;
+use pliant::{
+    ode::Failure,
+    samples::Robertson,
+    sundials::{
+        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions,
+        InitialCondition, Integrator, Jacobian, LinearSolver, Multistep, Pattern,
+    },
+};
+
+const ATOL: [f64; 3] = [1e-8, 1e-14, 1e-6];
+
+fn linear_solvers() -> [LinearSolver; 4] {
+    [
+        LinearSolver::Dense(Jacobian::Supplied),
+        LinearSolver::Dense(Jacobian::DifferenceQuotients),
+        LinearSolver::Band { lower: 2, upper: 2, jacobian: Jacobian::DifferenceQuotients },
+        LinearSolver::Klu(Robertson::new().pattern().clone()),
+    ]
+}
+
+/// A solver of this type for each linear solver: started, started anew, stopped, looked back on.
+macro_rules! each_linear_solver {
+    ($solver:ident, $options:ident) => {
+        for solver in linear_solvers() {
+            let options = $options::new(1e-4, ATOL).newton(solver);
+            let mut solver = $solver::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
+            solver.solve_to(0.4).unwrap();
+            solver.reinit(0.0, &Robertson::Y0).unwrap();
+            solver.set_stop_time(Some(0.05)).unwrap();
+            solver.solve_to(0.1).unwrap();
+            let (start, _) = solver.last_step();
+            solver.interpolate(start, 0, &mut [0.0; 3]).unwrap();
+            drop(black_box(solver.into_system()));
+        }
+    };
+}
+
+fn cvode_solvers() {
+    each_linear_solver!(Cvode, CvodeOptions);
+    let options = CvodeOptions::new(1e-4, ATOL).newton(LinearSolver::Custom);
+    let system = OwnSolver::new(Robertson::new(), 3);
+    let mut solver = Cvode::new(system, 0.0, &Robertson::Y0, &options).unwrap();
+    solver.solve_to(0.4).unwrap();
+
+    let options = CvodeOptions::new(1e-4, 1e-6).method(Multistep::Adams).fixed_point(3);
+    let mut solver = Cvode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
+    solver.solve_to(1e-3).unwrap();
+}
+
+fn arkode_solvers() {
+    each_linear_solver!(Arkode, ArkodeOptions);
+    let options = ArkodeOptions::new(1e-4, 1e-6).table(ButcherTable::explicit(5).unwrap());
+    let mut solver = Arkode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
+    solver.solve_to(1e-3).unwrap();
+}
+
+fn ida_solvers() {
+    for solver in linear_solvers() {
+        let options = IdaOptions::new(1e-4, ATOL)
+            .newton(solver)
+            .differential(Robertson::DIFFERENTIAL)
+            .suppress_algebraic(true);
+        let mut solver =
+            Ida::new(Robertson::new(), 0.0, &Robertson::Y0, &[0.0; 3], &options).unwrap();
+        solver.consistent_start(InitialCondition::Algebraic, 0.4).unwrap();
+        solver.solve_to(0.4).unwrap();
+        solver.reinit_with(0.0, &Robertson::Y0, &Robertson::YP0).unwrap();
+        solver.solve_to(0.1).unwrap();
+    }
+    let options = IdaOptions::new(1e-4, ATOL).newton(LinearSolver::Custom);
+    let system = OwnSolver::new(Robertson::new(), 3);
+    let mut solver = Ida::new(system, 0.0, &Robertson::Y0, &Robertson::YP0, &options).unwrap();
+    solver.solve_to(0.4).unwrap();
+}
+
+fn solvers_that_fail() {
+    type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
+    let fatal: Rhs = |_, _, _| Err(std::fmt::Error.into());
+    let refusing: Rhs = |_, _, _| Err(Failure::Recoverable("no".into()));
+    let panicking: Rhs = |_, _, _| panic!("sabotage");
+    let roots_of_bad_numbers: Rhs = |t, _, ydot| {
+        ydot[0] = (0.01 - t).sqrt();
+        Ok(())
+    };
+    let options = CvodeOptions::new(1e-4, 1e-6);
+    for system in [fatal, refusing, roots_of_bad_numbers] {
+        let mut solver = Cvode::new(system, 0.0, &[1.0], &options).unwrap();
+        solver.solve_to(1.0).unwrap_err();
+    }
+    let mut solver = Cvode::new(panicking, 0.0, &[1.0], &options).unwrap();
+    catch_unwind(AssertUnwindSafe(|| solver.solve_to(1.0))).unwrap_err();
+
+    // Refused by the constructor.
+    let pattern = Pattern::from_entries(2, []).unwrap();
+    let options = options.newton(LinearSolver::Klu(pattern));
+    assert!(Cvode::new(fatal, 0.0, &[1.0], &options).is_err());
+}
+
+#[test]
+fn solvers_come_and_go() {
+    let rounds = std::env::var("PLIANT_LIFECYCLES").ok().map_or(200, |n| n.parse().unwrap());
+    // Keep the expected panics quiet.
+    panic::set_hook(Box::new(|_| ()));
+    for _ in 0..rounds {
+        cvode_solvers();
+        arkode_solvers();
+        ida_solvers();
+        solvers_that_fail();
+    }
+    drop(panic::take_hook());
+}

@@ -1,0 +1,15 @@
+//! The integrators by themselves: trusted numbers, control, failures.
+
+mod support;
+
+mod arkode;
+mod central_difference;
+mod control;
+mod cvode;
+mod failures;
+mod ida;
+mod jacobians;
+mod lifecycle;
+mod mass;
+mod rk;
+mod roots;

@@ -1,0 +1,294 @@
+//! Springs, chambers and changing loads in motion, against closed forms and conservation laws.
+
+use pliant::force::{Force, NodalForces, Reservoir};
+use pliant::ode::Failure;
+use pliant::samples::SQUARE_MATERIAL;
+use pliant::sparse::BlockMatrix;
+use pliant::{
+    Body, Cells, Chamber, Error, Material, Mesh, Method, Phase, Sampling, Scene, Selection,
+    Settings, Spring, Strain, Trajectory,
+};
+
+/// A square of rubber, 3 cm wide, with point masses of 10 g and 30 g beside it, 4 cm apart.
+fn two_masses() -> Body {
+    let mesh = Mesh::rectangle([0.03, 0.03], [2, 2], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01);
+    let body = body.point_mass("light", [0.10, 0.0], 0.01).point_mass("heavy", [0.14, 0.0], 0.03);
+    body.build().unwrap()
+}
+
+fn fine(method: Method) -> Settings {
+    Settings { method, rtol: 1e-9, alpha: 1e4, ..Settings::default() }
+}
+
+/// The energy balance closes to `tolerance` of all energy there was.
+#[track_caller]
+fn assert_balanced(trajectory: &Trajectory, tolerance: f64) {
+    let report = trajectory.report();
+    println!("energy off by {:e} of {:e} J", report.energy_error, report.energy_scale);
+    assert!(report.energy_scale > 0.0);
+    assert!(report.energy_error < tolerance * report.energy_scale, "{}", report.energy_error);
+}
+
+/// A mass on a spring whose other end is held swings with omega = sqrt(k/m): set going by a
+/// constant actuation f, x = (f/k) (1 - cos(omega t)).
+#[test]
+fn a_mass_on_a_spring_swings() {
+    let (k, m, f) = (20.0_f64, 0.03, -0.1);
+    let spring = Spring::between("light", "heavy").named("A1").stiffness(k);
+    let phase = Phase::until(1.0).hold("light").hold("all-but-heavy").actuate(["A1"], f);
+    let mesh = Mesh::rectangle([0.03, 0.03], [2, 2], Cells::Triangles).unwrap();
+    let mesh = mesh.name_nodes("all-but-heavy", [1, 2, 3, 4]).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01);
+    let body = body.point_mass("light", [0.10, 0.0], 0.01).point_mass("heavy", [0.14, 0.0], m);
+    let scene = Scene::new(body.build().unwrap()).spring(spring).phase(phase);
+    let omega = (k / m).sqrt();
+    for method in Method::ALL {
+        let trajectory = scene.simulate(&fine(method), &Sampling::every(0.01)).unwrap();
+        for sample in trajectory.samples() {
+            let expected = f / k * (1.0 - (omega * sample.time).cos());
+            let apart = (sample.u[10] - expected).abs();
+            // four swings at rtol 1e-9: BDF adds up the errors of some 2000 steps
+            assert!(apart < 1e-5 * (f / k).abs(), "{method}: {apart:e} at {} s", sample.time);
+            assert_eq!(sample.u[11], 0.0);
+        }
+        // the energy that central differences conserve is off by (omega h)^2/8
+        assert_balanced(&trajectory, if method == Method::CentralDifference { 1e-5 } else { 1e-6 });
+    }
+}
+
+/// Two free masses on a spring swing with the reduced mass against each other; what they do to
+/// the square between them and to their centre is nothing.
+#[test]
+fn two_masses_swing_against_each_other() {
+    let (k, reduced, f) = (20.0_f64, 0.01 * 0.03 / 0.04, 0.2);
+    let spring = Spring::between("light", "heavy").named("A1").stiffness(k);
+    let phase = Phase::until(0.5).actuate_with(["A1"], move |_| f);
+    let scene = Scene::new(two_masses()).spring(spring).phase(phase);
+    let omega = (k / reduced).sqrt();
+    for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
+        let trajectory = scene.simulate(&fine(method), &Sampling::every(0.01)).unwrap();
+        for sample in trajectory.samples() {
+            let stretch = sample.u[10] - sample.u[8];
+            let expected = f / k * (1.0 - (omega * sample.time).cos());
+            assert!((stretch - expected).abs() < 1e-6 * f / k, "{method}: {stretch} {expected}");
+            let momentum = 0.01 * sample.v[8] + 0.03 * sample.v[10];
+            assert!(momentum.abs() < 1e-10, "{method}: {momentum:e}");
+        }
+    }
+}
+
+/// A damped spring between two bodies in free flight, turning: energy balances, momentum and
+/// angular momentum stay.
+#[test]
+fn a_turning_pair_keeps_its_angular_momentum() {
+    let spring = Spring::between("light", "heavy").stiffness(20.0).damping(0.05);
+    let throw = Phase::until(0.05).load("light", [0.0, 0.2]).load("heavy", [0.1, -0.2]);
+    let scene = Scene::new(two_masses()).spring(spring).phase(throw).phase(Phase::until(0.5));
+    for method in [Method::CvodeBdf, Method::Ida, Method::Rk] {
+        let trajectory = scene.simulate(&fine(method), &Sampling::every(0.05)).unwrap();
+        let free: Vec<_> = trajectory.samples().iter().filter(|s| s.time >= 0.05).collect();
+        let spin = |k: usize| trajectory.angular_momentum(free[k])[0];
+        println!("{method}: angular momentum {:e} and {:e}", spin(0), spin(free.len() - 1));
+        assert!(spin(0).abs() > 1e-4);
+        for (k, sample) in free.iter().enumerate() {
+            assert!((spin(k) / spin(0) - 1.0).abs() < 1e-6, "{method}");
+            let (p, q) = (trajectory.momentum(sample), trajectory.momentum(free[0]));
+            assert!((0..2).all(|i| (p[i] - q[i]).abs() < 1e-9), "{method}: {p:?} {q:?}");
+        }
+        assert!(trajectory.last().energy.dissipated > 1e-5);
+        assert_balanced(&trajectory, 1e-6);
+    }
+}
+
+/// An actuator that pulls harder than its spring can resist: the run stops when the spring is at
+/// its end, about when the closed form says, and says which spring and when.
+#[test]
+fn a_collapsed_spring_is_named() {
+    let (k, length, f) = (20.0_f64, 0.04_f64, -5.0);
+    let spring = Spring::between("light", "heavy").named("A2").stiffness(k).length(length);
+    let scene = Scene::new(two_masses())
+        .spring(spring)
+        .phase(Phase::until(0.02).named("settle"))
+        .phase(Phase::until(1.0).named("shrink").actuate(["A2"], f));
+    let omega = (k / (0.01 * 0.03 / 0.04)).sqrt();
+    // 1 % of the length is left
+    let expected = 0.02 + (1.0 + 0.99 * length * k / f).acos() / omega;
+    for method in Method::ALL {
+        for rtol in [1e-2, 1e-3, 1e-6, 1e-9] {
+            let settings = Settings { method, rtol, ..Settings::default() };
+            let result = scene.simulate(&settings, &Sampling::every(0.001));
+            let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
+            let message = failure.to_string();
+            println!("{message}");
+            for part in ["shrink", "spring \"A2\" has collapsed at t = 0.03", "step"] {
+                assert!(message.contains(part), "{method} {rtol}: {message}");
+            }
+            // it happened in the last step, but for the error of the integration
+            let (start, slack) = (failure.time, 10.0 * rtol * (expected - 0.02));
+            let last_step = start - slack..start + failure.step + slack;
+            assert!(last_step.contains(&expected), "{method} {rtol}: {last_step:?} {expected}");
+        }
+    }
+}
+
+/// A strip, clamped at its ends, over a chamber: pressure bulges it upward, and when it ends the
+/// strip comes back. Energy balances throughout.
+#[test]
+fn a_chamber_bulges_a_strip() {
+    let mesh = Mesh::rectangle([0.1, 0.01], [11, 2], Cells::Triangles).unwrap();
+    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 40.0 };
+    for strain in [Strain::Cauchy, Strain::Green] {
+        let body = Body::new(mesh.clone(), soft).thickness(0.01).strain(strain).build().unwrap();
+        let phase = |until| Phase::until(until).hold([1, 11, 12, 22]);
+        let bottom: Vec<usize> = (1..=11).rev().collect();
+        // in any order and by name the same chamber
+        let forward: Vec<usize> = (1..=11).collect();
+        for nodes in [Selection::from(bottom.clone()), forward.into(), "bottom".into()] {
+            let chamber = Chamber::within("below", nodes);
+            let pressed = phase(0.01).pressure("below", 500.0);
+            let scene = Scene::new(body.clone()).chamber(chamber).phase(pressed);
+            let trajectory = scene.simulate(&fine(Method::CvodeBdf), &Sampling::phase_ends());
+            assert!(trajectory.unwrap().last().u[2 * 5 + 1] > 0.0);
+        }
+        let scene = Scene::new(body)
+            .chamber(Chamber::within("below", bottom))
+            .phase(phase(0.1).pressure("below", 500.0))
+            .phase(phase(0.2).pressure_with("below", |t| 500.0 * (0.2 - t) / 0.1))
+            .phase(phase(0.6));
+        for method in [Method::CvodeBdf, Method::Ida] {
+            let settings = Settings { method, rtol: 1e-7, ..Settings::default() };
+            let trajectory = scene.simulate(&settings, &Sampling::every(0.1)).unwrap();
+            let height = |time: f64| {
+                let at = |sample: &&pliant::Sample| (sample.time - time).abs() < 1e-9;
+                trajectory.samples().iter().find(at).unwrap().u[2 * 5 + 1]
+            };
+            println!("{strain:?} {method}: {} {}", height(0.1), height(0.6));
+            assert!(height(0.1) > 1e-3 && height(0.6).abs() < 0.1 * height(0.1));
+            assert_balanced(&trajectory, 1e-5);
+        }
+    }
+}
+
+/// Loads that change with time, and those that are shared: a free body moves as a point mass,
+/// v = (1/m) times the integral of the force.
+#[test]
+fn loads_push_the_centre_of_mass() {
+    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let mass = body.mass();
+    let phase = Phase::until(0.5)
+        .load_with("top", |t| [0.5 * t, 0.0])
+        .load_total("bottom", [0.0, 3.0])
+        .load([6], [0.0, -1.0]);
+    let scene = Scene::new(body).phase(phase);
+    let trajectory = scene.simulate(&fine(Method::CvodeBdf), &Sampling::phase_ends()).unwrap();
+    let v = trajectory.mean_velocity(trajectory.last());
+    // four nodes at the top: 4 x 0.5 x 0.5^2 / 2 N s
+    assert!((v[0] * mass / 0.25 - 1.0).abs() < 1e-7, "{v:?}");
+    assert!((v[1] * mass / 1.0 - 1.0).abs() < 1e-7, "{v:?}");
+    assert_balanced(&trajectory, 1e-6);
+}
+
+/// A spring that pulls a corner of a square through its diagonal turns cells inside out, which
+/// Green strain does not survive. The run ends there and says so, instead of taking steps that are
+/// too small to move time ahead.
+#[test]
+fn a_run_that_cannot_go_on_ends() {
+    let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+    let scene = Scene::new(body.build().unwrap())
+        .spring(Spring::between([1], [4]).named("A1").stiffness(20.0))
+        .phase(Phase::until(1.0).named("crush").hold([2, 3, 4]).actuate(["A1"], -5e4));
+    for method in Method::ALL {
+        for rtol in [1e-3, 1e-6] {
+            let settings = Settings { method, rtol, ..Settings::default() };
+            let result = scene.simulate(&settings, &Sampling::phase_ends());
+            let Err(Error::Integration(failure)) = &result else { panic!("{method}: {result:?}") };
+            let message = failure.to_string();
+            println!("{message}");
+            assert!(message.contains("crush") && message.contains("is inverted"), "{message}");
+            assert!(failure.trajectory.report().steps() < 100_000, "{message}");
+        }
+    }
+}
+
+/// A field that draws each node back to where it was, in proportion to its mass.
+struct Trap {
+    masses: Vec<f64>,
+    omega: f64,
+}
+
+impl Trap {
+    /// Mass (kg) times omega^2 of a component.
+    fn stiffness(&self, dof: usize) -> f64 {
+        self.masses[dof / 2] * self.omega.powi(2)
+    }
+}
+
+impl Force for Trap {
+    fn add_forces(
+        &self,
+        _t: f64,
+        u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let own = forces.conservative.iter_mut().zip(u).enumerate();
+        own.for_each(|(dof, (f, u))| *f -= self.stiffness(dof) * u);
+        Ok(())
+    }
+
+    fn add_tangents(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        stiffness: &mut BlockMatrix,
+        _damping: &mut BlockMatrix,
+    ) {
+        for node in 0..self.masses.len() {
+            let block = stiffness.block_mut(node, node).unwrap();
+            block[0] += self.stiffness(2 * node);
+            block[3] += self.stiffness(2 * node);
+        }
+    }
+
+    fn is_nonlinear(&self) -> bool {
+        true
+    }
+
+    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
+        u.iter().enumerate().map(|(dof, u)| 0.5 * self.stiffness(dof) * u * u).sum()
+    }
+
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::Springs
+    }
+}
+
+/// A force that is not of the crate: a body without strain swings in it as u = a cos(omega t).
+#[test]
+fn forces_of_other_crates_act() {
+    let (omega, a) = (20.0, 0.01);
+    let mesh = Mesh::rectangle([0.03, 0.03], [3, 3], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let masses = body.nodal_masses().to_vec();
+    let scene = Scene::new(body)
+        .initial_displacement(|_| vec![a, 0.0])
+        .force(Trap { masses, omega })
+        .phase(Phase::until(1.0));
+    for method in [Method::CvodeBdf, Method::Arkode, Method::Rk] {
+        let settings = fine(method);
+        let trajectory = scene.simulate(&settings, &Sampling::every(0.1)).unwrap();
+        let error = |sample: &pliant::Sample| {
+            let expected = a * (omega * sample.time).cos();
+            sample.u.chunks(2).map(|u| (u[0] - expected).hypot(u[1])).fold(0.0, f64::max)
+        };
+        let worst = trajectory.samples().iter().map(error).fold(0.0, f64::max);
+        println!("{method}: off by {worst:e} m");
+        // three times what BDF, the least precise, is off by
+        assert!(worst < 2e-7 * a, "{method}: {worst:e}");
+        assert_balanced(&trajectory, 3e-7);
+    }
+}

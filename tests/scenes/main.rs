@@ -1,0 +1,21 @@
+//! Scenes in motion: those of Hirai by every method, contact, forces, and what is read from them.
+
+mod common;
+
+mod actuated;
+mod auto;
+mod beam_bend;
+mod beam_jump;
+mod compression;
+mod contact;
+mod contact_events;
+mod forces;
+mod index_two;
+mod observer;
+mod readings;
+mod ring;
+mod square_jump;
+mod square_press;
+mod threads;
+mod tunnelling;
+mod varying;
