@@ -66,7 +66,7 @@ fn tangents_are_the_derivatives_of_the_forces() {
             for i in 0..u.len() {
                 let slope = (behind[i] - ahead[i]) / (2.0 * h);
                 // of central differences: h^2 times the third derivative, and round-off of forces over h
-                assert!((tangent[(i, j)] - slope).abs() < 1e-6 * scale, "({i}, {j})");
+                assert!((tangent[(i, j)] - slope).abs() < 1e-8 * scale, "({i}, {j})");
             }
         }
     }
@@ -148,6 +148,6 @@ fn the_newton_matrix_is_that_of_the_ode() {
         });
         let (sum, size) = terms.fold((0.0, 0.0), |(sum, size), x: f64| (sum + x, size + x.abs()));
         // round-off of about 50 terms, times the condition of the matrix
-        assert!(sum.abs() < 1e-12 * size, "component {i}: {sum:e} of {size:e}");
+        assert!(sum.abs() < 1e-13 * size, "component {i}: {sum:e} of {size:e}");
     }
 }

@@ -111,7 +111,7 @@ fn bar_matrices_as_printed() {
 #[test]
 fn total_mass_and_centre() {
     let body = Body::new(irregular_square(), RUBBER).thickness(0.01).build().unwrap();
-    assert!((body.mass() - 1000.0 * 9.0 * 0.01).abs() < 1e-11);
+    assert!((body.mass() - 1000.0 * 9.0 * 0.01).abs() < 2e-12);
 }
 
 /// K times the displacement that `field` gives at each position.
@@ -127,7 +127,7 @@ fn rigid_modes_cost_nothing_and_there_are_three_of_them() {
     let scale = body.stiffness().get(0, 0);
     for mode in [|_: &[f64]| [1.0, 0.0], |_: &[f64]| [0.0, 1.0], |x: &[f64]| [-x[1], x[0]]] {
         let largest = forces(&body, mode).iter().fold(0.0_f64, |worst, f| worst.max(f.abs()));
-        assert!(largest < 1e-12 * scale, "{largest:e}");
+        assert!(largest < 1e-13 * scale, "{largest:e}");
     }
     // no other mode is free: hour-glassing, loose nodes
     let eigenvalues = body.stiffness().to_dense().self_adjoint_eigenvalues(Side::Lower).unwrap();
@@ -160,7 +160,7 @@ fn patch_test() {
     let density = 0.5 * lame.lambda * (xx + yy) * (xx + yy)
         + lame.mu * (xx * xx + yy * yy + 0.5 * twice_xy * twice_xy);
     let exact = density * 9.0 * 0.01;
-    assert!((energy / exact - 1.0).abs() < 1e-12, "{energy} {exact}");
+    assert!((energy / exact - 1.0).abs() < 1e-13, "{energy} {exact}");
 }
 
 /// Under uniaxial stress a plane-stress body stretches with Young's modulus: stress E e along x,
@@ -178,7 +178,7 @@ fn plane_stress_stretches_with_youngs_modulus() {
     let exact = 1e6 * 0.01 * (3.0 * 0.01);
     assert!((total / exact - 1.0).abs() < 1e-12, "{total} {exact}");
     let across = forces.iter().skip(1).step_by(2).fold(0.0_f64, |worst, f| worst.max(f.abs()));
-    assert!(across < 1e-11 * exact);
+    assert!(across < 1e-13 * exact);
 }
 
 /// Slides, "Example (static simulation)": 4 x 4 nodes, bottom fixed, nodes 14 and 15 pressed down
@@ -212,6 +212,6 @@ fn static_square_is_in_equilibrium() {
     for i in 0..32 {
         let force: f64 = (0..32).map(|j| k[(i, j)] * u[j]).sum();
         // 12 digits of forces of size 1e5
-        assert!((force - expected[i]).abs() < 1e-6, "dof {i}: {force} {}", expected[i]);
+        assert!((force - expected[i]).abs() < 1e-7, "dof {i}: {force} {}", expected[i]);
     }
 }

@@ -59,14 +59,14 @@ fn the_spectrum_is_that_of_all_pieces() {
     let free = spectrum(Phase::until(1.0));
     let (lowest, exact) = (free.lowest_frequency.unwrap(), free_bar(1, 5));
     println!("{:e} {:e}", lowest / exact - 1.0, free.highest_frequency / free_bar(5, 5) - 1.0);
-    // subspace iteration stops when two values agree to 1e-3
-    assert!((lowest / exact - 1.0).abs() < 1e-3, "{lowest} {exact}");
+    // subspace iteration stops when two values agree to 1e-3: the last one is good to 6e-6 here
+    assert!((lowest / exact - 1.0).abs() < 2e-5, "{lowest} {exact}");
     let (highest, exact) = (free.highest_frequency, free_bar(5, 5));
     assert!(highest < exact * (1.0 + 1e-12) && highest > 0.95 * exact, "{highest} {exact}");
     // with the longer bar held as a whole the other one remains
     let other = spectrum(Phase::until(1.0).hold([1, 2, 3, 4, 5, 6]));
     let (lowest, exact) = (other.lowest_frequency.unwrap(), free_bar(1, 3));
-    assert!((lowest / exact - 1.0).abs() < 1e-3, "{lowest} {exact}");
+    assert!((lowest / exact - 1.0).abs() < 2e-5, "{lowest} {exact}");
     // nothing vibrates where the bars are held and the point mass alone is free
     assert_eq!(
         spectrum(Phase::until(1.0).hold((1..=10).collect::<Vec<_>>())).lowest_frequency,

@@ -124,7 +124,7 @@ fn forces_are_those_of_the_sum_over_cells() {
                 let largest = sum.conservative.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
                 for (found, expected) in forces.iter().zip(sum.conservative.iter()) {
                     // round-off of the largest force
-                    assert!((found - expected).abs() < 1e-12 * largest, "{found} {expected}");
+                    assert!((found - expected).abs() < 1e-13 * largest, "{found} {expected}");
                 }
             }
         }

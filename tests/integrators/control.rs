@@ -120,7 +120,7 @@ fn nothing_is_evaluated_beyond_a_stop_time() {
         assert_eq!(solver.solve_to(1.0).unwrap(), Reached::StopTime);
         assert_eq!(solver.t(), 0.7);
         assert_eq!(solver.system().latest, 0.7);
-        assert!((solver.y()[0] - 0.7f64.cos()).abs() < 1e-6);
+        assert!((solver.y()[0] - 0.7f64.cos()).abs() < 2e-7);
         // It holds once.
         assert_eq!(solver.solve_to(1.0).unwrap(), Reached::Time);
         // One that is the target.
@@ -166,7 +166,7 @@ fn dense_output_is_as_accurate_as_the_steps() {
         println!("errors: {at_steps:.1e} at steps, {between:.1e} between, slopes {slopes:.1e}");
         // The interpolating polynomial has the order of the method; its derivative loses one.
         assert!(at_steps < 1e-7 && between < 2.0 * at_steps + 1e-9, "{at_steps} {between}");
-        assert!(slopes < 1e-4, "{slopes}");
+        assert!(slopes < 1e-5, "{slopes}");
     });
 }
 

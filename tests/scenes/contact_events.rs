@@ -33,9 +33,9 @@ fn a_bounce_ends_where_the_closed_form_has_it() {
         let motion = run(method, ContactEvents::Locate, 1e-8);
         assert_eq!(motion.report().phases[0].counts.contact_events, 2, "{method}");
         let (u, v) = (motion.last().u[0] + 0.01, motion.mean_velocity(motion.last())[0]);
-        // the bar bends the floor's law by E A/l over K_p, 1e-3 of 8 cm (and rings a little)
-        assert!((u - height).abs() < 2e-4, "{method}: {u} {height}");
-        assert!((v - 1.0).abs() < 2e-3, "{method}: {v}");
+        // the bar bends the floor's law by E A/l over K_p, some 1e-6 m (and rings a little)
+        assert!((u - height).abs() < 5e-5, "{method}: {u} {height}");
+        assert!((v - 1.0).abs() < 5e-6, "{method}: {v}");
     }
 }
 
@@ -81,7 +81,7 @@ fn a_rolling_ring_passes_its_events() {
     assert_eq!(none, 0);
     assert!(events > 2, "{events}");
     // the motion is some centimetres; 100 rtol of it
-    assert!((located - over).abs() < 1e-6, "{located} {over}");
+    assert!((located - over).abs() < 1e-8, "{located} {over}");
     // where nothing was said, fine tolerances have them located
     assert_eq!(end(ContactEvents::Auto, 1e-7), (located, events));
     assert_eq!(end(ContactEvents::Auto, 1e-5).1, 0);

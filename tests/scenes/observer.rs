@@ -77,9 +77,9 @@ fn a_stopped_run_keeps_its_motion() {
         let same = whole.samples().iter().find(|sample| sample.time == end.time).unwrap();
         // dense output at the end of a step is its state but for the round-off of an interpolation
         for (a, b) in same.u.iter().zip(&trajectory.last().u) {
-            assert!((a - b).abs() < 1e-12, "{method}: {a} {b}");
+            assert!((a - b).abs() < 1e-13, "{method}: {a} {b}");
         }
-        assert!((same.energy.balance() - trajectory.last().energy.balance()).abs() < 1e-9);
+        assert!((same.energy.balance() - trajectory.last().energy.balance()).abs() < 1e-12);
     }
 }
 

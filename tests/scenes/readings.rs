@@ -67,7 +67,7 @@ fn contact_forces_follow_the_law() -> Outcome {
             }
         }
         for (found, expected) in forces.iter().zip(expected) {
-            assert!((found - expected).abs() < 1e-12, "{found} is not {expected}");
+            assert!((found - expected).abs() < 1e-13, "{found} is not {expected}");
         }
     }
     assert!(touching[0] > 4 && touching[1] > 4 && touching[2] == 0, "{touching:?}");
@@ -104,9 +104,9 @@ fn forces_change_the_momentum() -> Outcome {
 fn weight_is_carried_by_what_holds_or_stops_a_body() -> Outcome {
     let weight = 0.9 * 9.8;
     let scene = |phase| Ok::<_, Error>(Scene::new(square(4)?).gravity([0.0, -9.8]).phase(phase));
-    // forces balance to 1e-10 of the largest nodal one
+    // round-off: the last Newton step goes far below rtol 1e-10
     let close = |found: f64, expected: f64| {
-        assert!((found - expected).abs() < 1e-8, "{found} is not {expected}");
+        assert!((found - expected).abs() < 2e-12, "{found} is not {expected}");
     };
     let held = Phase::until(1.0).hold([16]).hold_axes("left", [Axis::Y]);
     let held = scene(held)?.equilibrium(&Statics::default())?;
@@ -135,8 +135,8 @@ fn a_combination_shares_its_force_out() -> Outcome {
     let phase = phase.hold_combination([(5, Axis::X, 0.5), (6, Axis::X, 1.5)]);
     let hung = Scene::new(bar).gravity([-9.8]).phase(phase).equilibrium(&Statics::default())?;
     let forces = hung.trajectory().constraint_forces(hung.sample())?;
-    // 10 g; forces balance to 1e-10 of the largest one
-    assert!((forces.iter().sum::<f64>() - 0.01 * 9.8).abs() < 1e-9, "{forces:?}");
+    // 10 g; forces balance to round-off
+    assert!((forces.iter().sum::<f64>() - 0.01 * 9.8).abs() < 1e-13, "{forces:?}");
     assert!(forces[4] > 0.01 && (forces[5] / forces[4] - 3.0).abs() < 1e-12, "{forces:?}");
     assert_eq!(forces[1..4], [0.0; 3]);
     Ok(())
@@ -179,7 +179,7 @@ fn angular_momentum_of_a_turning_square() -> Outcome {
     let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
     let found = trajectory.angular_momentum(&trajectory.samples()[0]);
     // m w^2 / 6
-    assert!((found[0] / (0.9 * 0.09 / 6.0 * omega) - 1.0).abs() < 1e-12, "{found:?}");
+    assert!((found[0] / (0.9 * 0.09 / 6.0 * omega) - 1.0).abs() < 2e-13, "{found:?}");
     assert_eq!(found.len(), 1);
     Ok(())
 }

@@ -24,7 +24,7 @@ fn a_function_of_time_is_stepped_over() {
         for (width, vibrates) in [(0.1, false), (1e-5, false), (1e-5, true)] {
             let momentum = Pulse { width, told: false, vibrates }.momentum(method, 1e-5).unwrap();
             // what is left of none: vibrations add up to no momentum but for round-off
-            assert!(momentum.abs() < 1e-6, "{method} {width} {vibrates}: {momentum}");
+            assert!(momentum.abs() < 1e-13, "{method} {width} {vibrates}: {momentum}");
         }
     }
 }

@@ -11,12 +11,12 @@ fn a_body_of_cauchy_strain_swells_and_never_turns_by_90_degrees() {
     let motion = square.spun(1.0).unwrap();
     for (sample, spin) in motion.samples().iter().zip(watch(&motion)) {
         let turned = SPIN * sample.time;
-        // rtol 1e-6
-        assert!((spin.angle - turned.atan()).abs() < 1e-5, "{turned}: {}", spin.angle);
-        assert!((spin.size - turned.hypot(1.0)).abs() < 1e-5, "{turned}: {}", spin.size);
+        // far below rtol, as each node turns in step with the others
+        assert!((spin.angle - turned.atan()).abs() < 1e-10, "{turned}: {}", spin.angle);
+        assert!((spin.size - turned.hypot(1.0)).abs() < 5e-10, "{turned}: {}", spin.size);
     }
     let report = motion.report();
-    assert!(report.energy_error < 1e-6 * report.energy_scale, "{}", report.energy_error);
+    assert!(report.energy_error < 2e-9 * report.energy_scale, "{}", report.energy_error);
     // and yet a square of that shape would hold ten million times the energy of the spin
     let energy = green_energy(&square, &motion).unwrap();
     assert!(energy > 1e6 * motion.samples()[0].energy.kinetic, "{energy}");
@@ -28,10 +28,10 @@ fn a_body_of_green_strain_turns_on() {
     let square = Square { rtol: 1e-7, ..Square::undamped(Strain::Green) };
     let motion = square.spun(1.0).unwrap();
     for (sample, spin) in motion.samples().iter().zip(watch(&motion)) {
-        // strains by centrifugal forces are below 1e-4
-        assert!((spin.angle - SPIN * sample.time).abs() < 1e-3, "{}", spin.angle);
+        // strains by centrifugal forces are some 1e-5
+        assert!((spin.angle - SPIN * sample.time).abs() < 2e-4, "{}", spin.angle);
         assert!((spin.size - 1.0).abs() < 1e-4, "{}", spin.size);
-        assert!((spin.momentum - 1.0).abs() < 1e-4, "{}", spin.momentum);
+        assert!((spin.momentum - 1.0).abs() < 2e-5, "{}", spin.momentum);
     }
 }
 

@@ -55,8 +55,8 @@ fn a_recoverable_failure_is_retried_with_a_smaller_step() {
     let options = Options::default().initial_step(8.0);
     let mut solver = DormandPrince::new(root, 0.0, &[1.0], &options).unwrap();
     let y = at(&mut solver, 1.9)[0];
-    // Tolerance 1e-6 of a value of size 1; errors do not grow.
-    assert!((y - 0.0025).abs() < 1e-5, "{y}");
+    // Below the tolerance, 1e-6 of a value of size 1, as errors do not grow.
+    assert!((y - 0.0025).abs() < 2e-7, "{y}");
     let refused = solver.statistics().refused_steps;
     assert!(refused > 0);
     drop(solver);
