@@ -87,15 +87,6 @@ fn a_cube_bounces_off_a_ball_and_a_plate() {
     }
 }
 
-/// A corner of a square that turns dips into the floor between two steps, and comes out again.
-#[test]
-fn a_corner_that_dips_in_is_seen() {
-    let floor = Obstacle::half_plane([0.0, -0.03], [0.0, 1.0]).stiffness(1e4).damping(1.0);
-    let scene = square(0.05, 3, [0.0, 0.0]).obstacle(floor);
-    let scene = scene.initial_velocity(|x| vec![-20.0 * (x[1] - 0.025), 20.0 * x[0]]);
-    assert_seen(&scene.phase(Phase::until(0.3)), 1e-3, 1e-4);
-}
-
 /// Bounds on steps hold for every method.
 #[test]
 fn no_step_is_longer_than_allowed() {
