@@ -110,6 +110,7 @@ enum RowMotion {
 
 impl Row {
     /// b, b', b'' at time `t`.
+    #[inline]
     pub(crate) fn prescribed(&self, t: f64) -> Prescribed {
         match &self.motion {
             RowMotion::Linear { start, since, velocity } => Prescribed {

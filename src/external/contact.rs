@@ -109,6 +109,7 @@ impl Contact {
         Ok(Self { obstacle, dimension, drift, is_custom, points, switches })
     }
 
+    #[inline]
     fn nearest(&self, t: f64, point: &ContactPoint, u: &[f64]) -> Nearest {
         let mut x = point.on.at(u, self.dimension);
         x.iter_mut().zip(&point.natural).for_each(|(x, natural)| *x += natural);
