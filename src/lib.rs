@@ -79,7 +79,7 @@ pub use scene_file::{OutputRequest, SceneFile};
 pub use settings::{
     AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,
 };
-pub use simulate::Sampling;
+pub use simulate::{Checkpoint, Sampling, Simulation, View};
 pub use statics::Statics;
 pub use system::{Energy, PhaseSummary, Spectrum};
 pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};

@@ -62,6 +62,12 @@ impl Trajectory {
         report.energy_scale = report.energy_scale.max(energy.size());
     }
 
+    /// Error, rise and scale of the energy balance (J) that were noted so far.
+    pub(crate) fn noted(&self) -> [f64; 3] {
+        let Report { energy_error, energy_created, energy_scale, .. } = self.report;
+        [energy_error, energy_created, energy_scale]
+    }
+
     /// Forgets the samples after the first `count`, which is 1 at least, and the energies seen since: what was noted
     /// until then is in `report`.
     pub(crate) fn go_back(&mut self, count: usize, [error, created, scale]: [f64; 3]) {
@@ -105,12 +111,12 @@ impl Trajectory {
     pub fn centre_of_mass(&self, sample: &Sample) -> Vec<f64> {
         let positions = self.body().mesh().positions();
         let x: Vec<f64> = positions.iter().zip(&sample.u).map(|(x, u)| x + u).collect();
-        self.mass_average(&x)
+        self.body().mass_average(&x)
     }
 
     /// Velocity of the centre of mass (m/s).
     pub fn mean_velocity(&self, sample: &Sample) -> Vec<f64> {
-        self.mass_average(&sample.v)
+        self.body().mass_average(&sample.v)
     }
 
     /// Momentum (kg m/s).
@@ -151,7 +157,7 @@ impl Trajectory {
             return None;
         }
         let positions = self.body().mesh().positions();
-        let (centre, natural) = (self.centre_of_mass(sample), self.mass_average(positions));
+        let (centre, natural) = (self.centre_of_mass(sample), self.body().mass_average(positions));
         let (mut along, mut across) = (0.0, 0.0);
         for (node, mass) in self.body().nodal_masses().iter().enumerate() {
             let arm = |i: usize| positions[2 * node + i] - natural[i];
@@ -160,15 +166,6 @@ impl Trajectory {
             across += mass * (arm(0) * now(1) - arm(1) * now(0));
         }
         Some(across.atan2(along))
-    }
-
-    fn mass_average(&self, x: &[f64]) -> Vec<f64> {
-        let (dimension, mass) = (self.body().dimension(), self.body().mass());
-        let mut average = vec![0.0; dimension];
-        for (nodal_mass, x) in self.body().nodal_masses().iter().zip(x.chunks_exact(dimension)) {
-            average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
-        }
-        average
     }
 }
 

@@ -195,4 +195,14 @@ impl Body {
         let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();
         (0..pattern.nodes()).map(row_sum).collect()
     }
+
+    /// Mean of `x`, dimension components per node, over the mass.
+    pub(crate) fn mass_average(&self, x: &[f64]) -> Vec<f64> {
+        let (dimension, mass) = (self.dimension(), self.mass());
+        let mut average = vec![0.0; dimension];
+        for (nodal_mass, x) in self.nodal_masses().iter().zip(x.chunks_exact(dimension)) {
+            average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
+        }
+        average
+    }
 }

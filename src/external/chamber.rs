@@ -167,6 +167,16 @@ pub(crate) struct ChamberForce {
     pressure: Vec<Signal>,
 }
 
+impl ChamberForce {
+    /// The volume that its walls enclose under the displacements `u` (m^3).
+    pub(crate) fn volume(&self, u: &[f64]) -> f64 {
+        match &self.geometry {
+            Geometry::Polygon(polygon, factor) => factor * polygon.area(u),
+            Geometry::Surface(surface, factor) => factor * surface.volume(u),
+        }
+    }
+}
+
 fn position<const D: usize>(mesh: &Mesh, node: usize) -> [f64; D] {
     std::array::from_fn(|i| mesh.position(node)[i])
 }

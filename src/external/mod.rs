@@ -14,6 +14,7 @@ mod surface;
 mod tests;
 
 pub use chamber::Chamber;
+pub(crate) use chamber::ChamberForce;
 pub(crate) use contact::Contact;
 pub(crate) use gravity::Gravity;
 pub(crate) use load::{Load, VaryingLoad};
@@ -21,5 +22,7 @@ pub use obstacle::Obstacle;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
-pub(crate) use signal::{Signal, TimeTable, VectorSignal};
+pub use signal::Signal;
+pub(crate) use signal::{TimeTable, VectorSignal};
 pub use spring::Spring;
+pub(crate) use spring::SpringForce;

@@ -20,11 +20,6 @@ impl TimeTable {
         Self { times, values }
     }
 
-    /// A table of numbers.
-    pub(crate) fn of_numbers(times: Vec<f64>, values: Vec<f64>) -> Self {
-        Self { times, values: values.into_iter().map(|value| vec![value]).collect() }
-    }
-
     /// One component at time `t`.
     fn at(&self, t: f64, component: usize) -> f64 {
         let value = |k: usize| self.values[k][component];
@@ -66,51 +61,91 @@ impl TimeTable {
     }
 }
 
-/// A number, constant or changing with time (s).
+/// A number, constant or changing with time (s): a pressure (Pa), the force of an actuator (N).
+///
+/// A number converts into a constant one.
 #[derive(Clone)]
-pub(crate) enum Signal {
+pub struct Signal(Course);
+
+#[derive(Clone)]
+enum Course {
     Constant(f64),
-    Function(Arc<dyn Fn(f64) -> f64 + Send + Sync>),
+    Function { function: Arc<dyn Fn(f64) -> f64 + Send + Sync>, breaks: Vec<f64> },
     TimeTable(TimeTable),
 }
 
 impl Signal {
-    pub(crate) fn function(f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self::Function(Arc::new(f))
+    /// A constant.
+    pub fn constant(value: f64) -> Self {
+        Self(Course::Constant(value))
     }
 
-    pub(crate) fn at(&self, t: f64) -> f64 {
-        match self {
-            Self::Constant(value) => *value,
-            Self::Function(function) => function(t),
-            Self::TimeTable(table) => table.at(t, 0),
+    /// A function of time (s), smooth but for [`with_breaks`](Self::with_breaks).
+    pub fn function(f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Course::Function { function: Arc::new(f), breaks: Vec::new() })
+    }
+
+    /// The `values` at the `times` (s, ascending). In between it changes along straight lines; before and
+    /// after it is constant.
+    pub fn table(times: impl Into<Vec<f64>>, values: impl Into<Vec<f64>>) -> Self {
+        let values = values.into().into_iter().map(|value| vec![value]).collect();
+        Self(Course::TimeTable(TimeTable::new(times.into(), values)))
+    }
+
+    /// From the value `from` at time `start` (s) to the value `to`, which it keeps, `duration` (s) later,
+    /// along a straight line.
+    pub fn ramp(from: f64, to: f64, start: f64, duration: f64) -> Self {
+        Self::table([start, start + duration], [from, to])
+    }
+
+    /// The same function, with the times (s, ascending) at which it has a kink or a jump: steps end there.
+    pub fn with_breaks(mut self, times: impl Into<Vec<f64>>) -> Self {
+        if let Course::Function { breaks, .. } = &mut self.0 {
+            *breaks = times.into();
+        }
+        self
+    }
+
+    /// The value at time `t` (s).
+    pub fn at(&self, t: f64) -> f64 {
+        match &self.0 {
+            Course::Constant(value) => *value,
+            Course::Function { function, .. } => function(t),
+            Course::TimeTable(table) => table.at(t, 0),
         }
     }
 
     /// Times (s) at which the signal changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
-        match self {
-            Self::Constant(_) | Self::Function(_) => &[],
-            Self::TimeTable(table) => &table.times,
+        match &self.0 {
+            Course::Constant(_) => &[],
+            Course::Function { breaks, .. } => breaks,
+            Course::TimeTable(table) => &table.times,
         }
     }
 
     /// Checks what can be known beforehand.
     pub(crate) fn validate(&self, input: &str) -> Result<(), InputError> {
-        match self {
-            Self::Constant(value) => finite(input, &[*value]),
-            Self::Function(_) => Ok(()),
-            Self::TimeTable(table) => table.validate(input, 1),
+        match &self.0 {
+            Course::Constant(value) => finite(input, &[*value]),
+            Course::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
+            Course::TimeTable(table) => table.validate(input, 1),
         }
+    }
+}
+
+impl From<f64> for Signal {
+    fn from(value: f64) -> Self {
+        Self::constant(value)
     }
 }
 
 impl fmt::Debug for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Constant(value) => write!(f, "{value}"),
-            Self::Function(_) => f.write_str("function of time"),
-            Self::TimeTable(table) => table.fmt(f),
+        match &self.0 {
+            Course::Constant(value) => write!(f, "{value}"),
+            Course::Function { .. } => f.write_str("function of time"),
+            Course::TimeTable(table) => table.fmt(f),
         }
     }
 }
@@ -215,7 +250,7 @@ mod tests {
             }
         }
         assert_eq!(signal.breaks(), [0.5, 1.0, 3.0]);
-        let ramp = Signal::TimeTable(TimeTable::of_numbers(vec![0.0, 0.1], vec![0.0, -1.0]));
+        let ramp = Signal::ramp(0.0, -1.0, 0.0, 0.1);
         assert_eq!([-1.0, 0.0, 0.025, 0.1, 2.0].map(|t| ramp.at(t)), [0.0, 0.0, -0.25, -1.0, -1.0]);
     }
 }

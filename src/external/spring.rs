@@ -176,6 +176,13 @@ pub(crate) struct SpringForce {
     damping: f64,
 }
 
+impl SpringForce {
+    /// Length (m) under the displacements `u`.
+    pub(crate) fn length(&self, u: &[f64]) -> f64 {
+        self.line.length(u).0
+    }
+}
+
 /// The force of an actuator along a spring.
 pub(crate) struct Actuator {
     line: Line,

@@ -84,7 +84,7 @@ fn springs() {
         let mesh = bar(dimension);
         let spring = Spring::between([3], [1]).named("s").stiffness(20.0).length(1.2).damping(3.0);
         let force = spring.force(&mesh).unwrap();
-        let actuation = vec![Signal::Constant(-2.0), Signal::function(|t| 5.0 * t)];
+        let actuation = vec![Signal::constant(-2.0), Signal::function(|t| 5.0 * t)];
         let actuator = spring.actuator(&mesh, actuation).unwrap();
         for seed in [1.0, 2.0, 3.0] {
             let n = 3 * dimension;
@@ -113,7 +113,7 @@ fn a_spring_pulls_its_second_end_back() {
     // from 1.6 m to 1.7 m, at 2 m/s
     let (u, v) = ([0.1, 0.0, 0.2], [1.0, 0.0, 3.0]);
     let mut forces = nodal_forces(&force, 0.0, &u, &v);
-    let actuator = spring.actuator(&bar(1), vec![Signal::Constant(0.25)]).unwrap();
+    let actuator = spring.actuator(&bar(1), vec![Signal::constant(0.25)]).unwrap();
     actuator.add_forces(0.0, &u, &v, &mut forces).unwrap();
     for (part, expected) in
         [(forces.conservative, -4.0), (forces.dissipative, -6.0), (forces.applied, 0.25)]
@@ -139,7 +139,7 @@ fn chambers() {
     let polygon = Chamber::within("cell", [4, 3, 2, 1]);
     let surface = Chamber::surface("bag", [[1, 2, 3], [1, 3, 4], [2, 1, 4], [2, 4, 3]]);
     for (chamber, dimension) in [(polygon, 2), (surface, 3)] {
-        let pressure = vec![Signal::Constant(2e3), Signal::function(|t| 1e3 * t)];
+        let pressure = vec![Signal::constant(2e3), Signal::function(|t| 1e3 * t)];
         let force = chamber.force(&plate(dimension), pressure).unwrap();
         for seed in [1.0, 2.0] {
             let n = 4 * dimension;
@@ -173,7 +173,7 @@ fn pressure_in_a_regular_polygon() {
     let outside = crate::Selection::from("boundary");
     for (nodes, p) in [(around.into(), p), (backwards.into(), p), (outside, -p)] {
         let chamber = Chamber::within("wheel", nodes);
-        let force = chamber.force(&body, vec![Signal::Constant(2e3)]).unwrap();
+        let force = chamber.force(&body, vec![Signal::constant(2e3)]).unwrap();
         let rest = vec![0.0; body.dofs()];
         let forces = nodal_forces(&force, 0.0, &rest, &rest).applied;
         for k in 0..n {
@@ -219,7 +219,7 @@ fn pressure_in_an_octahedron() {
     let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.001).build().unwrap();
     let inward: Vec<_> = triangles.iter().map(|&[a, b, c]| [b, a, c]).collect();
     for walls in [triangles, inward] {
-        let force = Chamber::surface("bag", walls).force(&body, vec![Signal::Constant(p)]);
+        let force = Chamber::surface("bag", walls).force(&body, vec![Signal::constant(p)]);
         let rest = vec![0.0; body.dofs()];
         let forces = nodal_forces(&force.unwrap(), 0.0, &rest, &rest).applied;
         for (force, x) in forces.iter().zip(body.mesh().positions()) {
@@ -240,7 +240,7 @@ fn pressure_in_a_hole_enlarges_it() {
     let mesh = mesh.name_nodes("hole", [6, 7, 10, 11]).unwrap();
     let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
     assert_eq!(body.mesh().cell_count(), 16);
-    let force = Chamber::within("hole", "hole").force(&body, vec![Signal::Constant(1e3)]);
+    let force = Chamber::within("hole", "hole").force(&body, vec![Signal::constant(1e3)]);
     let rest = vec![0.0; body.dofs()];
     let forces = nodal_forces(&force.unwrap(), 0.0, &rest, &rest).applied;
     for (node, [x, y]) in [(5, [-1.0, -1.0]), (6, [1.0, -1.0]), (9, [-1.0, 1.0]), (10, [1.0, 1.0])]

@@ -10,7 +10,7 @@ use crate::input::{InputError, finite};
 
 impl Scene {
     /// The forces in one phase, all but those of constant matrices.
-    pub(super) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
+    pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
         if let Some(elastic) = self.body.elastic() {

@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 pub use phase::Phase;
+pub(crate) use phase::{Load, find};
 
 use crate::body::Body;
 use crate::constraint::{PhaseStart, Row, prescribe, rows};
@@ -166,6 +167,13 @@ impl Scene {
         breaks
     }
 
+    /// Ends of the legs of a phase, counted from 0: its [`breaks`](Self::breaks) and its own end.
+    pub(crate) fn stops(&self, phase: usize) -> Vec<f64> {
+        let mut stops = self.breaks(phase);
+        stops.extend(self.phases.get(phase).map(Phase::end));
+        stops
+    }
+
     /// End of the last phase (s); 0 without phases.
     pub fn end(&self) -> f64 {
         self.phases.last().map_or(0.0, |phase| phase.until)
@@ -184,7 +192,7 @@ impl Scene {
     /// The [`forces`](Self::forces) of each phase, if those of the first one have a meaning at t = 0.
     pub(crate) fn forces_from_start(&self) -> Result<Vec<Forces>, InputError> {
         let forces = self.forces()?;
-        let [u, v] = self.start();
+        let [u, v] = self.initial_state();
         let mut nodal = NodalForces::zeros(self.body.dofs());
         let mut first = forces.iter().take(1).flatten();
         match first.try_for_each(|force| force.add_forces(0.0, u, v, &mut nodal)) {
@@ -258,7 +266,7 @@ impl Scene {
     }
 
     /// Displacements and velocities at t = 0.
-    pub(crate) fn start(&self) -> [&[f64]; 2] {
+    pub(crate) fn initial_state(&self) -> [&[f64]; 2] {
         [&self.start[0], &self.start[1]]
     }
 

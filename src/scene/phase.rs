@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
 use crate::external::{Obstacle, Signal, TimeTable, VectorSignal};
 use crate::input::InputError;
-use crate::mesh::Selection;
+use crate::mesh::{Mesh, Selection};
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
 /// carry over from phase to phase.
@@ -165,7 +165,7 @@ impl Phase {
         springs: impl IntoIterator<Item = N>,
         force: f64,
     ) -> Self {
-        self.actuated(springs, Signal::Constant(force))
+        self.actuated(springs, Signal::constant(force))
     }
 
     /// As [`actuate`](Self::actuate), with a force (N) that changes with time (s).
@@ -185,14 +185,13 @@ impl Phase {
         times: impl Into<Vec<f64>>,
         forces: impl Into<Vec<f64>>,
     ) -> Self {
-        let table = TimeTable::of_numbers(times.into(), forces.into());
-        self.actuated(springs, Signal::TimeTable(table))
+        self.actuated(springs, Signal::table(times, forces))
     }
 
     /// A constant pressure (Pa) in a chamber; a positive one enlarges it. Pressures in the same
     /// chamber add up.
     pub fn pressure(self, chamber: impl Into<String>, pressure: f64) -> Self {
-        self.pressurized(chamber, Signal::Constant(pressure))
+        self.pressurized(chamber, Signal::constant(pressure))
     }
 
     /// As [`pressure`](Self::pressure), with a pressure (Pa) that changes with time (s).
@@ -212,10 +211,7 @@ impl Phase {
         times: impl Into<Vec<f64>>,
         values: impl Into<Vec<f64>>,
     ) -> Self {
-        self.pressurized(
-            chamber,
-            Signal::TimeTable(TimeTable::of_numbers(times.into(), values.into())),
-        )
+        self.pressurized(chamber, Signal::table(times, values))
     }
 
     /// No obstacle acts in this phase.
@@ -249,7 +245,7 @@ impl Phase {
 
     /// Times (s) at which what the phase prescribes changes its law, ascending; not only those
     /// within it.
-    pub(super) fn breaks(&self) -> Vec<f64> {
+    pub(crate) fn breaks(&self) -> Vec<f64> {
         let paths = self.constraints.iter().map(|constraint| constraint.how.breaks());
         let loads = self.loads.iter().map(|(_, load)| match load {
             Load::Each(_) | Load::Total(_) => &[],
@@ -280,6 +276,66 @@ impl Phase {
         let input = format!("contact of phase \"{}\"", self.name);
         let find = |name: &String| Ok(&obstacles[find(name, &known, &input, "obstacles")?]);
         names.iter().map(find).collect()
+    }
+
+    /// Replaces the pressure in a chamber.
+    pub(crate) fn set_pressure(&mut self, chamber: &str, pressure: Signal) {
+        self.pressures.retain(|(name, _)| name != chamber);
+        self.pressures.push((chamber.to_owned(), pressure));
+    }
+
+    /// Replaces the actuation force in a spring.
+    pub(crate) fn set_actuation(&mut self, spring: &str, force: Signal) {
+        for (names, _) in &mut self.actuations {
+            names.retain(|name| name != spring);
+        }
+        self.actuations.retain(|(names, _)| !names.is_empty());
+        self.actuations.push((vec![spring.to_owned()], force));
+    }
+
+    /// Replaces the loads that were given for the same selection.
+    pub(crate) fn set_load(&mut self, nodes: Selection, load: Load) {
+        self.loads.retain(|(other, _)| *other != nodes);
+        self.loads.push((nodes, load));
+    }
+
+    /// Frees the `nodes` (counted from 0) that are held or moved one by one. Returns whether there were any.
+    pub(crate) fn release(&mut self, mesh: &Mesh, nodes: &[usize]) -> Result<bool, InputError> {
+        let mut kept = Vec::with_capacity(self.constraints.len());
+        let mut is_changed = false;
+        for Constraint { what, how } in self.constraints.drain(..) {
+            let Constrained::Nodes(selection, axes) = what else {
+                kept.push(Constraint { what, how });
+                continue;
+            };
+            let held = mesh.select(&selection)?;
+            let rest: Vec<usize> = held.iter().filter(|n| !nodes.contains(n)).copied().collect();
+            is_changed |= rest.len() < held.len();
+            let what = match rest.len() {
+                0 => continue,
+                count if count == held.len() => selection,
+                _ => Selection::Numbers(rest.iter().map(|node| node + 1).collect()),
+            };
+            kept.push(Constraint { what: Constrained::Nodes(what, axes), how });
+        }
+        self.constraints = kept;
+        Ok(is_changed)
+    }
+
+    /// Lets an obstacle act or not; `all` are the names of those of the scene.
+    pub(crate) fn set_contact(&mut self, obstacle: &str, acts: bool, all: &[&str]) {
+        let acting = match &mut self.contact {
+            ContactWith::These(names) => names,
+            contact => {
+                *contact = ContactWith::These(all.iter().map(|&name| name.to_owned()).collect());
+                let ContactWith::These(names) = contact else { return };
+                names
+            }
+        };
+        acting.retain(|name| name != obstacle);
+        if acts {
+            acting.push(obstacle.to_owned());
+        }
     }
 
     fn actuated<N: Into<String>>(
@@ -316,7 +372,7 @@ pub(super) fn check_vector(
 }
 
 /// Position of `name` among the names that are `known`.
-pub(super) fn find(
+pub(crate) fn find(
     name: &str,
     known: &[&str],
     input: &str,

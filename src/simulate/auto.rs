@@ -12,6 +12,7 @@ use crate::settings::{ContactEvents, Method, Settings};
 use crate::system::{Spectrum, System};
 
 /// How a phase is integrated from now on.
+#[derive(Clone)]
 pub(super) struct Plan {
     /// As asked for, with a method of its own in place of [`Method::Auto`].
     pub(super) settings: Settings,

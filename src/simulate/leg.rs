@@ -5,8 +5,8 @@ use super::events::Events;
 use super::sampling::Schedule;
 
 /// A state to go back to.
-#[derive(Default)]
-pub(super) struct Checkpoint {
+#[derive(Clone, Default)]
+pub(super) struct Good {
     pub(super) time: f64,
     pub(super) state: Vec<f64>,
     /// Sampling times of the phase, and samples of the run, that have been taken.
@@ -41,10 +41,9 @@ pub(super) enum Outcome {
 }
 
 /// A phase on its way.
-pub(super) struct Leg<'a> {
-    pub(super) number: usize,
+pub(super) struct Leg {
     /// Sampling times of the phase, and the number of those that have been taken.
-    pub(super) times: &'a Schedule,
+    pub(super) times: Schedule,
     pub(super) taken: usize,
     /// End of the leg (s): of the phase, or where a force breaks off.
     pub(super) stop: f64,
@@ -55,7 +54,7 @@ pub(super) struct Leg<'a> {
     pub(super) events: Events,
 }
 
-impl Leg<'_> {
+impl Leg {
     /// Where it ends, or pauses (s).
     pub(super) fn end(&self) -> f64 {
         self.inside.unwrap_or(self.stop)

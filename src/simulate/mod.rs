@@ -1,21 +1,29 @@
 //! Running a scene: phase by phase, with restarts in between and samples along the way.
 
 mod auto;
+mod commands;
 mod events;
 mod failure;
 mod leg;
 mod progress;
 mod records;
+mod renewal;
 mod run;
 mod sampling;
+mod simulation;
+mod stage;
 mod stepper;
+mod view;
 
 use std::ops::ControlFlow;
 use std::time::Instant;
 
 pub use progress::Progress;
+pub use renewal::Checkpoint;
 use run::Run;
 pub use sampling::Sampling;
+pub use simulation::Simulation;
+pub use view::View;
 
 use crate::error::Error;
 use crate::scene::Scene;
@@ -84,6 +92,10 @@ impl Scene {
         settings.validate()?;
         let forces = self.forces_from_start()?;
         sampling.validate(self.end())?;
-        Run::all(self, settings, clock, forces, sampling, &mut observer)
+        let model = self.model(&forces);
+        let first = forces.into_iter().next().unwrap_or_default();
+        let mut run = Run::new(self, settings, sampling, clock, model, first)?;
+        while run.advance(&mut observer)? {}
+        Ok(run.into_trajectory())
     }
 }

@@ -1,104 +1,86 @@
-//! A scene on its way: phases, the legs they consist of, and samples.
+//! A scene on its way: phases one after the other, their legs, and the step of a leg with its samples.
 
+use std::mem::take;
+use std::sync::Arc;
 use std::time::Instant;
 
 use super::auto::{Plan, TRIAL};
-use super::events::{Events, Met};
+use super::events::Met;
 use super::failure::{STANDING, standing_still, too_many_steps};
-use super::leg::{Checkpoint, Ending, Leg, Outcome};
+use super::leg::{Ending, Good, Outcome};
 use super::progress::{Observer, Progress};
 use super::records::{self, energy, project};
 use super::sampling::Sampling;
+use super::stage::{At, Stage, Work};
 use super::stepper::{self, Failed, Stepper};
 use crate::constraint::{PhaseStart, prescribe};
 use crate::error::Error;
 use crate::force::Forces;
+use crate::input::InputError;
+use crate::model::Model;
 use crate::ode::Failure;
-use crate::report::{Counts, PhaseReport, Report, creation};
+use crate::report::{Report, creation};
 use crate::scene::{Phase, Scene};
-use crate::settings::{AbsoluteTolerances, Method, Settings};
+use crate::settings::{AbsoluteTolerances, Settings};
 use crate::state::ENERGIES;
 use crate::system::System;
 use crate::trajectory::{IntegrationFailure, Interrupted, Trajectory};
 
 /// A scene on its way.
-pub(super) struct Run<'a> {
-    scene: &'a Scene,
-    settings: &'a Settings,
+pub(super) struct Run {
+    pub(super) scene: Arc<Scene>,
+    pub(super) settings: Settings,
+    pub(super) model: Arc<Model>,
+    pub(super) sampling: Sampling,
     atol: AbsoluteTolerances,
     /// Started with the run.
     clock: Instant,
-    time: f64,
+    /// The phase in force, as commands have changed it, and its number.
+    pub(super) phase: Arc<Phase>,
+    pub(super) number: usize,
+    /// Identity of the constraints in force.
+    pub(super) constraints: Arc<()>,
+    pub(super) stage: Stage,
+    pub(super) at: At,
+    pub(super) time: f64,
     /// (u, v, energies)
-    state: Vec<f64>,
+    pub(super) state: Vec<f64>,
     /// Steps taken since t = 0.
     steps: usize,
     /// Steps in a row that did not move time ahead.
-    standing: usize,
-    trajectory: Trajectory,
+    pub(super) standing: usize,
+    pub(super) trajectory: Trajectory,
     /// Where the energy balance last was in order.
-    good: Checkpoint,
+    pub(super) good: Good,
     /// Energy balance (J) that methods are judged by: that of the start or, once a phase has ended with one
     /// that was not in order, of the next one, which is not to blame for that.
-    balance: f64,
+    pub(super) balance: f64,
     /// Energies below this (J) are too small to be watched.
     least_energy: f64,
+    /// A time (s) at which steps end, though no leg does.
+    pub(super) pause: Option<f64>,
 }
 
 /// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
 const WATCH: usize = 32;
 
-impl<'a> Run<'a> {
-    /// Runs `scene` under the `forces` of its phases.
-    pub(super) fn all(
-        scene: &'a Scene,
-        settings: &'a Settings,
-        clock: Instant,
-        forces: Vec<Forces>,
+impl Run {
+    /// A run of `scene` under the `forces` of its first phase, at its start.
+    pub(super) fn new(
+        scene: &Scene,
+        settings: &Settings,
         sampling: &Sampling,
-        observer: Observer,
-    ) -> Result<Trajectory, Error> {
-        let n = scene.body().dofs();
-        let model = scene.model(&forces);
-        let mut forces = forces.into_iter();
-        let mut equations = |phase: &Phase, time: f64, u: &[f64]| {
-            let forces = forces.next().unwrap_or_default();
-            scene.system(&model, phase, forces, &PhaseStart { time, u }, settings.alpha)
-        };
-        let mut system = equations(scene.first_phase()?, 0.0, scene.start()[0])?;
-        let mut run = Self::new(scene, settings, clock, &mut system)?;
-        for (number, phase) in scene.phases().iter().enumerate() {
-            if number > 0 {
-                let mut u = run.state[..n].to_vec();
-                prescribe(system.rows(), run.time, &mut u);
-                let next = equations(phase, run.time, &u)?;
-                // an obstacle that begins or ceases to act with nodes inside it changes what is stored:
-                // that comes from outside
-                let [before, after] =
-                    [&system, &next].map(|system| energy(system, run.time, &run.state).balance());
-                run.state[2 * n + 1] += after - before;
-                system = next;
-                project(settings, phase, &mut system, run.time, &mut run.state);
-            }
-            system = match run.phase(number, phase, system, sampling, observer) {
-                Ok(system) => system,
-                Err((source, step)) => return Err(run.failure(phase, source, step)),
-            };
-        }
-        Ok(run.trajectory)
-    }
-
-    /// A run at its start, which `system` is sampled at.
-    fn new(
-        scene: &'a Scene,
-        settings: &'a Settings,
         clock: Instant,
-        system: &mut System,
+        model: Arc<Model>,
+        forces: Forces,
     ) -> Result<Self, Error> {
-        let mut state = [scene.start().as_slice().concat(), vec![0.0; ENERGIES]].concat();
-        project(settings, scene.first_phase()?, system, 0.0, &mut state);
-        let first =
-            records::sample(0, system, 0.0, &state).map_err(|failure| scene.bad_start(failure))?;
+        let phase = scene.first_phase()?;
+        let start = PhaseStart { time: 0.0, u: scene.initial_state()[0] };
+        let mut system = scene.system(&model, phase, forces, &start, settings.alpha)?;
+        let mut state = [scene.initial_state().as_slice().concat(), vec![0.0; ENERGIES]].concat();
+        project(settings, phase, &mut system, 0.0, &mut state);
+        let first = records::sample(0, &mut system, 0.0, &state)
+            .map_err(|failure| scene.bad_start(failure))?;
         if !first.energy.balance().is_finite() {
             let reason = "the energies are beyond the range of double precision";
             return Err(scene.bad_start(Failure::Recoverable(reason.into())).into());
@@ -109,162 +91,209 @@ impl<'a> Run<'a> {
             alpha: settings.alpha,
             ..Report::default()
         };
-        Ok(Self {
-            scene,
-            settings,
+        let plan = Plan::new(settings, &mut system, 0.0, &state);
+        let times = sampling.within(0.0, phase.until);
+        let mut run = Self {
+            stage: Stage::new(plan, times, scene.stops(0), settings.max_steps),
+            phase: Arc::new(phase.clone()),
+            number: 0,
+            constraints: Arc::new(()),
+            at: At::Nothing,
+            settings: settings.clone(),
+            model,
+            sampling: sampling.clone(),
             atol: settings.tolerances(scene.body()),
             clock,
             time: 0.0,
             state,
             steps: 0,
             standing: 0,
-            good: Checkpoint::default(),
+            good: Good::default(),
             balance: first.energy.balance(),
             trajectory: Trajectory::new(scene, report, first),
             // that of strains of a thousandth
             least_energy: 1e-6 * scene.body().material().young * scene.body().volume(),
-        })
+            pause: None,
+            scene: Arc::new(scene.clone()),
+        };
+        run.begin(&system);
+        run.at = At::Rest(system);
+        Ok(run)
     }
 
-    /// Integrates one phase to its end, and gives its equations back.
-    fn phase(
+    /// Takes a step; `false` at the end of the scene, where there is none.
+    pub(super) fn advance(&mut self, observer: Observer) -> Result<bool, Error> {
+        loop {
+            let system = match take(&mut self.at) {
+                At::Work(mut work) if self.stage.ended.is_none() => {
+                    let ended = self.try_step(&mut work, observer);
+                    self.at = At::Work(work);
+                    self.stage.ended = ended.map_err(|source| self.give_up(source))?;
+                    return Ok(true);
+                }
+                At::Work(work) => self.stage.rest(work),
+                At::Rest(system) => system,
+                At::Nothing => {
+                    let system = self.equations(&self.phase, &self.state)?;
+                    self.begin_events(&system);
+                    system
+                }
+            };
+            if !self.go_on(system)? {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Begins the next leg, if need be that of the next phase; `false` at the end of the scene.
+    pub(super) fn go_on(&mut self, mut system: System) -> Result<bool, Error> {
+        loop {
+            match self.stage.ended.take() {
+                Some(Ending::Reached) if self.stage.leg.inside.take().is_some() => {}
+                Some(Ending::Reached) => match self.stage.stops.pop() {
+                    Some(stop) => self.stage.leg.stop = stop,
+                    None if self.is_last_phase() => {
+                        self.stage.ended = Some(Ending::Reached);
+                        self.at = At::Rest(system);
+                        return Ok(false);
+                    }
+                    None => system = self.next_phase(system)?,
+                },
+                Some(Ending::Event) => self.stage.leg.inside = None,
+                // a step that ends within the obstacle feels it
+                Some(Ending::Passage(t)) => self.stage.leg.inside = Some(t),
+                Some(Ending::Better(other)) => {
+                    self.stage.follow(other);
+                    self.begin_events(&system);
+                }
+                Some(Ending::Doubtful { instead }) => {
+                    self.go_back();
+                    self.stage.follow(instead);
+                    self.begin_events(&system);
+                }
+                None => {}
+            }
+            if self.time < self.stage.leg.end() {
+                break;
+            }
+            // an event, or a look at the method, just where the leg ends
+            self.stage.ended = Some(Ending::Reached);
+        }
+        system.forget_counts();
+        let (settings, end) = (&self.stage.plan.settings, self.stop());
+        let first = self.stage.first_step.take();
+        match stepper::start(system, settings, &self.atol, [self.time, end], first, &self.state) {
+            Ok(stepper) => self.at = At::Work(Work::new(stepper, self.time, end)),
+            Err(source) => return Err(self.failure(source, 0.0)),
+        }
+        Ok(true)
+    }
+
+    /// Where steps end (s).
+    fn stop(&self) -> f64 {
+        self.pause.unwrap_or(f64::INFINITY).min(self.stage.leg.end())
+    }
+
+    pub(super) fn is_last_phase(&self) -> bool {
+        self.number + 1 == self.scene.phases().len()
+    }
+
+    /// Begins the phase after that of `system`.
+    pub(super) fn next_phase(&mut self, system: System) -> Result<System, Error> {
+        self.trajectory.report = self.report();
+        let scene = self.scene.clone();
+        let phase = &scene.phases()[self.number + 1];
+        let mut next = self.followed_by(phase, &system)?;
+        (self.number, self.phase) = (self.number + 1, Arc::new(phase.clone()));
+        project(&self.settings, phase, &mut next, self.time, &mut self.state);
+        let plan = Plan::new(&self.settings, &mut next, self.time, &self.state);
+        (self.stage, self.constraints) = (self.new_stage(plan), Arc::new(()));
+        self.begin(&next);
+        Ok(next)
+    }
+
+    /// The equations of `phase`, which follows that of `system`.
+    pub(super) fn followed_by(
         &mut self,
-        number: usize,
         phase: &Phase,
-        mut system: System,
-        sampling: &Sampling,
-        observer: Observer,
-    ) -> Result<System, (Failed, f64)> {
-        let clock = Instant::now();
-        let times = sampling.within(self.time, phase.until);
-        let mut plan = Plan::new(self.settings, &mut system, self.time, &self.state);
-        let (steps, mut events) = (self.settings.max_steps, Events::default());
-        events.begin(&system, self.time, &self.state, plan.locates());
-        let mut leg =
-            Leg { number, times: &times, taken: 0, stop: 0.0, inside: None, steps, events };
-        let (mut counts, mut states) = (Counts::default(), 0);
-        let mut stops = self.scene.breaks(number).into_iter().chain([phase.until]);
-        let balance = energy(&system, self.time, &self.state).balance();
+        system: &System,
+    ) -> Result<System, InputError> {
+        let n = self.scene.body().dofs();
+        let mut u = self.state[..n].to_vec();
+        prescribe(system.rows(), self.time, &mut u);
+        let next = self.equations(phase, &u)?;
+        // an obstacle that begins or ceases to act with nodes inside it changes what is stored: that comes
+        // from outside
+        let [before, after] =
+            [system, &next].map(|system| energy(system, self.time, &self.state).balance());
+        self.supply(after - before);
+        Ok(next)
+    }
+
+    /// The equations of a phase that begins with the displacements that `u` begins with.
+    pub(super) fn equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
+        let start = PhaseStart { time: self.time, u };
+        let forces = self.scene.forces_in(phase)?;
+        self.scene.system(&self.model, phase, forces, &start, self.settings.alpha)
+    }
+
+    /// Begins the phase in force, whose equations are `system`.
+    fn begin(&mut self, system: &System) {
+        self.begin_events(system);
+        let balance = energy(system, self.time, &self.state).balance();
         if self.created(balance).is_some() {
             self.balance = balance;
         }
-        self.remember(&leg);
-        let mut ended = Ok(Ending::Reached);
-        let result = loop {
-            match ended {
-                Err(source) => break Err(source),
-                Ok(Ending::Reached) if leg.inside.take().is_some() => {}
-                Ok(Ending::Reached) => match stops.next() {
-                    Some(stop) => leg.stop = stop,
-                    None => break Ok(()),
-                },
-                Ok(Ending::Event) => leg.inside = None,
-                // a step that ends within the obstacle feels it
-                Ok(Ending::Passage(t)) => leg.inside = Some(t),
-                Ok(Ending::Better(other)) => {
-                    plan = other;
-                    counts.notice = None;
-                    leg.events.begin(&system, self.time, &self.state, plan.locates());
-                }
-                Ok(Ending::Doubtful { instead }) => {
-                    self.go_back(&mut leg);
-                    ended = Ok(Ending::Better(instead));
-                    continue;
-                }
-            }
-            if self.time >= leg.end() {
-                // an event, or a look at the method, just where the leg ends
-                ended = Ok(Ending::Reached);
-                continue;
-            }
-            system.forget_counts();
-            let stepper = stepper::start(
-                system,
-                &plan.settings,
-                &self.atol,
-                self.time,
-                leg.end(),
-                &self.state,
-            );
-            let mut stepper = stepper.map_err(|source| (source, 0.0))?;
-            ended = self.leg(&mut leg, &plan, &mut *stepper, observer);
-            counts.add(stepper.counts());
-            states = stepper.state().len();
-            system = stepper.into_system();
-        };
-        if result.is_err() && self.time > self.trajectory.last().time {
-            // the state that the last step led to, unless the equations have no meaning there
-            let last = records::sample(number, &mut system, self.time, &self.state);
-            last.into_iter().for_each(|sample| self.trajectory.push(sample));
-        }
-        counts.contact_events = leg.events.count;
-        if plan.reason.is_some() && plan.settings.method == Method::Rk {
-            // what it notices of stability, the choice of methods looks after
-            counts.notice = None;
-        }
-        let step = counts.last_step;
-        let report = &mut self.trajectory.report;
-        report.wall_seconds = self.clock.elapsed().as_secs_f64();
-        report.states = states;
-        report.phases.push(PhaseReport {
-            name: phase.name.clone(),
-            end: self.time,
-            states,
-            wall_seconds: clock.elapsed().as_secs_f64(),
-            method: plan.settings.method,
-            reason: plan.reason,
-            counts,
-        });
-        result.map(|()| system).map_err(|source| (source, step))
+        self.remember();
     }
 
-    /// Integrates to the end of a leg, unless the energy balance casts doubt on a method that can be
-    /// exchanged.
-    fn leg(
-        &mut self,
-        leg: &mut Leg,
-        plan: &Plan,
-        stepper: &mut dyn Stepper,
-        observer: Observer,
-    ) -> Result<Ending, Failed> {
-        let mut sample = vec![0.0; stepper.state().len()];
-        // mean step sizes (s) of the last two trials
-        let (mut steps, mut trial_began, mut means) = (0_usize, self.time, [f64::INFINITY; 2]);
-        while self.time < leg.end() {
-            if leg.steps == 0 {
-                return Err(too_many_steps(self.settings.max_steps, &stepper.counts()));
-            }
-            leg.steps -= 1;
-            let (step, is_event) = match self.step(leg, stepper, &mut sample)? {
-                Outcome::Taken(step) => (step, false),
-                Outcome::CutOff(step) => (step, true),
-                Outcome::Refused(t) => return Ok(Ending::Passage(t)),
-            };
-            if self.steps.is_multiple_of(WATCH) || self.time >= leg.stop {
-                let energy = energy(stepper.system(), self.time, &self.state);
-                self.trajectory.note_energy(&energy);
-                if plan.is_on_trial() {
-                    let created = self.created(energy.balance());
-                    match created.and_then(|trouble| plan.instead(&trouble)) {
-                        Some(instead) => return Ok(Ending::Doubtful { instead }),
-                        None => self.remember(leg),
-                    }
-                }
-            }
-            self.report_progress(leg.number, step, stepper.last_order(), observer)?;
-            if is_event {
-                return Ok(Ending::Event);
-            }
-            steps += 1;
-            if steps.is_multiple_of(TRIAL) {
-                means = [(self.time - trial_began) / TRIAL as f64, means[0]];
-                trial_began = self.time;
-                if let Some(other) = plan.reconsidered(means, steps) {
-                    return Ok(Ending::Better(other));
+    pub(super) fn begin_events(&mut self, system: &System) {
+        let located = self.stage.plan.locates();
+        self.stage.leg.events.begin(system, self.time, &self.state, located);
+    }
+
+    /// Takes one step of a leg; gives how the leg ended, if it did.
+    ///
+    /// The energy balance is looked at now and then, and may cast doubt on a method that can be exchanged.
+    fn try_step(&mut self, work: &mut Work, observer: Observer) -> Result<Option<Ending>, Failed> {
+        if self.stage.leg.steps == 0 {
+            return Err(too_many_steps(self.settings.max_steps, &work.stepper.counts()));
+        }
+        self.stage.leg.steps -= 1;
+        let stop = self.stop();
+        if work.stop != stop {
+            work.stepper.stop_at(stop)?;
+            work.stop = stop;
+        }
+        let (step, is_event) = match self.step(work)? {
+            Outcome::Taken(step) => (step, false),
+            Outcome::CutOff(step) => (step, true),
+            Outcome::Refused(t) => return Ok(Some(Ending::Passage(t))),
+        };
+        if self.steps.is_multiple_of(WATCH) || self.time >= self.stage.leg.stop {
+            let energy = energy(work.stepper.system(), self.time, &self.state);
+            self.trajectory.note_energy(&energy);
+            if self.stage.plan.is_on_trial() {
+                let created = self.created(energy.balance());
+                match created.and_then(|trouble| self.stage.plan.instead(&trouble)) {
+                    Some(instead) => return Ok(Some(Ending::Doubtful { instead })),
+                    None => self.remember(),
                 }
             }
         }
-        Ok(Ending::Reached)
+        self.report_progress(step, work.stepper.last_order(), observer)?;
+        if is_event {
+            return Ok(Some(Ending::Event));
+        }
+        work.steps += 1;
+        if work.steps.is_multiple_of(TRIAL) {
+            work.means = [(self.time - work.trial_began) / TRIAL as f64, work.means[0]];
+            work.trial_began = self.time;
+            if let Some(other) = self.stage.plan.reconsidered(work.means, work.steps) {
+                return Ok(Some(Ending::Better(other)));
+            }
+        }
+        Ok((self.time >= self.stage.leg.end()).then_some(Ending::Reached))
     }
 
     /// What the methods have created if the energy balance is now `balance` (J), if it is too much.
@@ -274,32 +303,28 @@ impl<'a> Run<'a> {
     }
 
     /// Keeps the present state to go back to.
-    fn remember(&mut self, leg: &Leg) {
-        let Report { energy_error, energy_created, energy_scale, .. } = self.trajectory.report;
+    pub(super) fn remember(&mut self) {
         let good = &mut self.good;
         (good.time, good.taken, good.samples) =
-            (self.time, leg.taken, self.trajectory.samples().len());
-        good.energies = [energy_error, energy_created, energy_scale];
+            (self.time, self.stage.leg.taken, self.trajectory.samples().len());
+        good.energies = self.trajectory.noted();
         good.state.clone_from(&self.state);
     }
 
     /// Goes back to the state last kept.
-    fn go_back(&mut self, leg: &mut Leg) {
-        let Checkpoint { time, ref state, taken, samples, energies } = self.good;
-        (self.time, leg.taken, self.standing) = (time, taken, 0);
+    fn go_back(&mut self) {
+        let Good { time, ref state, taken, samples, energies } = self.good;
+        (self.time, self.stage.leg.taken, self.standing) = (time, taken, 0);
         self.state.clone_from(state);
         self.trajectory.go_back(samples, energies);
     }
 
     /// Takes one step, up to the first contact event within it, and the samples there are.
-    fn step(
-        &mut self,
-        leg: &mut Leg,
-        stepper: &mut dyn Stepper,
-        sample: &mut [f64],
-    ) -> Result<Outcome, Failed> {
+    fn step(&mut self, work: &mut Work) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
-        let reached = stepper.step(leg.end())?;
+        let Work { stepper, stop, sample, .. } = work;
+        let (stepper, leg) = (&mut **stepper, &mut self.stage.leg);
+        let reached = stepper.step(*stop)?;
         let times = [self.time, reached];
         let event = match leg.events.met(stepper, &self.state, times, self.atol.position, sample)? {
             Met::Nothing => None,
@@ -318,7 +343,7 @@ impl<'a> Run<'a> {
         while let Some(t) = leg.times.get(leg.taken).filter(|&t| t <= time) {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
-            let taken = records::sample(leg.number, stepper.system_mut(), t, sample);
+            let taken = records::sample(self.number, stepper.system_mut(), t, sample);
             self.trajectory.push(taken.map_err(Failure::into_error)?);
         }
         let (system, arrived) = arrival(stepper, event, sample)?;
@@ -335,29 +360,81 @@ impl<'a> Run<'a> {
         Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
     }
 
-    /// Tells how far the run has come.
-    fn report_progress(
-        &self,
-        phase: usize,
-        step: f64,
-        order: u32,
-        observer: Observer,
-    ) -> Result<(), Failed> {
-        let Self { time, steps, .. } = *self;
-        let name = &self.scene.phases()[phase].name;
-        let answer = observer(&Progress { time, phase, name, steps, step, order });
+    /// Shows the observer how far the run has come.
+    fn report_progress(&self, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
+        let Self { time, steps, number, .. } = *self;
+        let name = &self.phase.name;
+        let answer = observer(&Progress { time, phase: number, name, steps, step, order });
         // the last step leaves nothing to be stopped
         if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
     }
 
-    fn failure(self, phase: &Phase, source: Failed, step: f64) -> Error {
+    /// A run in the same state without equations; its trajectory begins with the last sample of this one.
+    pub(super) fn twin(&self) -> Self {
+        Self {
+            scene: self.scene.clone(),
+            settings: self.settings.clone(),
+            model: self.model.clone(),
+            sampling: self.sampling.clone(),
+            atol: self.atol,
+            clock: Instant::now(),
+            phase: self.phase.clone(),
+            number: self.number,
+            constraints: self.constraints.clone(),
+            stage: self.new_stage(self.stage.plan.clone()),
+            at: At::Nothing,
+            time: self.time,
+            state: self.state.clone(),
+            steps: self.steps,
+            standing: 0,
+            trajectory: self.trajectory.at_end(),
+            good: self.good.clone(),
+            balance: self.balance,
+            least_energy: self.least_energy,
+            pause: None,
+        }
+    }
+
+    /// How the motion was computed so far.
+    pub(super) fn report(&self) -> Report {
+        let mut report = self.trajectory.report.clone();
+        let phase = self.stage.report(&self.phase.name, self.time, &self.at);
+        report.wall_seconds = self.clock.elapsed().as_secs_f64();
+        report.states = phase.states;
+        report.phases.push(phase);
+        report
+    }
+
+    /// The motion, at the end of the run.
+    pub(super) fn into_trajectory(mut self) -> Trajectory {
+        self.trajectory.report = self.report();
+        self.trajectory
+    }
+
+    /// The error of an integrator that has given up, with the state that the last step led to, unless the
+    /// equations have no meaning there.
+    fn give_up(&mut self, source: Failed) -> Error {
+        let At::Work(work) = take(&mut self.at) else { return self.failure(source, 0.0) };
+        let step = work.stepper.counts().last_step;
+        let mut system = self.stage.rest(work);
+        if self.time > self.trajectory.last().time {
+            let last = records::sample(self.number, &mut system, self.time, &self.state);
+            last.into_iter().for_each(|sample| self.trajectory.push(sample));
+        }
+        self.at = At::Rest(system);
+        self.failure(source, step)
+    }
+
+    pub(super) fn failure(&self, source: Failed, step: f64) -> Error {
+        let mut trajectory = self.trajectory.clone();
+        trajectory.report = self.report();
         Box::new(IntegrationFailure {
-            phase: phase.name.clone(),
+            phase: self.phase.name.clone(),
             method: self.settings.method,
             time: self.time,
             step,
             source,
-            trajectory: self.trajectory,
+            trajectory,
         })
         .into()
     }

@@ -17,15 +17,21 @@ use crate::system::{DaeForm, Form, Index, SecondOrderForm, System};
 pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
 
 /// An integrator at work on the equations of one phase.
-pub(super) trait Stepper {
+pub(super) trait Stepper: Send {
     /// Takes one step towards `end` and returns the time reached.
     fn step(&mut self, end: f64) -> Result<f64, Failed>;
+
+    /// Lets the steps end at time `t` (s), exactly.
+    fn stop_at(&mut self, t: f64) -> Result<(), Failed>;
 
     /// The state at a time within the last step.
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed>;
 
     /// Order of the last step.
     fn last_order(&self) -> u32;
+
+    /// Size of the next step (s), as far as it is known.
+    fn next_step(&self) -> f64;
 
     /// The state at the end of the last step: (u, v, energies, ...).
     fn state(&self) -> &[f64];
@@ -41,10 +47,14 @@ pub(super) trait Stepper {
     fn counts(&self) -> Counts;
 }
 
-impl<I: Integrator<System: Form>> Stepper for I {
+impl<I: Integrator<System: Form> + Send> Stepper for I {
     fn step(&mut self, end: f64) -> Result<f64, Failed> {
         let _ = Integrator::step(self, end)?;
         Ok(self.t())
+    }
+
+    fn stop_at(&mut self, t: f64) -> Result<(), Failed> {
+        Ok(self.set_stop_time(Some(t))?)
     }
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
@@ -53,6 +63,10 @@ impl<I: Integrator<System: Form>> Stepper for I {
 
     fn last_order(&self) -> u32 {
         Integrator::last_order(self)
+    }
+
+    fn next_step(&self) -> f64 {
+        self.statistics().current_step
     }
 
     fn state(&self) -> &[f64] {
@@ -98,14 +112,14 @@ fn compression(indefinite: usize) -> Option<String> {
     })
 }
 
-/// Starts the integrator that the settings name at `t` with `state` = (u, v, energies); it will stop at
-/// `end`.
+/// Starts the integrator that the settings name at `t` with `state` = (u, v, energies), if known with a step of the
+/// size `first` (s); it will stop at `end`.
 pub(super) fn start(
     system: System,
     settings: &Settings,
     atol: &AbsoluteTolerances,
-    t: f64,
-    end: f64,
+    [t, end]: [f64; 2],
+    first: Option<f64>,
     state: &[f64],
 ) -> Result<Box<dyn Stepper>, Failed> {
     let n = system.dofs();
@@ -122,6 +136,7 @@ pub(super) fn start(
         Method::Arkode => {
             let options = arkode_options(settings, tolerances, system.is_linear())?;
             let options = options.max_step(longest);
+            let options = first.into_iter().fold(options, ArkodeOptions::initial_step);
             until(end, Arkode::new(system, t, state, &options)?)
         }
         Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
@@ -141,17 +156,19 @@ pub(super) fn start(
         }
         Method::Rk => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+            let options = first.into_iter().fold(options, rk::Options::initial_step);
             until(end, DormandPrince::new(system, t, state, &options)?)
         }
         Method::CentralDifference => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+            let options = first.into_iter().fold(options, rk::Options::initial_step);
             until(end, CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?)
         }
     }
 }
 
 /// Sets the stop time of an integrator.
-fn until<I: Integrator<System: Form> + 'static>(
+fn until<I: Integrator<System: Form> + Send + 'static>(
     end: f64,
     mut integrator: I,
 ) -> Result<Box<dyn Stepper>, Failed> {

@@ -48,7 +48,7 @@ pub use spectrum::Spectrum;
 pub use summary::PhaseSummary;
 
 use crate::constraint::{Prescribed, Row};
-use crate::force::{Force, NodalForces, Reservoir, Step};
+use crate::force::{Forces, NodalForces, Reservoir, Step};
 use crate::input::InputError;
 use crate::model::Model;
 use crate::ode::Failure;
@@ -58,7 +58,7 @@ use crate::vector::dot;
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
     model: Arc<Model>,
-    forces: Vec<Arc<dyn Force>>,
+    forces: Forces,
     rows: Vec<Row>,
     /// Stabilization rate alpha (1/s).
     alpha: f64,
@@ -122,7 +122,7 @@ impl System {
     /// General constraint rows that follow from others.
     pub(crate) fn new(
         model: Arc<Model>,
-        forces: Vec<Arc<dyn Force>>,
+        forces: Forces,
         rows: Vec<Row>,
         alpha: f64,
         phase: &str,
@@ -164,6 +164,15 @@ impl System {
     /// Number of displacement components.
     pub(crate) fn dofs(&self) -> usize {
         self.model.dofs()
+    }
+
+    /// Replaces the forces, if the Newton matrix has room for their tangents; all else stays as it is.
+    pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
+        if forces.iter().any(|force| force.is_nonlinear()) != self.newton.follows {
+            return false;
+        }
+        (self.forces, self.newton.is_set) = (forces, false);
+        true
     }
 
     /// The inertia matrix.

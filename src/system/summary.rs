@@ -48,7 +48,7 @@ impl Scene {
         start: f64,
         spectrum: Spectrum,
     ) -> Result<PhaseSummary, InputError> {
-        let rows = self.rows(phase, &PhaseStart { time: start, u: self.start()[0] })?;
+        let rows = self.rows(phase, &PhaseStart { time: start, u: self.initial_state()[0] })?;
         let mut loaded_nodes = 0;
         for (selection, _) in &phase.loads {
             loaded_nodes += self.body().mesh().select(selection)?.len();

@@ -14,6 +14,7 @@ mod index_two;
 mod observer;
 mod readings;
 mod ring;
+mod simulation;
 mod square_jump;
 mod square_press;
 mod threads;

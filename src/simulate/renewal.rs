@@ -1,0 +1,288 @@
+//! What changes a run between two steps: other forces or constraints, another state, an earlier one.
+
+use std::mem::take;
+use std::sync::Arc;
+
+use super::auto::Plan;
+use super::leg::Ending;
+use super::records::{self, energy, project};
+use super::run::Run;
+use super::sampling::Sampling;
+use super::stage::{At, Stage};
+use crate::error::Error;
+use crate::input::InputError;
+use crate::scene::{Phase, Scene};
+use crate::system::{Energy, System};
+use crate::trajectory::Sample;
+
+/// What a command changes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Change {
+    /// Forces that store no energy.
+    Loads,
+    /// Which obstacles act.
+    Contacts,
+    /// What is held or moved.
+    Constraints,
+}
+
+/// A state of a [`Simulation`](super::Simulation) to come back to: see
+/// [`checkpoint`](super::Simulation::checkpoint).
+#[derive(Clone)]
+pub struct Checkpoint {
+    scene: Arc<Scene>,
+    time: f64,
+    /// (u, v, energies)
+    state: Vec<f64>,
+    phase: Arc<Phase>,
+    number: usize,
+    constraints: Arc<()>,
+    plan: Plan,
+    first_step: Option<f64>,
+    samples: usize,
+    /// Energy balance (J) that methods are judged by.
+    balance: f64,
+    /// Error, rise and scale of the energy balance (J).
+    energies: [f64; 3],
+}
+
+impl Checkpoint {
+    /// Its time (s).
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+}
+
+impl Run {
+    fn system(&self) -> Option<&System> {
+        match &self.at {
+            At::Work(work) => Some(work.stepper.system()),
+            At::Rest(system) => Some(system),
+            At::Nothing => None,
+        }
+    }
+
+    /// The equations in force.
+    pub(super) fn system_mut(&mut self) -> Result<&mut System, Error> {
+        if let At::Nothing = self.at {
+            self.at = At::Rest(self.equations(&self.phase, &self.state)?);
+        }
+        match &mut self.at {
+            At::Work(work) => Ok(work.stepper.system_mut()),
+            At::Rest(system) => Ok(system),
+            At::Nothing => {
+                Err(InputError::new("simulation", "without equations", "start it anew").into())
+            }
+        }
+    }
+
+    /// Writes (u, v, energies) at a time (s) within the last step.
+    pub(super) fn look(&mut self, t: f64, state: &mut [f64]) -> Result<(), Error> {
+        match &mut self.at {
+            At::Work(work) if t < self.time => {
+                let seen = work.stepper.interpolate(t, &mut work.sample);
+                state.copy_from_slice(&work.sample[..self.state.len()]);
+                seen.map_err(|source| self.failure(source, 0.0))
+            }
+            _ => {
+                state.copy_from_slice(&self.state);
+                Ok(())
+            }
+        }
+    }
+
+    /// Energies of `state` = (u, v, energies) at time `t` (s).
+    pub(super) fn energy(&self, t: f64, state: &[f64]) -> Energy {
+        self.system().map_or_else(Energy::default, |system| energy(system, t, state))
+    }
+
+    /// The sample of `state` = (u, v, energies) at time `t` (s).
+    pub(super) fn sample(&mut self, t: f64, state: &[f64]) -> Result<Sample, Error> {
+        let number = self.number;
+        let sample = records::sample(number, self.system_mut()?, t, state);
+        sample.map_err(|failure| self.failure(failure.into_error(), 0.0))
+    }
+
+    /// Enters the next phase if the present one is at its end.
+    pub(super) fn leave_phase(&mut self) -> Result<(), Error> {
+        if self.time < self.phase.until || self.is_last_phase() {
+            return Ok(());
+        }
+        let system = self.rest()?;
+        let next = self.next_phase(system)?;
+        self.resume(next);
+        Ok(())
+    }
+
+    /// Makes `state` = (u, v, energies) at time `t` (s), at or before the present one and in the same phase, the
+    /// present state.
+    pub(super) fn set_state(&mut self, t: f64, state: &[f64]) -> Result<(), Error> {
+        let system = self.rest()?;
+        if t < self.time {
+            let samples = self.trajectory.samples();
+            let late = samples.iter().rev().take_while(|sample| sample.time > t).count();
+            self.trajectory.go_back(samples.len() - late, self.trajectory.noted());
+            self.sample_from(t);
+        }
+        (self.time, self.standing) = (t, 0);
+        self.state.copy_from_slice(state);
+        self.resume(system);
+        Ok(())
+    }
+
+    /// Puts `phase` in force in place of the present one, which differs from it by a `change`.
+    pub(super) fn change(&mut self, phase: Phase, change: Change) -> Result<(), Error> {
+        let forces = self.scene.forces_in(&phase)?;
+        let mut system = self.rest()?;
+        let constrains = change == Change::Constraints;
+        let before = match change {
+            Change::Contacts => energy(&system, self.time, &self.state).balance(),
+            _ => 0.0,
+        };
+        if constrains || !system.change_forces(forces) {
+            match self.followed_by(&phase, &system) {
+                Ok(next) => system = next,
+                Err(error) => {
+                    self.resume(system);
+                    return Err(error.into());
+                }
+            }
+        } else if change == Change::Contacts {
+            self.supply(energy(&system, self.time, &self.state).balance() - before);
+        }
+        if constrains {
+            project(&self.settings, &phase, &mut system, self.time, &mut self.state);
+            self.constraints = Arc::new(());
+            self.stage.follow(Plan::new(&self.settings, &mut system, self.time, &self.state));
+        }
+        self.phase = Arc::new(phase);
+        self.resume(system);
+        Ok(())
+    }
+
+    /// A state to come back to.
+    pub(super) fn checkpoint(&self, time: f64, state: &[f64]) -> Checkpoint {
+        Checkpoint {
+            scene: self.scene.clone(),
+            time,
+            state: state.to_vec(),
+            phase: self.phase.clone(),
+            number: self.number,
+            constraints: self.constraints.clone(),
+            plan: self.stage.plan.clone(),
+            first_step: self.next_step(),
+            samples: self.trajectory.samples().len(),
+            balance: self.balance,
+            energies: self.trajectory.noted(),
+        }
+    }
+
+    /// Comes back to a state.
+    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        let Checkpoint { scene, time, state, phase, number, constraints, plan, .. } = checkpoint;
+        if !Arc::ptr_eq(&self.scene, scene) {
+            let mend = "it belongs to another simulation: restore it there, or in a fork of that";
+            return Err(InputError::new("checkpoint", format!("at {time} s"), mend).into());
+        }
+        let mut system = self.rest()?;
+        self.time = *time;
+        self.state.copy_from_slice(state);
+        if !Arc::ptr_eq(&self.phase, phase) {
+            let forces = self.scene.forces_in(phase)?;
+            let kept = Arc::ptr_eq(&self.constraints, constraints) && system.change_forces(forces);
+            if !kept {
+                system = self.equations(phase, state)?;
+            }
+            (self.phase, self.constraints) = (phase.clone(), constraints.clone());
+        }
+        if self.number != *number {
+            self.number = *number;
+            self.stage = self.new_stage(plan.clone());
+            self.trajectory.report.phases.truncate(*number);
+        }
+        self.sample_from(*time);
+        self.stage.plan = plan.clone();
+        self.stage.first_step = checkpoint.first_step;
+        let Checkpoint { samples, balance, energies, .. } = *checkpoint;
+        self.stage.leg.steps = self.settings.max_steps;
+        (self.balance, self.standing) = (balance, 0);
+        self.trajectory.go_back(samples.max(1), energies);
+        self.resume(system);
+        Ok(())
+    }
+
+    /// A run of its own from `state` = (u, v, energies) at time `t` (s) on.
+    pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
+        let rows = self.system().map_or_else(Vec::new, |system| system.rows().to_vec());
+        let forces = self.scene.forces_in(&self.phase)?;
+        let (alpha, name) = (self.settings.alpha, &self.phase.name);
+        let system = System::new(self.model.clone(), forces, rows, alpha, name)?;
+        let mut run = self.twin();
+        run.time = t;
+        run.state.copy_from_slice(state);
+        run.sample_from(t);
+        run.stage.first_step = self.next_step();
+        run.resume(system);
+        Ok(run)
+    }
+
+    /// Size of the next step (s), as far as it is known.
+    fn next_step(&self) -> Option<f64> {
+        match &self.at {
+            At::Work(work) => Some(work.stepper.next_step()).filter(|h| h.is_finite() && *h > 0.0),
+            _ => self.stage.first_step,
+        }
+    }
+
+    /// Ends the integrator, and gives its equations back; the next one knows its step size.
+    fn rest(&mut self) -> Result<System, Error> {
+        self.stage.first_step = self.next_step();
+        if let Some(Ending::Doubtful { instead: plan } | Ending::Better(plan)) =
+            self.stage.ended.take()
+        {
+            self.stage.follow(plan);
+        }
+        match take(&mut self.at) {
+            At::Work(work) => Ok(self.stage.rest(work)),
+            At::Rest(system) => Ok(system),
+            At::Nothing => Ok(self.equations(&self.phase, &self.state)?),
+        }
+    }
+
+    /// Goes on from the present state by the equations `system` of the phase in force.
+    fn resume(&mut self, system: System) {
+        let mut stops = self.phase.breaks();
+        stops.retain(|&stop| self.time < stop && stop < self.phase.until);
+        stops.push(self.phase.until);
+        stops.reverse();
+        (self.stage.stops, self.stage.leg.inside) = (stops, None);
+        self.stage.ended = Some(Ending::Reached);
+        self.begin_events(&system);
+        self.at = At::Rest(system);
+        self.remember();
+    }
+
+    /// Counts a sudden change of what is stored (J) as supplied from outside.
+    pub(super) fn supply(&mut self, energy: f64) {
+        let supplied = 2 * self.scene.body().dofs() + 1;
+        self.state[supplied] += energy;
+    }
+
+    /// The phase in force from the present time on, integrated by `plan`.
+    pub(super) fn new_stage(&self, plan: Plan) -> Stage {
+        let times = self.sampling.within(self.time, self.phase.until);
+        Stage::new(plan, times, self.scene.stops(self.number), self.settings.max_steps)
+    }
+
+    /// Takes samples at other times from the end of the last step on.
+    pub(super) fn record(&mut self, sampling: &Sampling) {
+        self.sampling = sampling.clone();
+        self.sample_from(self.time);
+    }
+
+    /// Takes the samples after time `t` (s), whether they were taken before or not.
+    fn sample_from(&mut self, t: f64) {
+        self.stage.leg.times = self.sampling.within(t, self.phase.until);
+        self.stage.leg.taken = 0;
+    }
+}

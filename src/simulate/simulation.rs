@@ -1,0 +1,332 @@
+//! A simulation that other programs hold in their hands.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::renewal::Checkpoint;
+use super::run::Run;
+use super::sampling::Sampling;
+use super::view::{Gauges, View};
+use crate::error::Error;
+use crate::force::Forces;
+use crate::input::{InputError, finite, positive};
+use crate::report::Report;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::state::{State, StateMut};
+use crate::system::Energy;
+use crate::trajectory::{Sample, Trajectory};
+
+/// A scene in motion, which a program drives: it lets time go on, looks, gives commands (pressures, forces,
+/// what is held), and goes back to states that it kept.
+///
+/// ```
+/// use pliant::{Settings, samples};
+///
+/// // the jumping square, pressed down and let go when it has enough energy
+/// let mut square = samples::square_jump(4)?.start(&Settings::default())?;
+/// while square.energy().strain < 0.2 && square.time() < 0.4 {
+///     square.advance_by(0.01)?;
+/// }
+/// let height = square.view().centre_of_mass()[1];
+/// assert!(height < 0.15);
+/// # Ok::<(), pliant::Error>(())
+/// ```
+///
+/// Between commands it moves as [`Scene::simulate`] lets it: by the phases of the scene, with steps as
+/// long as the tolerances allow. [`advance_to`](Self::advance_to) reads the motion between the ends of
+/// steps, so that looking changes nothing. A command takes effect exactly at the present time; from then on
+/// the next look after each command ends a step there.
+///
+/// After an error that is no [`Error::Integration`] the simulation is as it was before the call; after one of
+/// those it rests where the integrator gave up.
+pub struct Simulation {
+    pub(super) run: Run,
+    gauges: Gauges,
+    /// The present: at the end of the last step or within it.
+    pub(super) time: f64,
+    /// (u, v, energies)
+    pub(super) now: Vec<f64>,
+    /// Whether there was a command since time went on.
+    pub(super) commanded: bool,
+}
+
+impl Scene {
+    /// Starts the scene, to be driven step by step; see [`Simulation`].
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate) and [`Settings::validate`].
+    pub fn start(&self, settings: &Settings) -> Result<Simulation, Error> {
+        let clock = Instant::now();
+        settings.validate()?;
+        let mut all = self.forces_from_start()?;
+        let first = all.first().cloned().unwrap_or_default();
+        // matrices have room for chambers that no phase fills
+        let gauges = Gauges::new(self)?;
+        let mut chambers = Forces::new();
+        for chamber in self.chambers() {
+            chambers.push(Arc::new(chamber.force(self.body(), Vec::new())?));
+        }
+        all.push(chambers);
+        let model = self.model(&all);
+        let run = Run::new(self, settings, &Sampling::phase_ends(), clock, model, first)?;
+        let (time, now) = (run.time, run.state.clone());
+        Ok(Simulation { run, gauges, time, now, commanded: false })
+    }
+}
+
+impl Simulation {
+    /// The present time (s).
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The motion at the present time.
+    pub fn view(&self) -> View<'_> {
+        let Self { run, gauges, time, now, .. } = self;
+        let state = State::of(now, run.scene.body().dofs());
+        View { scene: &run.scene, gauges, time: *time, state }
+    }
+
+    /// The energies at the present time; computing them costs about an evaluation of the forces.
+    pub fn energy(&self) -> Energy {
+        self.run.energy(self.time, &self.now)
+    }
+
+    /// A sample of the present: displacements, velocities, constraint forces, energies.
+    ///
+    /// # Errors
+    /// [`Error::Integration`] if the forces have no meaning.
+    pub fn sample(&mut self) -> Result<Sample, Error> {
+        self.run.sample(self.time, &self.now)
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.run.scene
+    }
+
+    /// The name of the phase in force.
+    pub fn phase(&self) -> &str {
+        &self.run.phase.name
+    }
+
+    /// How the motion was computed so far.
+    pub fn report(&self) -> Report {
+        self.run.report()
+    }
+
+    /// Takes samples of the motion from the end of the present step on, which are kept in the [`trajectory`](Self::trajectory).
+    ///
+    /// # Errors
+    /// Sampling times that cannot be used.
+    pub fn record(&mut self, sampling: &Sampling) -> Result<(), InputError> {
+        sampling.validate(self.run.scene.end())?;
+        self.run.record(sampling);
+        Ok(())
+    }
+
+    /// The samples so far.
+    pub fn trajectory(&self) -> &Trajectory {
+        &self.run.trajectory
+    }
+
+    /// The samples with the report, at the end of the simulation.
+    pub fn into_trajectory(self) -> Trajectory {
+        self.run.into_trajectory()
+    }
+
+    /// Lets one step of the integrator pass. `false` at the end of the scene, where nothing is left.
+    ///
+    /// # Errors
+    /// [`Error::Integration`] if the integrator gives up.
+    pub fn step(&mut self) -> Result<bool, Error> {
+        while self.run.time <= self.time {
+            if !self.advance()? {
+                return Ok(false);
+            }
+        }
+        self.commanded = false;
+        self.look(self.run.time)?;
+        Ok(true)
+    }
+
+    /// Lets time go on to `t` (s).
+    ///
+    /// # Errors
+    /// A time before the present or after the end of the scene; [`Error::Integration`] if the integrator
+    /// gives up.
+    pub fn advance_to(&mut self, t: f64) -> Result<(), Error> {
+        self.check(t)?;
+        self.run.pause = Some(t).filter(|_| self.commanded);
+        self.commanded = false;
+        while self.run.time < t && self.advance()? {}
+        self.run.pause = None;
+        self.look(t)
+    }
+
+    /// Lets a time `dt` (s) pass.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_by(&mut self, dt: f64) -> Result<(), Error> {
+        self.advance_to(self.time + dt)
+    }
+
+    /// Lets time go on to `t` (s), but at most until the sign of `event` changes. Returns whether it did: then
+    /// the present is that time, to the round-off of the step that it lies in.
+    ///
+    /// Signs are compared at the ends of steps: two changes within one step are none. An event that is 0 at the
+    /// start is one when its sign changes later.
+    ///
+    /// # Errors
+    /// As [`advance_to`](Self::advance_to).
+    pub fn advance_until(
+        &mut self,
+        t: f64,
+        mut event: impl FnMut(&View) -> f64,
+    ) -> Result<bool, Error> {
+        self.check(t)?;
+        self.commanded = false;
+        let mut before = event(&self.view());
+        while self.time < t {
+            if self.run.time <= self.time && !self.advance()? {
+                break;
+            }
+            let (start, end) = (self.time, self.run.time.min(t));
+            if end <= start {
+                continue;
+            }
+            self.look(end)?;
+            let after = event(&self.view());
+            if before * after < 0.0 || (after == 0.0 && before != 0.0) {
+                self.bisect([start, end], before, &mut event)?;
+                return Ok(true);
+            }
+            before = after;
+        }
+        Ok(false)
+    }
+
+    /// Moves the present to where `event`, which has the sign of `before` at the start, has lost it.
+    fn bisect(
+        &mut self,
+        [mut start, mut end]: [f64; 2],
+        before: f64,
+        event: &mut impl FnMut(&View) -> f64,
+    ) -> Result<(), Error> {
+        loop {
+            let middle = 0.5 * (start + end);
+            if middle <= start || middle >= end {
+                return self.look(end);
+            }
+            self.look(middle)?;
+            match before * event(&self.view()) > 0.0 {
+                true => start = middle,
+                false => end = middle,
+            }
+        }
+    }
+
+    /// Calls `controller` now and after each `period` (s), until time `t` (s): it looks and gives commands.
+    ///
+    /// # Errors
+    /// A period that is not above 0; what the controller returns; otherwise as
+    /// [`advance_to`](Self::advance_to).
+    pub fn control(
+        &mut self,
+        period: f64,
+        t: f64,
+        mut controller: impl FnMut(&mut Self) -> Result<(), Error>,
+    ) -> Result<(), Error> {
+        positive("control period", period, "s")?;
+        self.check(t)?;
+        let start = self.time;
+        for tick in 1_u64.. {
+            controller(self)?;
+            self.advance_to((start + tick as f64 * period).min(t))?;
+            if self.time >= t {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Changes displacements (m) and velocities (m/s), as by an impact; what that adds to the energies
+    /// counts as supplied from outside.
+    ///
+    /// # Errors
+    /// Numbers that are not finite: the state stays as it was.
+    pub fn change_state(
+        &mut self,
+        change: impl FnOnce(&mut [f64], &mut [f64]),
+    ) -> Result<(), Error> {
+        let before = self.energy().balance();
+        let mut state = self.now.clone();
+        let parts = StateMut::of(&mut state, self.run.scene.body().dofs());
+        change(parts.u, parts.v);
+        finite("state", &state)?;
+        let after = self.run.energy(self.time, &state).balance();
+        *StateMut::of(&mut state, self.run.scene.body().dofs()).supplied += after - before;
+        self.run.set_state(self.time, &state)?;
+        (self.now, self.commanded) = (state, true);
+        Ok(())
+    }
+
+    /// Keeps the present state, to come [back](Self::restore) to it.
+    pub fn checkpoint(&self) -> Checkpoint {
+        self.run.checkpoint(self.time, &self.now)
+    }
+
+    /// Comes back to a state that was kept, with the commands in force then. Samples taken after it are
+    /// forgotten.
+    ///
+    /// The motion goes on from there as it did, to within the tolerances.
+    ///
+    /// # Errors
+    /// A checkpoint of another simulation, unless one of them is a [`fork`](Self::fork) of the other.
+    pub fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        self.run.restore(checkpoint)?;
+        self.time = self.run.time;
+        self.now.copy_from_slice(&self.run.state);
+        self.commanded = false;
+        Ok(())
+    }
+
+    /// A simulation of its own that begins with the present state and the commands in force: to try what would
+    /// happen, on another thread if need be. Body, matrices and their orderings are shared.
+    ///
+    /// # Errors
+    /// None that the start would not have given.
+    pub fn fork(&self) -> Result<Self, Error> {
+        let run = self.run.fork(self.time, &self.now)?;
+        let (gauges, now) = (Gauges::new(&run.scene)?, self.now.clone());
+        Ok(Self { run, gauges, time: self.time, now, commanded: self.commanded })
+    }
+
+    fn check(&self, t: f64) -> Result<(), InputError> {
+        let (time, end) = (self.time, self.run.scene.end());
+        if (time..=end).contains(&t) {
+            return Ok(());
+        }
+        let mend =
+            format!("it must lie between the present, {time} s, and the end of the scene, {end} s");
+        Err(InputError::new("time to go on to", format!("{t} s"), mend))
+    }
+
+    /// Makes `t`, within the last step, the present.
+    fn look(&mut self, t: f64) -> Result<(), Error> {
+        self.run.look(t, &mut self.now)?;
+        self.time = t;
+        Ok(())
+    }
+
+    /// Takes a step; after a failure the present is where the integrator gave up.
+    fn advance(&mut self) -> Result<bool, Error> {
+        self.run.advance(&mut |_| ControlFlow::Continue(())).inspect_err(|_| {
+            (self.time, self.run.pause) = (self.run.time, None);
+            self.now.copy_from_slice(&self.run.state);
+        })
+    }
+}

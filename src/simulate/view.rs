@@ -1,0 +1,118 @@
+//! What is seen of a simulation at one time.
+
+use crate::body::{Body, CellField};
+use crate::external::{Chamber, ChamberForce, Spring, SpringForce};
+use crate::input::InputError;
+use crate::mesh::Selection;
+use crate::scene::{Scene, find};
+use crate::state::State;
+
+/// The motion of a [`Simulation`](super::Simulation) at one time, without copies.
+pub struct View<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) gauges: &'a Gauges,
+    pub(super) time: f64,
+    pub(super) state: State<'a>,
+}
+
+/// What measures chambers and springs, in the order of the scene.
+pub(super) struct Gauges {
+    chambers: Vec<ChamberForce>,
+    springs: Vec<SpringForce>,
+}
+
+impl Gauges {
+    pub(super) fn new(scene: &Scene) -> Result<Self, InputError> {
+        let body = scene.body();
+        let chambers = scene.chambers().iter().map(|chamber| chamber.force(body, Vec::new()));
+        let springs = scene.springs().iter().map(|spring| spring.force(body.mesh()));
+        Ok(Self {
+            chambers: chambers.collect::<Result<_, _>>()?,
+            springs: springs.collect::<Result<_, _>>()?,
+        })
+    }
+}
+
+impl<'a> View<'a> {
+    /// Time (s).
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The body.
+    pub fn body(&self) -> &'a Body {
+        self.scene.body()
+    }
+
+    /// Displacements (m), dimension components per node.
+    pub fn displacements(&self) -> &'a [f64] {
+        self.state.u
+    }
+
+    /// Velocities (m/s), dimension components per node.
+    pub fn velocities(&self) -> &'a [f64] {
+        self.state.v
+    }
+
+    /// Where the nodes of `selection` are (m), in the mean over them: one component per dimension.
+    ///
+    /// # Errors
+    /// An unknown set, a number out of range, a selection without nodes.
+    pub fn position(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
+        let selection = selection.into();
+        let natural = self.mean(&selection, self.body().mesh().positions())?;
+        let moved = self.mean(&selection, self.state.u)?;
+        Ok(natural.iter().zip(moved).map(|(x, u)| x + u).collect())
+    }
+
+    /// How fast they move (m/s), in the mean over them.
+    ///
+    /// # Errors
+    /// As [`position`](Self::position).
+    pub fn velocity(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
+        self.mean(&selection.into(), self.state.v)
+    }
+
+    /// Centre of mass (m).
+    pub fn centre_of_mass(&self) -> Vec<f64> {
+        let natural = self.body().mass_average(self.body().mesh().positions());
+        natural.iter().zip(self.body().mass_average(self.state.u)).map(|(x, u)| x + u).collect()
+    }
+
+    /// Velocity of the centre of mass (m/s).
+    pub fn mean_velocity(&self) -> Vec<f64> {
+        self.body().mass_average(self.state.v)
+    }
+
+    /// Volume that the walls of a chamber enclose (m^3).
+    ///
+    /// # Errors
+    /// A name that no chamber has.
+    pub fn chamber_volume(&self, chamber: &str) -> Result<f64, InputError> {
+        let known: Vec<&str> = self.scene.chambers().iter().map(Chamber::name).collect();
+        let number = find(chamber, &known, "chamber", "chambers")?;
+        Ok(self.gauges.chambers[number].volume(self.state.u))
+    }
+
+    /// Length of a spring (m).
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn spring_length(&self, spring: &str) -> Result<f64, InputError> {
+        let known: Vec<&str> = self.scene.springs().iter().map(Spring::name).collect();
+        let number = find(spring, &known, "spring", "springs")?;
+        Ok(self.gauges.springs[number].length(self.state.u))
+    }
+
+    /// Strain, stress and strain energy density of each cell.
+    pub fn cell_fields(&self) -> Vec<CellField> {
+        self.body().cell_fields(self.state.u)
+    }
+
+    fn mean(&self, selection: &Selection, x: &[f64]) -> Result<Vec<f64>, InputError> {
+        let nodes = self.body().mesh().select(selection)?;
+        let dimension = self.body().dimension();
+        let sum = |axis| nodes.iter().map(|node| x[node * dimension + axis]).sum::<f64>();
+        Ok((0..dimension).map(|axis| sum(axis) / nodes.len() as f64).collect())
+    }
+}
