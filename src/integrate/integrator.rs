@@ -80,6 +80,19 @@ pub trait Integrator {
     /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
     fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error>;
 
+    /// Goes on at time `t` from `y`, with the step size, the options and the counters of before, after a change of
+    /// the system that leaves its unknowns what they were. A stop time is forgotten.
+    ///
+    /// `false`, and nothing done, where the method needs a new start, [`reinit`](Self::reinit): multistep methods
+    /// build on steps under the system of before.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
+    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
+        let _ = (t, y);
+        Ok(false)
+    }
+
     /// After [`Reached::Root`]: for each root function 0, or the sign of its change where it has
     /// a root at the present time: +1 rising, -1 falling.
     fn roots_found(&self) -> &[i32];

@@ -181,6 +181,18 @@ impl<S: Ode> Integrator for DormandPrince<S> {
         Ok(())
     }
 
+    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
+        check_length("length of y", y.len(), self.y.len())?;
+        check_time("t", t)?;
+        check_finite("y", y)?;
+        (self.t, self.t_old) = (t, t);
+        self.y.copy_from_slice(y);
+        (self.rest, self.stop_time, self.slope_known) = (None, None, false);
+        self.update_weight();
+        self.roots.restart();
+        Ok(true)
+    }
+
     fn roots_found(&self) -> &[i32] {
         &self.roots.found
     }

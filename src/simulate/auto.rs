@@ -148,6 +148,13 @@ impl Plan {
         }
     }
 
+    /// What to go on with where commands change the forces again and again, each of which would make BDF start anew.
+    pub(super) fn under_commands(&self) -> Option<Self> {
+        let starts_anew = self.is_on_trial() && self.settings.method == Method::CvodeBdf;
+        starts_anew
+            .then(|| self.followed_by(Method::Arkode, self.max_order, "commands change forces"))
+    }
+
     fn followed_by(&self, method: Method, max_order: Option<u32>, reason: &str) -> Self {
         let max_order = cap(method, max_order);
         let before = self.reason.as_deref().unwrap_or_default();

@@ -10,6 +10,7 @@ use super::run::Run;
 use super::sampling::Sampling;
 use super::stage::{At, Stage};
 use crate::error::Error;
+use crate::force::Forces;
 use crate::input::InputError;
 use crate::scene::{Phase, Scene};
 use crate::system::{Energy, System};
@@ -25,6 +26,9 @@ pub(super) enum Change {
     /// What is held or moved.
     Constraints,
 }
+
+/// Commands in a phase that a multistep method follows by new starts.
+const NEW_STARTS: usize = 3;
 
 /// A state of a [`Simulation`](super::Simulation) to come back to: see
 /// [`checkpoint`](super::Simulation::checkpoint).
@@ -132,7 +136,20 @@ impl Run {
 
     /// Puts `phase` in force in place of the present one, which differs from it by a `change`.
     pub(super) fn change(&mut self, phase: Phase, change: Change) -> Result<(), Error> {
-        let forces = self.scene.forces_in(&phase)?;
+        let mut forces = self.scene.forces_in(&phase)?;
+        if change == Change::Loads {
+            self.expect_commands()?;
+            match self.change_loads(forces)? {
+                None => {
+                    self.phase = Arc::new(phase);
+                    self.find_stops();
+                    self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
+                    self.remember();
+                    return Ok(());
+                }
+                Some(refused) => forces = refused,
+            }
+        }
         let mut system = self.rest()?;
         let constrains = change == Change::Constraints;
         let before = match change {
@@ -158,6 +175,39 @@ impl Run {
         self.phase = Arc::new(phase);
         self.resume(system);
         Ok(())
+    }
+
+    /// Leaves a multistep method that was chosen automatically once commands keep coming.
+    fn expect_commands(&mut self) -> Result<(), Error> {
+        self.stage.commands += 1;
+        if self.stage.commands > NEW_STARTS
+            && let Some(plan) = self.stage.plan.under_commands()
+        {
+            let system = self.rest()?;
+            self.stage.follow(plan);
+            self.resume(system);
+        }
+        Ok(())
+    }
+
+    /// Changes the forces of an integrator at work, if it can go on with others; gives them back if not.
+    fn change_loads(&mut self, forces: Forces) -> Result<Option<Forces>, Error> {
+        let (At::Work(work), None) = (&mut self.at, &self.stage.ended) else {
+            return Ok(Some(forces));
+        };
+        if !work.stepper.system_mut().change_forces(forces.clone()) {
+            return Ok(Some(forces));
+        }
+        match work.stepper.resume(self.time, &self.state) {
+            Ok(true) => {
+                work.stop = f64::NAN;
+                let (system, located) = (work.stepper.system(), self.stage.plan.locates());
+                self.stage.leg.events.begin(system, self.time, &self.state, located);
+                Ok(None)
+            }
+            Ok(false) => Ok(Some(forces)),
+            Err(source) => Err(self.failure(source, 0.0)),
+        }
     }
 
     /// A state to come back to.
@@ -251,15 +301,20 @@ impl Run {
 
     /// Goes on from the present state by the equations `system` of the phase in force.
     fn resume(&mut self, system: System) {
+        self.find_stops();
+        self.stage.ended = Some(Ending::Reached);
+        self.begin_events(&system);
+        self.at = At::Rest(system);
+        self.remember();
+    }
+
+    /// Finds where the legs of the phase in force end from now on.
+    fn find_stops(&mut self) {
         let mut stops = self.phase.breaks();
         stops.retain(|&stop| self.time < stop && stop < self.phase.until);
         stops.push(self.phase.until);
         stops.reverse();
         (self.stage.stops, self.stage.leg.inside) = (stops, None);
-        self.stage.ended = Some(Ending::Reached);
-        self.begin_events(&system);
-        self.at = At::Rest(system);
-        self.remember();
     }
 
     /// Counts a sudden change of what is stored (J) as supplied from outside.

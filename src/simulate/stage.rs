@@ -20,6 +20,8 @@ pub(super) struct Stage {
     pub(super) stops: Vec<f64>,
     /// How the last leg ended, once it has.
     pub(super) ended: Option<Ending>,
+    /// Changes of the forces by commands.
+    pub(super) commands: usize,
     /// First step of the next integrator (s), if it is known.
     pub(super) first_step: Option<f64>,
     /// What the integrators have cost that are done.
@@ -70,6 +72,7 @@ impl Stage {
             leg: Leg { times, taken: 0, stop: 0.0, inside: None, steps, events },
             stops: stops.into_iter().rev().collect(),
             ended: Some(Ending::Reached),
+            commands: 0,
             first_step: None,
             counts: Counts::default(),
             states: 0,

@@ -24,6 +24,10 @@ pub(super) trait Stepper: Send {
     /// Lets the steps end at time `t` (s), exactly.
     fn stop_at(&mut self, t: f64) -> Result<(), Failed>;
 
+    /// Goes on from `state` at time `t` (s) after a change of the forces; `false` if that needs a new
+    /// integrator.
+    fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed>;
+
     /// The state at a time within the last step.
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed>;
 
@@ -55,6 +59,10 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
 
     fn stop_at(&mut self, t: f64) -> Result<(), Failed> {
         Ok(self.set_stop_time(Some(t))?)
+    }
+
+    fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed> {
+        Ok(state.len() == self.y().len() && Integrator::resume(self, t, state)?)
     }
 
     fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {

@@ -47,6 +47,8 @@ pub(super) struct Functions {
     pub(super) free: unsafe extern "C" fn(*mut *mut c_void),
     pub(super) solve: Named<Solve>,
     pub(super) reinit: Named<Reinit>,
+    /// Goes on after a change of the system, from a time and state, with the step size of before.
+    pub(super) reset: Option<Named<unsafe extern "C" fn(*mut c_void, f64, ffi::N_Vector) -> i32>>,
     /// ARKODE does, and would refuse another one if the direction of time has turned.
     pub(super) reinit_forgets_stop_time: bool,
     /// Codes of `solve` for a call that can not be made.

@@ -107,6 +107,25 @@ impl<K, S> Integrator for Solver<K, S> {
         Ok(())
     }
 
+    /// `ARKStepReset` for ARKODE; the others need a new start.
+    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
+        check_length("length of y", y.len(), self.y().len())?;
+        check_time("t", t)?;
+        check_finite("y", y)?;
+        let Some((name, reset)) = self.memory.functions.reset else { return Ok(false) };
+        self.y.as_mut_slice().copy_from_slice(y);
+        // SAFETY: memory and vector are alive; the integrator copies the vector.
+        let code = unsafe { reset(self.memory.raw, t, self.y.raw()) };
+        self.host.accept(name, code)?;
+        self.t = t;
+        (self.has_step, self.failed_within) = (false, false);
+        let step_end = &mut self.host.get_mut().step_end;
+        *step_end = step_end.and(Some(t));
+        self.stop_time.forget();
+        self.roots_found.fill(0);
+        Ok(true)
+    }
+
     fn roots_found(&self) -> &[i32] {
         &self.roots_found
     }

@@ -407,3 +407,64 @@ fn options_limit_steps_and_order() {
     assert!(solver.statistics().steps >= 100);
     assert!(solver.statistics().linear_setups >= solver.statistics().steps / 5);
 }
+
+/// y' = target - y, whose target is changed while it is integrated.
+struct Relaxation {
+    target: f64,
+}
+
+impl Ode for Relaxation {
+    fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        ydot[0] = self.target - y[0];
+        Ok(())
+    }
+}
+
+/// After a change of the system an integrator goes on with the step size it had, and as accurately.
+#[test]
+fn a_change_of_the_system_needs_no_new_start() {
+    fn follow(solver: &mut impl Integrator<System = Relaxation>, name: &str) {
+        let mut exact = 1.0;
+        for (k, target) in [0.0, 2.0, -1.0, -1.0, 0.5].into_iter().enumerate() {
+            solver.system_mut().target = target;
+            let (t, y) = (solver.t(), solver.y().to_vec());
+            let before = solver.statistics();
+            assert!(solver.resume(t, &y).unwrap(), "{name}");
+            assert_eq!((solver.t(), solver.y()), (t, y.as_slice()));
+            let end = 0.7 * (k + 1) as f64;
+            solver.set_stop_time(Some(end)).unwrap();
+            let _ = solver.step(end).unwrap();
+            let after = solver.statistics();
+            assert_eq!(after.steps, before.steps + 1);
+            if k > 0 {
+                println!(
+                    "{name}: step {:.1e}, planned {:.1e}",
+                    after.last_step, before.current_step
+                );
+                assert!(after.last_step > 0.1 * before.current_step.min(0.7), "{name}");
+            }
+            while solver.t() < end {
+                let _ = solver.step(end).unwrap();
+            }
+            exact = target + (exact - target) * (-(end - t)).exp();
+            let off = (solver.y()[0] - exact).abs();
+            println!("{name}: {off:.1e}");
+            assert!(off < 1e-6, "{name}: {off:e}");
+        }
+    }
+    let system = || Relaxation { target: 0.0 };
+    let implicit = ArkodeOptions::new(1e-8, 1e-8);
+    follow(&mut Arkode::new(system(), 0.0, &[1.0], &implicit).unwrap(), "ARKODE");
+    let explicit = implicit.table(ButcherTable::explicit(5).unwrap());
+    follow(&mut Arkode::new(system(), 0.0, &[1.0], &explicit).unwrap(), "ARKODE, explicit");
+    let options = pliant::rk::Options::new(1e-8, 1e-8);
+    let solver = pliant::rk::DormandPrince::new(system(), 0.0, &[1.0], &options);
+    follow(&mut solver.unwrap(), "Runge-Kutta");
+    // a DAE would need a consistent y', and multistep methods have a history
+    let mut ida = oscillating_dae();
+    let y = ida.y().to_vec();
+    assert!(!ida.resume(0.0, &y).unwrap());
+    let mut cvode = oscillator();
+    cvode.solve_to(1.0).unwrap();
+    assert!(!cvode.resume(1.0, &[0.0, 0.0]).unwrap());
+}

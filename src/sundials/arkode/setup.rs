@@ -52,6 +52,7 @@ impl<S: Ode> Arkode<S> {
             // SAFETY: as above; the callback fits the host of the session.
             unsafe { ffi::ARKStepReInit(memory, None, Some(rhs::<S>), t, y) }
         }),
+        reset: Some(("ARKStepReset", ffi::ARKStepReset)),
         reinit_forgets_stop_time: true,
         refusals: &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T],
         set_error_handler: ("ARKStepSetErrHandlerFn", ffi::ARKStepSetErrHandlerFn),

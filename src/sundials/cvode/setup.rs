@@ -36,6 +36,7 @@ static FUNCTIONS: Functions = Functions {
         unsafe { ffi::CVodeReInit(memory, t, y) }
     }),
     reinit_forgets_stop_time: false,
+    reset: None,
     refusals: &[ffi::CV_ILL_INPUT, ffi::CV_TOO_CLOSE, ffi::CV_BAD_T],
     set_error_handler: ("CVodeSetErrHandlerFn", ffi::CVodeSetErrHandlerFn),
     set_user_data: ("CVodeSetUserData", ffi::CVodeSetUserData),

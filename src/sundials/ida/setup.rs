@@ -37,6 +37,7 @@ static FUNCTIONS: Functions = Functions {
         unsafe { ffi::IDAReInit(memory, t, y, yp) }
     }),
     reinit_forgets_stop_time: false,
+    reset: None,
     refusals: &[ffi::IDA_ILL_INPUT],
     set_error_handler: ("IDASetErrHandlerFn", ffi::IDASetErrHandlerFn),
     set_user_data: ("IDASetUserData", ffi::IDASetUserData),
