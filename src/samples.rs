@@ -8,7 +8,8 @@ mod scenes;
 mod statics;
 
 pub use actuated::{
-    MEMBRANE_MATERIAL, bending_actuator, membrane, membrane_arch, report_8, ring_jump, ring_springs,
+    MEMBRANE_MATERIAL, bending_actuator, membrane, membrane_arch, report_8, ring_jump,
+    ring_springs, spring_ring,
 };
 pub use equations::{Hires, Pendulum, Reference, Robertson, VanDerPol};
 pub use scenes::{

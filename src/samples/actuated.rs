@@ -44,14 +44,19 @@ pub fn membrane_arch() -> Result<Scene, InputError> {
 }
 
 /// Fig. 4.12 without its timeline: an elastic ring of radii 4 and 5 cm (32 x 3 nodes, 1 cm thick, Green
-/// strain, natural viscosity) on a floor; eight springs `A1` to `A8` of 20 N/m and 4 cm join a
-/// mass of 1 g at its centre with its inner side, `A1` straight below, then counter-clockwise.
-fn spring_ring() -> Result<Scene, InputError> {
+/// strain) on a floor; eight springs `A1` to `A8` of 20 N/m and 4 cm join the point "mass" of 1 g at
+/// its centre with its inner side, `A1` straight below, then counter-clockwise. It needs a phase.
+///
+/// Hirai's viscosity is natural, and brakes every rotation.
+///
+/// # Errors
+/// None; the signature is that of its kind.
+pub fn spring_ring(viscosity: Viscosity) -> Result<Scene, InputError> {
     let mesh = Mesh::ring(0.04, 0.05, [32, 3], Cells::Triangles)?.translated(&[0.0, 0.05])?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL)
         .thickness(0.01)
         .strain(Strain::Green)
-        .viscosity(Viscosity::Natural)
+        .viscosity(viscosity)
         .point_mass("mass", [0.0, 0.05], 0.001)
         .build()?;
     let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
@@ -71,7 +76,7 @@ fn spring_ring() -> Result<Scene, InputError> {
 /// # Errors
 /// None; the signature is that of its kind.
 pub fn ring_springs(force: f64) -> Result<Scene, InputError> {
-    Ok(spring_ring()?
+    Ok(spring_ring(Viscosity::Natural)?
         .phase(Phase::until(0.2).named("settle"))
         .phase(Phase::until(2.0).named("A2 and A6").actuate(["A2", "A6"], -force))
         .phase(Phase::until(2.1).named("relax"))
@@ -87,7 +92,7 @@ pub fn ring_springs(force: f64) -> Result<Scene, InputError> {
 /// None; the signature is that of its kind.
 pub fn ring_jump() -> Result<Scene, InputError> {
     let crouch = Phase::until(0.1).named("crouch");
-    Ok(spring_ring()?
+    Ok(spring_ring(Viscosity::Natural)?
         .phase(crouch.actuate_table(["A1", "A5"], [0.0, 0.1], [0.0, -1.0]))
         .phase(Phase::until(1.0).named("jump")))
 }

@@ -44,6 +44,8 @@ pub struct Checkpoint {
     plan: Plan,
     first_step: Option<f64>,
     samples: usize,
+    /// Steps since t = 0: every so many of them, the energy balance is looked at.
+    steps: usize,
     /// Energy balance (J) that methods are judged by.
     balance: f64,
     /// Error, rise and scale of the energy balance (J).
@@ -222,6 +224,7 @@ impl Run {
             plan: self.stage.plan.clone(),
             first_step: self.next_step(),
             samples: self.trajectory.samples().len(),
+            steps: self.steps,
             balance: self.balance,
             energies: self.trajectory.noted(),
         }
@@ -253,9 +256,9 @@ impl Run {
         self.sample_from(*time);
         self.stage.plan = plan.clone();
         self.stage.first_step = checkpoint.first_step;
-        let Checkpoint { samples, balance, energies, .. } = *checkpoint;
+        let Checkpoint { samples, steps, balance, energies, .. } = *checkpoint;
         self.stage.leg.steps = self.settings.max_steps;
-        (self.balance, self.standing) = (balance, 0);
+        (self.balance, self.standing, self.steps) = (balance, 0, steps);
         self.trajectory.go_back(samples.max(1), energies);
         self.resume(system);
         Ok(())

@@ -46,7 +46,7 @@ pub(super) struct Run {
     /// (u, v, energies)
     pub(super) state: Vec<f64>,
     /// Steps taken since t = 0.
-    steps: usize,
+    pub(super) steps: usize,
     /// Steps in a row that did not move time ahead.
     pub(super) standing: usize,
     pub(super) trajectory: Trajectory,
