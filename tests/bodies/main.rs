@@ -5,6 +5,7 @@ mod equations;
 mod frequencies;
 mod matrices;
 mod meshes;
+mod own_force;
 mod pieces;
 mod polynomial;
 mod solids;
