@@ -21,7 +21,7 @@ use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sample, Sampling, Scene,
 #[derive(Parser)]
 struct Arguments {
     /// Strength of the magnet (J m^3/kg)
-    #[arg(long, default_value_t = 1e-5)]
+    #[arg(long, default_value_t = 5e-6)]
     strength: f64,
     #[command(flatten)]
     common: Common,
