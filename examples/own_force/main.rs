@@ -21,7 +21,7 @@ use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sample, Sampling, Scene,
 #[derive(Parser)]
 struct Arguments {
     /// Strength of the magnet (J m^3/kg)
-    #[arg(long, default_value_t = 5e-6)]
+    #[arg(long, default_value_t = 5e-7)]
     strength: f64,
     #[command(flatten)]
     common: Common,
@@ -29,7 +29,7 @@ struct Arguments {
 
 const RUBBER: Material = Material { density: 1100.0, young: 2e6, poisson: 0.45, viscosity: 4e3 };
 /// Where the magnet is (m).
-const MAGNET: [f64; 2] = [0.05, 0.09];
+const MAGNET: [f64; 2] = [0.045, 0.09];
 
 /// A gust (m/s) to the right: it rises within half a second, and is over after 1.5 s.
 fn gust(t: f64) -> [f64; 2] {
@@ -44,7 +44,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let tip = body.mesh().select(&"top".into())?[0];
     // air of 1.2 kg/m^3 and a drag coefficient of 1.2 on 0.1 x 0.03 m^2
     let drag = 1.2 * 1.2 * 0.1 * 0.03 / windward.len() as f64;
-    let magnet = Magnet::new(&body, MAGNET, strength, 0.02);
+    let magnet = Magnet::new(&body, MAGNET, strength, 0.01);
     let scene = Scene::new(body)
         .gravity([0.0, -9.8])
         .force(magnet)
@@ -77,7 +77,7 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     let title = "A strip in the wind beside a magnet";
     Snapshots::at([0.0, 0.3, 0.6, 0.75, 1.0, 1.5, 2.0, 3.0])
         .title(title)
-        .columns(8)
+        .columns(4)
         .write(&trajectory, directory.join("snapshots.svg"))?;
     write_animation(&trajectory, directory.join("animation.html"), title)?;
     write_energies(&trajectory, directory.join("energies.csv"))?;
