@@ -29,7 +29,7 @@ const END: f64 = 3.5;
 /// Pressure (Pa): no suction, and no more than the walls bear.
 const LIMITS: [f64; 2] = [0.0, 6000.0];
 /// Gains: Pa per degree, per degree and second, per degree/s.
-const GAINS: [f64; 3] = [70.0, 2500.0, 3.0];
+const GAINS: [f64; 3] = [60.0, 2000.0, 2.0];
 /// Time constant of the filter (s) in front of the derivative.
 const FILTER: f64 = 5e-3;
 /// The load (N) on the tip, upward, and when it acts (s).
@@ -57,7 +57,7 @@ struct Arguments {
     #[arg(long, default_value_t = Method::Arkode)]
     method: Method,
     /// Relative tolerance
-    #[arg(long, default_value_t = 3e-4)]
+    #[arg(long, default_value_t = 1e-3)]
     rtol: f64,
     /// Directory for the pictures
     #[arg(long, default_value = "out")]
