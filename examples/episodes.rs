@@ -6,7 +6,7 @@
 //! What to look for: the ring settles once; each thread has a fork of it, and each episode begins with the restored
 //! state. No mesh, no matrix and no ordering is made anew. The histogram is the same for the same seed, bit
 //! by bit and on any number of threads (`RAYON_NUM_THREADS=1`). Most of an episode is motion: a new start for each,
-//! which has to settle again, costs a fifth to a half more. Jumps of 2 to 4 mm are the rule; those few that
+//! which has to settle again, costs a third or so more. Jumps of 2 to 4 mm are the rule; those few that
 //! fly far have nearly all of their force in the upright pair A1 and A5.
 
 mod common;
@@ -26,7 +26,7 @@ const SETTLED: f64 = 0.3;
 /// Episodes by which ways to begin are compared.
 const COMPARED: usize = 50;
 /// Width of a bar of the histogram (m).
-const BAR: f64 = 0.001;
+const BAR: f64 = 0.002;
 
 /// Random jumps: a histogram of their heights, and episodes per second.
 #[derive(Parser)]
@@ -138,12 +138,12 @@ fn run(arguments: &Arguments) -> Result<(), Error> {
     println!("\nheight (mm)  episodes");
     let most = bars.iter().max().copied().unwrap_or(1).max(1);
     for (k, bar) in bars.iter().enumerate() {
-        println!("{k:5} to {:2} {bar:9}  {}", k + 1, "#".repeat(60 * bar / most));
+        println!("{:5} to {:2} {bar:9}  {}", 2 * k, 2 * k + 2, "#".repeat(60 * bar / most));
     }
 
     let bar = |(k, bar): (usize, &usize)| (BAR * (k as f64 + 0.5) * 1e3, *bar as f64);
     Chart::new(format!("{episodes} random jumps of a ring"))
-        .axes("height of the jump (mm)", "episodes per mm")
+        .axes("height of the jump (mm)", "episodes per 2 mm")
         .marked("episodes", bars.iter().enumerate().map(bar))
         .write(out.join("episodes/heights.svg"))?;
 

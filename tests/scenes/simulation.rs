@@ -312,6 +312,36 @@ fn a_controller_brings_a_beam_where_it_should_be() {
     }
 }
 
+/// A ring whose springs pull by how far it has turned rolls: it comes as far as its rim has turned.
+#[test]
+fn a_ring_rolls_by_feedback() {
+    let scene = spring_ring(Viscosity::Objective).unwrap().phase(Phase::until(1.5));
+    let mut ring = scene.start(&settings(Method::Auto, 1e-4)).unwrap();
+    let (mut before, mut turned) = (std::f64::consts::FRAC_PI_2, 0.0);
+    ring.control(0.01, 1.5, |ring| {
+        for pair in 1..=4 {
+            let [near, far] = [pair, pair + 4].map(|spring| [12 * (spring - 1) + 1]);
+            let (near, far) = (ring.view().position(near)?, ring.view().position(far)?);
+            let direction = (far[1] - near[1]).atan2(far[0] - near[0]);
+            if pair == 1 {
+                // clockwise
+                turned += (before - direction).sin();
+                before = direction;
+            }
+            for spring in [pair, pair + 4] {
+                ring.actuate(&format!("A{spring}"), 0.2 * (2.0 * direction).sin().min(0.0))?;
+            }
+        }
+        Ok(())
+    })
+    .unwrap();
+    let distance = ring.view().centre_of_mass()[0];
+    println!("{distance} m, turned by {turned}");
+    assert!(distance > 0.2, "{distance}");
+    // it slips on a floor of viscous drag, and its rim is squashed
+    assert!((distance / (0.05 * turned) - 1.0).abs() < 0.1, "{distance} {turned}");
+}
+
 /// Contact comes and goes by command; what is stored in it comes from outside.
 #[test]
 fn obstacles_act_when_told_to() {
