@@ -57,7 +57,7 @@ struct Arguments {
     #[arg(long, default_value_t = Method::Arkode)]
     method: Method,
     /// Relative tolerance
-    #[arg(long, default_value_t = 1e-3)]
+    #[arg(long, default_value_t = 1e-4)]
     rtol: f64,
     /// Directory for the pictures
     #[arg(long, default_value = "out")]
