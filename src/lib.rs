@@ -43,6 +43,8 @@ mod model;
 pub mod ode;
 #[cfg(feature = "output")]
 pub mod output;
+#[cfg(feature = "play")]
+pub mod play;
 mod report;
 pub mod rk;
 pub mod samples;

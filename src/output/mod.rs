@@ -29,6 +29,8 @@ use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
+#[cfg(feature = "play")]
+pub(crate) use self::animation::Picture;
 pub use self::animation::write_animation;
 pub use self::chart::Chart;
 pub use self::csv::{write_csv, write_energies};

@@ -126,6 +126,16 @@ impl Scene {
         self
     }
 
+    /// The scene as [`ended_at`](Self::ended_at), but if it ends before time `end` (s), its last phase goes on
+    /// until then.
+    pub fn lasting(self, end: f64) -> Self {
+        let mut scene = self.ended_at(end);
+        if let Some(last) = scene.phases.last_mut() {
+            last.until = end;
+        }
+        scene
+    }
+
     /// The body.
     pub fn body(&self) -> &Body {
         &self.body

@@ -45,6 +45,27 @@ impl Simulation {
         })
     }
 
+    /// The pressure (Pa) in a chamber that is in force at the present time.
+    ///
+    /// # Errors
+    /// A name that no chamber has.
+    pub fn pressure_in(&self, chamber: &str) -> Result<f64, InputError> {
+        let known: Vec<&str> = self.scene().chambers().iter().map(Chamber::name).collect();
+        find(chamber, &known, "pressure of chamber", "chambers")?;
+        let pressures = self.run.phase.pressures.iter().filter(|(name, _)| name == chamber);
+        Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
+    }
+
+    /// The force (N) of the actuator of a spring that is in force at the present time.
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn actuation_of(&self, spring: &str) -> Result<f64, InputError> {
+        let known: Vec<&str> = self.scene().springs().iter().map(Spring::name).collect();
+        let number = find(spring, &known, "actuation of spring", "springs")?;
+        Ok(self.scene().actuations(&self.run.phase, self.time)?[number])
+    }
+
     /// A force (N) on each of the nodes, one component per dimension, in place of the load that was given for
     /// the same selection.
     ///

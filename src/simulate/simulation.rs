@@ -112,6 +112,11 @@ impl Simulation {
         &self.run.phase.name
     }
 
+    /// The number of the phase in force, from 0.
+    pub fn phase_number(&self) -> usize {
+        self.run.number
+    }
+
     /// How the motion was computed so far.
     pub fn report(&self) -> Report {
         self.run.report()

@@ -5,6 +5,8 @@ mod check;
 mod failure;
 mod files;
 mod methods;
+#[cfg(feature = "play")]
+mod play;
 mod progress;
 mod run;
 mod settings;
@@ -31,6 +33,8 @@ struct Cli {
 enum Command {
     #[command(allow_negative_numbers = true)]
     Run(run::Arguments),
+    #[cfg(feature = "play")]
+    Play(play::Arguments),
     Static(statics::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
@@ -40,6 +44,8 @@ enum Command {
 fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        #[cfg(feature = "play")]
+        Command::Play(arguments) => play::run(&arguments),
         Command::Static(arguments) => statics::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),

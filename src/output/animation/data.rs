@@ -26,9 +26,9 @@ const FEW_FRAMES: usize = 60;
 const PERCENTILE: f64 = 0.99;
 
 /// A quantity of cells: its name, unit, and how it is found.
-type Quantity = (&'static str, &'static str, fn(&CellField) -> f64);
+pub(super) type Quantity = (&'static str, &'static str, fn(&CellField) -> f64);
 
-const QUANTITIES: [Quantity; 2] = [
+pub(super) const QUANTITIES: [Quantity; 2] = [
     ("Von Mises stress", "Pa", CellField::von_mises),
     ("Strain energy density", "J/m\u{b3}", |field| field.energy_density),
 ];
@@ -104,7 +104,7 @@ fn quantities(body: &Body, frames: &[&Sample], geometry: &Geometry) -> Value {
 }
 
 /// The end of the scale for `values`, a round number, and the largest of them.
-fn scale(values: &[f32]) -> (f64, f64) {
+pub(super) fn scale(values: &[f32]) -> (f64, f64) {
     let mut values = values.to_vec();
     let peak: f64 = values.iter().copied().fold(0.0, f32::max).into();
     let rank = (PERCENTILE * values.len() as f64) as usize;
@@ -128,7 +128,7 @@ fn round_up(x: f64) -> f64 {
 }
 
 /// Names and ends of the phases, and the drawn nodes that they hold and move.
-fn phases(scene: &Scene, geometry: &Geometry) -> Result<Value, Error> {
+pub(super) fn phases(scene: &Scene, geometry: &Geometry) -> Result<Value, Error> {
     let phase = |phase: &Phase| {
         // a node that is held along one axis and moved along another counts as moved
         let roles: BTreeMap<usize, Role> = {
@@ -150,17 +150,19 @@ fn phases(scene: &Scene, geometry: &Geometry) -> Result<Value, Error> {
     scene.phases().iter().map(phase).collect()
 }
 
+/// The names of the energies.
+pub(super) const ENERGIES: [&str; 8] =
+    ["kinetic", "strain", "gravity", "contact", "springs", "dissipated", "supplied", "balance"];
+
+/// Their values (J), in the same order.
+pub(super) fn energy_values(energy: &Energy) -> [f64; 8] {
+    let &Energy { kinetic, strain, gravity, contact, springs, dissipated, supplied } = energy;
+    [kinetic, strain, gravity, contact, springs, dissipated, supplied, energy.balance()]
+}
+
 fn energies(frames: &[&Sample]) -> Value {
-    let names =
-        ["kinetic", "strain", "gravity", "contact", "springs", "dissipated", "supplied", "balance"];
-    let values = |sample: &&Sample| {
-        let energy = &sample.energy;
-        let &Energy { kinetic, strain, gravity, contact, springs, dissipated, supplied } = energy;
-        let balance = energy.balance();
-        [kinetic, strain, gravity, contact, springs, dissipated, supplied, balance]
-    };
-    let values: Vec<_> = frames.iter().map(values).collect();
-    let packed = names.iter().enumerate().map(|(number, name)| {
+    let values: Vec<_> = frames.iter().map(|sample| energy_values(&sample.energy)).collect();
+    let packed = ENERGIES.iter().enumerate().map(|(number, name)| {
         let values = pack::singles(values.iter().map(|values| values[number]));
         json!({ "name": name, "values": values })
     });
@@ -168,7 +170,7 @@ fn energies(frames: &[&Sample]) -> Value {
 }
 
 /// Shapes of the obstacles at t = 0 and their velocities, unions part by part.
-fn obstacles(scene: &Scene) -> Value {
+pub(super) fn obstacles(scene: &Scene) -> Value {
     let mut shapes = Vec::new();
     let dimension = scene.body().dimension();
     for obstacle in scene.obstacles() {
@@ -214,7 +216,7 @@ fn in_view(x: &[f64]) -> Vec<f64> {
 }
 
 /// The nodes that each spring joins.
-fn spring_ends(scene: &Scene) -> Result<Vec<[usize; 2]>, Error> {
+pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<[usize; 2]>, Error> {
     let mesh = scene.body().mesh();
     let ends = |spring: &Spring| {
         let [first, second] = spring.ends();
@@ -244,7 +246,7 @@ fn springs(
 }
 
 /// The nodes that belong to no cell.
-fn point_masses(mesh: &Mesh) -> Vec<usize> {
+pub(super) fn point_masses(mesh: &Mesh) -> Vec<usize> {
     let mut in_cell = vec![false; mesh.node_count()];
     mesh.cells().flatten().for_each(|&node| in_cell[node] = true);
     (0..mesh.node_count()).filter(|&node| !in_cell[node]).collect()

@@ -2,10 +2,16 @@
 
 mod data;
 mod geometry;
+#[cfg(feature = "play")]
+mod live;
 mod pack;
 
 use std::path::Path;
 
+use serde_json::Value;
+
+#[cfg(feature = "play")]
+pub(crate) use self::live::Picture;
 use super::write_file;
 use crate::error::Error;
 use crate::trajectory::Trajectory;
@@ -14,6 +20,7 @@ use crate::trajectory::Trajectory;
 const PAGE: &str = include_str!("page/page.html");
 const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = concat!(
+    include_str!("page/decode.js"),
     include_str!("page/motion.js"),
     include_str!("page/format.js"),
     include_str!("page/paint.js"),
@@ -21,6 +28,7 @@ const SCRIPT: &str = concat!(
     include_str!("page/space.js"),
     include_str!("page/stage.js"),
     include_str!("page/chart.js"),
+    include_str!("page/controls.js"),
     include_str!("page/player.js"),
 );
 
@@ -58,8 +66,14 @@ pub fn write_animation(
     title: &str,
 ) -> Result<(), Error> {
     let data = data::gather(trajectory, title)?;
+    let page = filled(PAGE, STYLE, SCRIPT, &data);
+    write_file(path.as_ref(), |file| file.write_all(page.as_bytes()))
+}
+
+/// A page with its style, its script and its data.
+fn filled(page: &str, style: &str, script: &str, data: &Value) -> String {
     // within a string of JSON this is the same character, and no tag of HTML can begin
     let data = data.to_string().replace('<', "\\u003c");
-    let page = PAGE.replace("/*style*/", STYLE).replace("/*script*/", SCRIPT);
-    write_file(path.as_ref(), |file| file.write_all(page.replace("/*data*/", &data).as_bytes()))
+    let page = page.replace("/*style*/", style).replace("/*script*/", script);
+    page.replace("/*data*/", &data)
 }

@@ -6,14 +6,6 @@ const first = times[0];
 const last = times[times.length - 1];
 const axes = data.motion.ranges.length;
 
-function bytes(text) {
-  return Uint8Array.from(atob(text), (character) => character.charCodeAt(0));
-}
-
-function singles(text) {
-  return new Float32Array(bytes(text).buffer);
-}
-
 const places = new Uint16Array(bytes(data.motion.numbers).buffer);
 const nodeCount = places.length / axes / times.length;
 const quantities = data.quantities.map((quantity) => ({

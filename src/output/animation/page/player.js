@@ -1,15 +1,8 @@
 // Time: playing, seeking, speed, keys.
 
-const SPEEDS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
-/** A motion is played, at first, in about this time (s). */
-const COMFORTABLE = 8;
-const SIGNS = { Play: "M8 5v14l11-7z", Pause: "M7 5h4v14H7zM13 5h4v14h-4z" };
-
-const playButton = document.getElementById("play");
 const slider = document.getElementById("time");
 const clock = document.getElementById("clock");
 const phaseLine = document.getElementById("phase");
-const speedChoice = document.getElementById("speed");
 
 let now = first;
 /** Time stamp of the last frame (ms) while the motion is played; null otherwise. */
@@ -54,11 +47,6 @@ function play() {
   requestAnimationFrame(advance);
 }
 
-function showSign(action) {
-  playButton.setAttribute("aria-label", action);
-  document.getElementById("sign").setAttribute("d", SIGNS[action]);
-}
-
 function advance(stamp) {
   if (played === null) return;
   const passed = Math.max(0, stamp - played) / 1000;
@@ -80,21 +68,6 @@ function step(count) {
   // between two samples, the one before is one step back
   const from = count < 0 && share > 0 && share < 1 ? before + 1 : before + (share === 1 ? 1 : 0);
   seek(times[Math.min(Math.max(from + count, 0), times.length - 1)]);
-}
-
-function offerSpeeds() {
-  for (const speed of SPEEDS) {
-    const label = speed < 1 ? `1/${Math.round(1 / speed)}` : String(speed);
-    speedChoice.append(new Option(speed === 1 ? "real time" : `${label} \u00d7`));
-  }
-  const distance = (speed) => Math.abs(Math.log((last - first) / speed / COMFORTABLE));
-  const nearest = SPEEDS.reduce((a, b) => (distance(b) < distance(a) ? b : a));
-  speedChoice.selectedIndex = last > first ? SPEEDS.indexOf(nearest) : SPEEDS.indexOf(1);
-}
-
-function changeSpeed(steps) {
-  const index = speedChoice.selectedIndex + steps;
-  speedChoice.selectedIndex = Math.min(Math.max(index, 0), SPEEDS.length - 1);
 }
 
 const KEYS = {
@@ -143,13 +116,7 @@ function tellFacts() {
   for (const warning of data.warnings) {
     warnings.append(Object.assign(document.createElement("li"), { textContent: warning }));
   }
-  const list = document.getElementById("facts");
-  for (const [name, content] of Object.entries(facts)) {
-    const [term, description] = [document.createElement("dt"), document.createElement("dd")];
-    term.textContent = name;
-    description.textContent = content;
-    list.append(term, description);
-  }
+  listFacts(facts);
 }
 
 tellFacts();
@@ -157,7 +124,7 @@ describeStage();
 showKey();
 offerQuantities(show);
 offerSeries(redraw);
-offerSpeeds();
+offerSpeeds(last - first);
 letSeek(seek);
 letTurn(show);
 showSign("Play");

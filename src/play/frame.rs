@@ -1,0 +1,56 @@
+//! What is to be seen at one moment.
+
+use serde_json::{Value, json};
+
+use super::hand::Hand;
+use super::session::Session;
+use crate::output::Picture;
+use crate::scene::Scene;
+
+/// The present of a session, with the colours of a quantity.
+pub(super) fn of(session: &Session, colours: Option<usize>) -> Value {
+    let Session { simulation, picture, sliders, hand, pace, .. } = session;
+    let (view, report) = (simulation.view(), simulation.report());
+    let (body, u) = (view.body(), view.displacements());
+    let values = sliders.iter().map(|slider| slider.value(simulation).unwrap_or(f64::NAN));
+    // of what springs do even those without a slider are shown
+    let actuations = simulation.scene().springs().iter();
+    let actuations =
+        actuations.map(|spring| simulation.actuation_of(spring.name()).unwrap_or(f64::NAN));
+    let phase = report.phases.last();
+    let counts = phase.map(|phase| &phase.counts);
+    let method = phase.map_or(report.method, |phase| phase.method);
+    let at_end = simulation.time() >= simulation.scene().end();
+    json!({
+        "time": simulation.time(),
+        "phase": simulation.phase_number(),
+        "playing": session.playing,
+        "atEnd": at_end,
+        "trouble": session.trouble,
+        "places": picture.places(body.mesh(), u),
+        "colours": colours.and_then(|quantity| picture.colours(body, u, quantity)),
+        "energies": Picture::energies(&simulation.energy()),
+        "sliders": values.collect::<Vec<_>>(),
+        "actuations": actuations.collect::<Vec<_>>(),
+        "pull": hand.as_ref().map(Hand::to_json),
+        "speed": pace.speed,
+        "factor": pace.factor(),
+        "method": method.to_string(),
+        "order": counts.map(|counts| counts.last_order),
+        "step": counts.map(|counts| counts.last_step),
+        "steps": report.steps(),
+        "evaluations": report.evaluations(),
+        "factorizations": report.factorizations(),
+        "warnings": report.warnings(),
+    })
+}
+
+/// What the mesh consists of.
+pub(super) fn mesh(scene: &Scene) -> Value {
+    let mesh = scene.body().mesh();
+    json!({
+        "nodes": mesh.node_count(),
+        "cells": mesh.cell_count(),
+        "cellName": mesh.kind().name(),
+    })
+}

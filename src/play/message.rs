@@ -1,0 +1,120 @@
+//! What a page asks for.
+
+use serde_json::{Map, Value};
+
+/// A message of the page.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Message {
+    /// What is to be seen, with the colours of a quantity.
+    Look { colours: Option<usize> },
+    Play,
+    Pause,
+    /// Back to the start.
+    Start,
+    /// Simulated seconds per second.
+    Speed(f64),
+    /// A chamber and its pressure (Pa).
+    Pressure(String, f64),
+    /// A spring and the force of its actuator (N).
+    Actuate(String, f64),
+    /// A drawn node is pulled towards a point (m), `strength` times as hard as usual.
+    Pull { place: usize, to: Vec<f64>, strength: f64 },
+    LetGo,
+    /// The scene with what was done by hand.
+    Save,
+}
+
+/// Speeds that make sense, and strengths of a pull.
+const SPEEDS: [f64; 2] = [1e-9, 1e9];
+const STRENGTHS: [f64; 2] = [1e-3, 1e3];
+
+impl Message {
+    /// Reads a message.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let value: Value =
+            serde_json::from_str(text).map_err(|error| format!("this is not JSON: {error}"))?;
+        let message = value.as_object().ok_or("a message is an object with the key \"do\"")?;
+        let what = message.get("do").and_then(Value::as_str);
+        match what.ok_or("a message needs the key \"do\", a text")? {
+            "look" => Ok(Self::Look { colours: whole(message, "colours").ok() }),
+            "play" => Ok(Self::Play),
+            "pause" => Ok(Self::Pause),
+            "start" => Ok(Self::Start),
+            "speed" => Ok(Self::Speed(within(message, "value", SPEEDS)?)),
+            "pressure" => Ok(Self::Pressure(text_of(message)?, number(message, "value")?)),
+            "actuate" => Ok(Self::Actuate(text_of(message)?, number(message, "value")?)),
+            "pull" => Ok(Self::Pull {
+                place: whole(message, "node")?,
+                to: numbers(message, "to")?,
+                strength: within(message, "strength", STRENGTHS)?,
+            }),
+            "let go" => Ok(Self::LetGo),
+            "save" => Ok(Self::Save),
+            other => Err(format!("nothing is known how to do \"{other}\"")),
+        }
+    }
+}
+
+fn text_of(message: &Map<String, Value>) -> Result<String, String> {
+    let name = message.get("name").and_then(Value::as_str);
+    name.map(str::to_owned).ok_or_else(|| "it needs \"name\", a text".into())
+}
+
+fn number(message: &Map<String, Value>, key: &str) -> Result<f64, String> {
+    // numbers of JSON are finite
+    let number = message.get(key).and_then(Value::as_f64);
+    number.ok_or_else(|| format!("it needs \"{key}\", a number"))
+}
+
+fn within(message: &Map<String, Value>, key: &str, [least, most]: [f64; 2]) -> Result<f64, String> {
+    let number = number(message, key)?;
+    match (least..=most).contains(&number) {
+        true => Ok(number),
+        false => Err(format!("\"{key}\" = {number} must lie between {least:e} and {most:e}")),
+    }
+}
+
+fn whole(message: &Map<String, Value>, key: &str) -> Result<usize, String> {
+    let number = message.get(key).and_then(Value::as_u64);
+    number
+        .and_then(|number| usize::try_from(number).ok())
+        .ok_or_else(|| format!("it needs \"{key}\", a whole number from 0"))
+}
+
+fn numbers(message: &Map<String, Value>, key: &str) -> Result<Vec<f64>, String> {
+    let wrong = || format!("it needs \"{key}\", a list of numbers");
+    let list = message.get(key).and_then(Value::as_array).ok_or_else(wrong)?;
+    list.iter().map(|x| x.as_f64().ok_or_else(wrong)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_wrong_with_a_message_is_said() {
+        for (text, part) in [
+            ("", "not JSON"),
+            ("[", "not JSON"),
+            ("[1]", "an object"),
+            ("{}", "needs the key \"do\""),
+            (r#"{"do": 1}"#, "needs the key \"do\""),
+            (r#"{"do": "dance"}"#, "\"dance\""),
+            (r#"{"do": "speed"}"#, "\"value\""),
+            (r#"{"do": "speed", "value": 0}"#, "between"),
+            (r#"{"do": "pressure", "value": 1}"#, "\"name\""),
+            (r#"{"do": "pressure", "name": "air", "value": "1"}"#, "\"value\""),
+            (r#"{"do": "pull", "node": -1}"#, "\"node\""),
+            (r#"{"do": "pull", "node": 1, "to": [1, null], "strength": 1}"#, "\"to\""),
+        ] {
+            let error = Message::parse(text).unwrap_err();
+            assert!(error.contains(part), "{text}: {error}");
+        }
+        let pull = r#"{"do": "pull", "node": 1, "to": [1, 2.5], "strength": 2}"#;
+        let expected = Message::Pull { place: 1, to: vec![1.0, 2.5], strength: 2.0 };
+        assert_eq!(Message::parse(pull), Ok(expected));
+    }
+}

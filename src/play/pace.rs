@@ -1,0 +1,69 @@
+//! How fast time goes on: as asked, or as the computer can.
+
+use std::time::{Duration, Instant};
+
+/// Computing between two looks at the messages (s), about.
+const BUDGET: f64 = 0.02;
+/// The longest pause that is made up for (s).
+const LONGEST: f64 = 0.1;
+/// Time between two portions (s).
+const TICK: Duration = Duration::from_millis(4);
+/// Computing time over which the real-time factor is a mean (s).
+const MEMORY: f64 = 0.5;
+
+/// The pace of a simulation.
+pub(super) struct Pace {
+    /// Simulated seconds per second that are asked for.
+    pub(super) speed: f64,
+    /// When the last portion began.
+    last: Instant,
+    /// The largest portion (s) that is computed soon enough.
+    most: f64,
+    /// Simulated and computing time (s), lately.
+    moved: f64,
+    busy: f64,
+}
+
+impl Pace {
+    pub(super) fn new() -> Self {
+        Self { speed: 1.0, last: Instant::now(), most: f64::INFINITY, moved: 0.0, busy: 0.0 }
+    }
+
+    /// Time begins to pass.
+    pub(super) fn start(&mut self) {
+        self.last = Instant::now();
+    }
+
+    /// The time (s) by which the simulation should go on now.
+    pub(super) fn portion(&mut self) -> f64 {
+        let now = Instant::now();
+        let passed = (now - self.last).as_secs_f64().min(LONGEST);
+        self.last = now;
+        (self.speed * passed).min(self.most)
+    }
+
+    /// The last portion brought the simulation on by `moved` (s).
+    pub(super) fn note(&mut self, moved: f64) {
+        let cost = self.last.elapsed().as_secs_f64();
+        if cost > BUDGET && moved > 0.0 {
+            self.most = moved * BUDGET / cost;
+        } else {
+            self.most *= 2.0;
+        }
+        self.moved += moved;
+        self.busy += cost;
+        if self.busy > MEMORY {
+            (self.moved, self.busy) = (0.5 * self.moved, 0.5 * self.busy);
+        }
+    }
+
+    /// Time until the next portion.
+    pub(super) fn wait(&self) -> Duration {
+        TICK.saturating_sub(self.last.elapsed())
+    }
+
+    /// Simulated seconds per second of computing, once there is something to tell.
+    pub(super) fn factor(&self) -> Option<f64> {
+        (self.busy > 0.0 && self.moved > 0.0).then(|| self.moved / self.busy)
+    }
+}

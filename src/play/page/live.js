@@ -1,0 +1,117 @@
+// The motion as it happens: what the pages of recorded motions read from their file comes from the simulation.
+
+const data = JSON.parse(document.getElementById("data").textContent);
+const { body, phases, axes } = data;
+let places = singles(data.start);
+const nodeCount = places.length / axes;
+
+/** From the least to the largest coordinate of the drawn nodes, axis by axis (m). */
+function extent() {
+  const ranges = Array.from({ length: axes }, () => [Infinity, -Infinity]);
+  places.forEach((x, k) => {
+    const range = ranges[k % axes];
+    range[0] = Math.min(range[0], x);
+    range[1] = Math.max(range[1], x);
+  });
+  return ranges;
+}
+
+/** Room around the body, in parts of its size. */
+const ROOM = 0.35;
+
+/** The part of space that is shown, for a body with room to move. */
+function roomy(ranges) {
+  const size = Math.max(...ranges.map(([least, largest]) => largest - least)) || 1;
+  return ranges.map(([least, largest]) => [least - ROOM * size, largest + ROOM * size]);
+}
+
+function corners([across, upward]) {
+  return [[across[0], upward[0]], [across[1], upward[1]]];
+}
+
+data.motion = { ranges: roomy(extent()) };
+if (axes === 2) data.view = corners(data.motion.ranges);
+
+/** Shows more if the body leaves the part of the plane that is shown. Returns whether it did. */
+function follow() {
+  if (axes !== 2) return false;
+  const [low, high] = data.view;
+  let grew = false;
+  extent().forEach(([least, largest], axis) => {
+    const pad = 0.1 * (largest - least);
+    if (!Number.isFinite(pad) || (least >= low[axis] && largest <= high[axis])) return;
+    low[axis] = Math.min(low[axis], least - pad);
+    high[axis] = Math.max(high[axis], largest + pad);
+    grew = true;
+  });
+  return grew;
+}
+
+const times = [];
+let first = 0;
+let last = 0;
+const energies = data.energies
+  .map((name, number) => ({ name, number, values: [] }))
+  .filter(({ name }) => !data.absent.includes(name));
+// scales grow with what is seen
+const quantities = data.quantities.map((quantity) => ({ ...quantity, scale: 0, peak: 0 }));
+// marks are explained as soon as an actuator can act
+const springs = data.springs.map((spring) => ({ ...spring, forces: [-1, 1] }));
+/** The present, as the simulation told it last. */
+let frame = { time: 0, phase: 0, actuations: springs.map(() => 0), colours: null };
+let colouring = new Uint8Array(0);
+
+/** Points of the chart at most. */
+const MOST_POINTS = 1500;
+
+/** Takes up what the simulation tells. */
+function take(next) {
+  if (next.time < last) forget();
+  frame = next;
+  places = singles(next.places);
+  if (next.colours) {
+    colouring = bytes(next.colours.values);
+    const shown = quantities[next.colours.quantity];
+    shown.scale = Math.max(shown.scale, next.colours.scale);
+  }
+  if (times.length && next.time === last) return;
+  times.push(next.time);
+  last = next.time;
+  for (const { number, values } of energies) values.push(next.energies[number]);
+  if (times.length > MOST_POINTS) {
+    const thin = (list) => list.splice(0, list.length, ...list.filter((_, k) => k % 2 === 0));
+    thin(times);
+    for (const { values } of energies) thin(values);
+  }
+}
+
+function forget() {
+  last = 0;
+  times.length = 0;
+  for (const { values } of energies) values.length = 0;
+  for (const quantity of quantities) quantity.scale = 0;
+}
+
+function positionsAt() {
+  return Array.from({ length: axes }, (_, axis) =>
+    Float64Array.from({ length: nodeCount }, (_, node) => places[node * axes + axis]));
+}
+
+/** Value of the chosen quantity in the cell of a face, in 255ths of its scale. */
+function valueAt(_, { scale }, face) {
+  const { colours } = frame;
+  return colours && scale > 0 ? (colouring[face] * colours.scale) / scale || 0 : 0;
+}
+
+function energyAt(_, { values }) {
+  return values[values.length - 1] ?? 0;
+}
+
+/** Force of the actuator of a spring (N). */
+function actuationAt(_, spring) {
+  return frame.actuations[springs.indexOf(spring)];
+}
+
+function phaseAt() {
+  return phases[frame.phase];
+}

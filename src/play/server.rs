@@ -1,0 +1,209 @@
+//! The server of the page, on the loopback interface.
+
+use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use std::io::Write;
+
+use serde_json::Value;
+use tungstenite::handshake::derive_accept_key;
+use tungstenite::protocol::{Role, WebSocketConfig};
+use tungstenite::{Message as Parcel, WebSocket};
+
+use super::door::{Door, Wanted};
+use super::http::{Head, Refusal, answer};
+use super::message::Message;
+use super::session::{Request, Session, error_answer};
+use crate::error::Error;
+use crate::input::InputError;
+use crate::output::Picture;
+use crate::scene::Scene;
+use crate::settings::Settings;
+
+const PAGE: &str = include_str!("page/play.html");
+const STYLE: &str = include_str!("page/play.css");
+const SCRIPTS: [&str; 2] = [include_str!("page/live.js"), include_str!("page/play.js")];
+
+/// Connections at the same time.
+const MOST: usize = 32;
+/// The longest message of a page (bytes).
+const LONGEST: usize = 64 * 1024;
+/// How long a browser may take to accept an answer.
+const PATIENCE: Duration = Duration::from_secs(20);
+/// Pause after a connection that failed before it was one.
+const RECOVERY: Duration = Duration::from_millis(50);
+
+/// A scene that is played in a web browser on this machine: time goes on and stops as a person wants, who sets
+/// pressures and forces of actuators by sliders and pulls nodes with the mouse.
+///
+/// ```no_run
+/// use pliant::play::Player;
+/// use pliant::{Settings, samples};
+///
+/// let player = Player::new(&samples::square_jump(4)?, &Settings::default(), "A square", 0)?;
+/// println!("{}", player.address());
+/// player.serve()?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+pub struct Player {
+    listener: TcpListener,
+    door: Door,
+    page: String,
+    session: Session,
+}
+
+/// What the connections share.
+struct House {
+    door: Door,
+    page: String,
+    requests: Sender<Request>,
+    connections: AtomicUsize,
+    /// Pages that are open.
+    pages: AtomicUsize,
+}
+
+impl Player {
+    /// Starts `scene` and takes `port` of the loopback interface, 0 for any that is free. `title` is the heading
+    /// of the page.
+    ///
+    /// # Errors
+    /// As [`Scene::start`]; a port that cannot be had.
+    pub fn new(scene: &Scene, settings: &Settings, title: &str, port: u16) -> Result<Self, Error> {
+        let save = |_: &_| Err("there is no scene file to be changed".to_owned());
+        let (session, mut data) = Session::new(scene, settings, Box::new(save))?;
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port));
+        let listener = listener.map_err(|error| no_port(port, &error))?;
+        let port = listener.local_addr().map_err(|error| no_port(port, &error))?.port();
+        data["title"] = title.into();
+        let page = Picture::page(PAGE, STYLE, SCRIPTS, &data);
+        Ok(Self { listener, door: Door::new(port)?, page, session })
+    }
+
+    /// The address of the page. Who knows it has the simulation in his hands.
+    pub fn address(&self) -> String {
+        self.door.address()
+    }
+
+    /// Serves the page as long as the program runs.
+    ///
+    /// # Errors
+    /// A system that gives no thread.
+    pub fn serve(self) -> Result<(), Error> {
+        let Self { listener, door, page, session } = self;
+        let (requests, inbox) = channel();
+        let simulation = thread::Builder::new().name("simulation".into());
+        simulation.spawn(move || session.run(&inbox)).map_err(|error| {
+            InputError::new("threads", error, "the simulation needs one of its own")
+        })?;
+        let house = Arc::new(House {
+            door,
+            page,
+            requests,
+            connections: AtomicUsize::new(0),
+            pages: AtomicUsize::new(0),
+        });
+        for stream in listener.incoming() {
+            let Ok(stream) = stream else {
+                thread::sleep(RECOVERY);
+                continue;
+            };
+            if house.connections.fetch_add(1, Ordering::Relaxed) >= MOST {
+                house.connections.fetch_sub(1, Ordering::Relaxed);
+                continue;
+            }
+            let visited = house.clone();
+            let visit = move || {
+                visited.receive(stream);
+                visited.connections.fetch_sub(1, Ordering::Relaxed);
+            };
+            if thread::Builder::new().name("page".into()).spawn(visit).is_err() {
+                house.connections.fetch_sub(1, Ordering::Relaxed);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn no_port(port: u16, error: &std::io::Error) -> InputError {
+    let mend = format!("{error}; choose another one, or 0 for any that is free");
+    InputError::new("port", port, mend)
+}
+
+impl House {
+    /// Answers a connection. Who leaves without a word needs none.
+    fn receive(&self, mut stream: TcpStream) {
+        if stream.set_write_timeout(Some(PATIENCE)).is_err() {
+            return;
+        }
+        let head = match Head::read(&mut stream) {
+            Ok(head) => head,
+            Err(refusal) => return refuse(&mut stream, refusal),
+        };
+        match self.door.admit(&head) {
+            Ok(Wanted::Page) => {
+                let _ = answer(&mut stream, "200 OK", "text/html", &self.page);
+            }
+            Ok(Wanted::Socket(key)) => self.converse(stream, &key, head.rest),
+            Err(refusal) => refuse(&mut stream, Some(refusal)),
+        }
+    }
+
+    /// Answers the messages of a page until it is closed.
+    fn converse(&self, mut stream: TcpStream, key: &str, rest: Vec<u8>) {
+        let accepted = format!(
+            "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n\
+             Sec-WebSocket-Accept: {}\r\n\r\n",
+            derive_accept_key(key.as_bytes())
+        );
+        // messages are short, and each waits for its answer
+        let ready = stream
+            .write_all(accepted.as_bytes())
+            .and_then(|()| stream.set_nodelay(true))
+            .and_then(|()| stream.set_read_timeout(None));
+        if ready.is_err() {
+            return;
+        }
+        let config = WebSocketConfig::default()
+            .max_message_size(Some(LONGEST))
+            .max_frame_size(Some(LONGEST));
+        let mut socket =
+            WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
+        self.pages.fetch_add(1, Ordering::SeqCst);
+        while let Ok(parcel) = socket.read() {
+            let answer = match parcel {
+                Parcel::Text(text) => self.pass_on(&text),
+                Parcel::Binary(_) => error_answer("a message is text, this was none"),
+                // pings are answered by the next call, a farewell, too
+                _ => continue,
+            };
+            if socket.send(Parcel::text(answer.to_string())).is_err() {
+                break;
+            }
+        }
+        let was_last = self.pages.fetch_sub(1, Ordering::SeqCst) == 1;
+        // without a simulation there is nobody to be told
+        let _ = self.requests.send(Request::Gone { was_last });
+    }
+
+    /// Has a message answered by the simulation.
+    fn pass_on(&self, text: &str) -> Value {
+        let message = match Message::parse(text) {
+            Ok(message) => message,
+            Err(error) => return error_answer(&error),
+        };
+        let (answers, answer) = channel();
+        let sent = self.requests.send(Request::Message(message, answers));
+        let answer = sent.ok().and_then(|()| answer.recv().ok());
+        answer.unwrap_or_else(|| error_answer("the simulation has ended: start `pliant play` anew"))
+    }
+}
+
+fn refuse(stream: &mut TcpStream, refusal: Option<Refusal>) {
+    if let Some(Refusal { status, reason }) = refusal {
+        let _ = answer(stream, status, "text/plain", &format!("{reason}\n"));
+    }
+}

@@ -1,0 +1,222 @@
+//! The scene as it is played: time, and what a hand does.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+
+use serde_json::{Value, json};
+
+use super::frame;
+use super::hand::Hand;
+use super::message::Message;
+use super::pace::Pace;
+use super::record::Record;
+use super::slider::{Kind, Slider};
+use crate::error::Error;
+use crate::output::Picture;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::simulate::{Checkpoint, Simulation};
+
+/// What reaches the simulation.
+pub(super) enum Request {
+    /// A message, and where its answer goes.
+    Message(Message, Sender<Value>),
+    /// A browser is gone; whether it was the last one.
+    Gone { was_last: bool },
+}
+
+/// A scene that is played.
+pub(super) struct Session {
+    pub(super) simulation: Simulation,
+    pub(super) picture: Picture,
+    pub(super) sliders: Vec<Slider>,
+    pub(super) hand: Option<Hand>,
+    pub(super) playing: bool,
+    pub(super) pace: Pace,
+    /// Why time does not go on.
+    pub(super) trouble: Option<String>,
+    start: Checkpoint,
+    record: Record,
+    save: Save,
+}
+
+/// Makes a scene file of what was done by hand, or says why it cannot.
+pub(super) type Save = Box<dyn Fn(&Record) -> Result<String, String> + Send>;
+
+impl Session {
+    /// A session of `scene` at its start, and what of it stays as it is, for the page.
+    pub(super) fn new(
+        scene: &Scene,
+        settings: &Settings,
+        save: Save,
+    ) -> Result<(Self, Value), Error> {
+        let simulation = scene.start(settings)?;
+        let (picture, mut fixed) = Picture::new(scene)?;
+        let sliders = Slider::all(scene);
+        fixed["start"] = picture.places(scene.body().mesh(), simulation.view().displacements());
+        fixed["sliders"] = sliders.iter().map(Slider::to_json).collect();
+        fixed["until"] = scene.end().into();
+        fixed["mesh"] = frame::mesh(scene);
+        fixed["solver"] = json!({ "rtol": format!("{:e}", settings.rtol) });
+        let session = Self {
+            start: simulation.checkpoint(),
+            simulation,
+            picture,
+            sliders,
+            hand: None,
+            playing: false,
+            pace: Pace::new(),
+            trouble: None,
+            record: Record::default(),
+            save,
+        };
+        Ok((session, fixed))
+    }
+
+    /// Plays until nobody can ask for anything any more.
+    pub(super) fn run(mut self, requests: &Receiver<Request>) {
+        loop {
+            let request = match self.playing {
+                true => requests.recv_timeout(self.pace.wait()),
+                false => requests.recv().map_err(RecvTimeoutError::from),
+            };
+            match request {
+                Ok(request) => self.serve(request),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+            while let Ok(request) = requests.try_recv() {
+                self.serve(request);
+            }
+            if self.playing && self.pace.wait().is_zero() {
+                self.advance();
+            }
+        }
+    }
+
+    fn serve(&mut self, request: Request) {
+        match request {
+            Request::Message(message, answers) => {
+                let answer = self.answer(message).unwrap_or_else(|error| error_answer(&error));
+                // who is gone wants no answer
+                let _ = answers.send(answer);
+            }
+            Request::Gone { was_last } => {
+                if let Err(error) = self.let_go() {
+                    self.stop(&error);
+                }
+                self.playing &= !was_last;
+            }
+        }
+    }
+
+    fn answer(&mut self, message: Message) -> Result<Value, String> {
+        let done = match message {
+            Message::Look { colours } => return Ok(json!({ "frame": frame::of(self, colours) })),
+            Message::Save => return Ok(json!({ "file": (self.save)(&self.record)? })),
+            Message::Play => self.play(),
+            Message::Pause => {
+                self.playing = false;
+                Ok(())
+            }
+            Message::Start => self.go_back(),
+            Message::Speed(speed) => {
+                self.pace.speed = speed;
+                Ok(())
+            }
+            Message::Pressure(name, value) => self.slide(Kind::Pressure, &name, value),
+            Message::Actuate(name, value) => self.slide(Kind::Actuation, &name, value),
+            Message::Pull { place, to, strength } => return self.pull(place, to, strength),
+            Message::LetGo => self.let_go(),
+        };
+        done.map(|()| json!({ "done": true })).map_err(|error| error.to_string())
+    }
+
+    fn play(&mut self) -> Result<(), Error> {
+        if self.simulation.time() >= self.simulation.scene().end() {
+            self.go_back()?;
+        }
+        self.trouble = None;
+        if !self.playing {
+            self.pace.start();
+        }
+        self.playing = true;
+        Ok(())
+    }
+
+    fn go_back(&mut self) -> Result<(), Error> {
+        self.simulation.restore(&self.start)?;
+        (self.hand, self.trouble, self.record) = (None, None, Record::default());
+        self.pace.start();
+        Ok(())
+    }
+
+    fn slide(&mut self, kind: Kind, name: &str, value: f64) -> Result<(), Error> {
+        let wanted = |slider: &&Slider| slider.kind == kind && slider.name == name;
+        let simulation = &mut self.simulation;
+        let Some(slider) = self.sliders.iter().find(wanted) else {
+            // says which there are
+            return match kind {
+                Kind::Pressure => simulation.pressure(name, value),
+                Kind::Actuation => simulation.actuate(name, value),
+            };
+        };
+        let t = simulation.time();
+        let signal = self.record.moved(simulation.scene(), slider, t, value);
+        slider.set(simulation, signal)
+    }
+
+    fn pull(&mut self, place: usize, to: Vec<f64>, strength: f64) -> Result<Value, String> {
+        let node = self.picture.node(place).ok_or_else(|| format!("no node {place} is drawn"))?;
+        let hand = Hand::new(self.simulation.scene(), [place, node], to, strength);
+        let hand = hand.map_err(|error| error.to_string())?;
+        if self.hand.as_ref().is_some_and(|held| !held.is_at(&hand)) {
+            self.let_go().map_err(|error| error.to_string())?;
+        }
+        self.hand = Some(hand);
+        Ok(json!({ "done": true }))
+    }
+
+    fn let_go(&mut self) -> Result<(), Error> {
+        self.hand.take().map_or(Ok(()), |hand| hand.let_go(&mut self.simulation))
+    }
+
+    /// Lets a portion of time pass.
+    fn advance(&mut self) {
+        let (from, end) = (self.simulation.time(), self.simulation.scene().end());
+        let to = (from + self.pace.portion()).min(end);
+        let result = self.go_to(to);
+        self.pace.note(self.simulation.time() - from);
+        match result {
+            Err(error) => self.stop(&error),
+            Ok(()) => self.playing = self.simulation.time() < end,
+        }
+    }
+
+    /// Lets time pass until `to` (s), with the hand where it is.
+    fn go_to(&mut self, to: f64) -> Result<(), Error> {
+        while self.simulation.time() < to {
+            let from = self.simulation.time();
+            let mut next = to;
+            if let Some(hand) = &self.hand {
+                next = next.min(from + hand.period);
+                hand.pull(&mut self.simulation)?;
+            }
+            self.simulation.advance_to(next)?;
+            if self.simulation.time() <= from {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Time stops, for a reason that is shown; the state stays as it is.
+    fn stop(&mut self, error: &Error) {
+        self.playing = false;
+        self.trouble = Some(error.to_string());
+    }
+}
+
+/// The answer to what cannot be done.
+pub(super) fn error_answer(error: &str) -> Value {
+    json!({ "error": error })
+}
