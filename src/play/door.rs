@@ -61,7 +61,9 @@ impl Door {
         }
         let mut parts = head.path.split('?').next().unwrap_or_default().splitn(3, '/').skip(1);
         if !parts.next().is_some_and(|token| same(token, &self.token)) {
-            return Err(forbidden("the address is not complete: take it as `pliant play` printed it"));
+            return Err(forbidden(
+                "the address is not complete: take it as `pliant play` printed it",
+            ));
         }
         if head.method != "GET" {
             return Err(Refusal::new("405 Method Not Allowed", "only GET is known here"));

@@ -6,7 +6,9 @@ use serde_json::{Map, Value};
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Message {
     /// What is to be seen, with the colours of a quantity.
-    Look { colours: Option<usize> },
+    Look {
+        colours: Option<usize>,
+    },
     Play,
     Pause,
     /// Back to the start.
@@ -18,7 +20,11 @@ pub(super) enum Message {
     /// A spring and the force of its actuator (N).
     Actuate(String, f64),
     /// A drawn node is pulled towards a point (m), `strength` times as hard as usual.
-    Pull { place: usize, to: Vec<f64>, strength: f64 },
+    Pull {
+        place: usize,
+        to: Vec<f64>,
+        strength: f64,
+    },
     LetGo,
     /// The scene with what was done by hand.
     Save,

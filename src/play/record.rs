@@ -1,8 +1,11 @@
 //! What was done by the sliders, phase by phase.
 
+use std::path::{Path, PathBuf};
+
 use super::slider::{Kind, Slider, signals};
 use crate::external::Signal;
 use crate::scene::Scene;
+use crate::scene_file::{Rewritten, SceneFile, rewritten};
 
 /// Parts of the scene within which a slider brings its value about: a jump is none for a body.
 const RAMP: f64 = 0.005;
@@ -15,20 +18,69 @@ pub(super) struct Record {
     tracks: Vec<Track>,
 }
 
+/// The file that a scene was read from.
+pub(super) struct Original {
+    pub(super) text: String,
+    pub(super) path: PathBuf,
+}
+
+impl Original {
+    /// A name for what is made of it.
+    pub(super) fn new_name(&self) -> String {
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        format!("{stem}-by-hand.toml")
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // a line end would end the comment
+    name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}
+
 /// What a slider did in one phase: values at times (s), with straight lines in between.
-pub(super) struct Track {
+struct Track {
     /// Number of the phase, from 0.
-    pub(super) phase: usize,
-    pub(super) kind: Kind,
-    pub(super) name: String,
-    pub(super) times: Vec<f64>,
-    pub(super) values: Vec<f64>,
+    phase: usize,
+    kind: Kind,
+    name: String,
+    times: Vec<f64>,
+    values: Vec<f64>,
 }
 
 impl Record {
-    /// All moves.
-    pub(super) fn tracks(&self) -> &[Track] {
-        &self.tracks
+    /// The scene file `original` of `scene` with these moves.
+    ///
+    /// # Errors
+    /// No moves; a file in which there is no place for them.
+    pub(super) fn saved(&self, scene: &Scene, original: &Original) -> Result<String, String> {
+        if self.tracks.is_empty() {
+            return Err("no slider was moved since the start: there is nothing to be saved".into());
+        }
+        let mut changes: Vec<Rewritten> = Vec::new();
+        for track in &self.tracks {
+            let number = track.phase;
+            let known = changes.iter().position(|change| change.number == number);
+            let at = known.or_else(|| {
+                let phase = scene.phases().get(number)?.clone();
+                changes.push(Rewritten { number, phase, changed: [false; 2] });
+                Some(changes.len() - 1)
+            });
+            let Some(change) = at.map(|at| &mut changes[at]) else { continue };
+            match track.kind {
+                Kind::Pressure => change.phase.set_pressure(&track.name, track.signal()),
+                Kind::Actuation => change.phase.set_actuation(&track.name, track.signal()),
+            }
+            change.changed[usize::from(track.kind == Kind::Actuation)] = true;
+        }
+        let Original { text, path } = original;
+        let cannot = |reason: String| format!("{} cannot be changed: {reason}", path.display());
+        let text = rewritten(text, &changes).map_err(cannot)?;
+        SceneFile::parse(&text, path).map_err(|error| cannot(error.to_string()))?;
+        let name = file_name(path);
+        Ok(format!(
+            "# {name} with the sliders moved by hand. Files that it names are sought beside it.\n{text}"
+        ))
     }
 
     /// `slider` is moved to `value` at time `t` (s): what it brings about from then on, with all before.
@@ -89,8 +141,7 @@ mod tests {
     #[test]
     fn moves_begin_where_the_slider_is() {
         let (times, values) = (vec![0.0, 1.0], vec![0.0, 10.0]);
-        let mut track =
-            Track { phase: 0, kind: Kind::Pressure, name: "air".into(), times, values };
+        let mut track = Track { phase: 0, kind: Kind::Pressure, name: "air".into(), times, values };
         track.go(0.5, 0.1, 7.0);
         assert_eq!((&track.times, &track.values), (&vec![0.0, 0.5, 0.6], &vec![0.0, 5.0, 7.0]));
         // before it is there it is moved on

@@ -1,13 +1,13 @@
 //! The server of the page, on the loopback interface.
 
+use std::io::{self, Write};
 use std::net::{Ipv4Addr, TcpListener, TcpStream};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::thread;
 use std::time::Duration;
-
-use std::io::Write;
 
 use serde_json::Value;
 use tungstenite::handshake::derive_accept_key;
@@ -17,6 +17,7 @@ use tungstenite::{Message as Parcel, WebSocket};
 use super::door::{Door, Wanted};
 use super::http::{Head, Refusal, answer};
 use super::message::Message;
+use super::record::Original;
 use super::session::{Request, Session, error_answer};
 use crate::error::Error;
 use crate::input::InputError;
@@ -52,7 +53,8 @@ const RECOVERY: Duration = Duration::from_millis(50);
 pub struct Player {
     listener: TcpListener,
     door: Door,
-    page: String,
+    /// What the page shows from the start.
+    data: Value,
     session: Session,
 }
 
@@ -73,14 +75,21 @@ impl Player {
     /// # Errors
     /// As [`Scene::start`]; a port that cannot be had.
     pub fn new(scene: &Scene, settings: &Settings, title: &str, port: u16) -> Result<Self, Error> {
-        let save = |_: &_| Err("there is no scene file to be changed".to_owned());
-        let (session, mut data) = Session::new(scene, settings, Box::new(save))?;
+        let (session, mut data) = Session::new(scene, settings)?;
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port));
         let listener = listener.map_err(|error| no_port(port, &error))?;
         let port = listener.local_addr().map_err(|error| no_port(port, &error))?.port();
         data["title"] = title.into();
-        let page = Picture::page(PAGE, STYLE, SCRIPTS, &data);
-        Ok(Self { listener, door: Door::new(port)?, page, session })
+        Ok(Self { listener, door: Door::new(port)?, data, session })
+    }
+
+    /// Lets what is done by the sliders be saved as a scene file: that at `path` with the text `text`, from which
+    /// the scene was read, with tables of pressures and forces in place of its own.
+    pub fn saving(mut self, text: impl Into<String>, path: impl Into<PathBuf>) -> Self {
+        let original = Original { text: text.into(), path: path.into() };
+        self.data["saves"] = original.new_name().into();
+        self.session.original = Some(original);
+        self
     }
 
     /// The address of the page. Who knows it has the simulation in his hands.
@@ -93,7 +102,8 @@ impl Player {
     /// # Errors
     /// A system that gives no thread.
     pub fn serve(self) -> Result<(), Error> {
-        let Self { listener, door, page, session } = self;
+        let Self { listener, door, data, session } = self;
+        let page = Picture::page(PAGE, STYLE, SCRIPTS, &data);
         let (requests, inbox) = channel();
         let simulation = thread::Builder::new().name("simulation".into());
         simulation.spawn(move || session.run(&inbox)).map_err(|error| {
@@ -128,7 +138,7 @@ impl Player {
     }
 }
 
-fn no_port(port: u16, error: &std::io::Error) -> InputError {
+fn no_port(port: u16, error: &io::Error) -> InputError {
     let mend = format!("{error}; choose another one, or 0 for any that is free");
     InputError::new("port", port, mend)
 }
@@ -170,8 +180,7 @@ impl House {
         let config = WebSocketConfig::default()
             .max_message_size(Some(LONGEST))
             .max_frame_size(Some(LONGEST));
-        let mut socket =
-            WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
+        let mut socket = WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
         self.pages.fetch_add(1, Ordering::SeqCst);
         while let Ok(parcel) = socket.read() {
             let answer = match parcel {

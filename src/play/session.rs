@@ -8,7 +8,7 @@ use super::frame;
 use super::hand::Hand;
 use super::message::Message;
 use super::pace::Pace;
-use super::record::Record;
+use super::record::{Original, Record};
 use super::slider::{Kind, Slider};
 use crate::error::Error;
 use crate::output::Picture;
@@ -36,19 +36,13 @@ pub(super) struct Session {
     pub(super) trouble: Option<String>,
     start: Checkpoint,
     record: Record,
-    save: Save,
+    /// The file of the scene, if it has one.
+    pub(super) original: Option<Original>,
 }
-
-/// Makes a scene file of what was done by hand, or says why it cannot.
-pub(super) type Save = Box<dyn Fn(&Record) -> Result<String, String> + Send>;
 
 impl Session {
     /// A session of `scene` at its start, and what of it stays as it is, for the page.
-    pub(super) fn new(
-        scene: &Scene,
-        settings: &Settings,
-        save: Save,
-    ) -> Result<(Self, Value), Error> {
+    pub(super) fn new(scene: &Scene, settings: &Settings) -> Result<(Self, Value), Error> {
         let simulation = scene.start(settings)?;
         let (picture, mut fixed) = Picture::new(scene)?;
         let sliders = Slider::all(scene);
@@ -67,7 +61,7 @@ impl Session {
             pace: Pace::new(),
             trouble: None,
             record: Record::default(),
-            save,
+            original: None,
         };
         Ok((session, fixed))
     }
@@ -112,7 +106,11 @@ impl Session {
     fn answer(&mut self, message: Message) -> Result<Value, String> {
         let done = match message {
             Message::Look { colours } => return Ok(json!({ "frame": frame::of(self, colours) })),
-            Message::Save => return Ok(json!({ "file": (self.save)(&self.record)? })),
+            Message::Save => {
+                let original = self.original.as_ref().ok_or("the scene has no file")?;
+                let text = self.record.saved(self.simulation.scene(), original)?;
+                return Ok(json!({ "file": text }));
+            }
             Message::Play => self.play(),
             Message::Pause => {
                 self.playing = false;

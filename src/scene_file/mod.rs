@@ -67,6 +67,8 @@ mod body;
 mod mesh;
 mod nearest;
 mod phase;
+#[cfg(feature = "play")]
+mod rewrite;
 mod selection;
 mod settings;
 mod source;
@@ -78,6 +80,8 @@ use std::path::Path;
 
 use toml::de::DeTable;
 
+#[cfg(feature = "play")]
+pub(crate) use self::rewrite::{Rewritten, rewritten};
 use self::source::Source;
 use self::table::Table;
 use self::value::Value;

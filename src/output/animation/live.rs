@@ -56,7 +56,12 @@ impl Picture {
     }
 
     /// The page with its own `style`, and with its own scripts before and after those that draw.
-    pub(crate) fn page(page: &str, style: &str, [before, after]: [&str; 2], data: &Value) -> String {
+    pub(crate) fn page(
+        page: &str,
+        style: &str,
+        [before, after]: [&str; 2],
+        data: &Value,
+    ) -> String {
         let script = [include_str!("page/decode.js"), before, DRAWING, after].concat();
         filled(page, &[STYLE, style].concat(), &script, data)
     }

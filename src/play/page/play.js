@@ -4,7 +4,7 @@ const clock = document.getElementById("clock");
 const trouble = document.getElementById("trouble");
 const strength = document.getElementById("strength");
 /** How near to a node the mouse takes hold of it (px). */
-const REACH = 14;
+const REACH = axes === 3 ? 14 : 30;
 
 const socket = new WebSocket(`${location.href.split(/[?#]/)[0].replace(/^http/, "ws")}socket`);
 /** What is done with the answers that are still to come, one after the other. */
@@ -225,7 +225,7 @@ const sliders = data.sliders.map(({ do: action, name, what, unit, most }) => {
   const input = document.createElement("input");
   title.append(name, " ", Object.assign(document.createElement("small"), { textContent: what }));
   Object.assign(input, { type: "range", min: -most, max: most, step: most / 100, value: 0 });
-  label.append(title, output, input);
+  label.append(title, input, output);
   document.getElementById("sliders").append(label);
   const scale = prefixed(most, unit);
   const slider = {
