@@ -20,9 +20,9 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh chromium
 	cargo fmt --check
-	cargo clippy --all-targets -- -D warnings
-	cargo test
-	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps
+	cargo clippy --all-targets --features play -- -D warnings
+	cargo test --features play
+	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --features play
 
 bench: setup ## Benchmarks: one table of what the parts of a step cost; all others: cargo bench
 	cargo bench --bench table

@@ -3,13 +3,26 @@
 use serde_json::{Value, json};
 
 use super::hand::Hand;
-use super::session::Session;
+use super::pace::Pace;
+use super::slider::Slider;
 use crate::output::Picture;
 use crate::scene::Scene;
+use crate::simulate::Simulation;
 
-/// The present of a session, with the colours of a quantity.
-pub(super) fn of(session: &Session, colours: Option<usize>) -> Value {
-    let Session { simulation, picture, sliders, hand, pace, .. } = session;
+/// What there is to be told of.
+pub(super) struct Present<'a> {
+    pub(super) simulation: &'a Simulation,
+    pub(super) picture: &'a Picture,
+    pub(super) sliders: &'a [Slider],
+    pub(super) hand: Option<&'a Hand>,
+    pub(super) pace: &'a Pace,
+    pub(super) playing: bool,
+    pub(super) trouble: Option<&'a str>,
+}
+
+/// The frame of the present, with the colours of a quantity.
+pub(super) fn of(present: &Present, colours: Option<usize>) -> Value {
+    let &Present { simulation, picture, sliders, hand, pace, playing, trouble } = present;
     let (view, report) = (simulation.view(), simulation.report());
     let (body, u) = (view.body(), view.displacements());
     let values = sliders.iter().map(|slider| slider.value(simulation).unwrap_or(f64::NAN));
@@ -24,15 +37,15 @@ pub(super) fn of(session: &Session, colours: Option<usize>) -> Value {
     json!({
         "time": simulation.time(),
         "phase": simulation.phase_number(),
-        "playing": session.playing,
+        "playing": playing,
         "atEnd": at_end,
-        "trouble": session.trouble,
+        "trouble": trouble,
         "places": picture.places(body.mesh(), u),
         "colours": colours.and_then(|quantity| picture.colours(body, u, quantity)),
         "energies": Picture::energies(&simulation.energy()),
         "sliders": values.collect::<Vec<_>>(),
         "actuations": actuations.collect::<Vec<_>>(),
-        "pull": hand.as_ref().map(Hand::to_json),
+        "pull": hand.map(Hand::to_json),
         "speed": pace.speed,
         "factor": pace.factor(),
         "method": method.to_string(),

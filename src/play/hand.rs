@@ -7,14 +7,17 @@ use crate::input::{InputError, finite};
 use crate::mesh::Selection;
 use crate::scene::Scene;
 use crate::simulate::Simulation;
+use crate::vector::norm;
 
 /// What a pull over the size of the body makes of its weight, about: its mass gets this acceleration (m/s^2).
 const ACCELERATION: f64 = 100.0;
 /// Damping of the pull, as a part of sqrt(k m).
 const DAMPING: f64 = 0.2;
-/// Parts of 1 / sqrt(k / m) after which the force is made anew: it lags behind by half of that on average,
+/// Parts of 1 / sqrt(k / m) after which the force is looked at anew: it lags behind by half of that on average,
 /// which the damping outweighs.
-const RENEWAL: f64 = 0.08;
+const RENEWAL: f64 = 0.25;
+/// Changes of the force, as a part of it, that are let be: each new force costs the integrator a start.
+const NEGLIGIBLE: f64 = 0.02;
 
 /// A spring from a node to the mouse: the force k (target - position) - c velocity, kept from one renewal to the
 /// next.
@@ -25,6 +28,8 @@ pub(super) struct Hand {
     target: Vec<f64>,
     stiffness: f64,
     damping: f64,
+    /// The number of the phase in which a force was given last, and that force (N).
+    given: Option<(usize, Vec<f64>)>,
     /// Time between renewals of the force (s).
     pub(super) period: f64,
 }
@@ -55,19 +60,23 @@ impl Hand {
         let period = RENEWAL * (mass / stiffness).sqrt();
         let damping = DAMPING * (stiffness * mass).sqrt();
         let selection = selection(scene, node)?;
-        Ok(Self { place, node, selection, target, stiffness, damping, period })
+        Ok(Self { place, node, selection, target, stiffness, damping, given: None, period })
     }
 
-    /// Whether it pulls the same node as `other`.
-    pub(super) fn is_at(&self, other: &Self) -> bool {
-        self.node == other.node
+    /// Whether it pulls the same node as `other`, whose force it then takes over.
+    pub(super) fn takes_over(&mut self, other: &Self) -> bool {
+        let is_same = self.node == other.node;
+        if is_same {
+            self.given.clone_from(&other.given);
+        }
+        is_same
     }
 
     /// Gives the node the force of the present moment.
     ///
     /// # Errors
     /// As [`Simulation::load`].
-    pub(super) fn pull(&self, simulation: &mut Simulation) -> Result<(), Error> {
+    pub(super) fn pull(&mut self, simulation: &mut Simulation) -> Result<(), Error> {
         let view = simulation.view();
         let from = self.node * self.target.len();
         let natural = view.body().mesh().position(self.node);
@@ -76,7 +85,15 @@ impl Hand {
             self.stiffness * (target - natural[axis] - u[axis]) - self.damping * v[axis]
         });
         let force: Vec<f64> = force.collect();
-        simulation.load(self.selection.clone(), force)
+        if self.given.as_ref().is_some_and(|(phase, given)| {
+            *phase == simulation.phase_number()
+                && distance(given, &force) <= NEGLIGIBLE * norm(&force)
+        }) {
+            return Ok(());
+        }
+        simulation.load(self.selection.clone(), force.clone())?;
+        self.given = Some((simulation.phase_number(), force));
+        Ok(())
     }
 
     /// Lets the node go.
@@ -94,6 +111,10 @@ impl Hand {
         }
         json!({ "node": self.place, "to": to })
     }
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>())
 }
 
 /// The node by the place where it is: loads of the scene, which name nodes by number or set, are others.

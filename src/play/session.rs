@@ -4,7 +4,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
 
 use serde_json::{Value, json};
 
-use super::frame;
+use super::frame::{self, Present};
 use super::hand::Hand;
 use super::message::Message;
 use super::pace::Pace;
@@ -26,14 +26,14 @@ pub(super) enum Request {
 
 /// A scene that is played.
 pub(super) struct Session {
-    pub(super) simulation: Simulation,
-    pub(super) picture: Picture,
-    pub(super) sliders: Vec<Slider>,
-    pub(super) hand: Option<Hand>,
-    pub(super) playing: bool,
-    pub(super) pace: Pace,
+    simulation: Simulation,
+    picture: Picture,
+    sliders: Vec<Slider>,
+    hand: Option<Hand>,
+    playing: bool,
+    pace: Pace,
     /// Why time does not go on.
-    pub(super) trouble: Option<String>,
+    trouble: Option<String>,
     start: Checkpoint,
     record: Record,
     /// The file of the scene, if it has one.
@@ -105,7 +105,7 @@ impl Session {
 
     fn answer(&mut self, message: Message) -> Result<Value, String> {
         let done = match message {
-            Message::Look { colours } => return Ok(json!({ "frame": frame::of(self, colours) })),
+            Message::Look { colours } => return Ok(json!({ "frame": self.frame(colours) })),
             Message::Save => {
                 let original = self.original.as_ref().ok_or("the scene has no file")?;
                 let text = self.record.saved(self.simulation.scene(), original)?;
@@ -127,6 +127,19 @@ impl Session {
             Message::LetGo => self.let_go(),
         };
         done.map(|()| json!({ "done": true })).map_err(|error| error.to_string())
+    }
+
+    fn frame(&self, colours: Option<usize>) -> Value {
+        let present = Present {
+            simulation: &self.simulation,
+            picture: &self.picture,
+            sliders: &self.sliders,
+            hand: self.hand.as_ref(),
+            pace: &self.pace,
+            playing: self.playing,
+            trouble: self.trouble.as_deref(),
+        };
+        frame::of(&present, colours)
     }
 
     fn play(&mut self) -> Result<(), Error> {
@@ -166,8 +179,8 @@ impl Session {
     fn pull(&mut self, place: usize, to: Vec<f64>, strength: f64) -> Result<Value, String> {
         let node = self.picture.node(place).ok_or_else(|| format!("no node {place} is drawn"))?;
         let hand = Hand::new(self.simulation.scene(), [place, node], to, strength);
-        let hand = hand.map_err(|error| error.to_string())?;
-        if self.hand.as_ref().is_some_and(|held| !held.is_at(&hand)) {
+        let mut hand = hand.map_err(|error| error.to_string())?;
+        if self.hand.as_ref().is_some_and(|held| !hand.takes_over(held)) {
             self.let_go().map_err(|error| error.to_string())?;
         }
         self.hand = Some(hand);
@@ -195,7 +208,7 @@ impl Session {
         while self.simulation.time() < to {
             let from = self.simulation.time();
             let mut next = to;
-            if let Some(hand) = &self.hand {
+            if let Some(hand) = &mut self.hand {
                 next = next.min(from + hand.period);
                 hand.pull(&mut self.simulation)?;
             }

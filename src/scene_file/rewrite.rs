@@ -21,6 +21,9 @@ pub(crate) struct Rewritten {
 /// The keys of the pressures and of the forces of actuators.
 const KEYS: [&str; 2] = ["pressure", "actuate"];
 
+/// Tables as `[[phase.pressure]]` have no place of their own.
+const ELSEWHERE: &str = "write the lists of each phase as pressure = [...], actuate = [...]";
+
 /// The `text` of a scene file with other signals in the phases `changes`.
 ///
 /// # Errors
@@ -46,7 +49,8 @@ pub(crate) fn rewritten(text: &str, changes: &[Rewritten]) -> Result<String, Str
             .filter(|x| *x.1)
         {
             let edit = match table.get(key) {
-                Some(value) => (value.span(), list),
+                Some(value) if text.get(value.span()).is_some_and(is_list) => (value.span(), list),
+                Some(_) => return Err(ELSEWHERE.into()),
                 None => {
                     let until = table.get("until").ok_or_else(missing)?.span();
                     insertion(text, until.end, &format!("{key} = {list}"))
@@ -59,23 +63,19 @@ pub(crate) fn rewritten(text: &str, changes: &[Rewritten]) -> Result<String, Str
     let mut result = String::new();
     let mut at = 0;
     for (place, new) in edits {
-        let kept = text.get(at..place.start);
-        let old = text.get(place.clone()).unwrap_or_default();
-        // a list as [[phase.pressure]] has no place of its own
-        let (Some(kept), false) =
-            (kept, old.starts_with("[[") || old.contains('=') && !is_list(old))
-        else {
-            return Err("write the lists of each phase as pressure = [...], actuate = [...]".into());
-        };
+        let kept = text.get(at..place.start).ok_or(ELSEWHERE)?;
         result.push_str(kept);
         result.push_str(&new);
         at = place.end;
     }
-    Ok(result + &text[at..])
+    Ok(result + text.get(at..).unwrap_or_default())
 }
 
+/// Whether this is a list of tables, or one table, as it stands behind a key.
 fn is_list(text: &str) -> bool {
-    text.starts_with(['[', '{']) && text.ends_with([']', '}'])
+    let begins = |inner: &str| inner.trim_start().starts_with(['{', ']', '#']);
+    let begins = text.starts_with('{') || text.strip_prefix('[').is_some_and(begins);
+    begins && text.ends_with([']', '}'])
 }
 
 /// Puts `entry` after the value that ends at `at`: on a line of its own, or, within braces, beside it.
@@ -149,5 +149,13 @@ mod tests {
         let expected = "phase = [{ until = 1.0, pressure = [\n    { chamber = \"air\", value = 3.0 },\n], \
                         contact = false }]";
         assert_eq!(rewritten(inline, &changes[1..]).unwrap(), expected);
+        for nested in [
+            "[[phase]]\nuntil = 1.0\n[[phase.pressure]]\nchamber = \"air\"\nvalue = 1.0\n",
+            "[[phase]]\nuntil = 1.0\n[phase.pressure]\nchamber = \"air\"\nvalue = 1.0\n",
+            "[[phase]]\nuntil = 1.0\npressure.chamber = \"air\"\npressure.value = 1.0\n",
+        ] {
+            let error = rewritten(nested, &changes[1..]).unwrap_err();
+            assert!(error.contains("pressure = [...]"), "{error}");
+        }
     }
 }

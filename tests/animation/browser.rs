@@ -113,10 +113,14 @@ impl Browser {
 
     /// Opens a file and waits until it is there.
     pub fn open(&mut self, path: &Path) -> Result<()> {
-        let url = format!("file://{}", path.display());
+        self.visit(&format!("file://{}", path.display()))
+    }
+
+    /// Opens an address and waits until it is there.
+    pub fn visit(&mut self, url: &str) -> Result<()> {
         self.call("Page.navigate", json!({ "url": url }))?;
         let there = format!("location.href === {url:?} && document.readyState === 'complete'");
-        self.opened.push(url);
+        self.opened.push(url.to_owned());
         self.wait_until(&there)
     }
 
@@ -208,16 +212,18 @@ impl Browser {
 
     /// Presses the mouse at the first of `points` (px), moves it along the others, and lets it go.
     pub fn drag(&mut self, points: &[[f64; 2]]) -> Result<()> {
-        let mut send = |kind: &str, [x, y]: [f64; 2]| {
-            let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "clickCount": 1 });
-            self.call("Input.dispatchMouseEvent", event)
-        };
         let (Some(&first), Some(&last)) = (points.first(), points.last()) else {
             return Err("nowhere to drag".into());
         };
-        send("mousePressed", first)?;
-        points[1..].iter().try_for_each(|&point| send("mouseMoved", point).map(drop))?;
-        send("mouseReleased", last)?;
+        self.mouse("mousePressed", first)?;
+        points[1..].iter().try_for_each(|&point| self.mouse("mouseMoved", point))?;
+        self.mouse("mouseReleased", last)
+    }
+
+    /// One event of the mouse, as the protocol names it.
+    pub fn mouse(&mut self, kind: &str, [x, y]: [f64; 2]) -> Result<()> {
+        let event = json!({ "type": kind, "x": x, "y": y, "button": "left", "clickCount": 1 });
+        self.call("Input.dispatchMouseEvent", event)?;
         Ok(())
     }
 

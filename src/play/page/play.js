@@ -288,7 +288,7 @@ function tellStrength() {
 const title = data.title || "A soft body in motion";
 document.title = document.getElementById("title").textContent = title;
 document.getElementById("end").textContent = `of ${fixed(data.until, decimals)} s`;
-document.getElementById("save").hidden = !data.saves;
+document.getElementById("save").hidden = !data.saves || !data.sliders.length;
 document.getElementById("save").addEventListener("click", () => send({ do: "save" }, ({ file }) => {
   if (file === undefined) return;
   const link = document.createElement("a");
