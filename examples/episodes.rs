@@ -6,7 +6,7 @@
 //! What to look for: the ring settles once; each thread has a fork of it, and each episode begins with the restored
 //! state. No mesh, no matrix and no ordering is made anew. The histogram is the same for the same seed, bit
 //! by bit and on any number of threads (`RAYON_NUM_THREADS=1`). Most of an episode is motion: a new start for each,
-//! which has to settle again, costs a third or so more. Jumps of 2 to 4 mm are the rule; those few that
+//! which has to settle again, costs more, as the last lines say. Jumps of 2 to 4 mm are the rule; those few that
 //! fly far have nearly all of their force in the upright pair A1 and A5.
 
 mod common;
