@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::phase::{Load as PhaseLoad, check_vector, find};
+use super::phase::{Load as PhaseLoad, check_vector};
 use super::{Phase, Scene};
-use crate::external::{Chamber, Contact, Gravity, Load, Signal, Spring, VaryingLoad};
+use crate::external::{Contact, Gravity, Load, Signal, VaryingLoad};
 use crate::force::Forces;
 use crate::input::{InputError, finite};
 
@@ -82,25 +82,23 @@ impl Scene {
 
     /// What actuates each spring in `phase`.
     fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
-        let known: Vec<&str> = self.springs.iter().map(Spring::name).collect();
         let input = format!("actuation of phase \"{}\"", phase.name);
-        let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); known.len()];
+        let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.springs.len()];
         for (names, force) in &phase.actuations {
             force.validate(&input)?;
             for name in names {
-                actuations[find(name, &known, &input, "springs")?].push(force.clone());
+                actuations[self.spring_number(name, &input)?].push(force.clone());
             }
         }
         Ok(actuations)
     }
 
     fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
-        let known: Vec<&str> = self.chambers.iter().map(Chamber::name).collect();
         let input = format!("pressure of phase \"{}\"", phase.name);
-        let mut pressures: Vec<Vec<Signal>> = vec![Vec::new(); known.len()];
+        let mut pressures: Vec<Vec<Signal>> = vec![Vec::new(); self.chambers.len()];
         for (name, pressure) in &phase.pressures {
             pressure.validate(&input)?;
-            pressures[find(name, &known, &input, "chambers")?].push(pressure.clone());
+            pressures[self.chamber_number(name, &input)?].push(pressure.clone());
         }
         for (chamber, pressure) in self.chambers.iter().zip(pressures) {
             if !pressure.is_empty() {

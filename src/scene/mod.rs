@@ -161,6 +161,18 @@ impl Scene {
         &self.obstacles
     }
 
+    /// Number (from 0) of the chamber with a name; `input` is where that was given.
+    pub(crate) fn chamber_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        let known: Vec<&str> = self.chambers.iter().map(Chamber::name).collect();
+        find(name, &known, input, "chambers")
+    }
+
+    /// Number (from 0) of the spring with a name; `input` is where that was given.
+    pub(crate) fn spring_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        let known: Vec<&str> = self.springs.iter().map(Spring::name).collect();
+        find(name, &known, input, "springs")
+    }
+
     /// The phases, in order.
     pub fn phases(&self) -> &[Phase] {
         &self.phases

@@ -4,7 +4,7 @@ use super::renewal::Change;
 use super::simulation::Simulation;
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion};
 use crate::error::Error;
-use crate::external::{Chamber, Obstacle, Signal, Spring, VectorSignal};
+use crate::external::{Obstacle, Signal, VectorSignal};
 use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::scene::{Load, Phase, Scene, find};
@@ -24,8 +24,7 @@ impl Simulation {
     pub fn pressure(&mut self, chamber: &str, pressure: impl Into<Signal>) -> Result<(), Error> {
         let pressure = pressure.into();
         self.command(Change::Loads, |phase, scene| {
-            let known: Vec<&str> = scene.chambers().iter().map(Chamber::name).collect();
-            find(chamber, &known, "pressure of chamber", "chambers")?;
+            scene.chamber_number(chamber, "pressure of chamber")?;
             phase.set_pressure(chamber, pressure);
             Ok(())
         })
@@ -38,8 +37,7 @@ impl Simulation {
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
         let force = force.into();
         self.command(Change::Loads, |phase, scene| {
-            let known: Vec<&str> = scene.springs().iter().map(Spring::name).collect();
-            find(spring, &known, "actuation of spring", "springs")?;
+            scene.spring_number(spring, "actuation of spring")?;
             phase.set_actuation(spring, force);
             Ok(())
         })
@@ -50,8 +48,7 @@ impl Simulation {
     /// # Errors
     /// A name that no chamber has.
     pub fn pressure_in(&self, chamber: &str) -> Result<f64, InputError> {
-        let known: Vec<&str> = self.scene().chambers().iter().map(Chamber::name).collect();
-        find(chamber, &known, "pressure of chamber", "chambers")?;
+        self.scene().chamber_number(chamber, "pressure of chamber")?;
         let pressures = self.run.phase.pressures.iter().filter(|(name, _)| name == chamber);
         Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
     }
@@ -61,8 +58,7 @@ impl Simulation {
     /// # Errors
     /// A name that no spring has.
     pub fn actuation_of(&self, spring: &str) -> Result<f64, InputError> {
-        let known: Vec<&str> = self.scene().springs().iter().map(Spring::name).collect();
-        let number = find(spring, &known, "actuation of spring", "springs")?;
+        let number = self.scene().spring_number(spring, "actuation of spring")?;
         Ok(self.scene().actuations(&self.run.phase, self.time)?[number])
     }
 

@@ -9,7 +9,6 @@ use super::run::Run;
 use super::sampling::Sampling;
 use super::view::{Gauges, View};
 use crate::error::Error;
-use crate::force::Forces;
 use crate::input::{InputError, finite, positive};
 use crate::report::Report;
 use crate::scene::Scene;
@@ -43,7 +42,7 @@ use crate::trajectory::{Sample, Trajectory};
 /// those it rests where the integrator gave up.
 pub struct Simulation {
     pub(super) run: Run,
-    gauges: Gauges,
+    gauges: Arc<Gauges>,
     /// The present: at the end of the last step or within it.
     pub(super) time: f64,
     /// (u, v, energies)
@@ -63,12 +62,8 @@ impl Scene {
         let mut all = self.forces_from_start()?;
         let first = all.first().cloned().unwrap_or_default();
         // matrices have room for chambers that no phase fills
-        let gauges = Gauges::new(self)?;
-        let mut chambers = Forces::new();
-        for chamber in self.chambers() {
-            chambers.push(Arc::new(chamber.force(self.body(), Vec::new())?));
-        }
-        all.push(chambers);
+        let gauges = Arc::new(Gauges::new(self)?);
+        all.push(gauges.chambers());
         let model = self.model(&all);
         let run = Run::new(self, settings, &Sampling::phase_ends(), clock, model, first)?;
         let (time, now) = (run.time, run.state.clone());
@@ -306,7 +301,7 @@ impl Simulation {
     /// None that the start would not have given.
     pub fn fork(&self) -> Result<Self, Error> {
         let run = self.run.fork(self.time, &self.now)?;
-        let (gauges, now) = (Gauges::new(&run.scene)?, self.now.clone());
+        let (gauges, now) = (self.gauges.clone(), self.now.clone());
         Ok(Self { run, gauges, time: self.time, now, commanded: self.commanded })
     }
 

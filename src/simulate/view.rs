@@ -1,10 +1,13 @@
 //! What is seen of a simulation at one time.
 
+use std::sync::Arc;
+
 use crate::body::{Body, CellField};
-use crate::external::{Chamber, ChamberForce, Spring, SpringForce};
+use crate::external::{ChamberForce, SpringForce};
+use crate::force::Forces;
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::scene::{Scene, find};
+use crate::scene::Scene;
 use crate::state::State;
 
 /// The motion of a [`Simulation`](super::Simulation) at one time, without copies.
@@ -17,19 +20,29 @@ pub struct View<'a> {
 
 /// What measures chambers and springs, in the order of the scene.
 pub(super) struct Gauges {
-    chambers: Vec<ChamberForce>,
+    chambers: Vec<Arc<ChamberForce>>,
     springs: Vec<SpringForce>,
 }
 
 impl Gauges {
     pub(super) fn new(scene: &Scene) -> Result<Self, InputError> {
         let body = scene.body();
-        let chambers = scene.chambers().iter().map(|chamber| chamber.force(body, Vec::new()));
+        let chambers = scene.chambers().iter();
+        let chambers = chambers.map(|chamber| chamber.force(body, Vec::new()).map(Arc::new));
         let springs = scene.springs().iter().map(|spring| spring.force(body.mesh()));
         Ok(Self {
             chambers: chambers.collect::<Result<_, _>>()?,
             springs: springs.collect::<Result<_, _>>()?,
         })
+    }
+
+    /// The forces of all chambers, without pressure.
+    pub(super) fn chambers(&self) -> Forces {
+        let mut forces = Forces::new();
+        for chamber in &self.chambers {
+            forces.push(chamber.clone());
+        }
+        forces
     }
 }
 
@@ -89,8 +102,7 @@ impl<'a> View<'a> {
     /// # Errors
     /// A name that no chamber has.
     pub fn chamber_volume(&self, chamber: &str) -> Result<f64, InputError> {
-        let known: Vec<&str> = self.scene.chambers().iter().map(Chamber::name).collect();
-        let number = find(chamber, &known, "chamber", "chambers")?;
+        let number = self.scene.chamber_number(chamber, "chamber")?;
         Ok(self.gauges.chambers[number].volume(self.state.u))
     }
 
@@ -99,8 +111,7 @@ impl<'a> View<'a> {
     /// # Errors
     /// A name that no spring has.
     pub fn spring_length(&self, spring: &str) -> Result<f64, InputError> {
-        let known: Vec<&str> = self.scene.springs().iter().map(Spring::name).collect();
-        let number = find(spring, &known, "spring", "springs")?;
+        let number = self.scene.spring_number(spring, "spring")?;
         Ok(self.gauges.springs[number].length(self.state.u))
     }
 
