@@ -3,7 +3,7 @@
 //! `cargo bench --bench ticks` prints for each body and method median, 99 % and worst wall time of a tick
 //! (the command and the millisecond after it), and the time of all ticks as a multiple of a run under a
 //! smooth signal that takes the same values. A body is faster than real time where a tick takes less than
-//! 1,000 us.
+//! 1,000 us. Then, for each body, what it costs to come back to a checkpoint and to start anew.
 
 use std::error::Error;
 use std::time::{Duration, Instant};
@@ -150,5 +150,30 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
         }
     }
+    for Case { name, scene, .. } in cases()? {
+        let (start, restore) = back(&scene)?;
+        println!("{name:20} to go back {restore:.1} us, to start anew {start:.0} us");
+    }
     Ok(())
+}
+
+/// Least wall times (us) of a start of the scene, and of coming back to a checkpoint after a command and a step.
+fn back(scene: &Scene) -> Result<(f64, f64), Box<dyn Error>> {
+    let settings = Settings { method: Method::Arkode, rtol: 1e-3, ..Settings::default() };
+    let (mut start, mut restore) = (f64::INFINITY, f64::INFINITY);
+    let mut simulation = scene.start(&settings)?;
+    simulation.advance_to(PERIOD)?;
+    let kept = simulation.checkpoint();
+    for _ in 0..5 {
+        let clock = Instant::now();
+        drop(scene.start(&settings)?);
+        start = start.min(1e6 * clock.elapsed().as_secs_f64());
+    }
+    for _ in 0..20 {
+        simulation.step()?;
+        let clock = Instant::now();
+        simulation.restore(&kept)?;
+        restore = restore.min(1e6 * clock.elapsed().as_secs_f64());
+    }
+    Ok((start, restore))
 }

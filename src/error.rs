@@ -1,5 +1,6 @@
 //! The one error type of the crate.
 
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 
 use crate::equilibrium::NoEquilibrium;
@@ -26,6 +27,10 @@ pub enum Error {
     /// No equilibrium was found; the last one on the way to it is kept inside.
     #[error(transparent)]
     Statics(#[from] Box<NoEquilibrium>),
+
+    /// A function that was given to a simulation has panicked.
+    #[error(transparent)]
+    Panicked(#[from] Panicked),
 
     /// A scene file holds something that cannot be used.
     #[error("{}:{line}: {message}", path.display())]
@@ -68,6 +73,23 @@ pub enum Error {
         /// Why not.
         source: std::io::Error,
     },
+}
+
+/// A function of the caller has panicked.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("a function that was given to the simulation panicked: {message}")]
+pub struct Panicked {
+    /// What it said.
+    pub message: String,
+}
+
+/// What a function of the caller gives, or that it has panicked.
+pub(crate) fn guarded<T>(call: impl FnOnce() -> T) -> Result<T, Panicked> {
+    catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
+        let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+        let text = text.or_else(|| payload.downcast_ref::<String>().cloned());
+        Panicked { message: text.unwrap_or_else(|| "it said nothing".into()) }
+    })
 }
 
 impl From<integrate::Error> for Error {

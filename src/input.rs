@@ -1,6 +1,10 @@
 //! The error of an input that cannot be used, and the checks that raise it.
 
+mod nearest;
+
 use std::fmt::Display;
+
+pub(crate) use nearest::{list, unknown};
 
 /// An input that cannot be used: which one, its value, and how to mend it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -23,6 +27,18 @@ impl InputError {
     ) -> Self {
         Self { input: input.into(), value: value.to_string(), mend: mend.into() }
     }
+}
+
+/// Position of `name` among the names that are `known`; `input` is where it was given.
+pub(crate) fn find<'a>(
+    name: &str,
+    known: impl Iterator<Item = &'a str> + Clone,
+    input: &str,
+) -> Result<usize, InputError> {
+    known.clone().position(|other| other == name).ok_or_else(|| {
+        let known: Vec<&str> = known.collect();
+        InputError::new(input, format!("\"{name}\""), unknown(name, &known))
+    })
 }
 
 /// Passes `value` if it is finite and above zero.

@@ -68,7 +68,7 @@ pub use body::{Body, CellField, CellSelection, Inertia, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use equations::Equations;
 pub use equilibrium::{Equilibrium, NoEquilibrium, Stability};
-pub use error::Error;
+pub use error::{Error, Panicked};
 pub use external::*;
 pub use input::InputError;
 pub use integrate::Integrator;

@@ -4,10 +4,11 @@ mod forces;
 
 use std::error::Error;
 use std::fmt;
+use std::sync::Arc;
 
 use crate::body::Body;
 use crate::report::Report;
-use crate::scene::Scene;
+use crate::scene::{Phase, Scene};
 use crate::settings::Method;
 use crate::system::Energy;
 
@@ -30,6 +31,29 @@ pub struct Sample {
     pub energy: Energy,
     /// Largest |A^T u - b| among the constraints of the phase (m).
     pub constraint_drift: f64,
+    /// What the [sensors](Trajectory::sensors) read.
+    pub sensors: Vec<f64>,
+    pub(crate) commanded: Commanded,
+}
+
+/// The phase in force at a sample, if commands have changed it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Commanded(pub(crate) Option<Arc<Phase>>);
+
+/// Samples are equal if their numbers are.
+impl PartialEq for Commanded {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+/// A number that is read with each sample.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quantity {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: String,
 }
 
 /// A sampled motion and the report of its computation.
@@ -37,13 +61,15 @@ pub struct Sample {
 pub struct Trajectory {
     scene: Scene,
     samples: Vec<Sample>,
+    pub(crate) sensors: Vec<Quantity>,
     pub(crate) report: Report,
 }
 
 impl Trajectory {
     /// A trajectory that begins with the sample `first`.
     pub(crate) fn new(scene: &Scene, report: Report, first: Sample) -> Self {
-        let mut trajectory = Self { scene: scene.clone(), samples: Vec::new(), report };
+        let mut trajectory =
+            Self { scene: scene.clone(), samples: Vec::new(), sensors: Vec::new(), report };
         trajectory.push(first);
         trajectory
     }
@@ -51,6 +77,14 @@ impl Trajectory {
     pub(crate) fn push(&mut self, sample: Sample) {
         self.note_energy(&sample.energy);
         self.samples.push(sample);
+    }
+
+    /// From now on has these sensors, which have not read anything so far.
+    pub(crate) fn unread(&mut self, sensors: Vec<Quantity>) {
+        for sample in &mut self.samples {
+            sample.sensors = vec![f64::NAN; sensors.len()];
+        }
+        self.sensors = sensors;
     }
 
     /// Takes note of the energies of a state.
@@ -79,7 +113,8 @@ impl Trajectory {
     /// The last sample alone, with the same report.
     pub fn at_end(&self) -> Self {
         let samples = vec![self.last().clone()];
-        Self { scene: self.scene.clone(), samples, report: self.report.clone() }
+        let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
+        Self { scene, samples, sensors, report: self.report.clone() }
     }
 
     /// The scene that was run.
@@ -100,6 +135,12 @@ impl Trajectory {
     /// The last sample.
     pub fn last(&self) -> &Sample {
         &self.samples[self.samples.len() - 1] // there is one at least: see `new`
+    }
+
+    /// What the [sensors](crate::Sampling::sensor) have read: names and units, in the order of
+    /// [`Sample::sensors`].
+    pub fn sensors(&self) -> &[Quantity] {
+        &self.sensors
     }
 
     /// How it was computed.
@@ -153,19 +194,7 @@ impl Trajectory {
     /// of the rotation which, in the mean over its mass, brings the natural shape nearest to the
     /// present one. `None` in other dimensions.
     pub fn rotation(&self, sample: &Sample) -> Option<f64> {
-        if self.body().dimension() != 2 {
-            return None;
-        }
-        let positions = self.body().mesh().positions();
-        let (centre, natural) = (self.centre_of_mass(sample), self.body().mass_average(positions));
-        let (mut along, mut across) = (0.0, 0.0);
-        for (node, mass) in self.body().nodal_masses().iter().enumerate() {
-            let arm = |i: usize| positions[2 * node + i] - natural[i];
-            let now = |i: usize| positions[2 * node + i] + sample.u[2 * node + i] - centre[i];
-            along += mass * (arm(0) * now(0) + arm(1) * now(1));
-            across += mass * (arm(0) * now(1) - arm(1) * now(0));
-        }
-        Some(across.atan2(along))
+        self.body().rotation(&sample.u)
     }
 }
 

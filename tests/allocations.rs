@@ -3,8 +3,11 @@
 
 use allocation_counter::measure;
 use pliant::rk::{DormandPrince, Integrator, Options};
-use pliant::samples::square_jump;
-use pliant::{ContactEvents, Method, Sampling, Settings};
+use pliant::samples::{SQUARE_MATERIAL, square_jump};
+use pliant::{
+    Body, Cells, Chamber, ContactEvents, Mesh, Method, Phase, Sampling, Scene, Settings, Spring,
+    Strain,
+};
 
 #[test]
 fn steps_do_not_allocate() {
@@ -49,4 +52,65 @@ fn runge_kutta_allocates_nothing_after_its_start() {
         settings.solve_to(2.0).unwrap();
     });
     assert_eq!(allocated.count_total, 0);
+}
+
+/// A clamped beam of rubber with a chamber and a tendon.
+fn beam() -> Scene {
+    let mesh = Mesh::rectangle([0.1, 0.02], [21, 5], Cells::Rectangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+    Scene::new(body.build().unwrap())
+        .chamber(Chamber::within("inside", [1, 21, 105, 85]))
+        .spring(Spring::between([21], [85]).named("tendon").stiffness(1.0))
+        .phase(Phase::until(1.0).hold("left"))
+}
+
+/// A command that sets a number, and the step after it, allocate nothing; one that names nodes, its arguments
+/// alone.
+#[test]
+fn ticks_do_not_allocate() {
+    for method in [Method::Rk, Method::Arkode, Method::Auto] {
+        let mut beam = beam().start(&Settings { method, ..Settings::default() }).unwrap();
+        let mut tick = |k: u32, loads: bool| {
+            let x = f64::from(k % 7);
+            beam.pressure("inside", 100.0 * x).unwrap();
+            beam.actuate("tendon", -0.01 * x).unwrap();
+            if loads {
+                beam.load("right", [0.0, 1e-3 * x]).unwrap();
+            }
+            beam.advance_to(1e-3 * f64::from(k)).unwrap();
+        };
+        (1..20).for_each(|k| tick(k, true));
+        let allocated = measure(|| (20..100).for_each(|k| tick(k, false))).count_total;
+        let with_loads = measure(|| (100..180).for_each(|k| tick(k, true))).count_total;
+        println!("{method}: {allocated} in 80 ticks, {with_loads} with loads");
+        assert!(allocated <= 4, "{method}: {allocated}");
+        // the name of the set and the force
+        assert!(with_loads <= 4 + 2 * 80, "{method}: {with_loads}");
+    }
+}
+
+/// To go back costs some allocations for the forces of the phase and a new integrator, and far less than a new
+/// start.
+#[test]
+fn to_go_back_is_cheap() {
+    let (scene, settings) = (beam(), Settings { method: Method::Arkode, ..Settings::default() });
+    let start = measure(|| drop(scene.start(&settings).unwrap()));
+    let mut beam = scene.start(&settings).unwrap();
+    beam.advance_to(0.01).unwrap();
+    let kept = beam.checkpoint();
+    beam.pressure("inside", 500.0).unwrap();
+    beam.advance_to(0.02).unwrap();
+    let back = measure(|| beam.restore(&kept).unwrap());
+    let again = measure(|| beam.restore(&kept).unwrap());
+    println!(
+        "start {} ({} bytes), restore {} ({} bytes), once more {} ({} bytes)",
+        start.count_total,
+        start.bytes_total,
+        back.count_total,
+        back.bytes_total,
+        again.count_total,
+        again.bytes_total
+    );
+    assert!(back.count_total < 100 && again.count_total < 20);
+    assert!(20 * back.bytes_total < start.bytes_total);
 }

@@ -205,4 +205,24 @@ impl Body {
         }
         average
     }
+
+    /// Angle (rad, counter-clockwise) by which a body of the plane has turned as a whole under the displacements
+    /// `u` (m): that of the rotation which, in the mean over its mass, brings the natural shape nearest to the
+    /// present one. `None` in other dimensions.
+    pub(crate) fn rotation(&self, u: &[f64]) -> Option<f64> {
+        if self.dimension() != 2 {
+            return None;
+        }
+        let positions = self.mesh().positions();
+        let x: Vec<f64> = positions.iter().zip(u).map(|(x, u)| x + u).collect();
+        let (centre, natural) = (self.mass_average(&x), self.mass_average(positions));
+        let (mut along, mut across) = (0.0, 0.0);
+        for (node, mass) in self.nodal_masses().iter().enumerate() {
+            let arm = |i: usize| positions[2 * node + i] - natural[i];
+            let now = |i: usize| positions[2 * node + i] + u[2 * node + i] - centre[i];
+            along += mass * (arm(0) * now(0) + arm(1) * now(1));
+            across += mass * (arm(0) * now(1) - arm(1) * now(0));
+        }
+        Some(across.atan2(along))
+    }
 }

@@ -120,8 +120,9 @@ impl Contact {
     fn path(&self, point: &ContactPoint, step: &Step) -> Path {
         let (d, drift) = (self.dimension, &self.drift);
         let x = [0, 1].map(|k| {
-            let (u, t) = (point.on.at(step.u[k], d), step.times[k]);
-            std::array::from_fn(|i| point.natural[i] + u[i] - t * drift[i])
+            let u = point.on.at(step.u[k], d);
+            let moved = self.obstacle.displacement(step.times[k]);
+            std::array::from_fn(|i| point.natural[i] + u[i] - moved[i])
         });
         let v = step.v.map(|v| {
             let v = point.on.at(v, d);

@@ -23,6 +23,6 @@ pub use obstacle::Obstacle;
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
 pub use signal::Signal;
-pub(crate) use signal::{TimeTable, VectorSignal};
+pub(crate) use signal::{Live, TimeTable, VectorSignal};
 pub use spring::Spring;
 pub(crate) use spring::SpringForce;

@@ -20,6 +20,8 @@ pub struct Obstacle {
     friction: f64,
     adhesion: bool,
     velocity: Option<Vec<f64>>,
+    /// How far from where it was said to be it would have been at t = 0 (m).
+    offset: [f64; 3],
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -57,6 +59,7 @@ impl Obstacle {
             friction: 0.0,
             adhesion: true,
             velocity: None,
+            offset: [0.0; 3],
         }
     }
 
@@ -182,6 +185,19 @@ impl Obstacle {
         &self.shape
     }
 
+    /// The same obstacle, but with this [`displacement`](Self::displacement) (m) at time `t` (s).
+    pub(crate) fn placed(mut self, t: f64, displacement: [f64; 3]) -> Self {
+        let drift = self.drift();
+        self.offset = std::array::from_fn(|i| displacement[i] - drift[i] * t);
+        self
+    }
+
+    /// Where it is at time `t` (s), from where it was said to be (m); 0 beyond the dimension.
+    pub(crate) fn displacement(&self, t: f64) -> [f64; 3] {
+        let drift = self.drift();
+        std::array::from_fn(|i| self.offset[i] + drift[i] * t)
+    }
+
     /// w; 0 beyond the dimension.
     pub(crate) fn drift(&self) -> [f64; 3] {
         let velocity = self.velocity.as_deref().unwrap_or_default();
@@ -209,7 +225,7 @@ impl Obstacle {
 
     /// d and its derivatives at time `t`.
     pub(super) fn nearest(&self, t: f64, mut x: [f64; 3], dimension: usize) -> Nearest {
-        x.iter_mut().zip(self.drift()).for_each(|(x, w)| *x -= w * t);
+        x.iter_mut().zip(self.displacement(t)).for_each(|(x, moved)| *x -= moved);
         self.shape.nearest(&x[..dimension])
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::input::{InputError, finite};
 use crate::ode::Failure;
@@ -72,6 +73,33 @@ enum Course {
     Constant(f64),
     Function { function: Arc<dyn Fn(f64) -> f64 + Send + Sync>, breaks: Vec<f64> },
     TimeTable(TimeTable),
+    Live(Live),
+}
+
+/// Numbers that stay until a command sets others, also while forces read them.
+#[derive(Clone)]
+pub(crate) struct Live(Arc<[AtomicU64]>);
+
+impl Live {
+    pub(crate) fn new(values: &[f64]) -> Self {
+        Self(values.iter().map(|value| AtomicU64::new(value.to_bits())).collect())
+    }
+
+    /// Sets them.
+    pub(crate) fn set(&self, values: &[f64]) {
+        self.0
+            .iter()
+            .zip(values)
+            .for_each(|(x, value)| x.store(value.to_bits(), Ordering::Relaxed));
+    }
+
+    pub(crate) fn get(&self) -> Vec<f64> {
+        (0..self.0.len()).map(|number| self.at(number)).collect()
+    }
+
+    fn at(&self, number: usize) -> f64 {
+        f64::from_bits(self.0[number].load(Ordering::Relaxed))
+    }
 }
 
 impl Signal {
@@ -112,13 +140,40 @@ impl Signal {
             Course::Constant(value) => *value,
             Course::Function { function, .. } => function(t),
             Course::TimeTable(table) => table.at(t, 0),
+            Course::Live(live) => live.at(0),
         }
+    }
+
+    /// The value of a constant.
+    pub(crate) fn value(&self) -> Option<f64> {
+        match &self.0 {
+            Course::Constant(value) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// The number that a command can set, if it is one.
+    pub(crate) fn live(&self) -> Option<&Live> {
+        match &self.0 {
+            Course::Live(live) => Some(live),
+            _ => None,
+        }
+    }
+
+    /// The same signal, as a number that a command can set if it is a constant.
+    pub(crate) fn thawed(self) -> Self {
+        self.value().map_or(self, |value| Self(Course::Live(Live::new(&[value]))))
+    }
+
+    /// The same signal, as a constant if it is a number that a command can set.
+    pub(crate) fn frozen(&self) -> Self {
+        self.live().map_or_else(|| self.clone(), |live| Self::constant(live.at(0)))
     }
 
     /// Times (s) at which the signal changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match &self.0 {
-            Course::Constant(_) => &[],
+            Course::Constant(_) | Course::Live(_) => &[],
             Course::Function { breaks, .. } => breaks,
             Course::TimeTable(table) => &table.times,
         }
@@ -130,6 +185,7 @@ impl Signal {
             Course::Constant(value) => finite(input, &[*value]),
             Course::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
             Course::TimeTable(table) => table.validate(input, 1),
+            Course::Live(live) => finite(input, &[live.at(0)]),
         }
     }
 }
@@ -146,6 +202,7 @@ impl fmt::Debug for Signal {
             Course::Constant(value) => write!(f, "{value}"),
             Course::Function { .. } => f.write_str("function of time"),
             Course::TimeTable(table) => table.fmt(f),
+            Course::Live(live) => write!(f, "{}", live.at(0)),
         }
     }
 }
@@ -173,6 +230,7 @@ type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
 pub(crate) enum VectorSignal {
     Function { dimension: usize, write: Arc<WriteVector> },
     TimeTable(TimeTable),
+    Live(Live),
 }
 
 impl VectorSignal {
@@ -190,13 +248,14 @@ impl VectorSignal {
             Self::TimeTable(table) => {
                 vector.iter_mut().enumerate().for_each(|(i, x)| *x = table.at(t, i));
             }
+            Self::Live(live) => vector.iter_mut().enumerate().for_each(|(i, x)| *x = live.at(i)),
         }
     }
 
     /// Times (s) at which the vector changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {
-            Self::Function { .. } => &[],
+            Self::Function { .. } | Self::Live(_) => &[],
             Self::TimeTable(table) => &table.times,
         }
     }
@@ -211,6 +270,14 @@ impl VectorSignal {
             )),
             Self::Function { .. } => Ok(()),
             Self::TimeTable(table) => table.validate(input, needed),
+            Self::Live(live) => {
+                let values = live.get();
+                if values.len() != needed {
+                    let mend = format!("it needs {needed} component(s) (N)");
+                    return Err(InputError::new(input, format!("{values:?}"), mend));
+                }
+                finite(input, &values)
+            }
         }
     }
 }
@@ -220,6 +287,7 @@ impl fmt::Debug for VectorSignal {
         match self {
             Self::Function { .. } => f.write_str("function of time"),
             Self::TimeTable(table) => table.fmt(f),
+            Self::Live(live) => write!(f, "{:?}", live.get()),
         }
     }
 }

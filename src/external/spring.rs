@@ -181,6 +181,12 @@ impl SpringForce {
     pub(crate) fn length(&self, u: &[f64]) -> f64 {
         self.line.length(u).0
     }
+
+    /// What pulls its ends together (N), without its actuator.
+    pub(crate) fn pull(&self, u: &[f64], v: &[f64]) -> f64 {
+        let Stretch { length, rate, .. } = self.line.stretch(u, v);
+        self.stiffness * (length - self.line.length) + self.damping * rate
+    }
 }
 
 /// The force of an actuator along a spring.

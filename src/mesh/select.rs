@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Mesh;
-use crate::input::InputError;
+use crate::input::{InputError, unknown};
 
 /// Nodes, by the name of a set, by number, or by a box around their natural positions.
 ///
@@ -62,8 +62,7 @@ impl Mesh {
         let nodes = match selection {
             Selection::Set(name) => self.sets.get(name).cloned().ok_or_else(|| {
                 let known: Vec<&str> = self.sets.keys().map(String::as_str).collect();
-                let mend = format!("the mesh has the node sets {}", known.join(", "));
-                InputError::new("node set", format!("\"{name}\""), mend)
+                InputError::new("node set", format!("\"{name}\""), unknown(name, &known))
             })?,
             Selection::Numbers(numbers) => self.by_number(numbers)?,
             Selection::Box { min, max } => self.in_box(min, max)?,

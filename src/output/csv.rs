@@ -21,6 +21,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// | `kinetic`, `strain`, `gravity`, `contact`, `springs` | energies (J) |
 /// | `constraint_drift` | largest error of a constraint (m) |
 /// | `u<N>_x`, ... | displacement of each tracked node N (m), numbers counted from 1 |
+/// | names of [sensors](crate::Sampling::sensor) | what they read, each in its unit |
 ///
 /// Numbers have 17 significant digits: read back, they are the very same.
 ///
@@ -50,7 +51,8 @@ pub fn write_csv(
         Some(selection) => trajectory.body().mesh().select(selection)?,
         None => Vec::new(),
     };
-    let header = header(trajectory.body().dimension(), &nodes);
+    let mut header = header(trajectory.body().dimension(), &nodes);
+    header.extend(trajectory.sensors().iter().map(|sensor| sensor.name.clone()));
     let rows = trajectory.samples().iter().map(|sample| row(trajectory, &nodes, sample));
     write(path.as_ref(), header, rows)
 }
@@ -122,5 +124,6 @@ fn row(trajectory: &Trajectory, nodes: &[usize], sample: &Sample) -> Vec<f64> {
     row.extend(stored(&sample.energy));
     row.push(sample.constraint_drift);
     row.extend(nodes.iter().flat_map(|node| &sample.u[node * dimension..][..dimension]));
+    row.extend(&sample.sensors);
     row
 }

@@ -6,14 +6,14 @@ mod phase;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+pub(crate) use phase::Load;
 pub use phase::Phase;
-pub(crate) use phase::{Load, find};
 
 use crate::body::Body;
 use crate::constraint::{PhaseStart, Row, prescribe, rows};
 use crate::external::{Chamber, Contact, Obstacle, Spring};
 use crate::force::{Force, Forces, NodalForces};
-use crate::input::{InputError, finite};
+use crate::input::{InputError, find, finite};
 use crate::ode::Failure;
 use crate::vector::largest;
 
@@ -163,14 +163,17 @@ impl Scene {
 
     /// Number (from 0) of the chamber with a name; `input` is where that was given.
     pub(crate) fn chamber_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
-        let known: Vec<&str> = self.chambers.iter().map(Chamber::name).collect();
-        find(name, &known, input, "chambers")
+        find(name, self.chambers.iter().map(Chamber::name), input)
     }
 
     /// Number (from 0) of the spring with a name; `input` is where that was given.
     pub(crate) fn spring_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
-        let known: Vec<&str> = self.springs.iter().map(Spring::name).collect();
-        find(name, &known, input, "springs")
+        find(name, self.springs.iter().map(Spring::name), input)
+    }
+
+    /// Number (from 0) of the obstacle with a name; `input` is where that was given.
+    pub(crate) fn obstacle_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        find(name, self.obstacles.iter().map(Obstacle::name), input)
     }
 
     /// The phases, in order.

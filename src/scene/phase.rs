@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
-use crate::external::{Obstacle, Signal, TimeTable, VectorSignal};
-use crate::input::InputError;
+use crate::external::{Live, Obstacle, Signal, TimeTable, VectorSignal};
+use crate::input::{InputError, find};
 use crate::mesh::{Mesh, Selection};
 
 /// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
@@ -21,6 +21,8 @@ pub struct Phase {
     pub(crate) pressures: Vec<(String, Signal)>,
     pub(crate) projects_velocity: bool,
     contact: ContactWith,
+    /// Obstacles that do not move as the scene has it.
+    turned: Vec<Obstacle>,
 }
 
 /// A load on some nodes (N).
@@ -53,6 +55,7 @@ impl Phase {
             pressures: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
+            turned: Vec::new(),
         }
     }
 
@@ -266,16 +269,91 @@ impl Phase {
 
     /// The obstacles that act in this phase.
     pub(crate) fn contacts<'a>(
-        &self,
+        &'a self,
         obstacles: &'a [Obstacle],
     ) -> Result<Vec<&'a Obstacle>, InputError> {
         let ContactWith::These(names) = &self.contact else {
-            return Ok(obstacles.iter().collect());
+            return Ok(obstacles.iter().map(|obstacle| self.moving(obstacle)).collect());
         };
-        let known: Vec<&str> = obstacles.iter().map(Obstacle::name).collect();
         let input = format!("contact of phase \"{}\"", self.name);
-        let find = |name: &String| Ok(&obstacles[find(name, &known, &input, "obstacles")?]);
-        names.iter().map(find).collect()
+        let find = |name: &String| find(name, obstacles.iter().map(Obstacle::name), &input);
+        names.iter().map(|name| Ok(self.moving(&obstacles[find(name)?]))).collect()
+    }
+
+    /// An obstacle of the scene as it moves in this phase.
+    pub(crate) fn moving<'a>(&'a self, obstacle: &'a Obstacle) -> &'a Obstacle {
+        self.turned.iter().find(|turned| turned.name() == obstacle.name()).unwrap_or(obstacle)
+    }
+
+    /// Whether there are obstacles that do not move as the scene has it.
+    pub(crate) fn is_turned(&self) -> bool {
+        !self.turned.is_empty()
+    }
+
+    /// Lets an obstacle of the scene move on with `velocity` (m/s) from where it is at time `t` (s).
+    pub(crate) fn turn(&mut self, obstacle: &Obstacle, t: f64, velocity: Vec<f64>) {
+        let here = self.moving(obstacle).displacement(t);
+        let turned = obstacle.clone().velocity(velocity).placed(t, here);
+        self.turned.retain(|other| other.name() != turned.name());
+        self.turned.push(turned);
+    }
+
+    /// The phase as it follows `before` at time `t` (s): `obstacles` that were turned go on from where they are.
+    pub(crate) fn after(mut self, before: &Self, obstacles: &[Obstacle], t: f64) -> Self {
+        let is_turned = |obstacle: &&Obstacle| {
+            before.turned.iter().any(|turned| turned.name() == obstacle.name())
+        };
+        for obstacle in obstacles.iter().filter(is_turned) {
+            let here = before.moving(obstacle).displacement(t);
+            self.turned.push(obstacle.clone().placed(t, here));
+        }
+        self
+    }
+
+    /// The pressure in a chamber, if that is one number that a command can set.
+    pub(crate) fn live_pressure(&self, chamber: &str) -> Option<&Live> {
+        let mut all = self.pressures.iter().filter(|(name, _)| name == chamber);
+        all.next().filter(|_| all.next().is_none())?.1.live()
+    }
+
+    /// The actuation force in a spring, likewise.
+    pub(crate) fn live_actuation(&self, spring: &str) -> Option<&Live> {
+        let acts = |(names, _): &&(Vec<String>, Signal)| names.iter().any(|name| name == spring);
+        let mut all = self.actuations.iter().filter(acts);
+        let (names, force) = all.next().filter(|_| all.next().is_none())?;
+        force.live().filter(|_| names.len() == 1)
+    }
+
+    /// The load on a selection, likewise.
+    pub(crate) fn live_load(&self, nodes: &Selection) -> Option<&Live> {
+        let mut all = self.loads.iter().filter(|(other, _)| other == nodes);
+        match all.next().filter(|_| all.next().is_none())? {
+            (_, Load::Varying(VectorSignal::Live(live))) => Some(live),
+            _ => None,
+        }
+    }
+
+    /// The phase with constants in place of numbers that commands can set.
+    pub(crate) fn frozen(&self) -> Self {
+        let mut frozen = self.clone();
+        for (_, load) in &mut frozen.loads {
+            if let Load::Varying(VectorSignal::Live(live)) = load {
+                *load = Load::Each(live.get());
+            }
+        }
+        let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
+        for signal in actuations.chain(frozen.pressures.iter_mut().map(|(_, pressure)| pressure)) {
+            *signal = signal.frozen();
+        }
+        frozen
+    }
+
+    /// Whether there are any.
+    pub(crate) fn is_live(&self) -> bool {
+        let mut loads = self.loads.iter();
+        loads.any(|(_, load)| matches!(load, Load::Varying(VectorSignal::Live(_))))
+            || self.actuations.iter().any(|(_, force)| force.live().is_some())
+            || self.pressures.iter().any(|(_, pressure)| pressure.live().is_some())
     }
 
     /// Replaces the pressure in a chamber.
@@ -322,12 +400,13 @@ impl Phase {
         Ok(is_changed)
     }
 
-    /// Lets an obstacle act or not; `all` are the names of those of the scene.
-    pub(crate) fn set_contact(&mut self, obstacle: &str, acts: bool, all: &[&str]) {
+    /// Lets an obstacle act or not; `all` are those of the scene.
+    pub(crate) fn set_contact(&mut self, obstacle: &str, acts: bool, all: &[Obstacle]) {
         let acting = match &mut self.contact {
             ContactWith::These(names) => names,
             contact => {
-                *contact = ContactWith::These(all.iter().map(|&name| name.to_owned()).collect());
+                let all = all.iter().map(|obstacle| obstacle.name().to_owned());
+                *contact = ContactWith::These(all.collect());
                 let ContactWith::These(names) = contact else { return };
                 names
             }
@@ -369,16 +448,4 @@ pub(super) fn check_vector(
     }
     let mend = format!("it needs {dimension} component(s) ({unit})");
     Err(InputError::new(input, format!("{vector:?}"), mend))
-}
-
-/// Position of `name` among the names that are `known`.
-pub(crate) fn find(
-    name: &str,
-    known: &[&str],
-    input: &str,
-    what: &str,
-) -> Result<usize, InputError> {
-    known.iter().position(|other| *other == name).ok_or_else(|| {
-        InputError::new(input, format!("\"{name}\""), format!("the scene has the {what} {known:?}"))
-    })
 }

@@ -65,7 +65,6 @@
 
 mod body;
 mod mesh;
-mod nearest;
 mod phase;
 #[cfg(feature = "play")]
 mod rewrite;

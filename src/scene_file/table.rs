@@ -6,11 +6,10 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::nearest::{list, unknown};
 use super::source::Source;
 use super::value::Value;
 use crate::error::Error;
-use crate::input::InputError;
+use crate::input::{InputError, list, unknown};
 
 /// A table all of whose keys are known.
 pub(super) struct Table<'a> {

@@ -5,9 +5,9 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
-use super::nearest::{list, unknown};
 use super::source::Source;
 use crate::error::Error;
+use crate::input::{list, unknown};
 
 /// A value with all that an error about it needs.
 #[derive(Clone)]

@@ -4,10 +4,10 @@ use super::renewal::Change;
 use super::simulation::Simulation;
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion};
 use crate::error::Error;
-use crate::external::{Obstacle, Signal, VectorSignal};
-use crate::input::InputError;
+use crate::external::{Live, Signal, VectorSignal};
+use crate::input::{InputError, finite};
 use crate::mesh::Selection;
-use crate::scene::{Load, Phase, Scene, find};
+use crate::scene::{Load, Phase, Scene};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
 /// phase ends: the next phase of the scene begins as the scene has it.
@@ -22,10 +22,14 @@ impl Simulation {
     /// # Errors
     /// A name that no chamber has; numbers that are not finite.
     pub fn pressure(&mut self, chamber: &str, pressure: impl Into<Signal>) -> Result<(), Error> {
-        let pressure = pressure.into();
-        self.command(Change::Loads, |phase, scene| {
-            scene.chamber_number(chamber, "pressure of chamber")?;
-            phase.set_pressure(chamber, pressure);
+        let (pressure, input) = (pressure.into(), "pressure of chamber");
+        self.scene().chamber_number(chamber, input)?;
+        let live = |phase: &Phase| phase.live_pressure(chamber).cloned();
+        if self.set_live(live, input, pressure.value().as_slice())? {
+            return Ok(());
+        }
+        self.command(Change::Loads, |phase, _| {
+            phase.set_pressure(chamber, pressure.thawed());
             Ok(())
         })
     }
@@ -35,10 +39,14 @@ impl Simulation {
     /// # Errors
     /// A name that no spring has; numbers that are not finite.
     pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
-        let force = force.into();
-        self.command(Change::Loads, |phase, scene| {
-            scene.spring_number(spring, "actuation of spring")?;
-            phase.set_actuation(spring, force);
+        let (force, input) = (force.into(), "actuation of spring");
+        self.scene().spring_number(spring, input)?;
+        let live = |phase: &Phase| phase.live_actuation(spring).cloned();
+        if self.set_live(live, input, force.value().as_slice())? {
+            return Ok(());
+        }
+        self.command(Change::Loads, |phase, _| {
+            phase.set_actuation(spring, force.thawed());
             Ok(())
         })
     }
@@ -48,9 +56,7 @@ impl Simulation {
     /// # Errors
     /// A name that no chamber has.
     pub fn pressure_in(&self, chamber: &str) -> Result<f64, InputError> {
-        self.scene().chamber_number(chamber, "pressure of chamber")?;
-        let pressures = self.run.phase.pressures.iter().filter(|(name, _)| name == chamber);
-        Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
+        self.view().pressure(chamber)
     }
 
     /// The force (N) of the actuator of a spring that is in force at the present time.
@@ -58,8 +64,7 @@ impl Simulation {
     /// # Errors
     /// A name that no spring has.
     pub fn actuation_of(&self, spring: &str) -> Result<f64, InputError> {
-        let number = self.scene().spring_number(spring, "actuation of spring")?;
-        Ok(self.scene().actuations(&self.run.phase, self.time)?[number])
+        self.view().actuation(spring)
     }
 
     /// A force (N) on each of the nodes, one component per dimension, in place of the load that was given for
@@ -72,7 +77,12 @@ impl Simulation {
         nodes: impl Into<Selection>,
         force: impl Into<Vec<f64>>,
     ) -> Result<(), Error> {
-        self.set_load(nodes.into(), Load::Each(force.into()))
+        let (nodes, force) = (nodes.into(), force.into());
+        let live = |phase: &Phase| phase.live_load(&nodes).cloned();
+        if force.len() == self.scene().body().dimension() && self.set_live(live, "load", &force)? {
+            return Ok(());
+        }
+        self.set_load(nodes, VectorSignal::Live(Live::new(&force)))
     }
 
     /// As [`load`](Self::load), with a force (N) that changes with time (s).
@@ -84,7 +94,7 @@ impl Simulation {
         nodes: impl Into<Selection>,
         force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
     ) -> Result<(), Error> {
-        self.set_load(nodes.into(), Load::Varying(VectorSignal::function(force)))
+        self.set_load(nodes.into(), VectorSignal::function(force))
     }
 
     /// Holds nodes, in all components, where they are.
@@ -141,18 +151,59 @@ impl Simulation {
     /// A name that no obstacle has.
     pub fn contact(&mut self, obstacle: &str, acts: bool) -> Result<(), Error> {
         self.command(Change::Contacts, |phase, scene| {
-            let known: Vec<&str> = scene.obstacles().iter().map(Obstacle::name).collect();
-            find(obstacle, &known, "contact with obstacle", "obstacles")?;
-            phase.set_contact(obstacle, acts, &known);
+            scene.obstacle_number(obstacle, "contact with obstacle")?;
+            phase.set_contact(obstacle, acts, scene.obstacles());
             Ok(())
         })
     }
 
-    fn set_load(&mut self, nodes: Selection, load: Load) -> Result<(), Error> {
+    /// Lets an obstacle move on from where it is with a constant `velocity` (m/s), one component per dimension.
+    ///
+    /// When the phase ends, it goes on from where it is, too, with the velocity that the scene has given it.
+    ///
+    /// # Errors
+    /// A name that no obstacle has, a velocity of the wrong length, numbers that are not finite.
+    pub fn move_obstacle(
+        &mut self,
+        obstacle: &str,
+        velocity: impl Into<Vec<f64>>,
+    ) -> Result<(), Error> {
+        let (velocity, time) = (velocity.into(), self.time);
+        self.command(Change::Contacts, |phase, scene| {
+            let number = scene.obstacle_number(obstacle, "velocity of obstacle")?;
+            let obstacle = &scene.obstacles()[number];
+            phase.turn(obstacle, time, velocity);
+            phase.moving(obstacle).validated(scene.body().dimension()).map(|_| ())
+        })
+    }
+
+    fn set_load(&mut self, nodes: Selection, force: VectorSignal) -> Result<(), Error> {
         self.command(Change::Loads, |phase, _| {
-            phase.set_load(nodes, load);
+            phase.set_load(nodes, Load::Varying(force));
             Ok(())
         })
+    }
+
+    /// Sets the numbers that `find` finds in the phase in force; `false` if there are none that a command can
+    /// set. (The forces read them: nothing is built anew.)
+    fn set_live(
+        &mut self,
+        find: impl Fn(&Phase) -> Option<Live>,
+        input: &str,
+        values: &[f64],
+    ) -> Result<bool, Error> {
+        if values.is_empty() || self.run.is_past_phase(self.time) {
+            return Ok(false);
+        }
+        let Some(live) = find(&self.run.phase) else { return Ok(false) };
+        finite(input, values)?;
+        if self.run.time > self.time {
+            self.run.set_state(self.time, &self.now)?;
+        }
+        self.run.set_live(&live, values)?;
+        self.now.copy_from_slice(&self.run.state);
+        self.commanded = true;
+        Ok(true)
     }
 
     fn constrain(&mut self, nodes: Selection, axes: Axes, how: Motion) -> Result<(), Error> {

@@ -41,9 +41,10 @@ impl Events {
     /// From now on holds the switches of `system`, as they are at `t` and `state` = (u, v, ...), if
     /// they are `located`.
     pub(super) fn begin(&mut self, system: &System, t: f64, state: &[f64], located: bool) {
-        self.clearances = vec![0.0; system.switches()];
+        refill(&mut self.clearances, system.switches(), 0.0);
         let count = if located { self.clearances.len() } else { 0 };
-        (self.on, self.values) = (vec![false; count], vec![0.0; count]);
+        refill(&mut self.on, count, false);
+        refill(&mut self.values, count, 0.0);
         system.hold_switches(None);
         self.set(system, t, state);
     }
@@ -144,4 +145,9 @@ impl Events {
         let State { u, v, .. } = State::of(state, system.dofs());
         system.switch_values(t, u, v, &mut self.values);
     }
+}
+
+fn refill<T: Clone>(list: &mut Vec<T>, length: usize, value: T) {
+    list.clear();
+    list.resize(length, value);
 }

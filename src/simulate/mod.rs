@@ -10,10 +10,13 @@ mod records;
 mod renewal;
 mod run;
 mod sampling;
+mod sensor;
 mod simulation;
 mod stage;
 mod stepper;
 mod view;
+mod watch;
+mod watching;
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -23,7 +26,9 @@ pub use renewal::Checkpoint;
 use run::Run;
 pub use sampling::Sampling;
 pub use simulation::Simulation;
+use view::Gauges;
 pub use view::View;
+pub use watch::Direction;
 
 use crate::error::Error;
 use crate::scene::Scene;
@@ -94,7 +99,8 @@ impl Scene {
         sampling.validate(self.end())?;
         let model = self.model(&forces);
         let first = forces.into_iter().next().unwrap_or_default();
-        let mut run = Run::new(self, settings, sampling, clock, model, first)?;
+        let gauges = Gauges::new(self)?;
+        let mut run = Run::new(self, settings, sampling, clock, (model, gauges), first)?;
         while run.advance(&mut observer)? {}
         Ok(run.into_trajectory())
     }

@@ -1,13 +1,17 @@
 //! What follows from a state (u, v, energies, ...) of the run: energies, samples, projected velocities.
 
+use std::sync::Arc;
+
+use super::sensor::Sensor;
+use super::view::{Gauges, View};
 use crate::ode::Failure;
-use crate::scene::Phase;
+use crate::scene::{Phase, Scene};
 use crate::settings::{Method, Settings};
 use crate::state::{State, StateMut};
 use crate::system::{Energy, System};
-use crate::trajectory::Sample;
+use crate::trajectory::{Commanded, Sample};
 
-/// The sample of `state` = (u, v, energies, ...) at `time`.
+/// The sample of `state` = (u, v, energies, ...) at `time`, without readings of sensors.
 pub(super) fn sample(
     phase: usize,
     system: &mut System,
@@ -18,7 +22,39 @@ pub(super) fn sample(
     let multipliers = system.multipliers(time, u, v)?.to_vec();
     let energy = energy(system, time, state);
     let constraint_drift = system.drift(time, u);
-    Ok(Sample { time, phase, u: u.to_vec(), v: v.to_vec(), multipliers, energy, constraint_drift })
+    Ok(Sample {
+        time,
+        phase,
+        u: u.to_vec(),
+        v: v.to_vec(),
+        multipliers,
+        energy,
+        constraint_drift,
+        sensors: Vec::new(),
+        commanded: Commanded::default(),
+    })
+}
+
+/// Adds to a sample what `sensors` read, and the phase in force if commands have changed it.
+pub(super) fn complete(
+    sample: &mut Sample,
+    sensors: &[Sensor],
+    (scene, gauges): (&Scene, &Gauges),
+    phase: &Arc<Phase>,
+    is_commanded: bool,
+) {
+    // commands to come do not change what it was
+    let frozen = || if phase.is_live() { Arc::new(phase.frozen()) } else { phase.clone() };
+    sample.commanded = Commanded(is_commanded.then(frozen));
+    if sensors.is_empty() {
+        return;
+    }
+    let Sample { time, ref u, ref v, energy, .. } = *sample;
+    let Energy { dissipated, supplied, .. } = energy;
+    let state = State { u, v, dissipated, supplied, multipliers: &sample.multipliers };
+    let view = View { scene, phase, gauges, time, state };
+    let readings = sensors.iter().map(|sensor| sensor.read(&view, sample)).collect();
+    sample.sensors = readings;
 }
 
 /// Energies of `state` = (u, v, energies, ...) at `time`.

@@ -10,6 +10,7 @@ use super::run::Run;
 use super::sampling::Sampling;
 use super::stage::{At, Stage};
 use crate::error::Error;
+use crate::external::Live;
 use crate::force::Forces;
 use crate::input::InputError;
 use crate::scene::{Phase, Scene};
@@ -40,6 +41,7 @@ pub struct Checkpoint {
     state: Vec<f64>,
     phase: Arc<Phase>,
     number: usize,
+    is_commanded: bool,
     constraints: Arc<()>,
     plan: Plan,
     first_step: Option<f64>,
@@ -106,12 +108,19 @@ impl Run {
     pub(super) fn sample(&mut self, t: f64, state: &[f64]) -> Result<Sample, Error> {
         let number = self.number;
         let sample = records::sample(number, self.system_mut()?, t, state);
-        sample.map_err(|failure| self.failure(failure.into_error(), 0.0))
+        let mut sample = sample.map_err(|failure| self.failure(failure.into_error(), 0.0))?;
+        self.complete(&mut sample);
+        Ok(sample)
+    }
+
+    /// Whether another phase follows at time `t` (s), at or before the end of the last step.
+    pub(super) fn is_past_phase(&self, t: f64) -> bool {
+        self.time <= t && self.time >= self.phase.until && !self.is_last_phase()
     }
 
     /// Enters the next phase if the present one is at its end.
     pub(super) fn leave_phase(&mut self) -> Result<(), Error> {
-        if self.time < self.phase.until || self.is_last_phase() {
+        if !self.is_past_phase(self.time) {
             return Ok(());
         }
         let system = self.rest()?;
@@ -143,10 +152,10 @@ impl Run {
             self.expect_commands()?;
             match self.change_loads(forces)? {
                 None => {
+                    self.is_commanded = true;
                     self.phase = Arc::new(phase);
                     self.find_stops();
                     self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
-                    self.remember();
                     return Ok(());
                 }
                 Some(refused) => forces = refused,
@@ -174,7 +183,7 @@ impl Run {
             self.constraints = Arc::new(());
             self.stage.follow(Plan::new(&self.settings, &mut system, self.time, &self.state));
         }
-        self.phase = Arc::new(phase);
+        (self.phase, self.is_commanded) = (Arc::new(phase), true);
         self.resume(system);
         Ok(())
     }
@@ -197,17 +206,37 @@ impl Run {
         let (At::Work(work), None) = (&mut self.at, &self.stage.ended) else {
             return Ok(Some(forces));
         };
-        if !work.stepper.system_mut().change_forces(forces.clone()) {
+        if !work.stepper.system_mut().change_forces(forces.clone()) || !self.keep_on()? {
             return Ok(Some(forces));
         }
+        Ok(None)
+    }
+
+    /// Sets numbers of the phase in force.
+    pub(super) fn set_live(&mut self, live: &Live, values: &[f64]) -> Result<(), Error> {
+        self.expect_commands()?;
+        live.set(values);
+        if !self.keep_on()? {
+            let mut system = self.rest()?;
+            system.forget_tangents();
+            self.resume(system);
+        }
+        Ok(())
+    }
+
+    /// Lets the integrator at work, if there is one that can, go on under forces that have jumped.
+    fn keep_on(&mut self) -> Result<bool, Error> {
+        let (At::Work(work), None) = (&mut self.at, &self.stage.ended) else { return Ok(false) };
+        work.stepper.system_mut().forget_tangents();
         match work.stepper.resume(self.time, &self.state) {
             Ok(true) => {
                 work.stop = f64::NAN;
                 let (system, located) = (work.stepper.system(), self.stage.plan.locates());
                 self.stage.leg.events.begin(system, self.time, &self.state, located);
-                Ok(None)
+                self.remember();
+                Ok(true)
             }
-            Ok(false) => Ok(Some(forces)),
+            Ok(false) => Ok(false),
             Err(source) => Err(self.failure(source, 0.0)),
         }
     }
@@ -218,8 +247,9 @@ impl Run {
             scene: self.scene.clone(),
             time,
             state: state.to_vec(),
-            phase: self.phase.clone(),
+            phase: self.frozen_phase(),
             number: self.number,
+            is_commanded: self.is_commanded,
             constraints: self.constraints.clone(),
             plan: self.stage.plan.clone(),
             first_step: self.next_step(),
@@ -228,6 +258,11 @@ impl Run {
             balance: self.balance,
             energies: self.trajectory.noted(),
         }
+    }
+
+    /// The phase in force, which later commands do not touch.
+    fn frozen_phase(&self) -> Arc<Phase> {
+        if self.phase.is_live() { Arc::new(self.phase.frozen()) } else { self.phase.clone() }
     }
 
     /// Comes back to a state.
@@ -247,6 +282,7 @@ impl Run {
                 system = self.equations(phase, state)?;
             }
             (self.phase, self.constraints) = (phase.clone(), constraints.clone());
+            self.is_commanded = checkpoint.is_commanded;
         }
         if self.number != *number {
             self.number = *number;
@@ -267,10 +303,12 @@ impl Run {
     /// A run of its own from `state` = (u, v, energies) at time `t` (s) on.
     pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
         let rows = self.system().map_or_else(Vec::new, |system| system.rows().to_vec());
-        let forces = self.scene.forces_in(&self.phase)?;
-        let (alpha, name) = (self.settings.alpha, &self.phase.name);
+        let phase = self.frozen_phase();
+        let forces = self.scene.forces_in(&phase)?;
+        let (alpha, name) = (self.settings.alpha, &phase.name);
         let system = System::new(self.model.clone(), forces, rows, alpha, name)?;
         let mut run = self.twin();
+        run.phase = phase;
         run.time = t;
         run.state.copy_from_slice(state);
         run.sample_from(t);
@@ -335,6 +373,8 @@ impl Run {
     /// Takes samples at other times from the end of the last step on.
     pub(super) fn record(&mut self, sampling: &Sampling) {
         self.sampling = sampling.clone();
+        let sensors = sampling.quantities();
+        self.trajectory.unread(sensors);
         self.sample_from(self.time);
     }
 

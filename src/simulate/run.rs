@@ -13,6 +13,7 @@ use super::records::{self, energy, project};
 use super::sampling::Sampling;
 use super::stage::{At, Stage, Work};
 use super::stepper::{self, Failed, Stepper};
+use super::view::Gauges;
 use crate::constraint::{PhaseStart, prescribe};
 use crate::error::Error;
 use crate::force::Forces;
@@ -24,13 +25,14 @@ use crate::scene::{Phase, Scene};
 use crate::settings::{AbsoluteTolerances, Settings};
 use crate::state::ENERGIES;
 use crate::system::System;
-use crate::trajectory::{IntegrationFailure, Interrupted, Trajectory};
+use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// A scene on its way.
 pub(super) struct Run {
     pub(super) scene: Arc<Scene>,
     pub(super) settings: Settings,
     pub(super) model: Arc<Model>,
+    pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
     atol: AbsoluteTolerances,
     /// Started with the run.
@@ -38,6 +40,8 @@ pub(super) struct Run {
     /// The phase in force, as commands have changed it, and its number.
     pub(super) phase: Arc<Phase>,
     pub(super) number: usize,
+    /// Whether commands have changed it.
+    pub(super) is_commanded: bool,
     /// Identity of the constraints in force.
     pub(super) constraints: Arc<()>,
     pub(super) stage: Stage,
@@ -71,7 +75,7 @@ impl Run {
         settings: &Settings,
         sampling: &Sampling,
         clock: Instant,
-        model: Arc<Model>,
+        (model, gauges): (Arc<Model>, Gauges),
         forces: Forces,
     ) -> Result<Self, Error> {
         let phase = scene.first_phase()?;
@@ -79,7 +83,7 @@ impl Run {
         let mut system = scene.system(&model, phase, forces, &start, settings.alpha)?;
         let mut state = [scene.initial_state().as_slice().concat(), vec![0.0; ENERGIES]].concat();
         project(settings, phase, &mut system, 0.0, &mut state);
-        let first = records::sample(0, &mut system, 0.0, &state)
+        let mut first = records::sample(0, &mut system, 0.0, &state)
             .map_err(|failure| scene.bad_start(failure))?;
         if !first.energy.balance().is_finite() {
             let reason = "the energies are beyond the range of double precision";
@@ -93,14 +97,21 @@ impl Run {
         };
         let plan = Plan::new(settings, &mut system, 0.0, &state);
         let times = sampling.within(0.0, phase.until);
+        let (phase, balance) = (Arc::new(phase.clone()), first.energy.balance());
+        let sensors = &sampling.sensors;
+        records::complete(&mut first, sensors, (scene, &gauges), &phase, false);
+        let mut trajectory = Trajectory::new(scene, report, first);
+        trajectory.sensors = sampling.quantities();
         let mut run = Self {
             stage: Stage::new(plan, times, scene.stops(0), settings.max_steps),
-            phase: Arc::new(phase.clone()),
+            phase,
+            is_commanded: false,
             number: 0,
             constraints: Arc::new(()),
             at: At::Nothing,
             settings: settings.clone(),
             model,
+            gauges: Arc::new(gauges),
             sampling: sampling.clone(),
             atol: settings.tolerances(scene.body()),
             clock,
@@ -109,8 +120,8 @@ impl Run {
             steps: 0,
             standing: 0,
             good: Good::default(),
-            balance: first.energy.balance(),
-            trajectory: Trajectory::new(scene, report, first),
+            balance,
+            trajectory,
             // that of strains of a thousandth
             least_energy: 1e-6 * scene.body().material().young * scene.body().volume(),
             pause: None,
@@ -202,10 +213,12 @@ impl Run {
     pub(super) fn next_phase(&mut self, system: System) -> Result<System, Error> {
         self.trajectory.report = self.report();
         let scene = self.scene.clone();
-        let phase = &scene.phases()[self.number + 1];
-        let mut next = self.followed_by(phase, &system)?;
-        (self.number, self.phase) = (self.number + 1, Arc::new(phase.clone()));
-        project(&self.settings, phase, &mut next, self.time, &mut self.state);
+        let phase = scene.phases()[self.number + 1].clone();
+        let phase = Arc::new(phase.after(&self.phase, scene.obstacles(), self.time));
+        let mut next = self.followed_by(&phase, &system)?;
+        (self.number, self.phase, self.is_commanded) =
+            (self.number + 1, phase.clone(), phase.is_turned());
+        project(&self.settings, &phase, &mut next, self.time, &mut self.state);
         let plan = Plan::new(&self.settings, &mut next, self.time, &self.state);
         (self.stage, self.constraints) = (self.new_stage(plan), Arc::new(()));
         self.begin(&next);
@@ -344,7 +357,11 @@ impl Run {
             leg.taken += 1;
             stepper.interpolate(t, sample)?;
             let taken = records::sample(self.number, stepper.system_mut(), t, sample);
-            self.trajectory.push(taken.map_err(Failure::into_error)?);
+            let (mut taken, own) =
+                (taken.map_err(Failure::into_error)?, (&*self.scene, &*self.gauges));
+            let sensors = &self.sampling.sensors;
+            records::complete(&mut taken, sensors, own, &self.phase, self.is_commanded);
+            self.trajectory.push(taken);
         }
         let (system, arrived) = arrival(stepper, event, sample)?;
         let step = time - self.time;
@@ -375,11 +392,13 @@ impl Run {
             scene: self.scene.clone(),
             settings: self.settings.clone(),
             model: self.model.clone(),
+            gauges: self.gauges.clone(),
             sampling: self.sampling.clone(),
             atol: self.atol,
             clock: Instant::now(),
             phase: self.phase.clone(),
             number: self.number,
+            is_commanded: self.is_commanded,
             constraints: self.constraints.clone(),
             stage: self.new_stage(self.stage.plan.clone()),
             at: At::Nothing,
@@ -419,10 +438,19 @@ impl Run {
         let mut system = self.stage.rest(work);
         if self.time > self.trajectory.last().time {
             let last = records::sample(self.number, &mut system, self.time, &self.state);
-            last.into_iter().for_each(|sample| self.trajectory.push(sample));
+            if let Ok(mut last) = last {
+                self.complete(&mut last);
+                self.trajectory.push(last);
+            }
         }
         self.at = At::Rest(system);
         self.failure(source, step)
+    }
+
+    /// Adds to a sample what is not of the equations.
+    pub(super) fn complete(&self, sample: &mut Sample) {
+        let (sensors, own) = (&self.sampling.sensors, (&*self.scene, &*self.gauges));
+        records::complete(sample, sensors, own, &self.phase, self.is_commanded);
     }
 
     pub(super) fn failure(&self, source: Failed, step: f64) -> Error {

@@ -1,12 +1,18 @@
-//! When the motion is sampled.
+//! When the motion is sampled, and what is read then.
 
+use super::sensor::Sensor;
+use super::view::View;
 use crate::input::{InputError, positive};
+use crate::trajectory::{Quantity, Sample};
 
 /// When the motion is sampled. The start and the end of each phase always are.
 ///
 /// Samples come from the dense output of the integrator; they never shorten its steps.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Sampling(Times);
+#[derive(Debug, Clone, Default)]
+pub struct Sampling {
+    times: Times,
+    pub(super) sensors: Vec<Sensor>,
+}
 
 #[derive(Debug, Clone, PartialEq, Default)]
 enum Times {
@@ -19,21 +25,62 @@ enum Times {
 impl Sampling {
     /// At t = 0 and at the ends of the phases only.
     pub fn phase_ends() -> Self {
-        Self(Times::PhaseEnds)
+        Self::default()
     }
 
     /// At all multiples of `step` (s).
     pub fn every(step: f64) -> Self {
-        Self(Times::Every(step))
+        Self { times: Times::Every(step), sensors: Vec::new() }
     }
 
     /// At the given times (s), in any order.
     pub fn at(times: impl Into<Vec<f64>>) -> Self {
-        Self(Times::At(times.into()))
+        Self { times: Times::At(times.into()), sensors: Vec::new() }
+    }
+
+    /// Adds a sensor: a number that `reading` reads with each sample, beside what samples hold by themselves
+    /// ([`Sample::sensors`], [`Trajectory::sensors`](crate::Trajectory::sensors); a column of tables).
+    ///
+    /// ```
+    /// use pliant::{Sampling, Settings, samples};
+    ///
+    /// let sampling = Sampling::every(0.1)
+    ///     .sensor("width", "m", |view, _| {
+    ///         let [left, right] = ["left", "right"].map(|side| view.position(side));
+    ///         left.and_then(|left| Ok(right?[0] - left[0])).unwrap_or(f64::NAN)
+    ///     })
+    ///     .sensor("stored", "J", |_, sample| sample.energy.strain);
+    /// let trajectory = samples::square_jump(4)?.simulate(&Settings::default(), &sampling)?;
+    /// let widest = trajectory.samples().iter().map(|sample| sample.sensors[0]).fold(0.0, f64::max);
+    /// assert!(widest > 0.34); // it bulges while it is pressed
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn sensor(
+        mut self,
+        name: impl Into<String>,
+        unit: impl Into<String>,
+        reading: impl Fn(&View, &Sample) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        let quantity = Quantity { name: name.into(), unit: unit.into() };
+        self.sensors.push(Sensor::new(quantity, reading));
+        self
+    }
+
+    /// Names and units of the sensors.
+    pub(super) fn quantities(&self) -> Vec<Quantity> {
+        self.sensors.iter().map(|sensor| sensor.quantity.clone()).collect()
     }
 
     pub(super) fn validate(&self, end: f64) -> Result<(), InputError> {
-        match &self.0 {
+        for (number, Sensor { quantity: Quantity { name, .. }, .. }) in
+            self.sensors.iter().enumerate()
+        {
+            if self.sensors[..number].iter().any(|other| other.quantity.name == *name) {
+                let mend = "two sensors have it: name one of them otherwise";
+                return Err(InputError::new("name of a sensor", format!("\"{name}\""), mend));
+            }
+        }
+        match &self.times {
             Times::PhaseEnds => Ok(()),
             Times::Every(step) => {
                 positive("sampling step", *step, "s")?;
@@ -59,7 +106,7 @@ impl Sampling {
         // times that round-off alone keeps apart from the ends of the phase are those ends
         let apart = 1e-9 * (end - start);
         let (after, before) = (start + apart, end - apart);
-        let (inner, count) = match &self.0 {
+        let (inner, count) = match &self.times {
             Times::PhaseEnds => (Inner::Listed(Vec::new()), 0),
             Times::Every(step) => {
                 let first = (after / step).floor() + 1.0;

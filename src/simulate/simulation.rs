@@ -1,14 +1,15 @@
 //! A simulation that other programs hold in their hands.
 
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::time::Instant;
 
 use super::renewal::Checkpoint;
 use super::run::Run;
 use super::sampling::Sampling;
+use super::stage::At;
 use super::view::{Gauges, View};
-use crate::error::Error;
+use super::watch::{Arrival, Watch};
+use crate::error::{Error, Panicked, guarded};
 use crate::input::{InputError, finite, positive};
 use crate::report::Report;
 use crate::scene::Scene;
@@ -39,16 +40,17 @@ use crate::trajectory::{Sample, Trajectory};
 /// the next look after each command ends a step there.
 ///
 /// After an error that is no [`Error::Integration`] the simulation is as it was before the call; after one of
-/// those it rests where the integrator gave up.
+/// those it rests where the integrator gave up. A panic of a function that was given to the scene or the
+/// simulation becomes such an error, too.
 pub struct Simulation {
     pub(super) run: Run,
-    gauges: Arc<Gauges>,
     /// The present: at the end of the last step or within it.
     pub(super) time: f64,
     /// (u, v, energies)
     pub(super) now: Vec<f64>,
     /// Whether there was a command since time went on.
     pub(super) commanded: bool,
+    pub(super) watches: Vec<Watch<Self>>,
 }
 
 impl Scene {
@@ -62,12 +64,12 @@ impl Scene {
         let mut all = self.forces_from_start()?;
         let first = all.first().cloned().unwrap_or_default();
         // matrices have room for chambers that no phase fills
-        let gauges = Arc::new(Gauges::new(self)?);
+        let gauges = Gauges::new(self)?;
         all.push(gauges.chambers());
-        let model = self.model(&all);
-        let run = Run::new(self, settings, &Sampling::phase_ends(), clock, model, first)?;
+        let own = (self.model(&all), gauges);
+        let run = Run::new(self, settings, &Sampling::phase_ends(), clock, own, first)?;
         let (time, now) = (run.time, run.state.clone());
-        Ok(Simulation { run, gauges, time, now, commanded: false })
+        Ok(Simulation { run, time, now, commanded: false, watches: Vec::new() })
     }
 }
 
@@ -79,9 +81,9 @@ impl Simulation {
 
     /// The motion at the present time.
     pub fn view(&self) -> View<'_> {
-        let Self { run, gauges, time, now, .. } = self;
+        let Self { run, time, now, .. } = self;
         let state = State::of(now, run.scene.body().dofs());
-        View { scene: &run.scene, gauges, time: *time, state }
+        View { scene: &run.scene, phase: &run.phase, gauges: &run.gauges, time: *time, state }
     }
 
     /// The energies at the present time; computing them costs about an evaluation of the forces.
@@ -152,33 +154,40 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Lets time go on to `t` (s).
+    /// Lets time go on to `t` (s). Returns whether it came so far: an action of [`when`](Self::when) may have
+    /// stopped it before.
     ///
     /// # Errors
     /// A time before the present or after the end of the scene; [`Error::Integration`] if the integrator
     /// gives up.
-    pub fn advance_to(&mut self, t: f64) -> Result<(), Error> {
+    pub fn advance_to(&mut self, t: f64) -> Result<bool, Error> {
         self.check(t)?;
         self.run.pause = Some(t).filter(|_| self.commanded);
         self.commanded = false;
+        if !self.watches.is_empty() {
+            let arrival = self.advance_watched(t, None);
+            self.run.pause = None;
+            return Ok(arrival? == Arrival::Time);
+        }
         while self.run.time < t && self.advance()? {}
         self.run.pause = None;
-        self.look(t)
+        self.look(t)?;
+        Ok(true)
     }
 
-    /// Lets a time `dt` (s) pass.
+    /// Lets a time `dt` (s) pass. Returns whether it has passed.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
-    pub fn advance_by(&mut self, dt: f64) -> Result<(), Error> {
+    pub fn advance_by(&mut self, dt: f64) -> Result<bool, Error> {
         self.advance_to(self.time + dt)
     }
 
     /// Lets time go on to `t` (s), but at most until the sign of `event` changes. Returns whether it did: then
     /// the present is that time, to the round-off of the step that it lies in.
     ///
-    /// Signs are compared at the ends of steps: two changes within one step are none. An event that is 0 at the
-    /// start is one when its sign changes later.
+    /// Signs are compared eight times in each step, evenly spread: two changes in between are none. An event that is
+    /// 0 at the start is one when its sign changes later.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
@@ -189,47 +198,11 @@ impl Simulation {
     ) -> Result<bool, Error> {
         self.check(t)?;
         self.commanded = false;
-        let mut before = event(&self.view());
-        while self.time < t {
-            if self.run.time <= self.time && !self.advance()? {
-                break;
-            }
-            let (start, end) = (self.time, self.run.time.min(t));
-            if end <= start {
-                continue;
-            }
-            self.look(end)?;
-            let after = event(&self.view());
-            if before * after < 0.0 || (after == 0.0 && before != 0.0) {
-                self.bisect([start, end], before, &mut event)?;
-                return Ok(true);
-            }
-            before = after;
-        }
-        Ok(false)
+        Ok(self.advance_watched(t, Some(&mut event))? == Arrival::Event)
     }
 
-    /// Moves the present to where `event`, which has the sign of `before` at the start, has lost it.
-    fn bisect(
-        &mut self,
-        [mut start, mut end]: [f64; 2],
-        before: f64,
-        event: &mut impl FnMut(&View) -> f64,
-    ) -> Result<(), Error> {
-        loop {
-            let middle = 0.5 * (start + end);
-            if middle <= start || middle >= end {
-                return self.look(end);
-            }
-            self.look(middle)?;
-            match before * event(&self.view()) > 0.0 {
-                true => start = middle,
-                false => end = middle,
-            }
-        }
-    }
-
-    /// Calls `controller` now and after each `period` (s), until time `t` (s): it looks and gives commands.
+    /// Calls `controller` now and after each `period` (s), until time `t` (s): it looks and gives commands. Returns
+    /// whether it came so far, as [`advance_to`](Self::advance_to).
     ///
     /// # Errors
     /// A period that is not above 0; what the controller returns; otherwise as
@@ -239,18 +212,18 @@ impl Simulation {
         period: f64,
         t: f64,
         mut controller: impl FnMut(&mut Self) -> Result<(), Error>,
-    ) -> Result<(), Error> {
+    ) -> Result<bool, Error> {
         positive("control period", period, "s")?;
         self.check(t)?;
         let start = self.time;
         for tick in 1_u64.. {
-            controller(self)?;
-            self.advance_to((start + tick as f64 * period).min(t))?;
-            if self.time >= t {
-                break;
+            guarded(|| controller(self))??;
+            let reached = self.advance_to((start + tick as f64 * period).min(t))?;
+            if self.time >= t || !reached {
+                return Ok(reached);
             }
         }
-        Ok(())
+        Ok(true)
     }
 
     /// Changes displacements (m) and velocities (m/s), as by an impact; what that adds to the energies
@@ -265,7 +238,7 @@ impl Simulation {
         let before = self.energy().balance();
         let mut state = self.now.clone();
         let parts = StateMut::of(&mut state, self.run.scene.body().dofs());
-        change(parts.u, parts.v);
+        guarded(|| change(parts.u, parts.v))?;
         finite("state", &state)?;
         let after = self.run.energy(self.time, &state).balance();
         *StateMut::of(&mut state, self.run.scene.body().dofs()).supplied += after - before;
@@ -301,8 +274,8 @@ impl Simulation {
     /// None that the start would not have given.
     pub fn fork(&self) -> Result<Self, Error> {
         let run = self.run.fork(self.time, &self.now)?;
-        let (gauges, now) = (self.gauges.clone(), self.now.clone());
-        Ok(Self { run, gauges, time: self.time, now, commanded: self.commanded })
+        let (time, now, commanded) = (self.time, self.now.clone(), self.commanded);
+        Ok(Self { run, time, now, commanded, watches: Vec::new() })
     }
 
     fn check(&self, t: f64) -> Result<(), InputError> {
@@ -316,17 +289,26 @@ impl Simulation {
     }
 
     /// Makes `t`, within the last step, the present.
-    fn look(&mut self, t: f64) -> Result<(), Error> {
-        self.run.look(t, &mut self.now)?;
+    pub(super) fn look(&mut self, t: f64) -> Result<(), Error> {
+        guarded(|| self.run.look(t, &mut self.now)).unwrap_or_else(|panic| self.panicked(panic))?;
         self.time = t;
         Ok(())
     }
 
     /// Takes a step; after a failure the present is where the integrator gave up.
-    fn advance(&mut self) -> Result<bool, Error> {
-        self.run.advance(&mut |_| ControlFlow::Continue(())).inspect_err(|_| {
+    pub(super) fn advance(&mut self) -> Result<bool, Error> {
+        let advanced = guarded(|| self.run.advance(&mut |_| ControlFlow::Continue(())));
+        advanced.unwrap_or_else(|panic| self.panicked(panic)).inspect_err(|_| {
             (self.time, self.run.pause) = (self.run.time, None);
             self.now.copy_from_slice(&self.run.state);
         })
+    }
+
+    /// The error of a step within which a function has panicked: the integrator is lost, and a new one begins
+    /// where the last step ended.
+    fn panicked<T>(&mut self, panic: Panicked) -> Result<T, Error> {
+        let error = self.run.failure(Box::new(panic), 0.0);
+        self.run.at = At::Nothing;
+        Err(error)
     }
 }

@@ -3,16 +3,17 @@
 use std::sync::Arc;
 
 use crate::body::{Body, CellField};
-use crate::external::{ChamberForce, SpringForce};
-use crate::force::Forces;
+use crate::external::{ChamberForce, Contact, SpringForce};
+use crate::force::{Force, Forces, NodalForces};
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::scene::Scene;
+use crate::scene::{Phase, Scene};
 use crate::state::State;
 
-/// The motion of a [`Simulation`](super::Simulation) at one time, without copies.
+/// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
 pub struct View<'a> {
     pub(super) scene: &'a Scene,
+    pub(super) phase: &'a Phase,
     pub(super) gauges: &'a Gauges,
     pub(super) time: f64,
     pub(super) state: State<'a>,
@@ -104,6 +105,66 @@ impl<'a> View<'a> {
     pub fn chamber_volume(&self, chamber: &str) -> Result<f64, InputError> {
         let number = self.scene.chamber_number(chamber, "chamber")?;
         Ok(self.gauges.chambers[number].volume(self.state.u))
+    }
+
+    /// Pressure in a chamber (Pa).
+    ///
+    /// # Errors
+    /// A name that no chamber has.
+    pub fn pressure(&self, chamber: &str) -> Result<f64, InputError> {
+        self.scene.chamber_number(chamber, "chamber")?;
+        let pressures = self.phase.pressures.iter().filter(|(name, _)| name == chamber);
+        Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
+    }
+
+    /// Force of the actuator of a spring (N), above 0 where it extends the spring.
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn actuation(&self, spring: &str) -> Result<f64, InputError> {
+        let number = self.scene.spring_number(spring, "spring")?;
+        Ok(self.scene.actuations(self.phase, self.time)?[number])
+    }
+
+    /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping, less that of its
+    /// actuator.
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn spring_pull(&self, spring: &str) -> Result<f64, InputError> {
+        let number = self.scene.spring_number(spring, "spring")?;
+        let pull = self.gauges.springs[number].pull(self.state.u, self.state.v);
+        Ok(pull - self.actuation(spring)?)
+    }
+
+    /// Force (N) of an obstacle on the body, one component per dimension; 0 where it does not act.
+    ///
+    /// # Errors
+    /// A name that no obstacle has; a distance function of your own that has no meaning.
+    pub fn contact_force(&self, obstacle: &str) -> Result<Vec<f64>, InputError> {
+        self.scene.obstacle_number(obstacle, "obstacle")?;
+        let (body, State { u, v, .. }) = (self.body(), self.state);
+        let mut nodal = NodalForces::zeros(body.dofs());
+        for acting in self.phase.contacts(self.scene.obstacles())? {
+            if acting.name() == obstacle {
+                let added = Contact::new(body, acting)?.add_forces(self.time, u, v, &mut nodal);
+                added.map_err(|failure| {
+                    let reason = failure.into_error().to_string();
+                    InputError::new("obstacle", format!("\"{obstacle}\""), reason)
+                })?;
+            }
+        }
+        let mut forces = vec![0.0; body.dofs()];
+        nodal.add_up(&mut forces);
+        let along = |axis| forces.iter().skip(axis).step_by(body.dimension()).sum();
+        Ok((0..body.dimension()).map(along).collect())
+    }
+
+    /// Angle (rad, counter-clockwise) by which a two-dimensional body has turned as a whole: that of the rotation
+    /// which, in the mean over its mass, brings the natural shape nearest to the present one. `None` in other
+    /// dimensions.
+    pub fn rotation(&self) -> Option<f64> {
+        self.body().rotation(self.state.u)
     }
 
     /// Length of a spring (m).

@@ -29,7 +29,7 @@ use crate::input::InputError;
 use crate::report::Report;
 use crate::scene::Scene;
 use crate::system::{AtRest, Energy};
-use crate::trajectory::{Sample, Trajectory};
+use crate::trajectory::{Commanded, Sample, Trajectory};
 
 impl Scene {
     /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first
@@ -125,5 +125,7 @@ fn sample(time: f64, u: &[f64], multipliers: &[f64], energy: Energy) -> Sample {
         multipliers: multipliers.to_vec(),
         energy,
         constraint_drift: 0.0,
+        sensors: Vec::new(),
+        commanded: Commanded::default(),
     }
 }

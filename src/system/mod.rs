@@ -171,8 +171,14 @@ impl System {
         if forces.iter().any(|force| force.is_nonlinear()) != self.newton.follows {
             return false;
         }
-        (self.forces, self.newton.is_set) = (forces, false);
+        self.forces = forces;
+        self.forget_tangents();
         true
+    }
+
+    /// The tangents are no longer those of the forces.
+    pub(crate) fn forget_tangents(&mut self) {
+        self.newton.is_set = false;
     }
 
     /// The inertia matrix.

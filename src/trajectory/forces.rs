@@ -78,9 +78,11 @@ impl Trajectory {
         Ok((0..dimension).map(along).collect())
     }
 
-    fn phase_of(&self, sample: &Sample) -> Result<&Phase, InputError> {
+    /// The phase in force at a sample.
+    pub(crate) fn phase_of<'a>(&'a self, sample: &'a Sample) -> Result<&'a Phase, InputError> {
         let dofs = self.body().dofs();
-        let phase = self.scene.phases().get(sample.phase);
+        let phase = sample.commanded.0.as_deref();
+        let phase = phase.or_else(|| self.scene.phases().get(sample.phase));
         let fits = sample.u.len() == dofs && sample.v.len() == dofs;
         phase.filter(|_| fits).ok_or_else(|| foreign(sample))
     }

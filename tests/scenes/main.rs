@@ -9,6 +9,7 @@ mod beam_jump;
 mod compression;
 mod contact;
 mod contact_events;
+mod driving;
 mod forces;
 mod index_two;
 mod observer;

@@ -188,12 +188,15 @@ fn angular_momentum_of_a_turning_square() -> Outcome {
 fn samples_of_other_trajectories_are_refused() -> Outcome {
     let trajectory = pressed(&Sampling::phase_ends())?;
     let last = trajectory.last();
-    for bad in [
-        Sample { phase: 3, ..last.clone() },
-        Sample { u: vec![0.0; 8], ..last.clone() },
-        Sample { v: Vec::new(), ..last.clone() },
-        Sample { multipliers: vec![0.0; 7], ..last.clone() },
-    ] {
+    let spoiled = [
+        |sample: &mut Sample| sample.phase = 3,
+        |sample: &mut Sample| sample.u = vec![0.0; 8],
+        |sample: &mut Sample| sample.v.clear(),
+        |sample: &mut Sample| sample.multipliers = vec![0.0; 7],
+    ];
+    for spoil in spoiled {
+        let mut bad = last.clone();
+        spoil(&mut bad);
         let refused = trajectory.constraint_forces(&bad).unwrap_err().to_string();
         assert!(refused.contains("not a sample of this trajectory"), "{refused}");
         let contact = trajectory.contact_forces(&bad);

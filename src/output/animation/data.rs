@@ -8,7 +8,7 @@ use super::geometry::Geometry;
 use super::pack;
 use crate::body::{Body, CellField};
 use crate::error::Error;
-use crate::external::{Shape, ShapeKind, Spring};
+use crate::external::{Obstacle, Shape, ShapeKind, Spring};
 use crate::input::InputError;
 use crate::mesh::Mesh;
 use crate::output::role::Role;
@@ -49,13 +49,13 @@ pub(super) fn gather(trajectory: &Trajectory, title: &str) -> Result<Value, Erro
         "warnings": trajectory.report().warnings(),
         "view": view,
         "times": frames.iter().map(|sample| sample.time).collect::<Vec<_>>(),
-        "phases": phases(scene, &geometry)?,
+        "phases": phases_in_force(trajectory, &frames, &geometry)?,
         "body": geometry.to_json(),
         "motion": motion(trajectory, &frames, &geometry),
         "quantities": quantities(body, &frames, &geometry),
         "energies": energies(&frames),
-        "obstacles": obstacles(scene),
-        "springs": springs(scene, &frames, &geometry, &ends)?,
+        "obstacles": obstacles_in(trajectory, &frames)?,
+        "springs": springs(trajectory, &frames, &geometry, &ends)?,
         "points": geometry.places(&points),
     }))
 }
@@ -129,25 +129,51 @@ fn round_up(x: f64) -> f64 {
 
 /// Names and ends of the phases, and the drawn nodes that they hold and move.
 pub(super) fn phases(scene: &Scene, geometry: &Geometry) -> Result<Value, Error> {
-    let phase = |phase: &Phase| {
-        // a node that is held along one axis and moved along another counts as moved
-        let roles: BTreeMap<usize, Role> = {
-            let mut roles = scene.constrained_nodes(phase)?;
-            roles.sort_by_key(|&(_, role)| role);
-            roles.into_iter().collect()
-        };
-        let with = |wanted: Role| {
-            let nodes = roles.iter().filter(|&(_, &role)| role == wanted).map(|(&node, _)| node);
-            geometry.places(&nodes.collect::<Vec<_>>())
-        };
-        Ok(json!({
-            "name": phase.name(),
-            "end": phase.end(),
-            "held": with(Role::Held),
-            "moved": with(Role::Moved),
-        }))
+    let phases = scene.phases().iter();
+    phases.map(|phase| self::phase(scene, phase, phase.end(), geometry)).collect()
+}
+
+/// As [`phases`], where commands have changed them cut into stretches that hold and move the same nodes.
+fn phases_in_force(
+    trajectory: &Trajectory,
+    frames: &[&Sample],
+    geometry: &Geometry,
+) -> Result<Value, Error> {
+    let scene = trajectory.scene();
+    if frames.iter().all(|sample| sample.commanded.0.is_none()) {
+        return phases(scene, geometry);
+    }
+    let mut stretches: Vec<Value> = Vec::new();
+    for sample in frames {
+        let next = phase(scene, trajectory.phase_of(sample)?, sample.time, geometry)?;
+        let same =
+            |last: &&mut Value| ["name", "held", "moved"].iter().all(|&key| last[key] == next[key]);
+        match stretches.last_mut().filter(same) {
+            Some(last) => last["end"] = sample.time.into(),
+            None => stretches.push(next),
+        }
+    }
+    Ok(stretches.into())
+}
+
+/// A phase up to time `end` (s).
+fn phase(scene: &Scene, phase: &Phase, end: f64, geometry: &Geometry) -> Result<Value, Error> {
+    // a node that is held along one axis and moved along another counts as moved
+    let roles: BTreeMap<usize, Role> = {
+        let mut roles = scene.constrained_nodes(phase)?;
+        roles.sort_by_key(|&(_, role)| role);
+        roles.into_iter().collect()
     };
-    scene.phases().iter().map(phase).collect()
+    let with = |wanted: Role| {
+        let nodes = roles.iter().filter(|&(_, &role)| role == wanted).map(|(&node, _)| node);
+        geometry.places(&nodes.collect::<Vec<_>>())
+    };
+    Ok(json!({
+        "name": phase.name(),
+        "end": end,
+        "held": with(Role::Held),
+        "moved": with(Role::Moved),
+    }))
 }
 
 /// The names of the energies.
@@ -169,21 +195,48 @@ fn energies(frames: &[&Sample]) -> Value {
     packed.collect()
 }
 
-/// Shapes of the obstacles at t = 0 and their velocities, unions part by part.
+/// Shapes of the obstacles, unions part by part, and how they move.
 pub(super) fn obstacles(scene: &Scene) -> Value {
     let mut shapes = Vec::new();
-    let dimension = scene.body().dimension();
     for obstacle in scene.obstacles() {
-        let drift = obstacle.drift();
-        add_shape(obstacle.shape(), &in_view(&drift[..dimension]), &mut shapes);
+        let courses = json!([course(scene, obstacle, 0.0)]);
+        add_shape(obstacle.shape(), &courses, &mut shapes);
     }
     shapes.into()
 }
 
-fn add_shape(shape: &Shape, velocity: &[f64], shapes: &mut Vec<Value>) {
+/// As [`obstacles`], also where commands have changed how they move.
+fn obstacles_in(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Error> {
+    let (scene, mut shapes) = (trajectory.scene(), Vec::new());
+    for obstacle in scene.obstacles() {
+        let mut courses: Vec<Value> = Vec::new();
+        for sample in frames {
+            let moving = trajectory.phase_of(sample)?.moving(obstacle);
+            let next = course(scene, moving, sample.time);
+            if courses.last().is_none_or(|last| {
+                last["start"] != next["start"] || last["velocity"] != next["velocity"]
+            }) {
+                courses.push(next);
+            }
+        }
+        add_shape(obstacle.shape(), &courses.into(), &mut shapes);
+    }
+    Ok(shapes.into())
+}
+
+/// How an obstacle moves from time `since` (s) on: where it would have been at t = 0, from where it was said to
+/// be, and its velocity.
+fn course(scene: &Scene, obstacle: &Obstacle, since: f64) -> Value {
+    let dimension = scene.body().dimension();
+    let [start, velocity] =
+        [obstacle.displacement(0.0), obstacle.drift()].map(|x| in_view(&x[..dimension]));
+    json!({ "since": since, "start": start, "velocity": velocity })
+}
+
+fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
     let mut add = |kind: &str, mut shape: Value| {
         shape["kind"] = kind.into();
-        shape["velocity"] = velocity.into();
+        shape["courses"] = courses.clone();
         shapes.push(shape);
     };
     match shape.kind() {
@@ -203,7 +256,7 @@ fn add_shape(shape: &Shape, velocity: &[f64], shapes: &mut Vec<Value>) {
             add("capsule", json!({ "from": from, "to": to, "radius": radius }));
         }
         ShapeKind::Union(parts) => {
-            parts.iter().for_each(|part| add_shape(part, velocity, shapes));
+            parts.iter().for_each(|part| add_shape(part, courses, shapes));
         }
         // a function of one's own has no outline
         ShapeKind::Custom(_) => {}
@@ -227,13 +280,14 @@ pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<[usize; 2]>, Error> {
 
 /// Names and ends of the springs, and the forces of their actuators at each sample.
 fn springs(
-    scene: &Scene,
+    trajectory: &Trajectory,
     frames: &[&Sample],
     geometry: &Geometry,
     ends: &[[usize; 2]],
 ) -> Result<Value, Error> {
+    let scene = trajectory.scene();
     let forces =
-        frames.iter().map(|sample| scene.actuations(&scene.phases()[sample.phase], sample.time));
+        frames.iter().map(|sample| scene.actuations(trajectory.phase_of(sample)?, sample.time));
     let forces: Vec<Vec<f64>> = forces.collect::<Result<_, InputError>>()?;
     let packed = scene.springs().iter().zip(ends).enumerate().map(|(number, (spring, ends))| {
         json!({

@@ -35,7 +35,7 @@ impl View {
             low: [f64::INFINITY; 2],
             high: [f64::NEG_INFINITY; 2],
             tops: Vec::new(),
-            obstacles: samples.iter().map(|sample| outlines(trajectory, sample.time)).collect(),
+            obstacles: samples.iter().map(|sample| outlines(trajectory, sample)).collect(),
         };
         for sample in samples {
             let points = positions(trajectory, sample);

@@ -137,7 +137,7 @@ impl Snapshots {
             let nodes = scene.body().mesh().select(selection)?;
             marks.extend(nodes.into_iter().map(|node| (node, Mark::Ring)));
         }
-        let mut constrained = scene.constrained_nodes(&scene.phases()[sample.phase])?;
+        let mut constrained = scene.constrained_nodes(trajectory.phase_of(sample)?)?;
         constrained.sort_by_key(|&(_, role)| role);
         marks.extend(constrained.into_iter().map(|(node, role)| match role {
             Role::Held => (node, Mark::Held),

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use super::projection::{Point, drawn};
 use crate::external::{Shape, ShapeKind};
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Sample, Trajectory};
 
 /// Chords of a full circle.
 const CHORDS: usize = 96;
@@ -19,12 +19,13 @@ pub(super) enum Outline {
     Cavity(Vec<Point>),
 }
 
-/// The obstacles at time `t`; none in space, and none that is given by a function.
-pub(super) fn outlines(trajectory: &Trajectory, t: f64) -> Vec<Outline> {
+/// The obstacles at a sample; none in space, and none that is given by a function.
+pub(super) fn outlines(trajectory: &Trajectory, sample: &Sample) -> Vec<Outline> {
     let mut outlines = Vec::new();
     for obstacle in trajectory.scene().obstacles() {
         let dimension = trajectory.body().dimension();
-        let offset = obstacle.drift().map(|w| w * t);
+        let moving = trajectory.phase_of(sample).map_or(obstacle, |phase| phase.moving(obstacle));
+        let offset = moving.displacement(sample.time);
         add(obstacle.shape(), drawn(&offset[..dimension]), dimension, &mut outlines);
     }
     outlines

@@ -59,3 +59,9 @@ function hatching(context) {
   pattern.setTransform(new DOMMatrix().scale(1 / fine));
   return pattern;
 }
+
+/** Where a point of an obstacle is at `time`. */
+function moved({ courses }, point, time) {
+  const { start, velocity } = courses.findLast(({ since }) => since <= time) ?? courses[0];
+  return point.map((x, axis) => x + start[axis] + velocity[axis] * time);
+}

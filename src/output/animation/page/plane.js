@@ -91,10 +91,10 @@ function drawSolid(context, hatch, trace) {
 }
 
 function drawObstacle(context, layout, obstacle, time, hatch) {
-  const at = ([x, y]) => [
-    layout.x(x + obstacle.velocity[0] * time),
-    layout.y(y + obstacle.velocity[1] * time),
-  ];
+  const at = (point) => {
+    const [x, y] = moved(obstacle, point, time);
+    return [layout.x(x), layout.y(y)];
+  };
   const far = 2 * Math.hypot(...layout.room) + 100;
   const circle = () => context.arc(...at(obstacle.centre), obstacle.radius * layout.scale, 0, 7);
   if (obstacle.kind === "half-plane") {

@@ -117,7 +117,7 @@ function brightness(a, b, c) {
 
 /** How to draw an obstacle at `time`, and how far away it is. */
 function obstacleInSpace(obstacle, eye, time) {
-  const at = (x) => x.map((x, axis) => x + obstacle.velocity[axis] * time);
+  const at = (point) => moved(obstacle, point, time);
   const ball = (centre, radius) => ({
     depth: eye.depth(centre),
     trace: (context) => context.arc(...eye.place(centre), radius * eye.scale, 0, 7),

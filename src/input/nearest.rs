@@ -3,7 +3,7 @@
 use strsim::damerau_levenshtein;
 
 /// Message about a `word` that is none of the `known` ones.
-pub(super) fn unknown(word: &str, known: &[&str]) -> String {
+pub(crate) fn unknown(word: &str, known: &[&str]) -> String {
     match (nearest(word, known), known) {
         (_, []) => "there are none".into(),
         (Some(nearest), [_]) => format!("did you mean \"{nearest}\"?"),
@@ -13,7 +13,7 @@ pub(super) fn unknown(word: &str, known: &[&str]) -> String {
 }
 
 /// The words in quotes.
-pub(super) fn list(words: &[&str]) -> String {
+pub(crate) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
 }
 
