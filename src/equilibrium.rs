@@ -48,6 +48,9 @@ pub struct Equilibrium {
     pub iterations: usize,
     /// Factorizations of the tangent.
     pub factorizations: usize,
+    /// Evaluations of forces for their tangents by finite differences: of those that leave out
+    /// [`Force::add_tangents`](crate::force::Force::add_tangents).
+    pub difference_evaluations: usize,
     /// Load steps that converged.
     pub load_steps: usize,
     /// Load steps that did not, and were made smaller.
@@ -80,7 +83,15 @@ impl fmt::Display for Equilibrium {
             f,
             "{stability}; forces balanced to {residual:.1e} of {force_scale:.3e} N, \
              {iterations} iteration(s), {load_steps} load step(s)"
-        )
+        )?;
+        let differences = self.difference_evaluations;
+        match differences {
+            0 => Ok(()),
+            _ => write!(
+                f,
+                "; tangents of forces by finite differences: {differences} evaluations of these forces"
+            ),
+        }
     }
 }
 

@@ -146,10 +146,36 @@ impl Step<'_> {
     }
 }
 
+/// Where the tangents of a force come from: the answer of [`Force::add_tangents`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tangents {
+    /// The force has added them.
+    Added,
+    /// Finite differences of [`Force::add_forces`] stand in for them.
+    ByDifferences,
+}
+
 /// A force that depends on time t (s), displacements u (m) and velocities v (m/s) of the nodes.
 ///
-/// [`Scene::force`](crate::Scene::force) adds one of any crate to a scene. Vectors have dimension components for
-/// each node.
+/// [`Scene::force`](crate::Scene::force) adds one of any crate to a scene. It has to implement
+/// [`add_forces`](Self::add_forces), [`is_nonlinear`](Self::is_nonlinear), [`potential`](Self::potential) and
+/// [`reservoir`](Self::reservoir); the rest is for forces that couple distant nodes, have kinks or should cost less.
+///
+/// # What a force may rely on, and what it has to keep
+///
+/// - `u` and `v` have dimension components for each node of the body, node after node.
+/// - Integrators ask at trial points: in any order, back and forth in time, off the motion, more than once.
+///   The force is a function of (t, u, v) (and of held switches) alone, without a memory of earlier calls. What is not finite
+///   is refused like [`Failure::Recoverable`].
+/// - One simulation calls from one thread at a time, though not always the same. Clones of a scene and forks of a simulation
+///   share their forces, so those that run on several threads call at once. As they share held switches, too, a force with
+///   switches is for one simulation at a time.
+/// - The conservative part is -dU/du of the [`potential`](Self::potential) U: [`NodalForces`] says which part counts as
+///   heat and which as supplied. The energy balance of the report shows what a force does not account for.
+/// - [`hold_switches`](Self::hold_switches) is called with `None` at the start of a phase and after each change of the
+///   integrator; where contact events are located, with the switches as they are then, and anew after each event.
+/// - A panic passes through all integrators, those in C included, to the caller of the run. A
+///   [`Simulation`](crate::Simulation) is of no use after it.
 pub trait Force: Send + Sync {
     /// Adds the force at (t, u, v).
     ///
@@ -174,8 +200,12 @@ pub trait Force: Send + Sync {
     }
 
     /// Adds -df/du to `stiffness` and -df/dv to `damping`. They need not be symmetric: the Newton
-    /// matrix takes their symmetric part. A force whose [`is_nonlinear`](Self::is_nonlinear) is
-    /// false has none.
+    /// matrix takes their symmetric part.
+    ///
+    /// A force that leaves this out (and answers [`Tangents::ByDifferences`], without adding anything) gets finite differences
+    /// of [`add_forces`](Self::add_forces). They cost one evaluation at the state itself, and for each of the two matrices
+    /// one if the force does not depend on u or v, else one more than the dimension of space if it acts on each node by
+    /// itself, and some times as many if it couples nodes. The report tells how many there were. A force whose [`is_nonlinear`](Self::is_nonlinear) is false has no tangents.
     fn add_tangents(
         &self,
         _t: f64,
@@ -183,7 +213,8 @@ pub trait Force: Send + Sync {
         _v: &[f64],
         _stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
+        Tangents::ByDifferences
     }
 
     /// Adds, node by node, bounds on what -df/du (to `stiffness`, N/m) and -df/dv (to `damping`,
@@ -225,7 +256,11 @@ pub trait Force: Send + Sync {
         None
     }
 
-    /// Pairs of nodes (counted from 0) that the tangents couple though they may share no cell.
+    /// Pairs of nodes (counted from 0) that the force couples, u or v of one acting on the other: the tangents have no
+    /// room for others, but for nodes that share a cell, which need not be named.
+    ///
+    /// Finite differences look for couplings of the named pairs alone first, which is cheap, and of
+    /// nodes that share a cell if those do not explain how the force changes.
     fn couplings(&self) -> Vec<[usize; 2]> {
         Vec::new()
     }

@@ -4,6 +4,8 @@ mod nearest;
 
 use std::fmt::Display;
 
+pub(crate) use nearest::unknown_among;
+#[cfg(feature = "scene-file")]
 pub(crate) use nearest::{list, unknown};
 
 /// An input that cannot be used: which one, its value, and how to mend it.
@@ -29,15 +31,17 @@ impl InputError {
     }
 }
 
-/// Position of `name` among the names that are `known`; `input` is where it was given.
+/// Position of `name` among the names of all `what` (springs, chambers) that the scene has; `input` is where it was
+/// given.
 pub(crate) fn find<'a>(
     name: &str,
     known: impl Iterator<Item = &'a str> + Clone,
     input: &str,
+    what: &str,
 ) -> Result<usize, InputError> {
     known.clone().position(|other| other == name).ok_or_else(|| {
         let known: Vec<&str> = known.collect();
-        InputError::new(input, format!("\"{name}\""), unknown(name, &known))
+        InputError::new(input, format!("\"{name}\""), unknown_among(name, &known, "scene", what))
     })
 }
 

@@ -64,6 +64,11 @@ impl Report {
         self.phases.iter().map(|phase| phase.counts.jacobian_evaluations).sum()
     }
 
+    /// Evaluations of forces for their tangents by finite differences in all phases.
+    pub fn difference_evaluations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.difference_evaluations).sum()
+    }
+
     /// Factorizations of the Newton matrix in all phases.
     pub fn factorizations(&self) -> usize {
         self.phases.iter().map(|phase| phase.counts.factorizations).sum()
@@ -154,6 +159,14 @@ impl fmt::Display for Report {
             "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
              {energy_error:.1e} of {energy_scale:.1e} J"
         )?;
+        let (differences, tangents) = (self.difference_evaluations(), self.jacobian_evaluations());
+        if differences > 0 {
+            write!(
+                f,
+                "\ntangents of forces by finite differences: {differences} evaluations of these forces \
+                 for {tangents} Newton matrices; `Force::add_tangents` saves them"
+            )?;
+        }
         for PhaseReport { name, reason, counts, .. } in &self.phases {
             let events = match counts.contact_events {
                 0 => None,
@@ -180,6 +193,9 @@ pub struct Counts {
     /// Evaluations of the tangents of the forces, of which the Newton matrix is made; none where
     /// they are constant.
     pub jacobian_evaluations: usize,
+    /// Evaluations of forces for their tangents by finite differences: of those that leave out
+    /// [`Force::add_tangents`](crate::force::Force::add_tangents).
+    pub difference_evaluations: usize,
     /// Factorizations of the Newton matrix.
     pub factorizations: usize,
     /// Steps repeated because their error was too large.
@@ -202,6 +218,7 @@ impl Counts {
         self.steps += further.steps;
         self.evaluations += further.evaluations;
         self.jacobian_evaluations += further.jacobian_evaluations;
+        self.difference_evaluations += further.difference_evaluations;
         self.factorizations += further.factorizations;
         self.error_test_failures += further.error_test_failures;
         self.convergence_failures += further.convergence_failures;

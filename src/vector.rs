@@ -27,3 +27,10 @@ pub(crate) fn norm(x: &[f64]) -> f64 {
 pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
+
+/// Numbers between -1 and 1 without a pattern, the same in all runs.
+pub(crate) fn noise(length: usize, seed: usize) -> Vec<f64> {
+    let number =
+        |i: usize| (12.9898 * (i + 1 + 7919 * seed) as f64).sin().mul_add(43.758, 0.3).sin();
+    (0..length).map(number).collect()
+}

@@ -2,6 +2,8 @@
 //! allocations.
 
 use allocation_counter::measure;
+use pliant::force::{Force, NodalForces, Reservoir};
+use pliant::ode::Failure;
 use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
 use pliant::{
@@ -113,4 +115,55 @@ fn to_go_back_is_cheap() {
     );
     assert!(back.count_total < 100 && again.count_total < 20);
     assert!(20 * back.bytes_total < start.bytes_total);
+}
+
+/// Springs that draw all nodes back, without tangents.
+struct Springs;
+
+impl Force for Springs {
+    fn add_forces(
+        &self,
+        _t: f64,
+        u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        forces.conservative.iter_mut().zip(u).for_each(|(f, u)| *f -= 20.0 * u);
+        Ok(())
+    }
+
+    fn is_nonlinear(&self) -> bool {
+        true
+    }
+
+    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
+        u.iter().map(|u| 10.0 * u * u).sum()
+    }
+
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::Springs
+    }
+}
+
+#[test]
+fn tangents_by_differences_do_not_allocate() {
+    let scene = |end| {
+        Scene::new(square_jump(4).unwrap().body().clone())
+            .gravity([0.0, -9.8])
+            .force(Springs)
+            .phase(Phase::until(end))
+    };
+    let run = |end| {
+        let settings = Settings { method: Method::Arkode, rtol: 1e-6, ..Settings::default() };
+        let (scene, mut evaluations) = (scene(end), 0);
+        let allocated = measure(|| {
+            let trajectory = scene.simulate(&settings, &Sampling::phase_ends()).unwrap();
+            evaluations = trajectory.report().difference_evaluations();
+        });
+        (evaluations, allocated.count_total)
+    };
+    let ((few, allocations_of_few), (many, allocations_of_many)) = (run(0.5), run(2.0));
+    println!("{allocations_of_few} for {few} evaluations, {allocations_of_many} for {many}");
+    assert!(many > few + 300, "{few} and {many}");
+    assert!(allocations_of_many <= allocations_of_few + 5);
 }

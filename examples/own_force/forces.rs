@@ -1,7 +1,7 @@
 //! A magnet and a wind: forces that are not of the crate, by its public API only.
 
 use pliant::Body;
-use pliant::force::{Force, NodalForces, Reservoir};
+use pliant::force::{Force, NodalForces, Reservoir, Tangents};
 use pliant::ode::Failure;
 use pliant::sparse::BlockMatrix;
 
@@ -61,7 +61,7 @@ impl Force for Magnet {
         _v: &[f64],
         stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         for (n, mass) in self.masses.iter().enumerate() {
             let (d, square) = self.arm(n, u);
             let pull = 3.0 * self.strength * mass / square.powf(2.5);
@@ -71,6 +71,7 @@ impl Force for Magnet {
                 block[2 * i + j] += pull * (same - 5.0 * d[i] * d[j] / square);
             }
         }
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {
@@ -144,7 +145,7 @@ impl Force for Wind {
         v: &[f64],
         _stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         for &n in &self.nodes {
             let (_, past, speed) = self.stream(n, t, v);
             let Some(block) = damping.block_mut(n, n).filter(|_| speed > 0.0) else { continue };
@@ -153,6 +154,7 @@ impl Force for Wind {
                 block[2 * i + j] += 0.5 * self.drag * (same + past[i] * past[j] / speed);
             }
         }
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::assembly::Elements;
 use super::forces::NonlinearTerms;
 use super::regions::Regions;
-use crate::force::{Force, NodalForces, Reservoir};
+use crate::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
@@ -34,8 +34,9 @@ impl Force for Elastic {
         v: &[f64],
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         self.elements.add_tangents(&self.regions, self.terms, u, v, stiffness, damping);
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {

@@ -6,7 +6,7 @@ mod walls;
 
 use super::signal::{self, Signal, finite_at};
 use crate::body::Body;
-use crate::force::{Force, NodalForces, Reservoir};
+use crate::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::input::{InputError, positive};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
@@ -328,7 +328,7 @@ impl Force for ChamberForce {
         _v: &[f64],
         stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         let pressure = signal::sum(&self.pressure, t);
         match &self.geometry {
             Geometry::Polygon(polygon, factor) => {
@@ -338,6 +338,7 @@ impl Force for ChamberForce {
                 surface.add_hessian(-factor * pressure, u, stiffness);
             }
         }
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {

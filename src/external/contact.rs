@@ -7,7 +7,7 @@ use super::passage::{Path, deepest};
 use super::shape::Nearest;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
 use crate::body::Body;
-use crate::force::{Force, NodalForces, Reservoir, Step};
+use crate::force::{Force, NodalForces, Reservoir, Step, Tangents};
 use crate::input::InputError;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -208,7 +208,7 @@ impl Force for Contact {
         v: &[f64],
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         for touch in self.touches(t, u, v) {
             let Touch { point, ref nearest, velocity, rate, is_cut_off, .. } = touch;
             let (spring, damper) = match is_cut_off {
@@ -230,6 +230,7 @@ impl Force for Contact {
             spread(&point.on, by_u, stiffness);
             spread(&point.on, by_v, damping);
         }
+        Tangents::Added
     }
 
     /// A point shares K_p n n^T out among its nodes by parts that add up to 1, so that no row of

@@ -1,7 +1,7 @@
 //! Springs between two nodes, with damping and an actuator.
 
 use super::signal::{self, Signal, finite_at};
-use crate::force::{Force, NodalForces, Reservoir};
+use crate::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::input::{InputError, not_negative, positive};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
@@ -315,7 +315,7 @@ impl Force for SpringForce {
         v: &[f64],
         stiffness: &mut BlockMatrix,
         damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         let stretch = self.line.stretch(u, v);
         let Stretch { length, direction: e, rate, turning } = stretch;
         let along = -self.stiffness * (length - self.line.length) - self.damping * rate;
@@ -323,6 +323,7 @@ impl Force for SpringForce {
             e[i] * (self.stiffness * e[j] + self.damping * turning[j]) + stretch.turn(along, i, j)
         });
         self.line.add_tangent(damping, |i, j| self.damping * e[i] * e[j]);
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {
@@ -365,9 +366,10 @@ impl Force for Actuator {
         v: &[f64],
         stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         let (stretch, force) = (self.line.stretch(u, v), signal::sum(&self.force, t));
         self.line.add_tangent(stiffness, |i, j| stretch.turn(force, i, j));
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {

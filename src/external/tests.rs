@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::body::Body;
-use crate::force::{Force, NodalForces};
+use crate::force::{Force, NodalForces, Tangents};
 use crate::mesh::{CellKind, Cells, Mesh};
 use crate::samples::SQUARE_MATERIAL;
 use crate::sparse::{BlockMatrix, NodePattern};
@@ -47,7 +47,8 @@ fn check(
     let pattern = Arc::new(pattern.with_pairs(&force.couplings()));
     let mut stiffness = BlockMatrix::zeros(&pattern, dimension);
     let mut damping = stiffness.clone();
-    force.add_tangents(t, u, v, &mut stiffness, &mut damping);
+    let told = force.add_tangents(t, u, v, &mut stiffness, &mut damping);
+    assert!(told == Tangents::Added || !force.is_nonlinear());
     let largest = |x: &[f64]| x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
     // a force that is cut off has tangents of 0
     let scales = [&stiffness, &damping].map(|matrix| largest(&matrix.values).max(1.0));

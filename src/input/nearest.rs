@@ -3,12 +3,24 @@
 use strsim::damerau_levenshtein;
 
 /// Message about a `word` that is none of the `known` ones.
+#[cfg(feature = "scene-file")]
 pub(crate) fn unknown(word: &str, known: &[&str]) -> String {
     match (nearest(word, known), known) {
         (_, []) => "there are none".into(),
         (Some(nearest), [_]) => format!("did you mean \"{nearest}\"?"),
         (Some(nearest), _) => format!("did you mean \"{nearest}\"? Known: {}", list(known)),
         (None, _) => format!("known: {}", list(known)),
+    }
+}
+
+/// The same where the known ones are all `what` (springs, node sets) that the `owner` (scene, mesh) has.
+pub(crate) fn unknown_among(word: &str, known: &[&str], owner: &str, what: &str) -> String {
+    match (nearest(word, known), known) {
+        (_, []) => format!("the {owner} has no {what}"),
+        (Some(nearest), _) => {
+            format!("did you mean \"{nearest}\"? The {owner} has the {what} {}", list(known))
+        }
+        (None, _) => format!("the {owner} has the {what} {}", list(known)),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::Mesh;
-use crate::input::{InputError, unknown};
+use crate::input::{InputError, unknown_among};
 
 /// Nodes, by the name of a set, by number, or by a box around their natural positions.
 ///
@@ -62,7 +62,11 @@ impl Mesh {
         let nodes = match selection {
             Selection::Set(name) => self.sets.get(name).cloned().ok_or_else(|| {
                 let known: Vec<&str> = self.sets.keys().map(String::as_str).collect();
-                InputError::new("node set", format!("\"{name}\""), unknown(name, &known))
+                InputError::new(
+                    "node set",
+                    format!("\"{name}\""),
+                    unknown_among(name, &known, "mesh", "node sets"),
+                )
             })?,
             Selection::Numbers(numbers) => self.by_number(numbers)?,
             Selection::Box { min, max } => self.in_box(min, max)?,

@@ -19,6 +19,8 @@ pub(crate) struct Model {
     pub(crate) stiffness: Option<Arc<BlockMatrix>>,
     /// Constant part of -df/dv: B, for natural viscosity.
     pub(crate) damping: Option<Arc<BlockMatrix>>,
+    /// What displacements (m) and velocities (m/s) of small strains, a hundredth, are like.
+    pub(crate) scales: [f64; 2],
     /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
     /// that are large enough for that to matter.
     pub(crate) dissection: Option<Vec<usize>>,
@@ -40,11 +42,12 @@ impl Model {
             let is_large = pattern.nodes() >= LARGE;
             is_large.then(|| nested_dissection(pattern, positions, dimension))
         };
+        let scales = [body.mesh().size(), body.material().wave_speed()].map(|scale| 0.01 * scale);
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
         if strangers.is_empty() {
             let dissection = dissection(pattern);
-            return Self { dimension, inertia, stiffness, damping, dissection };
+            return Self { dimension, inertia, stiffness, damping, scales, dissection };
         }
         let pattern = Arc::new(pattern.with_pairs(&strangers));
         let moved = |matrix: Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
@@ -53,6 +56,7 @@ impl Model {
             inertia: Arc::new(inertia.moved_to(&pattern)),
             stiffness: stiffness.map(moved),
             damping: damping.map(moved),
+            scales,
             dissection: dissection(&pattern),
         }
     }

@@ -22,6 +22,7 @@ use crate::trajectory::Trajectory;
 /// | `states` | unknowns of the integrator, in the last phase |
 /// | `steps` | steps taken |
 /// | `rhs_evaluations`, `jacobian_evaluations` | evaluations of the right-hand side or residual, and of the tangents where they are not constant |
+/// | `difference_evaluations` | evaluations of forces for tangents by finite differences, of those that do not give theirs |
 /// | `factorizations` | factorizations of the Newton matrix |
 /// | `error_test_failures`, `convergence_failures` | steps repeated as their error was too large, Newton iterations that did not converge |
 /// | `wall_seconds` | wall-clock time of the whole run (s) |
@@ -77,6 +78,7 @@ pub fn write_report(
             "steps": report.steps(),
             "rhs_evaluations": report.evaluations(),
             "jacobian_evaluations": report.jacobian_evaluations(),
+            "difference_evaluations": report.difference_evaluations(),
             "factorizations": report.factorizations(),
             "error_test_failures": report.error_test_failures(),
             "convergence_failures": report.convergence_failures(),
@@ -105,6 +107,7 @@ fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
         "steps": counts.steps,
         "rhs_evaluations": counts.evaluations,
         "jacobian_evaluations": counts.jacobian_evaluations,
+        "difference_evaluations": counts.difference_evaluations,
         "factorizations": counts.factorizations,
         "error_test_failures": counts.error_test_failures,
         "convergence_failures": counts.convergence_failures,

@@ -163,17 +163,17 @@ impl Scene {
 
     /// Number (from 0) of the chamber with a name; `input` is where that was given.
     pub(crate) fn chamber_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
-        find(name, self.chambers.iter().map(Chamber::name), input)
+        find(name, self.chambers.iter().map(Chamber::name), input, "chambers")
     }
 
     /// Number (from 0) of the spring with a name; `input` is where that was given.
     pub(crate) fn spring_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
-        find(name, self.springs.iter().map(Spring::name), input)
+        find(name, self.springs.iter().map(Spring::name), input, "springs")
     }
 
     /// Number (from 0) of the obstacle with a name; `input` is where that was given.
     pub(crate) fn obstacle_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
-        find(name, self.obstacles.iter().map(Obstacle::name), input)
+        find(name, self.obstacles.iter().map(Obstacle::name), input, "obstacles")
     }
 
     /// The phases, in order.

@@ -276,7 +276,8 @@ impl Phase {
             return Ok(obstacles.iter().map(|obstacle| self.moving(obstacle)).collect());
         };
         let input = format!("contact of phase \"{}\"", self.name);
-        let find = |name: &String| find(name, obstacles.iter().map(Obstacle::name), &input);
+        let find =
+            |name: &String| find(name, obstacles.iter().map(Obstacle::name), &input, "obstacles");
         names.iter().map(|name| Ok(self.moving(&obstacles[find(name)?]))).collect()
     }
 

@@ -99,6 +99,7 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
             steps: s.steps as usize,
             evaluations: s.evaluations as usize,
             jacobian_evaluations: system.tangent_evaluations(),
+            difference_evaluations: system.difference_evaluations(),
             factorizations: s.linear_setups as usize,
             error_test_failures: s.error_test_failures as usize,
             convergence_failures: (s.nonlinear_failures + s.refused_steps) as usize,

@@ -110,6 +110,7 @@ impl Scene {
             force_scale: search.at.scale,
             iterations: search.iterations,
             factorizations: search.rest.factorizations(),
+            difference_evaluations: search.rest.system().difference_evaluations(),
             load_steps: search.load_steps,
             failed_steps: search.failed_steps,
         })

@@ -15,6 +15,7 @@ mod tests;
 use std::sync::Arc;
 
 use super::System;
+use super::newton_matrix::NewtonMatrix;
 use super::reduced::Source;
 use super::reduced::nodal_multipliers;
 use crate::constraint::Prescribed;
@@ -181,14 +182,14 @@ impl AtRest {
 
     /// Brings K to `u`. A linear phase has it at once.
     pub(crate) fn update_tangent(&mut self, fraction: f64, u: &[f64]) {
-        let newton = &mut self.system.newton;
-        let own = (newton.stiffness.begin(&None), newton.damping.begin(&None));
+        let NewtonMatrix { stiffness, damping, differences, .. } = &mut self.system.newton;
+        let own = (stiffness.begin(&None), damping.begin(&None));
         let (Some(stiffness), Some(damping)) = own else { return };
         let mut add = |loads: bool, stiffness: &mut BlockMatrix| {
             for (force, v) in self.system.forces.iter().zip(&self.velocities) {
                 if is_load(&**force) == loads {
                     let time = when(&**force, fraction, self.time);
-                    force.add_tangents(time, u, v, stiffness, damping);
+                    differences.add_tangents(force, time, [u, v], [stiffness, damping]);
                 }
             }
         };

@@ -21,6 +21,7 @@
 mod at_rest;
 mod cholesky;
 mod dae;
+mod differences;
 mod form;
 mod guide;
 mod mobility;
@@ -204,6 +205,11 @@ impl System {
     /// How many of them found a matrix that was not positive definite.
     pub(crate) fn indefinite(&self) -> usize {
         self.newton.indefinite()
+    }
+
+    /// Number of evaluations of forces that do not tell their tangents, for the tangents.
+    pub(crate) fn difference_evaluations(&self) -> usize {
+        self.newton.difference_evaluations()
     }
 
     /// The constraint forces lambda (N) at (t, u, v), row by row.

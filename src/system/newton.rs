@@ -46,6 +46,7 @@ impl System {
         let NewtonMatrix {
             stiffness,
             damping,
+            differences,
             follows,
             is_set,
             is_damped,
@@ -61,7 +62,7 @@ impl System {
         let Model { stiffness: k, damping: b, .. } = &*self.model;
         if let (Some(stiffness), Some(damping)) = (stiffness.begin(k), damping.begin(b)) {
             for force in &self.forces {
-                force.add_tangents(t, u, v, stiffness, damping);
+                differences.add_tangents(force, t, [u, v], [stiffness, damping]);
             }
         }
         *is_set = true;

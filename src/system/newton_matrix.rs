@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::differences::Differences;
 use super::reduced::{Coupling, Reduced};
 use crate::constraint::Row;
 use crate::model::Model;
@@ -11,6 +12,7 @@ pub(super) struct NewtonMatrix {
     pub(super) solver: Reduced,
     pub(super) stiffness: Tangent,
     pub(super) damping: Tangent,
+    pub(super) differences: Differences,
     /// Whether the tangents follow the state, and have been evaluated.
     pub(super) follows: bool,
     pub(super) is_set: bool,
@@ -72,6 +74,7 @@ impl NewtonMatrix {
             solver: Reduced::new(model, rows, Coupling::AllAxes),
             stiffness: Tangent::new(model, &model.stiffness, follows),
             damping: Tangent::new(model, &model.damping, follows),
+            differences: Differences::new(model.scales),
             follows,
             is_set: false,
             is_damped: model.damping.is_some(),
@@ -88,10 +91,15 @@ impl NewtonMatrix {
     /// Starts all counts from 0.
     pub(super) fn forget_counts(&mut self) {
         (self.tangent_evaluations, self.indefinite) = (0, 0);
+        self.differences.forget_counts();
     }
 
     pub(super) fn tangent_evaluations(&self) -> usize {
         self.tangent_evaluations
+    }
+
+    pub(super) fn difference_evaluations(&self) -> usize {
+        self.differences.evaluations()
     }
 
     pub(super) fn indefinite(&self) -> usize {

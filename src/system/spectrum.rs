@@ -6,7 +6,7 @@ use super::System;
 use super::at_rest::shifted;
 use super::reduced::{Coupling, Reduced};
 use crate::sparse::BlockMatrix;
-use crate::vector::dot;
+use crate::vector::{dot, noise};
 
 /// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
 /// the constraints allow. Contacts and springs count as far as they act in that state.
@@ -213,11 +213,4 @@ impl System {
     fn length(&self, x: &[f64]) -> f64 {
         self.model.inertia.quadratic_form(self.model.dimension, x).sqrt()
     }
-}
-
-/// Numbers between -1 and 1 without a pattern, the same in all runs.
-fn noise(length: usize, seed: usize) -> Vec<f64> {
-    let number =
-        |i: usize| (12.9898 * (i + 1 + 7919 * seed) as f64).sin().mul_add(43.758, 0.3).sin();
-    (0..length).map(number).collect()
 }

@@ -1,6 +1,8 @@
 //! The forces of the example `own_force`, which are not of the crate: tangents against finite differences of
-//! the forces, and the force of the magnet against its potential.
+//! the forces, and the force of the magnet against its potential. What becomes of forces without tangents is in
+//! `differences`.
 
+mod differences;
 #[path = "../../examples/own_force/forces.rs"]
 mod forces;
 

@@ -10,7 +10,7 @@ use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings,
 use pliant::{Trajectory, sundials};
 use serde_json::{Value, json};
 
-const COSTS: [&str; 11] = [
+const COSTS: [&str; 12] = [
     "method",
     "rtol",
     "alpha",
@@ -18,6 +18,7 @@ const COSTS: [&str; 11] = [
     "steps",
     "rhs_evaluations",
     "jacobian_evaluations",
+    "difference_evaluations",
     "factorizations",
     "error_test_failures",
     "convergence_failures",
@@ -63,7 +64,7 @@ fn a_finished_run() {
     assert_eq!(report["alpha"], 500.0);
     // 16 nodes: displacements, velocities, two energies, and 12 multipliers while it is held
     assert_eq!((&report["states"], &phases[0]["states"]), (&json!(66), &json!(78)));
-    for key in &COSTS[4..10] {
+    for key in &COSTS[4..11] {
         assert_eq!(report[key].as_f64().unwrap(), sum(&report, key), "{key}");
     }
     assert!(report["wall_seconds"].as_f64().unwrap() >= sum(&report, "wall_seconds"));

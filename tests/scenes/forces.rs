@@ -1,6 +1,6 @@
 //! Springs, chambers and changing loads in motion, against closed forms and conservation laws.
 
-use pliant::force::{Force, NodalForces, Reservoir};
+use pliant::force::{Force, NodalForces, Reservoir, Tangents};
 use pliant::ode::Failure;
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::sparse::BlockMatrix;
@@ -246,12 +246,13 @@ impl Force for Trap {
         _v: &[f64],
         stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         for node in 0..self.masses.len() {
             let block = stiffness.block_mut(node, node).unwrap();
             block[0] += self.stiffness(2 * node);
             block[3] += self.stiffness(2 * node);
         }
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {

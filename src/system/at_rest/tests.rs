@@ -4,6 +4,7 @@ use super::*;
 use crate::body::{Body, Strain};
 use crate::constraint::PhaseStart;
 use crate::external::{Chamber, Obstacle, Spring};
+use crate::force::Tangents;
 use crate::mesh::{Cells, Mesh};
 use crate::model::Model;
 use crate::samples::{BEAM_MATERIAL, SQUARE_MATERIAL};
@@ -31,8 +32,9 @@ impl Force for Growing {
         _v: &[f64],
         stiffness: &mut BlockMatrix,
         _damping: &mut BlockMatrix,
-    ) {
+    ) -> Tangents {
         stiffness.block_mut(2, 2).unwrap()[0] -= 1000.0 * u[2];
+        Tangents::Added
     }
 
     fn is_nonlinear(&self) -> bool {
