@@ -37,6 +37,15 @@ impl Force for Load {
     }
 }
 
+impl VectorSignal {
+    /// Its components, `dimension` of them, at time `t`.
+    pub(crate) fn components(&self, t: f64, dimension: usize) -> Vec<f64> {
+        let mut components = vec![0.0; dimension];
+        self.at(t, &mut components);
+        components
+    }
+}
+
 /// The same force, which changes with time, on each of some nodes.
 pub(crate) struct VaryingLoad {
     /// Nodes, counted from 0.

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::hand::Hand;
 use super::pace::Pace;
+use super::past::Past;
 use super::slider::Slider;
 use crate::output::Picture;
 use crate::scene::Scene;
@@ -16,20 +17,21 @@ pub(super) struct Present<'a> {
     pub(super) sliders: &'a [Slider],
     pub(super) hand: Option<&'a Hand>,
     pub(super) pace: &'a Pace,
+    pub(super) past: &'a Past,
     pub(super) playing: bool,
     pub(super) trouble: Option<&'a str>,
 }
 
-/// The frame of the present, with the colours of a quantity.
-pub(super) fn of(present: &Present, colours: Option<usize>) -> Value {
-    let &Present { simulation, picture, sliders, hand, pace, playing, trouble } = present;
+/// The frame of the present, with the colours of a quantity and the past after the time `since` (s).
+pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) -> Value {
+    let &Present { simulation, picture, sliders, hand, pace, past, playing, trouble } = present;
     let (view, report) = (simulation.view(), simulation.report());
     let (body, u) = (view.body(), view.displacements());
     let values = sliders.iter().map(|slider| slider.value(simulation).unwrap_or(f64::NAN));
     // of what springs do even those without a slider are shown
     let actuations = simulation.scene().springs().iter();
     let actuations =
-        actuations.map(|spring| simulation.actuation_of(spring.name()).unwrap_or(f64::NAN));
+        actuations.map(|spring| simulation.view().actuation(spring.name()).unwrap_or(f64::NAN));
     let phase = report.phases.last();
     let counts = phase.map(|phase| &phase.counts);
     let method = phase.map_or(report.method, |phase| phase.method);
@@ -42,7 +44,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>) -> Value {
         "trouble": trouble,
         "places": picture.places(body.mesh(), u),
         "colours": colours.and_then(|quantity| picture.colours(body, u, quantity)),
-        "energies": Picture::energies(&simulation.energy()),
+        "past": past.after(since),
         "sliders": values.collect::<Vec<_>>(),
         "actuations": actuations.collect::<Vec<_>>(),
         "pull": hand.map(Hand::to_json),

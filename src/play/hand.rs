@@ -117,13 +117,15 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>())
 }
 
-/// The node by the place where it is: loads of the scene, which name nodes by number or set, are others.
+/// The node by the place where it is, unless a load of the scene names it so, which the pull would replace.
 fn selection(scene: &Scene, node: usize) -> Result<Selection, InputError> {
     let mesh = scene.body().mesh();
     let at = mesh.position(node).to_vec();
     let place = Selection::Box { min: at.clone(), max: at };
+    let mut loads = scene.phases().iter().flat_map(|phase| &phase.loads);
+    let is_taken = loads.any(|(nodes, _)| *nodes == place);
     Ok(match mesh.select(&place)?.len() {
-        1 => place,
+        1 if !is_taken => place,
         _ => Selection::Numbers(vec![node + 1]),
     })
 }

@@ -5,9 +5,10 @@ use serde_json::{Map, Value};
 /// A message of the page.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Message {
-    /// What is to be seen, with the colours of a quantity.
+    /// What is to be seen, with the colours of a quantity, and what has been since a time (s).
     Look {
         colours: Option<usize>,
+        since: Option<f64>,
     },
     Play,
     Pause,
@@ -15,10 +16,8 @@ pub(super) enum Message {
     Start,
     /// Simulated seconds per second.
     Speed(f64),
-    /// A chamber and its pressure (Pa).
-    Pressure(String, f64),
-    /// A spring and the force of its actuator (N).
-    Actuate(String, f64),
+    /// A slider, counted from 0, and its value (Pa, N).
+    Slide(usize, f64),
     /// A drawn node is pulled towards a point (m), `strength` times as hard as usual.
     Pull {
         place: usize,
@@ -45,13 +44,15 @@ impl Message {
         let message = value.as_object().ok_or("a message is an object with the key \"do\"")?;
         let what = message.get("do").and_then(Value::as_str);
         match what.ok_or("a message needs the key \"do\", a text")? {
-            "look" => Ok(Self::Look { colours: whole(message, "colours").ok() }),
+            "look" => Ok(Self::Look {
+                colours: whole(message, "colours").ok(),
+                since: number(message, "since").ok(),
+            }),
             "play" => Ok(Self::Play),
             "pause" => Ok(Self::Pause),
             "start" => Ok(Self::Start),
             "speed" => Ok(Self::Speed(within(message, "value", SPEEDS)?)),
-            "pressure" => Ok(Self::Pressure(text_of(message)?, number(message, "value")?)),
-            "actuate" => Ok(Self::Actuate(text_of(message)?, number(message, "value")?)),
+            "slide" => Ok(Self::Slide(whole(message, "slider")?, number(message, "value")?)),
             "pull" => Ok(Self::Pull {
                 place: whole(message, "node")?,
                 to: numbers(message, "to")?,
@@ -62,11 +63,6 @@ impl Message {
             other => Err(format!("nothing is known how to do \"{other}\"")),
         }
     }
-}
-
-fn text_of(message: &Map<String, Value>) -> Result<String, String> {
-    let name = message.get("name").and_then(Value::as_str);
-    name.map(str::to_owned).ok_or_else(|| "it needs \"name\", a text".into())
 }
 
 fn number(message: &Map<String, Value>, key: &str) -> Result<f64, String> {
@@ -111,8 +107,8 @@ mod tests {
             (r#"{"do": "dance"}"#, "\"dance\""),
             (r#"{"do": "speed"}"#, "\"value\""),
             (r#"{"do": "speed", "value": 0}"#, "between"),
-            (r#"{"do": "pressure", "value": 1}"#, "\"name\""),
-            (r#"{"do": "pressure", "name": "air", "value": "1"}"#, "\"value\""),
+            (r#"{"do": "slide", "value": 1}"#, "\"slider\""),
+            (r#"{"do": "slide", "slider": 0, "value": "1"}"#, "\"value\""),
             (r#"{"do": "pull", "node": -1}"#, "\"node\""),
             (r#"{"do": "pull", "node": 1, "to": [1, null], "strength": 1}"#, "\"to\""),
         ] {

@@ -10,6 +10,7 @@ mod hand;
 mod http;
 mod message;
 mod pace;
+mod past;
 mod record;
 mod server;
 mod session;

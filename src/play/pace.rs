@@ -42,6 +42,11 @@ impl Pace {
         (self.speed * passed).min(self.most)
     }
 
+    /// Whether the last portion has taken as much computing as it may.
+    pub(super) fn is_spent(&self) -> bool {
+        self.last.elapsed().as_secs_f64() > BUDGET
+    }
+
     /// The last portion brought the simulation on by `moved` (s).
     pub(super) fn note(&mut self, moved: f64) {
         let cost = self.last.elapsed().as_secs_f64();

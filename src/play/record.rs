@@ -1,11 +1,15 @@
 //! What was done by the sliders, phase by phase.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::slider::{Kind, Slider, signals};
-use crate::external::Signal;
-use crate::scene::Scene;
+use super::slider::{Target, ascending};
+use crate::error::Error;
+use crate::external::{Signal, TimeTable, VectorSignal};
+use crate::mesh::Selection;
+use crate::scene::{Load, Phase, Scene};
 use crate::scene_file::{Rewritten, SceneFile, rewritten};
+use crate::simulate::Simulation;
 
 /// Parts of the scene within which a slider brings its value about: a jump is none for a body.
 const RAMP: f64 = 0.005;
@@ -42,10 +46,47 @@ fn file_name(path: &Path) -> String {
 struct Track {
     /// Number of the phase, from 0.
     phase: usize,
-    kind: Kind,
-    name: String,
+    target: Target,
     times: Vec<f64>,
     values: Vec<f64>,
+}
+
+/// What acts in place of what the scene has: on a chamber, a spring, or each of some nodes.
+pub(super) enum Course {
+    Pressure(String, Signal),
+    Actuation(String, Signal),
+    /// Times (s) and forces (N).
+    Load(Selection, Vec<f64>, Vec<Vec<f64>>),
+}
+
+impl Course {
+    /// Puts it in force.
+    pub(super) fn command(self, simulation: &mut Simulation) -> Result<(), Error> {
+        match self {
+            Self::Pressure(chamber, signal) => simulation.pressure(&chamber, signal),
+            Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
+            Self::Load(nodes, times, forces) => simulation.load_table(nodes, times, forces),
+        }
+    }
+
+    /// Puts it into the phase of a file. Returns the key of the list in which it stands there.
+    fn write(self, phase: &mut Phase) -> &'static str {
+        match self {
+            Self::Pressure(chamber, signal) => {
+                phase.set_pressure(&chamber, signal);
+                "pressure"
+            }
+            Self::Actuation(spring, signal) => {
+                phase.set_actuation(&spring, signal);
+                "actuate"
+            }
+            Self::Load(nodes, times, forces) => {
+                let force = VectorSignal::TimeTable(TimeTable::new(times, forces));
+                phase.set_load(nodes, Load::Varying(force));
+                "load"
+            }
+        }
+    }
 }
 
 impl Record {
@@ -63,19 +104,17 @@ impl Record {
             let known = changes.iter().position(|change| change.number == number);
             let at = known.or_else(|| {
                 let phase = scene.phases().get(number)?.clone();
-                changes.push(Rewritten { number, phase, changed: [false; 2] });
+                changes.push(Rewritten { number, phase, keys: BTreeSet::new() });
                 Some(changes.len() - 1)
             });
             let Some(change) = at.map(|at| &mut changes[at]) else { continue };
-            match track.kind {
-                Kind::Pressure => change.phase.set_pressure(&track.name, track.signal()),
-                Kind::Actuation => change.phase.set_actuation(&track.name, track.signal()),
-            }
-            change.changed[usize::from(track.kind == Kind::Actuation)] = true;
+            // a file has no functions of time, of which one moment would be taken
+            let key = self.course(scene, track, 0.0).write(&mut change.phase);
+            change.keys.insert(key);
         }
         let Original { text, path } = original;
         let cannot = |reason: String| format!("{} cannot be changed: {reason}", path.display());
-        let text = rewritten(text, &changes).map_err(cannot)?;
+        let text = rewritten(text, scene.body().dimension(), &changes).map_err(cannot)?;
         SceneFile::parse(&text, path).map_err(|error| cannot(error.to_string()))?;
         let name = file_name(path);
         Ok(format!(
@@ -83,40 +122,54 @@ impl Record {
         ))
     }
 
-    /// `slider` is moved to `value` at time `t` (s): what it brings about from then on, with all before.
-    pub(super) fn moved(&mut self, scene: &Scene, slider: &Slider, t: f64, value: f64) -> Signal {
+    /// `target` is moved to `value` at time `t` (s): what it brings about from then on, with all before.
+    pub(super) fn moved(&mut self, scene: &Scene, target: &Target, t: f64, value: f64) -> Course {
         let phases = scene.phases();
         let last = phases.len().saturating_sub(1);
         let number = phases.iter().position(|phase| t < phase.end()).unwrap_or(last);
-        let known = |track: &Track| {
-            (track.phase, track.kind, &track.name) == (number, slider.kind, &slider.name)
-        };
+        let known = |track: &Track| (track.phase, &track.target) == (number, target);
         let at = self.tracks.iter().position(known).unwrap_or_else(|| {
-            self.tracks.push(Track::of(scene, number, slider));
+            self.tracks.push(Track::of(scene, number, target.clone(), t));
             self.tracks.len() - 1
         });
-        let track = &mut self.tracks[at];
-        track.go(t, (RAMP * scene.end()).min(LONGEST_RAMP), value);
-        track.signal()
+        self.tracks[at].go(t, (RAMP * scene.end()).min(LONGEST_RAMP), value);
+        self.course(scene, &self.tracks[at], t)
+    }
+
+    /// What a track brings about from time `t` (s) on; for a component of a load, with the other ones.
+    fn course(&self, scene: &Scene, track: &Track, t: f64) -> Course {
+        let nodes = match &track.target {
+            Target::Pressure(chamber) => return Course::Pressure(chamber.clone(), track.signal()),
+            Target::Actuation(spring) => return Course::Actuation(spring.clone(), track.signal()),
+            Target::Load(nodes, _) => nodes,
+        };
+        let component = |axis| {
+            let target = Target::Load(nodes.clone(), axis);
+            let known = |other: &&Track| (other.phase, &other.target) == (track.phase, &target);
+            match self.tracks.iter().find(known) {
+                Some(moved) => moved.signal(),
+                None => Track::of(scene, track.phase, target, t).signal(),
+            }
+        };
+        let components: Vec<Signal> = (0..scene.body().dimension()).map(component).collect();
+        let times = ascending(components.iter().flat_map(Signal::breaks));
+        let force = |t: &f64| components.iter().map(|signal| signal.at(*t)).collect();
+        let forces = times.iter().map(force).collect();
+        Course::Load(nodes.clone(), times, forces)
     }
 }
 
 impl Track {
-    /// What the scene itself says.
-    fn of(scene: &Scene, number: usize, slider: &Slider) -> Self {
-        let own = scene.phases().get(number).into_iter();
-        let own: Vec<&Signal> =
-            own.flat_map(|phase| signals(phase, slider.kind, &slider.name)).collect();
-        let mut times: Vec<f64> = own.iter().flat_map(|signal| signal.breaks()).copied().collect();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        // without a break it is constant
+    /// What the scene itself says; of a function of time without breaks, its value at time `t` (s).
+    fn of(scene: &Scene, number: usize, target: Target, t: f64) -> Self {
+        let phase = scene.phases().get(number);
+        let mut times = phase.map_or_else(Vec::new, |phase| target.breaks_in(phase));
         if times.is_empty() {
-            times.push(0.0);
+            times.push(t);
         }
-        let sum = |t: &f64| own.iter().map(|signal| signal.at(*t)).sum();
-        let values = times.iter().map(sum).collect();
-        Self { phase: number, kind: slider.kind, name: slider.name.clone(), times, values }
+        let value = |t: &f64| phase.map_or(0.0, |phase| target.value_in(scene, phase, *t));
+        let values = times.iter().map(value).collect();
+        Self { phase: number, target, times, values }
     }
 
     /// From its value at time `t` on it goes to `value` within a time `ramp` (s).
@@ -141,7 +194,8 @@ mod tests {
     #[test]
     fn moves_begin_where_the_slider_is() {
         let (times, values) = (vec![0.0, 1.0], vec![0.0, 10.0]);
-        let mut track = Track { phase: 0, kind: Kind::Pressure, name: "air".into(), times, values };
+        let target = Target::Pressure("air".into());
+        let mut track = Track { phase: 0, target, times, values };
         track.go(0.5, 0.1, 7.0);
         assert_eq!((&track.times, &track.values), (&vec![0.0, 0.5, 0.6], &vec![0.0, 5.0, 7.0]));
         // before it is there it is moved on

@@ -39,7 +39,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 const RECOVERY: Duration = Duration::from_millis(50);
 
 /// A scene that is played in a web browser on this machine: time goes on and stops as a person wants, who sets
-/// pressures and forces of actuators by sliders and pulls nodes with the mouse.
+/// pressures, forces of actuators and loads by sliders and pulls nodes with the mouse.
 ///
 /// ```no_run
 /// use pliant::play::Player;
@@ -84,7 +84,7 @@ impl Player {
     }
 
     /// Lets what is done by the sliders be saved as a scene file: that at `path` with the text `text`, from which
-    /// the scene was read, with tables of pressures and forces in place of its own.
+    /// the scene was read, with tables of pressures, forces and loads in place of its own.
     pub fn saving(mut self, text: impl Into<String>, path: impl Into<PathBuf>) -> Self {
         let original = Original { text: text.into(), path: path.into() };
         self.data["saves"] = original.new_name().into();

@@ -8,13 +8,19 @@ use super::frame::{self, Present};
 use super::hand::Hand;
 use super::message::Message;
 use super::pace::Pace;
+use super::past::Past;
 use super::record::{Original, Record};
-use super::slider::{Kind, Slider};
+use super::slider::Slider;
 use crate::error::Error;
+use crate::input::InputError;
 use crate::output::Picture;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simulate::{Checkpoint, Simulation};
+
+/// Parts of the scene, and time (s), after which the past is noted at the latest.
+const FINE: f64 = 1e-3;
+const LONGEST: f64 = 5e-3;
 
 /// What reaches the simulation.
 pub(super) enum Request {
@@ -32,6 +38,7 @@ pub(super) struct Session {
     hand: Option<Hand>,
     playing: bool,
     pace: Pace,
+    past: Past,
     /// Why time does not go on.
     trouble: Option<String>,
     start: Checkpoint,
@@ -52,16 +59,17 @@ impl Session {
         fixed["mesh"] = frame::mesh(scene);
         fixed["solver"] = json!({ "rtol": format!("{:e}", settings.rtol) });
         let session = Self {
-            start: simulation.checkpoint(),
-            simulation,
             picture,
             sliders,
             hand: None,
             playing: false,
             pace: Pace::new(),
+            past: Past::of(&simulation),
             trouble: None,
             record: Record::default(),
             original: None,
+            start: simulation.checkpoint(),
+            simulation,
         };
         Ok((session, fixed))
     }
@@ -105,7 +113,9 @@ impl Session {
 
     fn answer(&mut self, message: Message) -> Result<Value, String> {
         let done = match message {
-            Message::Look { colours } => return Ok(json!({ "frame": self.frame(colours) })),
+            Message::Look { colours, since } => {
+                return Ok(json!({ "frame": self.frame(colours, since) }));
+            }
             Message::Save => {
                 let original = self.original.as_ref().ok_or("the scene has no file")?;
                 let text = self.record.saved(self.simulation.scene(), original)?;
@@ -121,25 +131,25 @@ impl Session {
                 self.pace.speed = speed;
                 Ok(())
             }
-            Message::Pressure(name, value) => self.slide(Kind::Pressure, &name, value),
-            Message::Actuate(name, value) => self.slide(Kind::Actuation, &name, value),
+            Message::Slide(number, value) => self.slide(number, value),
             Message::Pull { place, to, strength } => return self.pull(place, to, strength),
             Message::LetGo => self.let_go(),
         };
         done.map(|()| json!({ "done": true })).map_err(|error| error.to_string())
     }
 
-    fn frame(&self, colours: Option<usize>) -> Value {
+    fn frame(&self, colours: Option<usize>, since: Option<f64>) -> Value {
         let present = Present {
             simulation: &self.simulation,
             picture: &self.picture,
             sliders: &self.sliders,
             hand: self.hand.as_ref(),
             pace: &self.pace,
+            past: &self.past,
             playing: self.playing,
             trouble: self.trouble.as_deref(),
         };
-        frame::of(&present, colours)
+        frame::of(&present, colours, since)
     }
 
     fn play(&mut self) -> Result<(), Error> {
@@ -157,23 +167,19 @@ impl Session {
     fn go_back(&mut self) -> Result<(), Error> {
         self.simulation.restore(&self.start)?;
         (self.hand, self.trouble, self.record) = (None, None, Record::default());
+        self.past = Past::of(&self.simulation);
         self.pace.start();
         Ok(())
     }
 
-    fn slide(&mut self, kind: Kind, name: &str, value: f64) -> Result<(), Error> {
-        let wanted = |slider: &&Slider| slider.kind == kind && slider.name == name;
-        let simulation = &mut self.simulation;
-        let Some(slider) = self.sliders.iter().find(wanted) else {
-            // says which there are
-            return match kind {
-                Kind::Pressure => simulation.pressure(name, value),
-                Kind::Actuation => simulation.actuate(name, value),
-            };
-        };
-        let t = simulation.time();
-        let signal = self.record.moved(simulation.scene(), slider, t, value);
-        slider.set(simulation, signal)
+    fn slide(&mut self, number: usize, value: f64) -> Result<(), Error> {
+        let slider = self.sliders.get(number).ok_or_else(|| {
+            let mend = format!("there are {} sliders, counted from 0", self.sliders.len());
+            InputError::new("slider", number, mend)
+        })?;
+        let (scene, t) = (self.simulation.scene(), self.simulation.time());
+        let course = self.record.moved(scene, &slider.target, t, value / slider.share);
+        course.command(&mut self.simulation)
     }
 
     fn pull(&mut self, place: usize, to: Vec<f64>, strength: f64) -> Result<Value, String> {
@@ -203,21 +209,36 @@ impl Session {
         }
     }
 
-    /// Lets time pass until `to` (s), with the hand where it is.
+    /// Lets time pass until `to` (s) or until it takes too long, with the hand where it is.
     fn go_to(&mut self, to: f64) -> Result<(), Error> {
         while self.simulation.time() < to {
-            let from = self.simulation.time();
             let mut next = to;
             if let Some(hand) = &mut self.hand {
-                next = next.min(from + hand.period);
+                next = next.min(self.simulation.time() + hand.period);
                 hand.pull(&mut self.simulation)?;
             }
-            self.simulation.advance_to(next)?;
-            if self.simulation.time() <= from {
+            if !self.pass(next)? {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// Lets time pass until `to` (s), under forces as they are, and notes it. Whether there is time for more.
+    fn pass(&mut self, to: f64) -> Result<bool, Error> {
+        let fine = LONGEST.min(FINE * self.simulation.scene().end());
+        let mut goes_on = true;
+        while goes_on && self.simulation.time() < to {
+            let from = self.simulation.time();
+            let result = self.simulation.advance_to(to.min(from + fine));
+            let is_later = self.simulation.time() > from;
+            if is_later {
+                self.past.note(&self.simulation);
+            }
+            result?;
+            goes_on = is_later && !self.pace.is_spent();
+        }
+        Ok(goes_on)
     }
 
     /// Time stops, for a reason that is shown; the state stays as it is.

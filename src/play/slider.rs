@@ -1,108 +1,190 @@
-//! What a person moves by sliders: pressures of chambers and forces of actuators.
+//! What a person moves by sliders: pressures of chambers, forces of actuators, loads.
 
 use serde_json::{Value, json};
 
 use crate::error::Error;
 use crate::external::Signal;
-use crate::scene::{Phase, Scene};
+use crate::mesh::Selection;
+use crate::scene::{Load, Phase, Scene};
 use crate::simulate::Simulation;
 
 /// What a slider sets.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Target {
     /// The pressure of a chamber (Pa).
-    Pressure,
+    Pressure(String),
     /// The force of the actuator of a spring (N).
-    Actuation,
+    Actuation(String),
+    /// A component, counted from 0, of the force on each of some nodes (N).
+    Load(Selection, usize),
 }
 
 /// A slider.
 pub(super) struct Slider {
-    pub(super) kind: Kind,
-    /// Name of the chamber or the spring.
-    pub(super) name: String,
+    pub(super) target: Target,
+    /// It shows so many times the value of the target: all nodes together, where the scene gives a load in total.
+    pub(super) share: f64,
     /// It goes from -`most` to `most`.
     most: f64,
+    /// What it is, for the page.
+    what: String,
 }
 
 /// Pressure (in Young's moduli) and strain by which a slider reaches as far as is useful, where the scene says
 /// nothing itself.
 const USUAL: f64 = 0.05;
+/// Numbers of nodes in the name of a slider at most.
+const FEW: usize = 6;
 
 impl Slider {
     /// The sliders of a scene.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
         let young = scene.body().material().young;
-        let chambers = scene.chambers().iter().map(|chamber| {
-            let name = chamber.name().to_owned();
-            (Kind::Pressure, name, USUAL * young)
-        });
         // what a spring of the stiffness of the body needs for half of that strain is a usual force
-        let size = scene.body().mesh().size();
-        let force = USUAL * young * scene.body().volume() / size;
+        let force = USUAL * young * scene.body().volume() / scene.body().mesh().size();
+        let chambers = scene.chambers().iter().map(|chamber| {
+            let target = Target::Pressure(chamber.name().to_owned());
+            let range = [target.largest_in(scene), USUAL * young];
+            Self::new(target, "pressure".into(), 1.0, range)
+        });
         let springs = scene.springs().iter().map(|spring| {
-            let name = spring.name().to_owned();
-            (Kind::Actuation, name, force)
+            let target = Target::Actuation(spring.name().to_owned());
+            let range = [target.largest_in(scene), force];
+            Self::new(target, "actuator".into(), 1.0, range)
         });
-        let sliders = chambers.chain(springs).map(|(kind, name, usual)| {
-            let most = largest(scene, kind, &name);
-            let most = round_up(if most > 0.0 { 2.0 * most } else { usual });
-            Self { kind, name, most }
-        });
-        sliders.collect()
-    }
-
-    /// The value in force.
-    pub(super) fn value(&self, simulation: &Simulation) -> Result<f64, Error> {
-        Ok(match self.kind {
-            Kind::Pressure => simulation.pressure_in(&self.name)?,
-            Kind::Actuation => simulation.actuation_of(&self.name)?,
-        })
-    }
-
-    /// Puts `signal` in force.
-    pub(super) fn set(&self, simulation: &mut Simulation, signal: Signal) -> Result<(), Error> {
-        match self.kind {
-            Kind::Pressure => simulation.pressure(&self.name, signal),
-            Kind::Actuation => simulation.actuate(&self.name, signal),
+        let mut loaded: Vec<&Selection> = Vec::new();
+        for (nodes, _) in scene.phases().iter().flat_map(|phase| &phase.loads) {
+            if !loaded.contains(&nodes) {
+                loaded.push(nodes);
+            }
         }
+        let loads = loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, force));
+        chambers.chain(springs).chain(loads).collect()
+    }
+
+    /// One slider per component of the loads on a selection: on all of its nodes together if the scene always
+    /// gives them so.
+    fn of_load(scene: &Scene, nodes: &Selection, usual: f64) -> Vec<Self> {
+        // loads on no nodes are no part of a scene
+        let count = scene.body().mesh().select(nodes).map_or(1, |nodes| nodes.len());
+        let mut loads = scene.phases().iter().flat_map(|phase| loads_in(phase, nodes));
+        let (share, together) = match loads.all(|load| matches!(load, Load::Total(_))) {
+            _ if count == 1 => (1.0, ""),
+            true => (count as f64, ", in total"),
+            false => (1.0, ", each node"),
+        };
+        // a load that the scene turns another way is as strong
+        let targets = (0..scene.body().dimension()).map(|axis| Target::Load(nodes.clone(), axis));
+        let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
+        let slider = |(target, axis)| {
+            let what = format!("load {axis}{together}");
+            Self::new(target, what, share, [largest, usual])
+        };
+        targets.zip(["x", "y", "z"]).map(slider).collect()
+    }
+
+    /// A slider that goes twice as far as the scene itself, or as far as is `usual`.
+    fn new(target: Target, what: String, share: f64, [largest, usual]: [f64; 2]) -> Self {
+        let most = round_up(if largest > 0.0 { 2.0 * share * largest } else { usual });
+        Self { target, share, most, what }
+    }
+
+    /// The value in force, as it is shown.
+    pub(super) fn value(&self, simulation: &Simulation) -> Result<f64, Error> {
+        let value = match &self.target {
+            Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
+            Target::Actuation(spring) => simulation.view().actuation(spring)?,
+            Target::Load(nodes, axis) => simulation.view().load(nodes.clone())?[*axis],
+        };
+        Ok(self.share * value)
     }
 
     pub(super) fn to_json(&self) -> Value {
-        let (what, unit, order) = match self.kind {
-            Kind::Pressure => ("pressure", "Pa", "pressure"),
-            Kind::Actuation => ("actuator", "N", "actuate"),
+        let (name, unit) = match &self.target {
+            Target::Pressure(chamber) => (chamber.clone(), "Pa"),
+            Target::Actuation(spring) => (spring.clone(), "N"),
+            Target::Load(nodes, _) => (name_of(nodes), "N"),
         };
-        json!({ "do": order, "name": self.name, "what": what, "unit": unit, "most": self.most })
+        json!({ "name": name, "what": self.what, "unit": unit, "most": self.most })
     }
 }
 
-/// What `phase` itself says of a chamber or a spring; the sum of it acts.
-pub(super) fn signals<'a>(
-    phase: &'a Phase,
-    kind: Kind,
-    name: &'a str,
-) -> Box<dyn Iterator<Item = &'a Signal> + 'a> {
-    match kind {
-        Kind::Pressure => Box::new(
-            phase.pressures.iter().filter(move |(chamber, _)| chamber == name).map(|(_, s)| s),
-        ),
-        Kind::Actuation => Box::new(phase.actuations.iter().flat_map(move |(springs, signal)| {
-            springs.iter().filter(move |spring| *spring == name).map(move |_| signal)
-        })),
-    }
-}
-
-/// The largest value that the scene itself has for a chamber or a spring.
-fn largest(scene: &Scene, kind: Kind, name: &str) -> f64 {
-    let mut largest = 0.0_f64;
-    for phase in scene.phases() {
-        for signal in signals(phase, kind, name) {
-            let times = signal.breaks().iter().copied().chain([phase.end()]);
-            largest = times.fold(largest, |largest, t| largest.max(signal.at(t).abs()));
+impl Target {
+    /// What `phase` of `scene` itself says of it at time `t` (s).
+    pub(super) fn value_in(&self, scene: &Scene, phase: &Phase, t: f64) -> f64 {
+        match self {
+            Self::Load(nodes, axis) => {
+                scene.load_on(phase, nodes, t).map_or(0.0, |force| force[*axis])
+            }
+            _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
         }
     }
-    largest
+
+    /// Times (s) at which what `phase` says of it changes its law, ascending.
+    pub(super) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
+        match self {
+            Self::Load(nodes, _) => ascending(loads_in(phase, nodes).flat_map(breaks)),
+            _ => ascending(self.signals_in(phase).flat_map(Signal::breaks)),
+        }
+    }
+
+    /// The signals of a chamber or a spring in `phase`; the sum of them acts.
+    fn signals_in<'a>(&'a self, phase: &'a Phase) -> Box<dyn Iterator<Item = &'a Signal> + 'a> {
+        match self {
+            Self::Pressure(name) => Box::new(
+                phase.pressures.iter().filter(move |(other, _)| other == name).map(|(_, s)| s),
+            ),
+            Self::Actuation(name) => {
+                Box::new(phase.actuations.iter().flat_map(move |(springs, signal)| {
+                    springs.iter().filter(move |other| *other == name).map(move |_| signal)
+                }))
+            }
+            Self::Load(..) => Box::new(std::iter::empty()),
+        }
+    }
+
+    /// The largest value that the scene itself has for it.
+    fn largest_in(&self, scene: &Scene) -> f64 {
+        let phases = scene.phases().iter().flat_map(|phase| {
+            let times = self.breaks_in(phase).into_iter().chain([phase.end()]);
+            times.map(move |t| self.value_in(scene, phase, t).abs())
+        });
+        phases.fold(0.0, f64::max)
+    }
+}
+
+/// The loads that `phase` has for a selection; the sum of them acts.
+fn loads_in<'a>(phase: &'a Phase, nodes: &'a Selection) -> impl Iterator<Item = &'a Load> {
+    phase.loads.iter().filter(move |(other, _)| other == nodes).map(|(_, load)| load)
+}
+
+fn breaks(load: &Load) -> &[f64] {
+    match load {
+        Load::Each(_) | Load::Total(_) => &[],
+        Load::Varying(force) => force.breaks(),
+    }
+}
+
+/// Times (s) in their order, each of them once.
+pub(super) fn ascending<'a>(times: impl Iterator<Item = &'a f64>) -> Vec<f64> {
+    let mut times: Vec<f64> = times.copied().collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// How a person calls the nodes.
+fn name_of(nodes: &Selection) -> String {
+    match nodes {
+        Selection::Set(name) => name.clone(),
+        Selection::Numbers(numbers) => {
+            let word = if numbers.len() == 1 { "node" } else { "nodes" };
+            let few: Vec<String> = numbers.iter().take(FEW).map(usize::to_string).collect();
+            let more = if numbers.len() > FEW { ", ..." } else { "" };
+            format!("{word} {}{more}", few.join(", "))
+        }
+        Selection::Box { .. } => nodes.to_string(),
+    }
 }
 
 /// The next number with one digit.

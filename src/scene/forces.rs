@@ -7,6 +7,7 @@ use super::{Phase, Scene};
 use crate::external::{Contact, Gravity, Load, Signal, VaryingLoad};
 use crate::force::Forces;
 use crate::input::{InputError, finite};
+use crate::mesh::Selection;
 
 impl Scene {
     /// The forces in one phase, all but those of constant matrices.
@@ -62,6 +63,26 @@ impl Scene {
             forces.push(Arc::new(Load { forces: constant }));
         }
         Ok(())
+    }
+
+    /// The force (N) on each of the nodes of `selection` at time `t` (s), by the loads that `phase` has for it.
+    pub(crate) fn load_on(
+        &self,
+        phase: &Phase,
+        selection: &Selection,
+        t: f64,
+    ) -> Result<Vec<f64>, InputError> {
+        let count = self.body.mesh().select(selection)?.len();
+        let mut sum = vec![0.0; self.body.dimension()];
+        for (_, load) in phase.loads.iter().filter(|(other, _)| other == selection) {
+            let force = match load {
+                PhaseLoad::Each(force) => force.clone(),
+                PhaseLoad::Total(force) => force.iter().map(|force| force / count as f64).collect(),
+                PhaseLoad::Varying(force) => force.components(t, sum.len()),
+            };
+            sum.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
+        }
+        Ok(sum)
     }
 
     fn add_springs(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {

@@ -1,12 +1,14 @@
-//! The text of a scene file with other pressures and forces of actuators; all else stays as it was written.
+//! The text of a scene file with other pressures, forces of actuators and loads; all else stays as it was written.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use serde_json::Value;
 use toml::de::{DeTable, DeValue};
 
 use crate::external::Signal;
-use crate::scene::Phase;
+use crate::mesh::Selection;
+use crate::scene::{Load, Phase};
 
 /// A phase whose signals are others than in the file.
 pub(crate) struct Rewritten {
@@ -14,25 +16,27 @@ pub(crate) struct Rewritten {
     pub(crate) number: usize,
     /// What it is now.
     pub(crate) phase: Phase,
-    /// Whether the pressures are others, and the forces of actuators.
-    pub(crate) changed: [bool; 2],
+    /// The keys of its lists that are others: `pressure`, `actuate`, `load`.
+    pub(crate) keys: BTreeSet<&'static str>,
 }
 
-/// The keys of the pressures and of the forces of actuators.
-const KEYS: [&str; 2] = ["pressure", "actuate"];
-
 /// Tables as `[[phase.pressure]]` have no place of their own.
-const ELSEWHERE: &str = "write the lists of each phase as pressure = [...], actuate = [...]";
+const ELSEWHERE: &str =
+    "write the lists of each phase as pressure = [...], actuate = [...], load = [...]";
 
-/// The `text` of a scene file with other signals in the phases `changes`.
+/// The `text` of a scene file, in a space of `dimension`, with other signals in the phases `changes`.
 ///
 /// # Errors
 /// A text in which there is no place for them.
-pub(crate) fn rewritten(text: &str, changes: &[Rewritten]) -> Result<String, String> {
+pub(crate) fn rewritten(
+    text: &str,
+    dimension: usize,
+    changes: &[Rewritten],
+) -> Result<String, String> {
     let document = DeTable::parse(text).map_err(|error| error.message().to_owned())?;
     let phases = document.get_ref().get("phase").ok_or("the file has no phases")?;
     let mut edits: Vec<(Range<usize>, String)> = Vec::new();
-    for Rewritten { number, phase, changed } in changes {
+    for Rewritten { number, phase, keys } in changes {
         let table = match phases.get_ref() {
             DeValue::Array(tables) => {
                 tables.get(*number).and_then(|table| table.get_ref().as_table())
@@ -42,12 +46,12 @@ pub(crate) fn rewritten(text: &str, changes: &[Rewritten]) -> Result<String, Str
         };
         let missing = || format!("the file has no phase {}", number + 1);
         let table = table.ok_or_else(missing)?;
-        for ((key, list), _) in KEYS
-            .into_iter()
-            .zip([pressures(phase), actuations(phase)])
-            .zip(changed)
-            .filter(|x| *x.1)
-        {
+        for &key in keys {
+            let list = match key {
+                "pressure" => pressures(phase),
+                "actuate" => actuations(phase),
+                _ => loads(phase, dimension),
+            };
             let edit = match table.get(key) {
                 Some(value) if text.get(value.span()).is_some_and(is_list) => (value.span(), list),
                 Some(_) => return Err(ELSEWHERE.into()),
@@ -108,6 +112,27 @@ fn actuations(phase: &Phase) -> String {
     list(phase.actuations.iter().map(entry))
 }
 
+fn loads(phase: &Phase, dimension: usize) -> String {
+    let entry = |(nodes, load): &(Selection, Load)| {
+        let nodes = match nodes {
+            Selection::Set(name) => quoted(name),
+            Selection::Numbers(numbers) => format!("{numbers:?}"),
+            Selection::Box { min, max } => format!("{{ box = [{min:?}, {max:?}] }}"),
+        };
+        let load = match load {
+            Load::Each(force) => format!("force = {force:?}"),
+            Load::Total(force) => format!("total = {force:?}"),
+            Load::Varying(force) => {
+                let times = force.breaks();
+                let forces = times.iter().map(|t| force.components(*t, dimension));
+                format!("times = {times:?}, forces = {:?}", forces.collect::<Vec<_>>())
+            }
+        };
+        format!("{{ nodes = {nodes}, {load} }}")
+    };
+    list(phase.loads.iter().map(entry))
+}
+
 fn list(entries: impl Iterator<Item = String>) -> String {
     let lines: String = entries.map(|entry| format!("    {entry},\n")).collect();
     format!("[\n{lines}]")
@@ -135,7 +160,7 @@ mod tests {
     fn nothing_else_changes() {
         let text = "title = \"a\"\n[[phase]] # one\nuntil = 1.0 # s\nhold = []\n\n[[phase]]\nuntil = 2.0\n\
                     pressure = { chamber = \"air\", value = 1 } # Pa\n";
-        let change = |number, phase| Rewritten { number, phase, changed: [true, false] };
+        let change = |number, phase| Rewritten { number, phase, keys: ["pressure"].into() };
         let changes = [
             change(1, Phase::until(2.0).pressure_table("a\"b", [0.5, 1.5], [0.0, 2.0])),
             change(0, Phase::until(1.0).pressure("air", 3.0)),
@@ -144,17 +169,28 @@ mod tests {
                         pressure = [\n    { chamber = \"air\", value = 3.0 },\n]\n\
                         hold = []\n\n[[phase]]\nuntil = 2.0\npressure = [\n    \
                         { chamber = \"a\\\"b\", times = [0.5, 1.5], values = [0.0, 2.0] },\n] # Pa\n";
-        assert_eq!(rewritten(text, &changes).unwrap(), expected);
+        assert_eq!(rewritten(text, 2, &changes).unwrap(), expected);
         let inline = "phase = [{ until = 1.0, contact = false }]";
         let expected = "phase = [{ until = 1.0, pressure = [\n    { chamber = \"air\", value = 3.0 },\n], \
                         contact = false }]";
-        assert_eq!(rewritten(inline, &changes[1..]).unwrap(), expected);
+        assert_eq!(rewritten(inline, 2, &changes[1..]).unwrap(), expected);
+        let corners = Selection::Box { min: vec![0.0, 1e-9], max: vec![1.0, f64::INFINITY] };
+        let loaded = Phase::until(1.0)
+            .load("right", [1.0, 0.5])
+            .load_total([3, 4], [0.0, -2.0])
+            .load_table(corners, [0.0, 0.5], [[0.0, 0.0], [1.0, 0.25]]);
+        let change = Rewritten { number: 0, phase: loaded, keys: ["load"].into() };
+        let expected = "phase = [{ until = 1.0, load = [\n    { nodes = \"right\", force = [1.0, 0.5] },\n    \
+                        { nodes = [3, 4], total = [0.0, -2.0] },\n    \
+                        { nodes = { box = [[0.0, 1e-9], [1.0, inf]] }, times = [0.0, 0.5], \
+                        forces = [[0.0, 0.0], [1.0, 0.25]] },\n], contact = false }]";
+        assert_eq!(rewritten(inline, 2, &[change]).unwrap(), expected);
         for nested in [
             "[[phase]]\nuntil = 1.0\n[[phase.pressure]]\nchamber = \"air\"\nvalue = 1.0\n",
             "[[phase]]\nuntil = 1.0\n[phase.pressure]\nchamber = \"air\"\nvalue = 1.0\n",
             "[[phase]]\nuntil = 1.0\npressure.chamber = \"air\"\npressure.value = 1.0\n",
         ] {
-            let error = rewritten(nested, &changes[1..]).unwrap_err();
+            let error = rewritten(nested, 2, &changes[1..]).unwrap_err();
             assert!(error.contains("pressure = [...]"), "{error}");
         }
     }

@@ -4,7 +4,7 @@ use super::renewal::Change;
 use super::simulation::Simulation;
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion};
 use crate::error::Error;
-use crate::external::{Live, Signal, VectorSignal};
+use crate::external::{Live, Signal, TimeTable, VectorSignal};
 use crate::input::{InputError, finite};
 use crate::mesh::Selection;
 use crate::scene::{Load, Phase, Scene};
@@ -51,22 +51,6 @@ impl Simulation {
         })
     }
 
-    /// The pressure (Pa) in a chamber that is in force at the present time.
-    ///
-    /// # Errors
-    /// A name that no chamber has.
-    pub fn pressure_in(&self, chamber: &str) -> Result<f64, InputError> {
-        self.view().pressure(chamber)
-    }
-
-    /// The force (N) of the actuator of a spring that is in force at the present time.
-    ///
-    /// # Errors
-    /// A name that no spring has.
-    pub fn actuation_of(&self, spring: &str) -> Result<f64, InputError> {
-        self.view().actuation(spring)
-    }
-
     /// A force (N) on each of the nodes, one component per dimension, in place of the load that was given for
     /// the same selection.
     ///
@@ -95,6 +79,21 @@ impl Simulation {
         force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
     ) -> Result<(), Error> {
         self.set_load(nodes.into(), VectorSignal::function(force))
+    }
+
+    /// As [`load`](Self::load), with a force (N) that has the values `forces`, one component per dimension, at the
+    /// `times` (s, ascending). In between it changes along straight lines; before and after it is constant.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load); times that do not ascend, or are not as many as the forces.
+    pub fn load_table(
+        &mut self,
+        nodes: impl Into<Selection>,
+        times: impl Into<Vec<f64>>,
+        forces: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Result<(), Error> {
+        let table = TimeTable::new(times.into(), forces.into_iter().map(Into::into).collect());
+        self.set_load(nodes.into(), VectorSignal::TimeTable(table))
     }
 
     /// Holds nodes, in all components, where they are.

@@ -126,6 +126,15 @@ impl<'a> View<'a> {
         Ok(self.scene.actuations(self.phase, self.time)?[number])
     }
 
+    /// Force (N) on each of the nodes of `selection`, one component per dimension, by the loads given for this
+    /// very selection; 0 without one.
+    ///
+    /// # Errors
+    /// Nodes that do not exist.
+    pub fn load(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
+        self.scene.load_on(self.phase, &selection.into(), self.time)
+    }
+
     /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping, less that of its
     /// actuator.
     ///

@@ -59,9 +59,14 @@ const PATH: &str = "beam.toml";
 
 /// The beam with other settings, served by a thread that ends with the tests; the address of its page.
 fn served(change: impl FnOnce(&mut Settings)) -> Result<String, Box<dyn Error>> {
-    let mut file = SceneFile::parse(BEAM, Path::new(PATH))?;
+    served_scene(BEAM, change)
+}
+
+/// The same with any scene file.
+fn served_scene(text: &str, change: impl FnOnce(&mut Settings)) -> Result<String, Box<dyn Error>> {
+    let mut file = SceneFile::parse(text, Path::new(PATH))?;
     change(&mut file.settings);
-    let player = Player::new(&file.scene, &file.settings, &file.title, 0)?.saving(BEAM, PATH);
+    let player = Player::new(&file.scene, &file.settings, &file.title, 0)?.saving(text, PATH);
     let address = player.address();
     thread::spawn(move || player.serve());
     Ok(address)

@@ -7,7 +7,7 @@ use serde_json::json;
 use tungstenite::Message;
 
 use super::client::{Client, apart, places};
-use super::{BEAM, Outcome, PATH, served};
+use super::{BEAM, Outcome, PATH, served, served_scene};
 
 /// Where the nodes are at the end of a scene that is run as a film.
 fn filmed(scene: &Scene, settings: &Settings) -> Result<Vec<[f64; 2]>, pliant::Error> {
@@ -44,9 +44,9 @@ fn sliders_move_the_scene_and_are_saved() -> Outcome {
 
     client.order(json!({ "do": "start" }))?;
     assert_eq!(client.look()?["time"], 0.0);
-    client.order(json!({ "do": "pressure", "name": "inside", "value": 4000.0 }))?;
-    client.order(json!({ "do": "actuate", "name": "tendon", "value": -0.5 }))?;
-    client.order(json!({ "do": "actuate", "name": "tendon", "value": 0.25 }))?;
+    client.order(json!({ "do": "slide", "slider": 0, "value": 4000.0 }))?;
+    client.order(json!({ "do": "slide", "slider": 1, "value": -0.5 }))?;
+    client.order(json!({ "do": "slide", "slider": 1, "value": 0.25 }))?;
     let end = client.play()?;
     let by_hand = places(&end)?;
     // the next phase is as the file has it
@@ -58,6 +58,81 @@ fn sliders_move_the_scene_and_are_saved() -> Outcome {
     let saved = SceneFile::parse(saved, Path::new(PATH))?;
     let again = filmed(&saved.scene, &saved.settings)?;
     assert!(apart(&by_hand, &again) < CLOSE, "{}", apart(&by_hand, &again));
+    Ok(())
+}
+
+/// The beam with loads in its two phases.
+fn loaded([first, second]: [&str; 2]) -> String {
+    let with = |until: &str, loads: &str| format!("{until}\nload = [{loads}]");
+    BEAM.replace("until = 0.05 # s", &with("until = 0.05", first))
+        .replace("until = 0.1", &with("until = 0.1", second))
+}
+
+/// Sliders of loads do what tables of a scene file do that are written with the ramp of a slider, 0.005 times 0.1 s;
+/// three nodes that share a load have a third of it each; what is not touched stays; and it is saved.
+#[test]
+fn loads_are_moved_by_sliders() -> Outcome {
+    let second = "{ nodes = 17, force = [0.0, -0.05] }";
+    let own = loaded([
+        "{ nodes = \"right\", total = [0.0, -0.03] },
+         { nodes = 17, times = [0.01, 0.02], forces = [[0.0, 0.0], [0.02, 0.0]] }",
+        second,
+    ]);
+    let mut client = Client::at(&served_scene(&own, |_| {})?)?;
+    assert_eq!(client.look()?["sliders"], json!([0.0, 0.0, 0.0, -0.03, 0.0, 0.0]));
+    for (slider, value) in [(2, 0.06), (3, 0.5), (3, 0.03), (5, 0.03)] {
+        client.order(json!({ "do": "slide", "slider": slider, "value": value }))?;
+    }
+    let end = client.play()?;
+    assert_eq!(end["sliders"], json!([500.0, 0.0, 0.0, 0.0, 0.0, -0.05]));
+    let by_hand = places(&end)?;
+
+    let written = loaded([
+        "{ nodes = \"right\", times = [0.0, 0.0005], forces = [[0.0, -0.01], [0.02, 0.01]] },
+         { nodes = 17, times = [0.0, 0.0005, 0.01, 0.02],
+           forces = [[0.0, 0.0], [0.0, 0.03], [0.0, 0.03], [0.02, 0.03]] }",
+        second,
+    ]);
+    let saved = client.answer(Message::text(json!({ "do": "save" }).to_string()))?;
+    let saved = saved["file"].as_str().ok_or_else(|| saved.to_string())?;
+    // the second phase was not touched
+    assert!(saved.contains(second) && !saved.contains("total"), "{saved}");
+    let end_of = |text: &str| -> Result<_, Box<dyn std::error::Error>> {
+        let file = SceneFile::parse(text, Path::new(PATH))?;
+        Ok(filmed(&file.scene, &file.settings)?)
+    };
+    let untouched = apart(&by_hand, &end_of(&own)?);
+    assert!(untouched > 1e-4, "{untouched}");
+    for text in [&written, saved] {
+        let distance = apart(&by_hand, &end_of(text)?);
+        assert!(distance < CLOSE, "{distance}: {text}");
+    }
+    Ok(())
+}
+
+/// The energies of the chart, from the start to the end by thousandths of the scene, are those of the scene as it runs.
+#[test]
+fn the_past_is_told() -> Outcome {
+    let file = SceneFile::parse(BEAM, Path::new(PATH))?;
+    let mut client = Client::at(&served(|_| {})?)?;
+    let end = client.play()?;
+    let past = end["past"].as_array().ok_or("no past")?;
+    let time_of = |moment: &serde_json::Value| moment[0].as_f64().unwrap_or(f64::NAN);
+    let times: Vec<f64> = past.iter().map(time_of).collect();
+    assert_eq!((times.first(), times.last()), (Some(&0.0), Some(&0.1)));
+    assert!(times.is_sorted_by(|a, b| a < b), "{times:?}");
+    let widest = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    assert!(widest < 1.001e-4, "{widest}");
+    let trajectory = file.scene.simulate(&file.settings, &Sampling::phase_ends())?;
+    let energy = &trajectory.last().energy;
+    let last = &past[past.len() - 1][1];
+    for (number, expected) in [energy.kinetic, energy.strain, energy.gravity].iter().enumerate() {
+        let found = last[number].as_f64().ok_or("no energy")?;
+        assert!((found - expected).abs() < 1e-4 * energy.strain, "{found} {expected}");
+    }
+    let look = json!({ "do": "look", "since": times[5] }).to_string();
+    let later = client.answer(Message::text(look))?["frame"]["past"].take();
+    assert_eq!(later.as_array().map(Vec::as_slice), Some(&past[6..]));
     Ok(())
 }
 
@@ -95,8 +170,8 @@ fn what_cannot_be_done_is_said() -> Outcome {
         ("{\"do\": \"dance\"}", "dance"),
         ("{\"do\": \"speed\", \"value\": -1}", "between"),
         ("{\"do\": \"speed\", \"value\": 1e999}", "not JSON"),
-        ("{\"do\": \"pressure\", \"name\": \"outside\", \"value\": 1}", "[\"inside\"]"),
-        ("{\"do\": \"actuate\", \"name\": \"x\", \"value\": 1}", "[\"tendon\"]"),
+        ("{\"do\": \"slide\", \"slider\": 2, \"value\": 1}", "2 sliders"),
+        ("{\"do\": \"slide\", \"slider\": 0}", "\"value\""),
         ("{\"do\": \"pull\", \"node\": 99, \"to\": [0, 0], \"strength\": 1}", "no node 99"),
         ("{\"do\": \"pull\", \"node\": 1, \"to\": [0], \"strength\": 1}", "2 coordinates"),
     ] {

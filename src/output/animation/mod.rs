@@ -18,6 +18,8 @@ use crate::trajectory::Trajectory;
 
 /// The page, its style and its script; `/*...*/` marks the place of the others.
 const PAGE: &str = include_str!("page/page.html");
+/// The body and its colours, in place of `<!--picture-->`: the page of a live motion has the same.
+const PICTURE: &str = include_str!("page/picture.html");
 const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = concat!(
     include_str!("page/decode.js"),
@@ -74,6 +76,9 @@ pub fn write_animation(
 fn filled(page: &str, style: &str, script: &str, data: &Value) -> String {
     // within a string of JSON this is the same character, and no tag of HTML can begin
     let data = data.to_string().replace('<', "\\u003c");
-    let page = page.replace("/*style*/", style).replace("/*script*/", script);
+    let page = page
+        .replace("<!--picture-->", PICTURE)
+        .replace("/*style*/", style)
+        .replace("/*script*/", script);
     page.replace("/*data*/", &data)
 }

@@ -74,10 +74,11 @@ function take(next) {
     const shown = quantities[next.colours.quantity];
     shown.scale = Math.max(shown.scale, next.colours.scale);
   }
-  if (times.length && next.time === last) return;
-  times.push(next.time);
-  last = next.time;
-  for (const { number, values } of energies) values.push(next.energies[number]);
+  for (const [time, told] of next.past) {
+    times.push(time);
+    last = time;
+    for (const { number, values } of energies) values.push(told[number]);
+  }
   if (times.length > MOST_POINTS) {
     const thin = (list) => list.splice(0, list.length, ...list.filter((_, k) => k % 2 === 0));
     thin(times);

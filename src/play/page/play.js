@@ -47,7 +47,8 @@ socket.addEventListener("close", () => {
 
 function ask() {
   const chosen = quantities.indexOf(quantity);
-  send({ do: "look", colours: chosen < 0 ? null : chosen }, ({ frame: next }) => {
+  const since = times.length ? last : null;
+  send({ do: "look", colours: chosen < 0 ? null : chosen, since }, ({ frame: next }) => {
     if (next) show(next);
     requestAnimationFrame(ask);
   });
@@ -206,6 +207,8 @@ stage.addEventListener("pointerdown", (event) => {
   event.preventDefault();
   event.stopImmediatePropagation();
   stage.setPointerCapture(event.pointerId);
+  // a button that was pressed before does not take the space bar any more
+  document.activeElement?.blur();
   held = { node, from: positionOf(node) };
   tell("");
   pullTo(event);
@@ -217,8 +220,8 @@ stage.addEventListener("pointermove", (event) => {
 });
 for (const end of ["pointerup", "pointercancel"]) stage.addEventListener(end, letGo);
 
-/** A slider for every chamber and every spring. */
-const sliders = data.sliders.map(({ do: action, name, what, unit, most }) => {
+/** A slider for every chamber, every spring and every component of a load. */
+const sliders = data.sliders.map(({ name, what, unit, most }, place) => {
   const label = Object.assign(document.createElement("label"), { className: "slider" });
   const title = document.createElement("span");
   const output = document.createElement("output");
@@ -243,7 +246,7 @@ const sliders = data.sliders.map(({ do: action, name, what, unit, most }) => {
   input.addEventListener("input", () => {
     slider.moved = performance.now();
     tellValue(input.valueAsNumber);
-    order({ do: action, name, value: input.valueAsNumber });
+    order({ do: "slide", slider: place, value: input.valueAsNumber });
   });
   return slider;
 });
