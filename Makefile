@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench charts stability peers docs valgrind clean
+.PHONY: help setup demo test bench charts stability peers pictures docs valgrind clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -35,6 +35,10 @@ stability: setup ## docs/stability.md with its pictures, some minutes
 
 peers: setup ## Compare with SciPy, Octave, diffsol and others (peers/README.md)
 	peers/run
+
+pictures: ## docs/pictures/play.png, the page of `pliant play`
+	@scripts/setup.sh chromium
+	cargo run --release --features play --example play_picture
 
 docs: setup ## Documentation of the library
 	cargo doc --no-deps

@@ -12,6 +12,8 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -231,6 +233,13 @@ impl Browser {
     pub fn click(&mut self, selector: &str) -> Result<()> {
         let middle = self.place(selector, [0.5, 0.5])?;
         self.drag(&[middle])
+    }
+
+    /// Saves what the window shows as a picture (PNG).
+    pub fn screenshot(&mut self, path: &Path) -> Result<()> {
+        let shown = self.call("Page.captureScreenshot", json!({ "format": "png" }))?;
+        let picture = STANDARD.decode(shown["data"].as_str().ok_or("no picture")?)?;
+        Ok(std::fs::write(path, picture)?)
     }
 
     /// Role and name of everything that can have the focus, as a screen reader tells them.

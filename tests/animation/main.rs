@@ -3,6 +3,8 @@
 //! Needs Debian's package `chromium`. The start of a browser takes as long as many of the cases: they
 //! share two, one after the other.
 
+// its other users need what these tests do not
+#[allow(dead_code)]
 mod browser;
 mod data;
 mod page;
