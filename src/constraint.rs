@@ -131,6 +131,21 @@ impl Row {
         }
     }
 
+    /// Where a row without a path starts: b (m) and when (s).
+    pub(crate) fn origin(&self) -> [f64; 2] {
+        match self.motion {
+            RowMotion::Linear { start, since, .. } => [start, since],
+            RowMotion::Path(_) | RowMotion::Spline(_) => [0.0; 2],
+        }
+    }
+
+    /// Lets a row without a path start elsewhere: see [`origin`](Self::origin).
+    pub(crate) fn set_origin(&mut self, origin: [f64; 2]) {
+        if let RowMotion::Linear { start, since, .. } = &mut self.motion {
+            [*start, *since] = origin;
+        }
+    }
+
     /// A^T x for this row.
     pub(crate) fn apply(&self, x: &[f64]) -> f64 {
         self.terms.iter().map(|&(dof, coefficient)| coefficient * x[dof]).sum()

@@ -28,12 +28,16 @@
 
 pub mod body;
 pub mod central_difference;
+#[cfg(feature = "checkpoint")]
+mod checkpoint_file;
 pub mod constraint;
 mod element;
 pub mod equations;
 mod equilibrium;
 pub mod error;
 mod external;
+#[cfg(any(feature = "checkpoint", feature = "output"))]
+mod file;
 pub mod force;
 mod input;
 pub mod integrate;
@@ -88,5 +92,5 @@ pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// Compiles the code blocks of the README.
 #[doc = include_str!("../README.md")]
-#[cfg(all(doctest, feature = "output"))]
+#[cfg(all(doctest, feature = "checkpoint", feature = "output"))]
 pub struct ReadmeDoctests;

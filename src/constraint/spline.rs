@@ -24,8 +24,14 @@ impl Spline {
     }
 
     /// Times (s) of the points.
-    pub(super) fn times(&self) -> &[f64] {
+    pub(crate) fn times(&self) -> &[f64] {
         &self.times
+    }
+
+    /// Displacements (m) of the points.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn displacements(&self) -> &[f64] {
+        &self.displacements
     }
 
     /// # Errors

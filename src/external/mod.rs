@@ -22,6 +22,8 @@ pub use obstacle::Obstacle;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
+#[cfg(feature = "checkpoint")]
+pub(crate) use signal::Course;
 pub use signal::Signal;
 pub(crate) use signal::{Live, TimeTable, VectorSignal};
 pub use spring::Spring;

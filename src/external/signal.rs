@@ -11,9 +11,9 @@ use crate::ode::Failure;
 /// and after the last they are constant.
 #[derive(Debug, Clone)]
 pub(crate) struct TimeTable {
-    times: Vec<f64>,
+    pub(crate) times: Vec<f64>,
     /// The components at each time.
-    values: Vec<Vec<f64>>,
+    pub(crate) values: Vec<Vec<f64>>,
 }
 
 impl TimeTable {
@@ -66,10 +66,11 @@ impl TimeTable {
 ///
 /// A number converts into a constant one.
 #[derive(Clone)]
-pub struct Signal(Course);
+pub struct Signal(pub(crate) Course);
 
+/// What a [`Signal`] is.
 #[derive(Clone)]
-enum Course {
+pub(crate) enum Course {
     Constant(f64),
     Function { function: Arc<dyn Fn(f64) -> f64 + Send + Sync>, breaks: Vec<f64> },
     TimeTable(TimeTable),

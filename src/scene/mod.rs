@@ -6,6 +6,8 @@ mod phase;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+#[cfg(feature = "checkpoint")]
+pub(crate) use phase::ContactWith;
 pub(crate) use phase::Load;
 pub use phase::Phase;
 
@@ -174,6 +176,12 @@ impl Scene {
     /// Number (from 0) of the obstacle with a name; `input` is where that was given.
     pub(crate) fn obstacle_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
         find(name, self.obstacles.iter().map(Obstacle::name), input, "obstacles")
+    }
+
+    /// Forces that are none of these.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn other_forces(&self) -> &Forces {
+        &self.forces
     }
 
     /// The phases, in order.

@@ -20,9 +20,9 @@ pub struct Phase {
     /// Name of a chamber, pressure (Pa).
     pub(crate) pressures: Vec<(String, Signal)>,
     pub(crate) projects_velocity: bool,
-    contact: ContactWith,
+    pub(crate) contact: ContactWith,
     /// Obstacles that do not move as the scene has it.
-    turned: Vec<Obstacle>,
+    pub(crate) turned: Vec<Obstacle>,
 }
 
 /// A load on some nodes (N).
@@ -36,8 +36,9 @@ pub(crate) enum Load {
     Varying(VectorSignal),
 }
 
+/// The obstacles that act.
 #[derive(Debug, Clone)]
-enum ContactWith {
+pub(crate) enum ContactWith {
     All,
     These(Vec<String>),
 }

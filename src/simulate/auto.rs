@@ -17,14 +17,14 @@ pub(super) struct Plan {
     /// As asked for, with a method of its own in place of [`Method::Auto`].
     pub(super) settings: Settings,
     /// Highest order that was asked for.
-    max_order: Option<u32>,
+    pub(super) max_order: Option<u32>,
     /// Why this method, and those before it in the phase, if they were chosen.
     pub(super) reason: Option<String>,
     /// Longest stable steps of explicit Runge-Kutta and, with lumped inertia, of central differences (s).
-    explicit_step: f64,
-    central_step: f64,
+    pub(super) explicit_step: f64,
+    pub(super) central_step: f64,
     /// Steps of explicit Runge-Kutta after which the implicit one is tried again.
-    patience: usize,
+    pub(super) patience: usize,
 }
 
 /// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well

@@ -1,6 +1,9 @@
 //! Running a scene: phase by phase, with restarts in between and samples along the way.
 
+#[cfg(feature = "checkpoint")]
+mod adoption;
 mod auto;
+mod checkpoint;
 mod commands;
 mod events;
 mod failure;
@@ -21,8 +24,12 @@ mod watching;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+#[cfg(feature = "checkpoint")]
+pub(crate) use adoption::Choice;
+pub use checkpoint::Checkpoint;
+#[cfg(feature = "checkpoint")]
+pub(crate) use checkpoint::Kept;
 pub use progress::Progress;
-pub use renewal::Checkpoint;
 use run::Run;
 pub use sampling::Sampling;
 pub use simulation::Simulation;

@@ -4,16 +4,18 @@ use std::mem::take;
 use std::sync::Arc;
 
 use super::auto::Plan;
+use super::checkpoint::{Checkpoint, Kept};
 use super::leg::Ending;
 use super::records::{self, energy, project};
 use super::run::Run;
 use super::sampling::Sampling;
 use super::stage::{At, Stage};
+use crate::constraint::Row;
 use crate::error::Error;
 use crate::external::Live;
 use crate::force::Forces;
 use crate::input::InputError;
-use crate::scene::{Phase, Scene};
+use crate::scene::Phase;
 use crate::system::{Energy, System};
 use crate::trajectory::Sample;
 
@@ -30,36 +32,6 @@ pub(super) enum Change {
 
 /// Commands in a phase that a multistep method follows by new starts.
 const NEW_STARTS: usize = 3;
-
-/// A state of a [`Simulation`](super::Simulation) to come back to: see
-/// [`checkpoint`](super::Simulation::checkpoint).
-#[derive(Clone)]
-pub struct Checkpoint {
-    scene: Arc<Scene>,
-    time: f64,
-    /// (u, v, energies)
-    state: Vec<f64>,
-    phase: Arc<Phase>,
-    number: usize,
-    is_commanded: bool,
-    constraints: Arc<()>,
-    plan: Plan,
-    first_step: Option<f64>,
-    samples: usize,
-    /// Steps since t = 0: every so many of them, the energy balance is looked at.
-    steps: usize,
-    /// Energy balance (J) that methods are judged by.
-    balance: f64,
-    /// Error, rise and scale of the energy balance (J).
-    energies: [f64; 3],
-}
-
-impl Checkpoint {
-    /// Its time (s).
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-}
 
 impl Run {
     fn system(&self) -> Option<&System> {
@@ -243,20 +215,24 @@ impl Run {
 
     /// A state to come back to.
     pub(super) fn checkpoint(&self, time: f64, state: &[f64]) -> Checkpoint {
+        let rows = self.system().map_or(&[][..], System::rows);
         Checkpoint {
             scene: self.scene.clone(),
-            time,
-            state: state.to_vec(),
-            phase: self.frozen_phase(),
-            number: self.number,
-            is_commanded: self.is_commanded,
             constraints: self.constraints.clone(),
             plan: self.stage.plan.clone(),
-            first_step: self.next_step(),
-            samples: self.trajectory.samples().len(),
-            steps: self.steps,
-            balance: self.balance,
-            energies: self.trajectory.noted(),
+            kept: Kept {
+                time,
+                state: state.to_vec(),
+                phase: self.frozen_phase(),
+                number: self.number,
+                is_commanded: self.is_commanded,
+                origins: rows.iter().map(Row::origin).collect(),
+                first_step: self.next_step(),
+                steps: self.steps,
+                commands: self.stage.commands,
+                balance: self.balance,
+                energies: self.trajectory.noted(),
+            },
         }
     }
 
@@ -267,35 +243,37 @@ impl Run {
 
     /// Comes back to a state.
     pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
-        let Checkpoint { scene, time, state, phase, number, constraints, plan, .. } = checkpoint;
+        let Checkpoint { scene, constraints, plan, kept } = checkpoint;
+        let Kept { time, ref state, ref phase, number, balance, steps, .. } = *kept;
         if !Arc::ptr_eq(&self.scene, scene) {
             let mend = "it belongs to another simulation: restore it there, or in a fork of that";
             return Err(InputError::new("checkpoint", format!("at {time} s"), mend).into());
         }
         let mut system = self.rest()?;
-        self.time = *time;
+        self.time = time;
         self.state.copy_from_slice(state);
         if !Arc::ptr_eq(&self.phase, phase) {
             let forces = self.scene.forces_in(phase)?;
-            let kept = Arc::ptr_eq(&self.constraints, constraints) && system.change_forces(forces);
-            if !kept {
-                system = self.equations(phase, state)?;
+            let same = Arc::ptr_eq(&self.constraints, constraints) && system.change_forces(forces);
+            if !same {
+                system = kept.equations(self)?;
             }
             (self.phase, self.constraints) = (phase.clone(), constraints.clone());
-            self.is_commanded = checkpoint.is_commanded;
+            self.is_commanded = kept.is_commanded;
         }
-        if self.number != *number {
-            self.number = *number;
+        if self.number != number {
+            self.number = number;
             self.stage = self.new_stage(plan.clone());
-            self.trajectory.report.phases.truncate(*number);
+            let before = number.checked_sub(1).map_or(0.0, |last| self.scene.phases()[last].until);
+            self.trajectory.report.phases.retain(|phase| phase.end <= before);
         }
-        self.sample_from(*time);
+        self.sample_from(time);
         self.stage.plan = plan.clone();
-        self.stage.first_step = checkpoint.first_step;
-        let Checkpoint { samples, steps, balance, energies, .. } = *checkpoint;
+        (self.stage.first_step, self.stage.commands) = (kept.first_step, kept.commands);
         self.stage.leg.steps = self.settings.max_steps;
         (self.balance, self.standing, self.steps) = (balance, 0, steps);
-        self.trajectory.go_back(samples.max(1), energies);
+        let samples = self.trajectory.samples().partition_point(|sample| sample.time <= time);
+        self.trajectory.go_back(samples.max(1), kept.energies);
         self.resume(system);
         Ok(())
     }

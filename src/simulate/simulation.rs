@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use super::renewal::Checkpoint;
+use super::checkpoint::Checkpoint;
 use super::run::Run;
 use super::sampling::Sampling;
 use super::stage::At;

@@ -6,6 +6,8 @@ mod actuated;
 mod auto;
 mod beam_bend;
 mod beam_jump;
+mod checkpoint_file;
+mod checkpoint_refused;
 mod compression;
 mod contact;
 mod contact_events;

@@ -1,0 +1,353 @@
+//! The phase in force, as commands have changed it: what are numbers and names as they are, and functions by
+//! where the scene has them.
+
+use std::fmt::Display;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline};
+use crate::external::{Course, Signal, TimeTable, VectorSignal};
+use crate::input::InputError;
+use crate::mesh::Selection;
+use crate::scene::{ContactWith, Load, Phase, Scene};
+
+/// What is in force.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct InForce {
+    constraints: Vec<(What, How)>,
+    loads: Vec<(Nodes, Loaded)>,
+    /// Names of springs, force.
+    actuations: Vec<(Vec<String>, Number)>,
+    /// Name of a chamber, pressure.
+    pressures: Vec<(String, Number)>,
+    /// Names of the obstacles that act; without: all.
+    #[serde(deserialize_with = "Option::deserialize")]
+    contact: Option<Vec<String>>,
+    /// Obstacles that commands have set in motion: name, where it would have been at t = 0, and velocity.
+    moving: Vec<(String, [f64; 3], [f64; 3])>,
+}
+
+/// A [`Selection`]; corners of boxes that lie nowhere are `null`.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Nodes {
+    Set(String),
+    Numbers(Vec<usize>),
+    Box { min: Vec<Option<f64>>, max: Vec<Option<f64>> },
+}
+
+/// A [`Constrained`]; without axes: all.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum What {
+    Nodes(Nodes, Option<Vec<char>>),
+    Row(Vec<(usize, char, f64)>),
+}
+
+/// A [`Motion`].
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum How {
+    Hold,
+    Velocity(Vec<f64>),
+    Path {
+        times: Vec<f64>,
+        displacements: Vec<f64>,
+    },
+    /// That of a constraint of the phase as the scene has it, from 0.
+    OfScene(usize),
+}
+
+/// A [`Load`].
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Loaded {
+    Each(Vec<f64>),
+    Total(Vec<f64>),
+    Table {
+        times: Vec<f64>,
+        values: Vec<Vec<f64>>,
+    },
+    /// A load of the phase as the scene has it, from 0.
+    OfScene(usize),
+}
+
+/// A [`Signal`].
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Number {
+    Constant(f64),
+    Table {
+        times: Vec<f64>,
+        values: Vec<Vec<f64>>,
+    },
+    /// An actuation or pressure of the phase as the scene has it, from 0.
+    OfScene(usize),
+}
+
+impl InForce {
+    /// `phase`, which is `own` of the scene, changed by commands.
+    ///
+    /// # Errors
+    /// A function that `own` does not have.
+    pub(super) fn of(phase: &Phase, own: &Phase) -> Result<Self, InputError> {
+        let constraints = phase.constraints.iter().map(|Constraint { what, how }| {
+            let how = How::of(how, own).ok_or_else(|| is_function(format!("path of {what:?}")))?;
+            Ok((What::of(what), how))
+        });
+        let loads = phase.loads.iter().map(|(nodes, load)| {
+            let loaded = Loaded::of(load, own);
+            Ok((Nodes::of(nodes), loaded.ok_or_else(|| is_function(format!("load on {nodes}")))?))
+        });
+        let actuations = phase.actuations.iter().map(|(springs, force)| {
+            let force = Number::of(force, own.actuations.iter().map(|(_, force)| force));
+            let names = || springs.join("\", \"");
+            let force =
+                force.ok_or_else(|| is_function(format!("actuation of spring \"{}\"", names())))?;
+            Ok((springs.clone(), force))
+        });
+        let pressures = phase.pressures.iter().map(|(chamber, pressure)| {
+            let pressure = Number::of(pressure, own.pressures.iter().map(|(_, own)| own));
+            let pressure = pressure
+                .ok_or_else(|| is_function(format!("pressure of chamber \"{chamber}\"")))?;
+            Ok((chamber.clone(), pressure))
+        });
+        Ok(Self {
+            constraints: constraints.collect::<Result<_, InputError>>()?,
+            loads: loads.collect::<Result<_, InputError>>()?,
+            actuations: actuations.collect::<Result<_, InputError>>()?,
+            pressures: pressures.collect::<Result<_, InputError>>()?,
+            contact: match &phase.contact {
+                ContactWith::All => None,
+                ContactWith::These(names) => Some(names.clone()),
+            },
+            moving: phase
+                .turned
+                .iter()
+                .map(|obstacle| {
+                    (obstacle.name().into(), obstacle.displacement(0.0), obstacle.drift())
+                })
+                .collect(),
+        })
+    }
+
+    /// The phase in force; `own` is what the scene has.
+    ///
+    /// # Errors
+    /// Axes and functions that do not exist. All else the scene [checks](Phase).
+    pub(super) fn read(self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
+        let constraints = self.constraints.into_iter();
+        let constraints = constraints
+            .map(|(what, how)| Ok(Constraint { what: what.read()?, how: how.read(own)? }));
+        let loads = self.loads.into_iter();
+        let loads = loads.map(|(nodes, load)| Ok((nodes.read(), load.read(own)?)));
+        let actuations = self.actuations.into_iter().map(|(springs, force)| {
+            let own = own.actuations.iter().map(|(_, force)| force);
+            Ok((springs, force.read("actuation", own)?))
+        });
+        let pressures = self.pressures.into_iter().map(|(chamber, pressure)| {
+            let own = own.pressures.iter().map(|(_, pressure)| pressure);
+            Ok((chamber, pressure.read("pressure", own)?))
+        });
+        let moving = self.moving.into_iter().map(|(name, start, velocity)| {
+            let obstacle = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
+            let obstacle =
+                obstacle.ok_or_else(|| format!("the scene has no obstacle \"{name}\""))?;
+            let velocity = &velocity[..scene.body().dimension()];
+            Ok(obstacle.clone().velocity(velocity).placed(0.0, start))
+        });
+        Ok(Phase {
+            constraints: constraints.collect::<Result<_, String>>()?,
+            loads: loads.collect::<Result<_, String>>()?,
+            actuations: actuations.collect::<Result<_, String>>()?,
+            pressures: pressures.collect::<Result<_, String>>()?,
+            contact: self.contact.map_or(ContactWith::All, ContactWith::These),
+            turned: moving.collect::<Result<_, String>>()?,
+            ..own.clone()
+        })
+    }
+}
+
+fn is_function(input: String) -> InputError {
+    let mend = "a file cannot hold it; command a constant or a table before";
+    InputError::new(input, "a function of time", mend)
+}
+
+/// The item that the scene has at a place.
+fn own<T: Clone>(
+    what: &str,
+    place: usize,
+    mut items: impl Iterator<Item = T>,
+) -> Result<T, String> {
+    let item = items.nth(place);
+    item.ok_or_else(|| format!("{what} {place} is none of the phase in the scene: write it anew"))
+}
+
+impl Nodes {
+    fn of(selection: &Selection) -> Self {
+        let corner = |corner: &[f64]| {
+            corner.iter().map(|x| Some(*x).filter(|x| x.is_finite())).collect::<Vec<_>>()
+        };
+        match selection {
+            Selection::Set(name) => Self::Set(name.clone()),
+            Selection::Numbers(numbers) => Self::Numbers(numbers.clone()),
+            Selection::Box { min, max } => Self::Box { min: corner(min), max: corner(max) },
+        }
+    }
+
+    fn read(self) -> Selection {
+        let corner = |corner: Vec<Option<f64>>, nowhere: f64| {
+            corner.into_iter().map(|x| x.unwrap_or(nowhere)).collect()
+        };
+        match self {
+            Self::Set(name) => Selection::Set(name),
+            Self::Numbers(numbers) => Selection::Numbers(numbers),
+            Self::Box { min, max } => Selection::Box {
+                min: corner(min, f64::NEG_INFINITY),
+                max: corner(max, f64::INFINITY),
+            },
+        }
+    }
+}
+
+const AXES: [(char, Axis); 3] = [('x', Axis::X), ('y', Axis::Y), ('z', Axis::Z)];
+
+fn letter(axis: Axis) -> char {
+    AXES[axis.index()].0
+}
+
+fn axis(letter: char) -> Result<Axis, String> {
+    let found = AXES.into_iter().find(|(known, _)| *known == letter);
+    found.map(|(_, axis)| axis).ok_or_else(|| unknown("axis", letter))
+}
+
+fn unknown(what: &str, name: impl Display) -> String {
+    format!("{what} \"{name}\" is none of x, y, z: write it anew")
+}
+
+impl What {
+    fn of(what: &Constrained) -> Self {
+        match what {
+            Constrained::Nodes(nodes, Axes::All) => Self::Nodes(Nodes::of(nodes), None),
+            Constrained::Nodes(nodes, Axes::These(axes)) => {
+                Self::Nodes(Nodes::of(nodes), Some(axes.iter().map(|axis| letter(*axis)).collect()))
+            }
+            Constrained::Row(terms) => {
+                Self::Row(terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect())
+            }
+        }
+    }
+
+    fn read(self) -> Result<Constrained, String> {
+        Ok(match self {
+            Self::Nodes(nodes, None) => Constrained::Nodes(nodes.read(), Axes::All),
+            Self::Nodes(nodes, Some(letters)) => {
+                let axes = letters.into_iter().map(axis).collect::<Result<_, _>>()?;
+                Constrained::Nodes(nodes.read(), Axes::These(axes))
+            }
+            Self::Row(terms) => {
+                let terms = terms.into_iter();
+                let terms = terms.map(|(node, letter, x)| Ok((node, axis(letter)?, x)));
+                Constrained::Row(terms.collect::<Result<_, String>>()?)
+            }
+        })
+    }
+}
+
+impl How {
+    fn of(motion: &Motion, own: &Phase) -> Option<Self> {
+        Some(match motion {
+            Motion::Hold => Self::Hold,
+            Motion::Velocity(velocity) => Self::Velocity(velocity.clone()),
+            Motion::Spline(spline) => Self::Path {
+                times: spline.times().into(),
+                displacements: spline.displacements().into(),
+            },
+            Motion::Path(path) => Self::OfScene(own.constraints.iter().position(
+                |constraint| matches!(&constraint.how, Motion::Path(own) if Arc::ptr_eq(own, path)),
+            )?),
+        })
+    }
+
+    fn read(self, phase: &Phase) -> Result<Motion, String> {
+        Ok(match self {
+            Self::Hold => Motion::Hold,
+            Self::Velocity(velocity) => Motion::Velocity(velocity),
+            Self::Path { times, displacements } => {
+                Motion::Spline(Arc::new(Spline::new(times, displacements)))
+            }
+            Self::OfScene(place) => {
+                own("constraint", place, phase.constraints.iter().map(|own| own.how.clone()))?
+            }
+        })
+    }
+}
+
+impl Loaded {
+    fn of(load: &Load, own: &Phase) -> Option<Self> {
+        Some(match load {
+            Load::Each(force) => Self::Each(force.clone()),
+            Load::Total(force) => Self::Total(force.clone()),
+            Load::Varying(VectorSignal::Live(live)) => Self::Each(live.get()),
+            Load::Varying(VectorSignal::TimeTable(TimeTable { times, values })) => {
+                Self::Table { times: times.clone(), values: values.clone() }
+            }
+            Load::Varying(VectorSignal::Function { write, .. }) => {
+                Self::OfScene(own.loads.iter().position(|(_, own)| match own {
+                    Load::Varying(VectorSignal::Function { write: own, .. }) => {
+                        Arc::ptr_eq(own, write)
+                    }
+                    _ => false,
+                })?)
+            }
+        })
+    }
+
+    fn read(self, phase: &Phase) -> Result<Load, String> {
+        Ok(match self {
+            Self::Each(force) => Load::Each(force),
+            Self::Total(force) => Load::Total(force),
+            Self::Table { times, values } => {
+                Load::Varying(VectorSignal::TimeTable(TimeTable::new(times, values)))
+            }
+            Self::OfScene(place) => {
+                own("load", place, phase.loads.iter().map(|(_, load)| load.clone()))?
+            }
+        })
+    }
+}
+
+impl Number {
+    fn of<'a>(signal: &Signal, mut own: impl Iterator<Item = &'a Signal>) -> Option<Self> {
+        Some(match &signal.0 {
+            Course::Constant(_) | Course::Live(_) => Self::Constant(signal.at(0.0)),
+            Course::TimeTable(TimeTable { times, values }) => {
+                Self::Table { times: times.clone(), values: values.clone() }
+            }
+            Course::Function { function, breaks } => {
+                Self::OfScene(own.position(|own| match &own.0 {
+                    Course::Function { function: own, breaks: theirs } => {
+                        Arc::ptr_eq(own, function) && theirs == breaks
+                    }
+                    _ => false,
+                })?)
+            }
+        })
+    }
+
+    fn read<'a>(
+        self,
+        what: &str,
+        signals: impl Iterator<Item = &'a Signal>,
+    ) -> Result<Signal, String> {
+        Ok(match self {
+            Self::Constant(value) => Signal::constant(value),
+            Self::Table { times, values } => {
+                Signal(Course::TimeTable(TimeTable::new(times, values)))
+            }
+            Self::OfScene(place) => own(what, place, signals.cloned())?,
+        })
+    }
+}

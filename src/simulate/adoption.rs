@@ -1,0 +1,99 @@
+//! Checkpoints as plain data: taken apart, and adopted by a simulation of the same scene in another process.
+
+use std::sync::Arc;
+
+use super::auto::Plan;
+use super::checkpoint::{Checkpoint, Kept};
+use super::records;
+use super::simulation::Simulation;
+use crate::error::Error;
+use crate::input::{InputError, not_negative};
+use crate::scene::Scene;
+use crate::settings::{Method, Settings};
+
+/// What [`Method::Auto`] has chosen for the phase in force.
+pub(crate) struct Choice {
+    pub(crate) method: Method,
+    pub(crate) max_order: Option<u32>,
+    pub(crate) reason: String,
+    /// Longest stable steps of explicit Runge-Kutta and of central differences (s), and steps after which the
+    /// implicit method is tried again: see [`Plan`].
+    pub(crate) explicit_step: f64,
+    pub(crate) central_step: f64,
+    pub(crate) patience: usize,
+}
+
+impl Checkpoint {
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    pub(crate) fn kept(&self) -> &Kept {
+        &self.kept
+    }
+
+    /// The method, if it was chosen.
+    pub(crate) fn choice(&self) -> Option<Choice> {
+        let Plan { settings, reason, explicit_step, central_step, patience, .. } = &self.plan;
+        Some(Choice {
+            method: settings.method,
+            max_order: settings.max_order,
+            reason: reason.clone()?,
+            explicit_step: *explicit_step,
+            central_step: *central_step,
+            patience: *patience,
+        })
+    }
+}
+
+impl Choice {
+    /// The plan that this was, under the settings `asked`.
+    fn plan(self, asked: &Settings) -> Result<Plan, InputError> {
+        let Self { method, max_order, reason, explicit_step, central_step, patience } = self;
+        if method == Method::Auto {
+            return Err(InputError::new("chosen method", method, "it must be one of the others"));
+        }
+        let settings = Settings { method, max_order, ..asked.clone() };
+        // a flag for BDF alone, which may have been chosen before
+        Settings { stability_limit_detection: false, ..settings.clone() }.validate()?;
+        for step in [explicit_step, central_step].into_iter().filter(|step| step.is_finite()) {
+            not_negative("longest stable step", step, "s")?;
+        }
+        let reason = Some(reason);
+        let max_order = asked.max_order;
+        Ok(Plan { settings, max_order, reason, explicit_step, central_step, patience })
+    }
+}
+
+impl Simulation {
+    /// A checkpoint of this simulation from what one of another simulation of the same scene holds: the state
+    /// `kept`, and the `choice` of method, which counts if this simulation leaves the method open, too.
+    ///
+    /// # Errors
+    /// Commands and states that the scene cannot take.
+    pub(crate) fn adopt(&self, kept: Kept, choice: Option<Choice>) -> Result<Checkpoint, Error> {
+        let run = &self.run;
+        let Kept { number, time, ref state, .. } = kept;
+        let mut system = kept.equations(run)?;
+        if ![0, system.rows().len()].contains(&kept.origins.len()) {
+            let mend = format!("the phase has {} rows of constraints", system.rows().len());
+            return Err(InputError::new("number of origins", kept.origins.len(), mend).into());
+        }
+        let reason = match records::sample(number, &mut system, time, state) {
+            Ok(sample) if sample.energy.balance().is_finite() => None,
+            Ok(_) => Some("the energies are beyond the range of double precision".into()),
+            Err(failure) => Some(failure.into_error().to_string()),
+        };
+        if let Some(reason) = reason {
+            return Err(InputError::new("state", format!("at {time} s"), reason).into());
+        }
+        let asked = &run.settings;
+        let plan = match choice.filter(|_| asked.method == Method::Auto) {
+            Some(choice) => choice.plan(asked)?,
+            None => Plan::new(asked, &mut system, time, state),
+        };
+        let longest = asked.max_step.unwrap_or(f64::INFINITY);
+        let kept = Kept { first_step: kept.first_step.map(|step| step.min(longest)), ..kept };
+        Ok(Checkpoint { scene: run.scene.clone(), constraints: Arc::new(()), plan, kept })
+    }
+}
