@@ -47,7 +47,7 @@ impl Simulation {
     ///         Ok(ControlFlow::Continue(()))
     ///     },
     /// );
-    /// square.advance_to(2.0)?;
+    /// square.advance_to(1.6)?;
     /// // after two bounces, on the way up
     /// assert!(square.view().mean_velocity()[1] > 0.0);
     /// # Ok::<(), pliant::Error>(())
