@@ -6,7 +6,9 @@ use std::fs;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use pliant::samples::{beam_jump, square_jump};
-use pliant::{CellField, Sample, Sampling, Settings};
+use pliant::{
+    Body, CellField, Cells, Mesh, Obstacle, Phase, Sample, Sampling, Scene, Settings, Spring,
+};
 use serde_json::Value;
 
 use super::Outcome;
@@ -75,6 +77,46 @@ fn the_data_are_those_of_the_samples() -> Outcome {
 }
 
 /// Long runs are thinned evenly, to their first and last sample.
+/// What commands have changed is drawn as it was: a plate that stops, nodes that are held later, a spring that
+/// pulls.
+#[test]
+fn a_driven_motion_is_drawn_as_it_was() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Triangles)?;
+    let body = Body::new(mesh, RUBBER).thickness(0.01).build()?;
+    let plate = Obstacle::half_plane([0.0, -0.02], [0.0, 1.0]).stiffness(1e3).named("plate");
+    let mut square = Scene::new(body)
+        .spring(Spring::between([1], [9]).named("tendon"))
+        .obstacle(plate.velocity([0.0, 0.1]))
+        .phase(Phase::until(0.4).named("free"))
+        .start(&Settings::default())?;
+    square.record(&Sampling::every(0.05))?;
+    square.advance_to(0.1)?;
+    square.move_obstacle("plate", [0.0, 0.0])?;
+    square.actuate("tendon", -0.5)?;
+    square.advance_to(0.2)?;
+    square.actuate("tendon", 0.0)?;
+    square.hold("left")?;
+    square.advance_to(0.4)?;
+    let data = data(&page(&square.into_trajectory(), "")?)?;
+
+    let courses = data["obstacles"][0]["courses"].as_array().ok_or("no courses")?;
+    let number = |value: &Value| value.as_f64().ok_or("no number");
+    for (time, height) in [(0.0, -0.02), (0.05, -0.015), (0.1, -0.01), (0.3, -0.01), (0.4, -0.01)] {
+        let since = |course: &&Value| course["since"].as_f64().is_some_and(|since| since <= time);
+        let course = courses.iter().rfind(since).ok_or("no course")?;
+        let found = number(&course["start"][1])? + time * number(&course["velocity"][1])? - 0.02;
+        assert!((found - height).abs() < 1e-12, "{found} m at {time} s");
+    }
+    let phases = data["phases"].as_array().ok_or("no phases")?;
+    let held = phases.iter().map(|phase| phase["held"].as_array().map_or(0, Vec::len));
+    assert_eq!(held.collect::<Vec<_>>(), [0, 3]);
+    let forces = decoded(&data["springs"][0]["forces"])?;
+    let forces = forces.as_chunks::<4>().0.iter().map(|&bytes| f32::from_le_bytes(bytes));
+    // the sample at the time of a command is taken before it
+    assert_eq!(forces.collect::<Vec<_>>(), [0.0, 0.0, 0.0, -0.5, -0.5, 0.0, 0.0, 0.0, 0.0]);
+    Ok(())
+}
+
 #[test]
 fn files_stay_small() -> Outcome {
     let scene = square_jump(10)?;
