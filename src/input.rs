@@ -1,9 +1,14 @@
 //! The error of an input that cannot be used, and the checks that raise it.
 
+mod file;
+mod memory;
 mod nearest;
 
 use std::fmt::Display;
 
+#[cfg(feature = "gmsh")]
+pub(crate) use file::read_at_most;
+pub(crate) use memory::check_memory;
 pub(crate) use nearest::unknown_among;
 #[cfg(feature = "scene-file")]
 pub(crate) use nearest::{list, unknown};
@@ -45,40 +50,52 @@ pub(crate) fn find<'a>(
     })
 }
 
+/// Numbers above this are none that anything is measured in: what follows from them is beyond the range of double
+/// precision.
+const MOST: f64 = 1e30;
+
+/// What is said of them.
+fn too_large(value: f64) -> Option<&'static str> {
+    (value.is_finite() && value.abs() > MOST)
+        .then_some("nothing is as large as that: it may be 1e30 at most")
+}
+
 /// Passes `value` if it is finite and above zero.
 pub(crate) fn positive(input: &str, value: f64, unit: &str) -> Result<f64, InputError> {
-    if value.is_finite() && value > 0.0 {
+    if value > 0.0 && value <= MOST {
         return Ok(value);
     }
-    Err(InputError::new(
-        input,
-        value,
-        format!("it must be a finite number above 0{}", suffix(unit)),
-    ))
+    let range = format!("it must be a finite number above 0{}", suffix(unit));
+    Err(InputError::new(input, shown(value), too_large(value).map_or(range, String::from)))
 }
 
 /// Passes `value` if it is finite and not below zero.
 pub(crate) fn not_negative(input: &str, value: f64, unit: &str) -> Result<f64, InputError> {
-    if value.is_finite() && value >= 0.0 {
+    if (0.0..=MOST).contains(&value) {
         return Ok(value);
     }
-    Err(InputError::new(
-        input,
-        value,
-        format!("it must be a finite number, 0 or above{}", suffix(unit)),
-    ))
+    let range = format!("it must be a finite number, 0 or above{}", suffix(unit));
+    Err(InputError::new(input, shown(value), too_large(value).map_or(range, String::from)))
 }
 
 /// Passes `values` if all of them are finite.
 pub(crate) fn finite(input: &str, values: &[f64]) -> Result<(), InputError> {
-    match values.iter().position(|value| !value.is_finite()) {
+    match values.iter().position(|value| !value.is_finite() || value.abs() > MOST) {
         None => Ok(()),
-        Some(at) => Err(InputError::new(
-            format!("component {} of {input}", at + 1),
-            values[at],
-            "it must be a finite number",
-        )),
+        Some(at) => {
+            let name = match values.len() {
+                1 => input.to_owned(),
+                _ => format!("component {} of {input}", at + 1),
+            };
+            let mend = too_large(values[at]).unwrap_or("it must be a finite number");
+            Err(InputError::new(name, shown(values[at]), mend))
+        }
     }
+}
+
+/// A number as one would write it: 1e200 without two hundred zeros.
+fn shown(value: f64) -> String {
+    if too_large(value).is_some() { format!("{value:e}") } else { value.to_string() }
 }
 
 fn suffix(unit: &str) -> String {

@@ -191,9 +191,9 @@ fn starts() {
         .phase(Phase::until(0.1));
     says(simulate(&collapsed), &["initial displacement", "spring \"A1\" has collapsed"]);
     let beyond = scene().initial_displacement(|_| vec![1e200, 0.0]).phase(Phase::until(0.1));
-    says(simulate(&beyond), &["initial displacement = up to 1e200 m", "double precision"]);
+    says(simulate(&beyond), &["initial displacement = 1e200", "1e30 at most"]);
     let beyond = scene().initial_velocity(|_| vec![1e200, 0.0]).phase(Phase::until(0.1));
-    says(simulate(&beyond), &["double precision"]);
+    says(simulate(&beyond), &["initial velocity = 1e200", "1e30 at most"]);
 }
 
 #[test]
@@ -359,7 +359,7 @@ fn statics() {
     says(with(Statics { load_steps: 0, ..good() }), &["statics.load_steps = 0"]);
     says(with(Statics { max_iterations: 0, ..good() }), &["statics.max_iterations = 0"]);
     says(scene().equilibrium(&good()), &["number of phases = 0"]);
-    assert!(held().initial_displacement(|_| vec![1e200, 0.0]).equilibrium(&good()).is_ok());
+    assert!(held().initial_displacement(|_| vec![1e20, 0.0]).equilibrium(&good()).is_ok());
 }
 
 /// A step limit ends the run with what it has, and says what to do.

@@ -3,7 +3,6 @@
 mod file;
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs;
 use std::path::Path;
 
 use file::{Block, Contents};
@@ -11,7 +10,10 @@ use mshio::ElementType;
 use nalgebra::{Matrix3, Vector3};
 
 use super::{CellKind, Mesh};
-use crate::input::InputError;
+use crate::input::{InputError, read_at_most};
+
+/// Bytes that a file may have: those of some ten million nodes.
+const MOST_BYTES: u64 = 2 << 30;
 
 impl Mesh {
     /// Reads a mesh from a file of Gmsh: format MSH 4.1, text or binary. Coordinates are taken as
@@ -44,7 +46,8 @@ impl Mesh {
     /// is called `all` or `boundary` and is not that.
     pub fn read_gmsh(path: impl AsRef<Path>) -> Result<Self, InputError> {
         let path = path.as_ref();
-        let file = fs::read(path).map_err(|error| format!("it cannot be read: {error}"));
+        let file = read_at_most(path, MOST_BYTES);
+        let file = file.map_err(|error| format!("it cannot be read: {error}"));
         file.and_then(Contents::read)
             .and_then(|contents| build(&contents))
             .map_err(|problem| InputError::new("mesh file", path.display(), problem))

@@ -1,10 +1,13 @@
 //! Tables.
 
-use std::path::Path;
+use std::fs::OpenOptions;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
 
 use super::write_file;
 use crate::error::Error;
 use crate::mesh::Selection;
+use crate::scene::Scene;
 use crate::system::Energy;
 use crate::trajectory::{Sample, Trajectory};
 
@@ -51,10 +54,59 @@ pub fn write_csv(
         Some(selection) => trajectory.body().mesh().select(selection)?,
         None => Vec::new(),
     };
-    let mut header = header(trajectory.body().dimension(), &nodes);
-    header.extend(trajectory.sensors().iter().map(|sensor| sensor.name.clone()));
+    let header = header_of(trajectory, &nodes);
     let rows = trajectory.samples().iter().map(|sample| row(trajectory, &nodes, sample));
     write(path.as_ref(), header, rows)
+}
+
+/// The table of [`write_csv`] while a scene runs: rows are added as samples come, so that a kill loses the last
+/// of them alone. What is complete in the end `write_csv` should write once more, all at once.
+pub struct GrowingTable {
+    path: PathBuf,
+    nodes: Vec<usize>,
+    /// Rows written, and the time (s) of the last.
+    rows: usize,
+    last: f64,
+}
+
+impl GrowingTable {
+    /// A table at `path` without rows; nothing is written yet.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `track` names a node or set that does not exist.
+    pub fn new(
+        scene: &Scene,
+        path: impl Into<PathBuf>,
+        track: Option<&Selection>,
+    ) -> Result<Self, Error> {
+        let nodes = track.map(|selection| scene.body().mesh().select(selection)).transpose()?;
+        Ok(Self { path: path.into(), nodes: nodes.unwrap_or_default(), rows: 0, last: 0.0 })
+    }
+
+    /// Adds the samples that are not yet in it. Where the run has gone back and forgotten some, all are written anew.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if the file cannot be written.
+    pub fn catch_up(&mut self, trajectory: &Trajectory) -> Result<(), Error> {
+        let samples = trajectory.samples();
+        let fits = |last: usize| samples.get(last).is_some_and(|sample| sample.time == self.last);
+        let written =
+            self.rows.checked_sub(1).filter(|&last| fits(last)).map_or(0, |last| last + 1);
+        let row = |sample: &Sample| row(trajectory, &self.nodes, sample);
+        let done = match written {
+            0 => write(&self.path, header_of(trajectory, &self.nodes), samples.iter().map(row)),
+            _ => append(&self.path, samples[written..].iter().map(row))
+                .map_err(|source| Error::Output { path: self.path.clone(), source }),
+        };
+        (self.rows, self.last) = (samples.len(), trajectory.last().time);
+        done
+    }
+}
+
+fn append(path: &Path, rows: impl Iterator<Item = Vec<f64>>) -> io::Result<()> {
+    let mut table = csv::Writer::from_writer(OpenOptions::new().append(true).open(path)?);
+    write_rows(&mut table, rows)?;
+    table.flush()
 }
 
 /// Writes one row per sample with the energies (J) of [`Energy`](crate::Energy), after a row with the
@@ -85,11 +137,16 @@ fn write(
     write_file(path, |file| {
         let mut table = csv::Writer::from_writer(file);
         table.write_record(header)?;
-        for row in rows {
-            table.write_record(row.iter().map(|x| format!("{x:.16e}")))?;
-        }
+        write_rows(&mut table, rows)?;
         table.flush()
     })
+}
+
+fn write_rows(
+    table: &mut csv::Writer<impl Write>,
+    mut rows: impl Iterator<Item = Vec<f64>>,
+) -> io::Result<()> {
+    rows.try_for_each(|row| Ok(table.write_record(row.iter().map(|x| format!("{x:.16e}")))?))
 }
 
 /// Energies that are stored.
@@ -97,6 +154,12 @@ const STORED: [&str; 5] = ["kinetic", "strain", "gravity", "contact", "springs"]
 
 fn stored(energy: &Energy) -> [f64; 5] {
     [energy.kinetic, energy.strain, energy.gravity, energy.contact, energy.springs]
+}
+
+fn header_of(trajectory: &Trajectory, nodes: &[usize]) -> Vec<String> {
+    let mut header = header(trajectory.body().dimension(), nodes);
+    header.extend(trajectory.sensors().iter().map(|sensor| sensor.name.clone()));
+    header
 }
 
 fn header(dimension: usize, nodes: &[usize]) -> Vec<String> {

@@ -28,7 +28,7 @@ mod vtk;
 pub(crate) use self::animation::Picture;
 pub use self::animation::write_animation;
 pub use self::chart::Chart;
-pub use self::csv::{write_csv, write_energies};
+pub use self::csv::{GrowingTable, write_csv, write_energies};
 #[cfg(feature = "study")]
 pub(crate) use self::decades::{power_text, ticks};
 #[cfg(feature = "study")]

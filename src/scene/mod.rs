@@ -270,9 +270,7 @@ impl Scene {
         let mut start = 0.0;
         for phase in &self.phases {
             let input = format!("end of phase \"{}\"", phase.name);
-            if !phase.until.is_finite() {
-                return Err(InputError::new(input, phase.until, "it must be a finite time (s)"));
-            }
+            finite(&input, &[phase.until])?;
             if phase.until <= start {
                 let mend = format!("phases run one after the other: it must lie after {start} s");
                 return Err(InputError::new(input, format!("{} s", phase.until), mend));

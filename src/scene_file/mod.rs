@@ -75,6 +75,7 @@ mod surroundings;
 mod table;
 mod value;
 
+use std::io;
 use std::path::Path;
 
 use toml::de::DeTable;
@@ -85,6 +86,7 @@ use self::source::Source;
 use self::table::Table;
 use self::value::Value;
 use crate::error::Error;
+use crate::input::read_at_most;
 use crate::mesh::Selection;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -170,6 +172,9 @@ const TOP: &[&str] = &[
     "output",
 ];
 
+/// Bytes that a scene file may have.
+const MOST_BYTES: u64 = 16 << 20;
+
 impl SceneFile {
     /// Reads a scene file. Files that it names are sought relative to it.
     ///
@@ -178,9 +183,11 @@ impl SceneFile {
     /// inside.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| Error::Read { path: path.into(), source })?;
-        Self::parse(&text, path)
+        let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
+            String::from_utf8(bytes)
+                .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))
+        });
+        Self::parse(&text.map_err(|source| Error::Read { path: path.into(), source })?, path)
     }
 
     /// As [`read`](Self::read), from the `text` of a file at `path`.

@@ -103,7 +103,7 @@ impl Scene {
         let clock = Instant::now();
         settings.validate()?;
         let forces = self.forces_from_start()?;
-        sampling.validate(self.end())?;
+        sampling.validate(self.end(), self.body().dofs())?;
         let model = self.model(&forces);
         let first = forces.into_iter().next().unwrap_or_default();
         let gauges = Gauges::new(self)?;

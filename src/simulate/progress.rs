@@ -2,9 +2,11 @@
 
 use std::ops::ControlFlow;
 
+use crate::trajectory::Trajectory;
+
 /// How far a run has come: what the observer gets after each step, see
 /// [`Scene::simulate_with`](crate::Scene::simulate_with).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
     /// Time reached (s).
     pub time: f64,
@@ -18,6 +20,8 @@ pub struct Progress<'a> {
     pub step: f64,
     /// Order of the last step.
     pub order: u32,
+    /// The samples so far. A method that could not be trusted is gone back from, and its samples are forgotten.
+    pub trajectory: &'a Trajectory,
 }
 
 /// What watches a run, and may stop it.

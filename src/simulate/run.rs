@@ -381,7 +381,8 @@ impl Run {
     fn report_progress(&self, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
         let Self { time, steps, number, .. } = *self;
         let name = &self.phase.name;
-        let answer = observer(&Progress { time, phase: number, name, steps, step, order });
+        let (phase, trajectory) = (number, &self.trajectory);
+        let answer = observer(&Progress { time, phase, name, steps, step, order, trajectory });
         // the last step leaves nothing to be stopped
         if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
     }

@@ -2,7 +2,7 @@
 
 use super::sensor::Sensor;
 use super::view::View;
-use crate::input::{InputError, positive};
+use crate::input::{InputError, check_memory, positive};
 use crate::trajectory::{Quantity, Sample};
 
 /// When the motion is sampled. The start and the end of each phase always are.
@@ -71,7 +71,8 @@ impl Sampling {
         self.sensors.iter().map(|sensor| sensor.quantity.clone()).collect()
     }
 
-    pub(super) fn validate(&self, end: f64) -> Result<(), InputError> {
+    /// Checks the times and names for a scene that ends at time `end` (s), with `dofs` displacement components.
+    pub(super) fn validate(&self, end: f64, dofs: usize) -> Result<(), InputError> {
         for (number, Sensor { quantity: Quantity { name, .. }, .. }) in
             self.sensors.iter().enumerate()
         {
@@ -89,7 +90,8 @@ impl Sampling {
                         format!("double precision does not tell such times apart up to {end} s");
                     return Err(InputError::new("sampling step", step, mend));
                 }
-                Ok(())
+                let bytes = (end / step) * (dofs as f64) * SAMPLE_BYTES;
+                check_memory("sampling step", format!("{step:e} s"), bytes, "sample less often")
             }
             Times::At(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
                 Some(t) => {
@@ -125,6 +127,9 @@ impl Sampling {
         Schedule { inner, count, end }
     }
 }
+
+/// Memory that a sample takes for each displacement component, with its velocity.
+const SAMPLE_BYTES: f64 = 16.0;
 
 /// Least time between samples, as a part of the whole time: a thousand units of round-off.
 const LEAST_STEP: f64 = 2e-13;

@@ -124,7 +124,8 @@ impl Simulation {
     /// # Errors
     /// Sampling times that cannot be used.
     pub fn record(&mut self, sampling: &Sampling) -> Result<(), InputError> {
-        sampling.validate(self.run.scene.end())?;
+        let scene = &self.run.scene;
+        sampling.validate(scene.end(), scene.body().dofs())?;
         self.run.record(sampling);
         Ok(())
     }

@@ -1,11 +1,12 @@
 //! What `run` and `static` write, and where.
 
+use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pliant::output::{Snapshots, write_animation, write_csv, write_vtk};
+use pliant::output::{GrowingTable, Snapshots, write_animation, write_csv, write_vtk};
 use pliant::scene_file::Format;
-use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
+use pliant::{Error, OutputRequest, Scene, SceneFile, Selection, Trajectory};
 
 use crate::failure::{Failure, print};
 
@@ -65,6 +66,16 @@ pub struct Directory {
     path: PathBuf,
     /// Names of what was written.
     written: Vec<&'static str>,
+    /// The directory itself, locked, once it is claimed.
+    lock: Option<File>,
+}
+
+/// Whether a file of this name is what `run` or `static` writes.
+fn is_result(name: &str) -> bool {
+    let frame = name.strip_prefix("body_").and_then(|rest| rest.strip_suffix(".vtu"));
+    frame.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()))
+        || ["trajectory.csv", "report.json", "snapshots.svg", "animation.html", "body.pvd"]
+            .contains(&name)
 }
 
 impl Directory {
@@ -73,12 +84,46 @@ impl Directory {
         let here = Path::new(".");
         let existing = path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(here);
         match tempfile::tempfile_in(existing) {
-            Ok(_) => Ok(Self { path, written: Vec::new() }),
+            Ok(_) => Ok(Self { path, written: Vec::new(), lock: None }),
             Err(error) => {
                 let path = path.display();
                 Err(Failure::bad_input(format!("cannot write to {path}: {error}")))
             }
         }
+    }
+
+    /// Makes the directory this run's own, once: no other run writes there until it has ended, and the results of
+    /// an earlier one are taken away, so that they cannot be mixed.
+    pub fn claim(&mut self) -> Result<(), Failure> {
+        if self.lock.is_some() {
+            return Ok(());
+        }
+        let place = self.path.display();
+        let failed = |error| Failure::failed(format!("cannot write to {place}: {error}"));
+        fs::create_dir_all(&self.path).map_err(failed)?;
+        let lock = File::open(&self.path).map_err(failed)?;
+        // file systems that know no locks are left alone
+        if let Err(TryLockError::WouldBlock) = lock.try_lock() {
+            let mend = "wait until it has ended, or name another directory by --out";
+            return Err(Failure::bad_input(format!("another run writes to {place}: {mend}")));
+        }
+        for entry in fs::read_dir(&self.path).map_err(failed)?.flatten() {
+            if entry.file_name().to_str().is_some_and(is_result) {
+                fs::remove_file(entry.path()).map_err(failed)?;
+            }
+        }
+        self.lock = Some(lock);
+        Ok(())
+    }
+
+    /// A `trajectory.csv` that grows during the run.
+    pub fn growing_table(
+        &self,
+        scene: &Scene,
+        output: &OutputRequest,
+    ) -> Result<GrowingTable, Failure> {
+        let path = self.path.join("trajectory.csv");
+        Ok(GrowingTable::new(scene, path, output.track.as_ref())?)
     }
 
     /// Writes `trajectory.csv`.

@@ -35,9 +35,9 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { scene: path, settings, port, until } = arguments;
+    let mut file = SceneFile::read(path)?;
     let text =
         fs::read_to_string(path).map_err(|source| Error::Read { path: path.clone(), source })?;
-    let mut file = SceneFile::parse(&text, path)?;
     settings.apply(&mut file.settings)?;
     if let Some(end) = *until {
         file.scene = file.scene.lasting(end);

@@ -1,4 +1,4 @@
-//! The progress bar of a run, and Ctrl-C.
+//! The progress bar of a run, and Ctrl-C, SIGTERM and SIGHUP.
 
 use std::io::{self, Write};
 use std::ops::ControlFlow;
@@ -16,6 +16,8 @@ use crate::failure::Failure;
 pub struct Watch {
     bar: ProgressBar,
     interrupted: Arc<AtomicBool>,
+    /// Whether steps are being taken: before and after there is nothing to wait for.
+    stepping: Arc<AtomicBool>,
     /// End of the scene (s).
     end: f64,
     /// When the bar was drawn last.
@@ -26,7 +28,7 @@ pub struct Watch {
 const PARTS: f64 = 1e4;
 /// Time between two pictures of the bar.
 const PERIOD: Duration = Duration::from_millis(100);
-/// Exit code after the second Ctrl-C, that of shells for programs that it ends.
+/// Exit code after the second Ctrl-C, or one outside of steps: that of shells for programs that it ends.
 const KILLED: i32 = 130;
 
 impl Watch {
@@ -41,9 +43,10 @@ impl Watch {
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
 
         let interrupted = Arc::new(AtomicBool::new(false));
-        let (asked, shown) = (interrupted.clone(), bar.clone());
+        let stepping = Arc::new(AtomicBool::new(false));
+        let (asked, waits, shown) = (interrupted.clone(), stepping.clone(), bar.clone());
         let stop = move || {
-            if asked.swap(true, Ordering::Relaxed) {
+            if asked.swap(true, Ordering::Relaxed) || !waits.load(Ordering::Relaxed) {
                 process::exit(KILLED);
             }
             shown.suspend(|| {
@@ -54,11 +57,12 @@ impl Watch {
         };
         ctrlc::set_handler(stop)
             .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
-        Ok(Self { bar, interrupted, end, drawn: Instant::now() })
+        Ok(Self { bar, interrupted, stepping, end, drawn: Instant::now() })
     }
 
     /// Called after each step; stops the run after Ctrl-C.
     pub fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
+        self.stepping.store(true, Ordering::Relaxed);
         if self.interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
@@ -76,6 +80,7 @@ impl Watch {
 
     /// Takes the bar away.
     pub fn finish(self) {
+        self.stepping.store(false, Ordering::Relaxed);
         self.bar.finish_and_clear();
     }
 }

@@ -40,6 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Ok(equilibrium) => equilibrium.trajectory(),
         Err(failure) => &failure.trajectory,
     };
+    directory.claim()?;
     directory.write("report.json", |path| write_static_report(outcome, path))?;
     directory.write_table(&trajectory.at_end(), request)?;
     directory.write_formats(trajectory, title, request)?;

@@ -9,10 +9,10 @@ mod ring;
 pub use cuboid::SolidCells;
 pub use grid::Cells;
 
-use crate::input::InputError;
+use crate::input::{InputError, check_memory};
 
-/// Most nodes that a generator makes: beyond it, matrices fit no memory, and the input is a typing error.
-const MOST_NODES: usize = 100_000_000;
+/// Memory (bytes) that a body takes at least for each node, in the plane and with linear cells: its matrices alone.
+const BYTES_PER_NODE: f64 = 4e3;
 
 /// Checks the numbers of nodes along the axes of a grid.
 fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(), InputError> {
@@ -26,12 +26,9 @@ fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(),
             return Err(InputError::new(input, count, mend));
         }
     }
-    let total = nodes.iter().try_fold(1, |total: usize, &count| total.checked_mul(count));
-    if total.is_none_or(|total| total > MOST_NODES) {
-        let mend = format!("a mesh has at most {MOST_NODES} nodes: choose fewer");
-        return Err(InputError::new(format!("{generator}.nodes"), format!("{nodes:?}"), mend));
-    }
-    Ok(())
+    let total: f64 = nodes.iter().map(|&count| count as f64).product();
+    let (input, bytes) = (format!("{generator}.nodes"), BYTES_PER_NODE * total);
+    check_memory(&input, format!("{nodes:?}"), bytes, "choose fewer nodes")
 }
 
 /// Coordinate of line `i` of `count` equal steps over `length`; exact at both ends.

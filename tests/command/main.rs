@@ -1,10 +1,10 @@
 //! The command `pliant` as a whole: what it writes, what it says, how it ends.
 
+mod world;
+
 use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Command, Output, Stdio};
 
 use pliant::output::write_csv;
 use pliant::{Method, SceneFile, sundials};
@@ -427,71 +427,4 @@ fn standard_output_may_break() {
     let output = place.command(&["methods"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
     assert_eq!(output.status.code(), Some(1));
     says(&stderr(&output), &["pliant: cannot write to the standard output"]);
-}
-
-/// Interrupts a child once it is ready to be interrupted.
-fn interrupt(child: &mut Child) {
-    let status = format!("/proc/{}/status", child.id());
-    let patience = Instant::now();
-    let catches = || {
-        let text = fs::read_to_string(&status).unwrap();
-        let mask = text.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
-        u64::from_str_radix(mask.trim(), 16).unwrap() & 0b10 != 0 // SIGINT is number 2
-    };
-    while !catches() {
-        assert!(patience.elapsed() < Duration::from_secs(120), "it does not watch for SIGINT");
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let kill = format!("kill -INT {}", child.id());
-    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
-}
-
-#[test]
-fn ctrl_c_keeps_what_was_computed() {
-    let place = Place::new();
-    // days of motion that never comes to rest: it cannot be over before it is stopped
-    let text = bar(1e6).replace("viscosity = 200.0", "viscosity = 0.0");
-    let scene = place.scene(&text);
-    let mut command =
-        place.command(&["run", scene, "--step", "0.001", "--max-steps", "1000000000"]);
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    interrupt(&mut child);
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
-    let message = stderr(&output);
-    says(&message, &["pliant: stopping after this step", "pliant: phase \"pull\"", "interrupted"]);
-    let report = place.report("out/scene");
-    assert_eq!(report["status"], "interrupted");
-    assert_eq!(report["failure"]["cause"], "interrupted");
-    let (_, rows) = place.table("out/scene");
-    assert!(report["steps"].as_u64().unwrap() >= 1 && rows.len() >= 2);
-    let (last, time) = (rows.last().unwrap()[0], report["failure"]["time"].as_f64().unwrap());
-    assert!((last - time).abs() <= f64::EPSILON * time, "{last} {time}");
-    assert_eq!(place.files("out/scene"), ["report.json", "trajectory.csv"]);
-}
-
-/// Who presses Ctrl-C once more does not wait: here for the first step of a mesh so fine that it
-/// takes seconds.
-#[test]
-fn a_second_ctrl_c_ends_at_once() {
-    let place = Place::new();
-    let text = r#"
-        dimension = 3
-        [body]
-        mesh = { kind = "cuboid", size = [0.3, 0.3, 0.3], nodes = [22, 22, 22], cells = "hexahedra" }
-        material = { density = 1000.0, young = 1.0e6, poisson = 0.4, viscosity = 40.0 }
-        [[phase]]
-        until = 10.0
-        load = [{ nodes = "top", force = [1.0, 0.0, 0.0] }]
-    "#;
-    let mut command = place.command(&["run", place.scene(text)]);
-    let mut child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-    interrupt(&mut child);
-    // it has heard
-    let mut byte = [0];
-    child.stderr.as_mut().unwrap().read_exact(&mut byte).unwrap();
-    interrupt(&mut child);
-    let status = child.wait().unwrap();
-    assert_eq!(status.code(), Some(130));
-    assert_eq!(place.files("."), ["scene.toml"]);
 }
