@@ -428,3 +428,23 @@ fn standard_output_may_break() {
     assert_eq!(output.status.code(), Some(1));
     says(&stderr(&output), &["pliant: cannot write to the standard output"]);
 }
+
+/// Scenes to start from are right, say nothing of doubt, and are never written over.
+#[test]
+fn new_writes_scenes_that_run() {
+    let place = Place::new();
+    for kind in ["square", "ring", "finger", "cantilever", "blank"] {
+        let file = format!("{kind}.toml");
+        says(&stdout(&place.run(&["new", kind])), &["written to", &file, "pliant run"]);
+        assert_eq!(place.run(&["check", &file]).status.code(), Some(0), "{kind}");
+        let output = place.run(&["run", &file, "--rtol", "1e-3"]);
+        assert_eq!(output.status.code(), Some(0), "{kind}: {}", stderr(&output));
+        assert!(!stdout(&output).contains("WARNING"), "{kind}: {}", stdout(&output));
+        let again = place.run(&["new", kind]);
+        assert_eq!(again.status.code(), Some(2));
+        says(&stderr(&again), &[&file, "is there already", "name another file"]);
+    }
+    assert_eq!(place.run(&["new", "blank", "mine.toml"]).status.code(), Some(0));
+    assert_eq!(place.run(&["static", "cantilever.toml"]).status.code(), Some(0));
+    assert_eq!(place.run(&["new", "pyramid"]).status.code(), Some(2));
+}

@@ -5,6 +5,7 @@ mod check;
 mod failure;
 mod files;
 mod methods;
+mod new;
 #[cfg(feature = "play")]
 mod play;
 mod progress;
@@ -39,6 +40,7 @@ enum Command {
     Check(check::Arguments),
     Chart(chart::Arguments),
     Methods(methods::Arguments),
+    New(new::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -50,6 +52,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),
+        Command::New(arguments) => new::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,
