@@ -93,6 +93,12 @@ pub(crate) fn finite(input: &str, values: &[f64]) -> Result<(), InputError> {
     }
 }
 
+/// A number with four digits, as messages tell times.
+pub(crate) fn told(value: f64) -> String {
+    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
+    format!("{rounded:?}").trim_end_matches(".0").to_owned()
+}
+
 /// A number as one would write it: 1e200 without two hundred zeros.
 fn shown(value: f64) -> String {
     if too_large(value).is_some() { format!("{value:e}") } else { value.to_string() }

@@ -7,6 +7,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::body::Body;
+use crate::input::told;
 use crate::report::Report;
 use crate::scene::{Phase, Scene};
 use crate::settings::Method;
@@ -246,7 +247,8 @@ impl fmt::Display for IntegrationFailure {
         let cause = self.cause();
         write!(
             f,
-            "phase \"{phase}\" ({method}) stopped at t = {time} s, step {step:.3e} s: {cause}"
+            "phase \"{phase}\" ({method}) stopped at t = {} s, step {step:.1e} s: {cause}",
+            told(*time)
         )
     }
 }

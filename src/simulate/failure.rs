@@ -1,6 +1,7 @@
 //! Error messages of runs that do not reach their end.
 
 use super::stepper::Failed;
+use crate::integrate::{self, Cause};
 use crate::report::Counts;
 
 /// Steps in a row that may be too small to move time ahead in double precision.
@@ -18,4 +19,44 @@ pub(super) fn standing_still(refusal: &str) -> Failed {
 pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
     let reason = counts.notice.as_deref().unwrap_or("loosen rtol, or choose another method");
     format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
+}
+
+/// The error of an integrator in words of mechanics, with the likely cause and what to try; other errors as they are.
+pub(super) fn in_mechanics(source: Failed) -> Failed {
+    let Some(integrate::Error::Integration(error)) = source.downcast_ref() else { return source };
+    let (what, mend) = match &error.cause {
+        // the words of a force, or of a function of the scene
+        Cause::Fatal(_) => match &error.source {
+            Some(source) => return source.to_string().into(),
+            None => return source,
+        },
+        Cause::Rejected { message, .. } => ("the time step collapsed", message.as_str()),
+        Cause::NotFinite { .. } => (
+            "forces grew beyond the range of double precision",
+            "displacements have blown up: look for a load or a stiffness that is far too large",
+        ),
+        Cause::TooMuchAccuracy => {
+            ("rtol asks for more digits than double precision has", "raise it")
+        }
+        Cause::ErrorTest => (
+            "the time step collapsed",
+            "a force changes too suddenly there: look for a contact, spring or damper that is far stiffer than the \
+             body, or a load that jumps without a break",
+        ),
+        Cause::Convergence => (
+            "no balance of forces was found at the end of a step, however short",
+            "the body may buckle or collapse there, or a contact may be far stiffer than the body: lower the load, \
+             soften the contact, or try another method",
+        ),
+        Cause::LinearSolver => (
+            "the equations of a step have no single solution",
+            "look for a part of the body that nothing holds, or a stiffness that is far too large or small",
+        ),
+        Cause::InconsistentStart => (
+            "no start that satisfies the constraints was found",
+            "look for constraints that contradict each other or the velocities at the start",
+        ),
+        Cause::TooManySteps { .. } | Cause::Other => return source,
+    };
+    format!("{what}: {mend} ({}, order {})", error.integrator, error.order).into()
 }

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use super::auto::{Plan, TRIAL};
 use super::events::Met;
-use super::failure::{STANDING, standing_still, too_many_steps};
+use super::failure::{STANDING, in_mechanics, standing_still, too_many_steps};
 use super::leg::{Ending, Good, Outcome};
 use super::progress::{Observer, Progress};
 use super::records::{self, energy, project};
@@ -462,7 +462,7 @@ impl Run {
             method: self.settings.method,
             time: self.time,
             step,
-            source,
+            source: in_mechanics(source),
             trajectory,
         })
         .into()
