@@ -85,13 +85,14 @@ impl fmt::Display for Equilibrium {
              {iterations} iteration(s), {load_steps} load step(s)"
         )?;
         let differences = self.difference_evaluations;
-        match differences {
-            0 => Ok(()),
-            _ => write!(
+        if differences > 0 {
+            write!(
                 f,
                 "; tangents of forces by finite differences: {differences} evaluations of these forces"
-            ),
+            )?;
         }
+        let warnings = self.trajectory.report().warnings();
+        warnings.iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
     }
 }
 

@@ -25,6 +25,9 @@ pub struct Report {
     pub energy_scale: f64,
     /// Wall-clock time of the whole run (s).
     pub wall_seconds: f64,
+    /// What indicators measured beyond their limits once the run had ended, each with what to change: see
+    /// [`warnings`](Self::warnings).
+    pub doubts: Vec<String>,
     /// Phase by phase.
     pub phases: Vec<PhaseReport>,
 }
@@ -84,8 +87,10 @@ impl Report {
         self.phases.iter().map(|phase| phase.counts.convergence_failures).sum()
     }
 
-    /// What makes the result doubtful or the run needlessly long: what the integrators noticed, and
-    /// an energy balance that is off by more than a hundredth of the largest energy.
+    /// What makes the result doubtful or the run needlessly long: what the integrators noticed, an
+    /// energy balance that is off by more than a hundredth of the largest energy and, once the run has ended, what
+    /// indicators measured beyond their limits on the scene ([`Scene::warnings`](crate::Scene::warnings)), the
+    /// strain of its cells and its contacts.
     pub fn warnings(&self) -> Vec<String> {
         let notice = |phase: &PhaseReport| {
             let notice = phase.counts.notice.as_ref()?;
@@ -101,6 +106,7 @@ impl Report {
         warnings.extend(doubt.map(|doubt| {
             format!("{doubt}, so the motion may be wrong: lower rtol, or choose another method")
         }));
+        warnings.extend_from_slice(&self.doubts);
         warnings
     }
 }

@@ -90,6 +90,29 @@ impl NodePattern {
         self.transposed[entry]
     }
 
+    /// For each node the number of the connected piece that it belongs to, in the order of their first nodes.
+    pub(crate) fn pieces(&self) -> Vec<usize> {
+        let mut pieces = vec![usize::MAX; self.nodes()];
+        let mut count = 0;
+        for first in 0..self.nodes() {
+            if pieces[first] != usize::MAX {
+                continue;
+            }
+            pieces[first] = count;
+            let mut open = vec![first];
+            while let Some(node) = open.pop() {
+                for (_, next) in self.row(node) {
+                    if pieces[next] == usize::MAX {
+                        pieces[next] = count;
+                        open.push(next);
+                    }
+                }
+            }
+            count += 1;
+        }
+        pieces
+    }
+
     /// The entries of one row, as (index, column).
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, usize)> {
         (self.offsets[row]..self.offsets[row + 1]).map(|entry| (entry, self.columns[entry]))

@@ -179,6 +179,14 @@ enum Verdict {
     Wrong(String),
 }
 
+/// What is doubtful in the integration, not in the scene.
+fn doubts(motion: &Trajectory) -> Vec<String> {
+    let report = motion.report();
+    let mut warnings = report.warnings();
+    warnings.retain(|warning| !report.doubts.contains(warning));
+    warnings
+}
+
 fn verdict(seed: u64) -> Verdict {
     let scene = scene(seed);
     let run = |method, rtol| {
@@ -189,7 +197,7 @@ fn verdict(seed: u64) -> Verdict {
         (Ok(a), Ok(b)) => [a, b],
         (Err(error), Err(_)) => {
             return match run(Method::Auto, 1e-4) {
-                Ok(motion) if motion.report().warnings().is_empty() => {
+                Ok(motion) if doubts(&motion).is_empty() => {
                     Verdict::Wrong(format!("auto goes on where both references end: {error}"))
                 }
                 _ => Verdict::NoReference(error.to_string()),
@@ -208,7 +216,7 @@ fn verdict(seed: u64) -> Verdict {
         Err(error) => return Verdict::Said(error.to_string()),
     };
     let (off, motion) = apart(&motion_of_auto, &references[0]);
-    let warnings = motion_of_auto.report().warnings();
+    let warnings = doubts(&motion_of_auto);
     match off > OFF * motion {
         false => Verdict::Good,
         true if !warnings.is_empty() => Verdict::Said(warnings.join("; ")),

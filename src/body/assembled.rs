@@ -30,6 +30,7 @@ pub struct Body {
     pub(super) mesh: Mesh,
     pub(super) material: Material,
     pub(super) strain: Strain,
+    pub(super) plane: Plane,
     pub(super) viscosity: Viscosity,
     pub(super) section: f64,
     pub(super) elements: Arc<dyn Elements>,
@@ -61,6 +62,16 @@ impl Body {
     /// What it is made of.
     pub fn material(&self) -> &Material {
         &self.material
+    }
+
+    /// What it and its regions are made of.
+    pub(crate) fn materials(&self) -> &[Material] {
+        &self.regions.materials
+    }
+
+    /// What it assumes about the third dimension, if its cells have two.
+    pub(crate) fn plane(&self) -> Plane {
+        self.plane
     }
 
     /// How strain is measured.
@@ -117,6 +128,24 @@ impl Body {
     /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
     pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
         self.elements.volume_ratios(u)
+    }
+
+    /// Angle (rad, 0 to pi) by which each cell has turned under the displacements `u` (m): that of the rotation
+    /// nearest to its mean deformation gradient.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Rectangles)?;
+    /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
+    /// let body = Body::new(mesh, soft).thickness(0.01).build()?;
+    /// // sheared: the lower side stays, the upper one moves to the right by the height
+    /// let turned = body.cell_rotations(&[0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.1, 0.0]);
+    /// assert!((turned[0].tan() - 0.5).abs() < 1e-12);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn cell_rotations(&self, u: &[f64]) -> Vec<f64> {
+        self.elements.rotations(u)
     }
 
     /// Strain, stress and strain energy density of each cell under the displacements `u` (m,

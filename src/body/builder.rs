@@ -115,6 +115,7 @@ impl BodyBuilder {
             mesh,
             material,
             strain,
+            plane,
             viscosity,
             section,
             elements: elements.into(),

@@ -14,12 +14,13 @@
 #[cfg(test)]
 mod tests;
 
-use nalgebra::{Matrix3, SMatrix};
+use nalgebra::{Matrix3, SMatrix, SVD, Vector3};
 
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
 use crate::element::StrainPoint;
 use crate::material::{Deformation, ElasticLaw, with_law};
+use crate::vector::norm;
 
 /// Strain, stress and strain energy density of one cell: means over its natural volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,6 +52,9 @@ pub(super) trait Fields {
     /// Strain, stress and energy density of each cell.
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField>;
 
+    /// Angle (rad) by which each cell has turned.
+    fn rotations(&self, u: &[f64]) -> Vec<f64>;
+
     /// Present over natural volume of each cell.
     fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
 
@@ -75,6 +79,21 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
             with_law!(regions.of(cell).elastic, law => {
                 mean(self.deformed(cell, u).map(|(volume, at)| (volume, PointField::new(&law, &at))))
             })
+        };
+        (0..self.nodes.len()).map(of_cell).collect()
+    }
+
+    fn rotations(&self, u: &[f64]) -> Vec<f64> {
+        if D == 1 {
+            return vec![0.0; self.nodes.len()];
+        }
+        let of_cell = |cell| {
+            let of_point = |(volume, at): (f64, Deformation<f64, M, D>)| {
+                let shape = in_space(&SMatrix::from(at.gradient()));
+                let frame = in_space(&SMatrix::from(*at.frame()));
+                (shape * frame.transpose() + normal(&shape) * normal(&frame).transpose()) * volume
+            };
+            rotation::<M>(&self.deformed(cell, u).map(of_point).sum())
         };
         (0..self.nodes.len()).map(of_cell).collect()
     }
@@ -156,6 +175,38 @@ fn mean(points: impl Iterator<Item = (f64, PointField)>) -> CellField {
 /// `frame` with a row for each axis of three-dimensional space.
 fn in_space<const M: usize, const D: usize>(frame: &SMatrix<f64, D, M>) -> SMatrix<f64, 3, M> {
     SMatrix::from_fn(|i, j| if i < D { frame[(i, j)] } else { 0.0 })
+}
+
+/// The unit normal of a cell of dimension 2 with the tangents `frame`; 0 of others and of one pressed flat.
+fn normal<const M: usize>(frame: &SMatrix<f64, 3, M>) -> Vector3<f64> {
+    match M {
+        2 => {
+            let across = Vector3::from(frame.column(0)).cross(&frame.column(1));
+            across.try_normalize(0.0).unwrap_or_default()
+        }
+        _ => Vector3::zeros(),
+    }
+}
+
+/// Angle (rad) of the rotation nearest to the map `a` of a cell of dimension `M`; of a segment, which `a` maps along
+/// its tangent alone, the angle between its tangents.
+fn rotation<const M: usize>(a: &Matrix3<f64>) -> f64 {
+    if M == 1 {
+        return (a.trace() / a.norm()).clamp(-1.0, 1.0).acos();
+    }
+    if [a.m13, a.m23, a.m31, a.m32] == [0.0; 4] {
+        return (a.m21 - a.m12).atan2(a.m11 + a.m22).abs();
+    }
+    let Some(SVD { u: Some(left), v_t: Some(right), .. }) =
+        a.try_svd(true, true, f64::EPSILON, 100)
+    else {
+        return 0.0; // not finite
+    };
+    let mut mirror = Matrix3::identity();
+    mirror.m33 = (left * right).determinant().signum();
+    let turn = left * mirror * right;
+    let axis = [turn.m32 - turn.m23, turn.m13 - turn.m31, turn.m21 - turn.m12];
+    norm(&axis).atan2(turn.trace() - 1.0)
 }
 
 /// sum n n^T over the unit normals of the space that the columns of `frame` span.

@@ -1,5 +1,6 @@
 //! Regions: parts of a body with another material.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::ops::Range;
 
@@ -105,6 +106,8 @@ pub(super) struct Substance {
 /// Which substance each cell is made of.
 #[derive(Debug, Clone)]
 pub(super) struct Regions {
+    /// What the cells are made of.
+    pub(super) materials: Vec<Material>,
     substances: Vec<Substance>,
     /// Index of each cell's substance; empty if all cells have the first.
     of_cell: Vec<u16>,
@@ -130,14 +133,23 @@ impl Regions {
                 viscous: ObjectiveViscosity(hooke(material.viscous())),
             })
         };
-        let mut all = Self { substances: vec![substance(base)?], of_cell: Vec::new() };
+        let mut all = Self {
+            materials: vec![*base],
+            substances: vec![substance(base)?],
+            of_cell: Vec::new(),
+        };
         if regions.len() >= usize::from(u16::MAX) {
             return Err(InputError::new("number of regions", regions.len(), "65,534 are the most"));
         }
         for (number, (cells, material)) in (1_u16..).zip(regions) {
+            all.materials.push(*material);
             all.substances.push(substance(material)?);
             all.of_cell.resize(mesh.cell_count(), 0);
             cells.cells(mesh)?.into_iter().for_each(|cell| all.of_cell[cell] = number);
+        }
+        if !regions.is_empty() {
+            let used: BTreeSet<u16> = all.of_cell.iter().copied().collect();
+            all.materials = used.iter().map(|&number| all.materials[usize::from(number)]).collect();
         }
         Ok(all)
     }

@@ -109,6 +109,18 @@ impl Contact {
         Ok(Self { obstacle, dimension, drift, is_custom, points, switches })
     }
 
+    pub(crate) fn obstacle(&self) -> &Obstacle {
+        &self.obstacle
+    }
+
+    /// Shows `see` the distance (m) of each point and the first of its nodes (counted from 0).
+    pub(crate) fn each_distance(&self, t: f64, u: &[f64], mut see: impl FnMut(f64, usize)) {
+        for point in &self.points {
+            let distance = self.nearest(t, point, u).distance;
+            point.on.nodes().take(1).for_each(|(node, _)| see(distance, node));
+        }
+    }
+
     #[inline]
     fn nearest(&self, t: f64, point: &ContactPoint, u: &[f64]) -> Nearest {
         let mut x = point.on.at(u, self.dimension);

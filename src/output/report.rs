@@ -131,6 +131,7 @@ fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
 /// | `iterations`, `factorizations`, `load_steps`, `failed_steps` | what it took |
 /// | `wall_seconds` | wall-clock time of the search (s) |
 /// | `max_constraint_drift` | largest error of a constraint (m) |
+/// | `warnings` | what makes the result doubtful, in words |
 /// | `versions` | as in [`write_report`] |
 ///
 /// What a search that gave up does not know is `null`.
@@ -173,6 +174,7 @@ pub fn write_static_report(
             "failed_steps": found.ok().map(|found| found.failed_steps),
             "wall_seconds": trajectory.report().wall_seconds,
             "max_constraint_drift": trajectory.samples().last().map(|sample| sample.constraint_drift),
+            "warnings": trajectory.report().warnings(),
             "versions": versions(),
         }),
     )

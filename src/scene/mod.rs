@@ -179,7 +179,6 @@ impl Scene {
     }
 
     /// Forces that are none of these.
-    #[cfg(feature = "checkpoint")]
     pub(crate) fn other_forces(&self) -> &Forces {
         &self.forces
     }

@@ -17,6 +17,7 @@ use super::view::Gauges;
 use crate::constraint::{PhaseStart, prescribe};
 use crate::error::Error;
 use crate::force::Forces;
+use crate::indicator;
 use crate::input::InputError;
 use crate::model::Model;
 use crate::ode::Failure;
@@ -428,6 +429,7 @@ impl Run {
     /// The motion, at the end of the run.
     pub(super) fn into_trajectory(mut self) -> Trajectory {
         self.trajectory.report = self.report();
+        self.trajectory.report.doubts = indicator::of_motion(&self.trajectory);
         self.trajectory
     }
 
@@ -457,6 +459,7 @@ impl Run {
     pub(super) fn failure(&self, source: Failed, step: f64) -> Error {
         let mut trajectory = self.trajectory.clone();
         trajectory.report = self.report();
+        trajectory.report.doubts = indicator::of_motion(&trajectory);
         Box::new(IntegrationFailure {
             phase: self.phase.name.clone(),
             method: self.settings.method,

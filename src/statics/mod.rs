@@ -25,6 +25,7 @@ pub use options::Statics;
 use crate::constraint::PhaseStart;
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
+use crate::indicator;
 use crate::input::InputError;
 use crate::report::Report;
 use crate::scene::Scene;
@@ -84,6 +85,7 @@ impl Scene {
             trajectory.push(state);
         }
         trajectory.report.wall_seconds = clock.elapsed().as_secs_f64();
+        trajectory.report.doubts = indicator::of_equilibrium(&trajectory, result.is_ok());
         if let Err(Stuck { mut cause, residual }) = result {
             if !free.is_empty() {
                 cause += &format!("; the constraints leave the body free for {}", free.join(", "));

@@ -11,7 +11,7 @@ const NOTHING: f64 = 1e-12;
 
 /// The rigid motions that `rows` leave free, in words; those of each connected piece of the body.
 pub(super) fn free_motions(mesh: &Mesh, pattern: &NodePattern, rows: &[Row]) -> Vec<String> {
-    let pieces = pieces(pattern);
+    let pieces = pattern.pieces();
     let count = pieces.iter().max().map_or(0, |last| last + 1);
     let mut nodes = vec![Vec::new(); count];
     pieces.iter().enumerate().for_each(|(node, &piece)| nodes[piece].push(node));
@@ -28,29 +28,6 @@ pub(super) fn free_motions(mesh: &Mesh, pattern: &NodePattern, rows: &[Row]) -> 
         }
     }
     motions
-}
-
-/// For each node, the number of its connected piece.
-fn pieces(pattern: &NodePattern) -> Vec<usize> {
-    let mut pieces = vec![usize::MAX; pattern.nodes()];
-    let mut count = 0;
-    for first in 0..pattern.nodes() {
-        if pieces[first] != usize::MAX {
-            continue;
-        }
-        pieces[first] = count;
-        let mut open = vec![first];
-        while let Some(node) = open.pop() {
-            for (_, next) in pattern.row(node) {
-                if pieces[next] == usize::MAX {
-                    pieces[next] = count;
-                    open.push(next);
-                }
-            }
-        }
-        count += 1;
-    }
-    pieces
 }
 
 /// Rigid motions of some nodes: along each axis, then in each plane of two axes about the centre,

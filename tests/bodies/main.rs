@@ -8,6 +8,7 @@ mod meshes;
 mod own_force;
 mod pieces;
 mod polynomial;
+mod rotations;
 mod solids;
 mod spectrum;
 mod statics;

@@ -172,6 +172,36 @@ fn flags_override_the_file() {
     }
 }
 
+/// A ring that forgets `strain` swells where it should roll, and the run says so; `check` says what it can know.
+#[test]
+fn wrong_motions_are_told() {
+    let place = Place::new();
+    let text = fs::read_to_string(shipped("ring-roll-objective.toml")).unwrap();
+    assert!(text.contains("strain = \"green\"\nviscous = \"objective\"\n"));
+    let forgetful = text.replace("strain = \"green\"\nviscous = \"objective\"\n", "");
+    let scene = place.scene(&forgetful);
+    let output = place.run(&["run", scene, "--until", "0.5", "--formats", "html", "-q"]);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    says(&stdout(&output), &["WARNING: cells turn by up to", "use strain = \"green\""]);
+    let report = place.report("out/scene");
+    let warnings: Vec<&str> =
+        report["warnings"].as_array().unwrap().iter().map(|text| text.as_str().unwrap()).collect();
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    says(warnings[0], &["Poisson's ratio 0.48 in linear triangles", "limit: 0.45"]);
+    says(warnings[1], &["cells turn by up to", "Cauchy strain", "limit: 10 degrees"]);
+    says(&fs::read_to_string(place.path("out/scene/animation.html")).unwrap(), &["cells turn by"]);
+
+    let checked = place.run(&["check", scene]);
+    assert_eq!(checked.status.code(), Some(0));
+    says(&stdout(&checked), &[&format!("WARNING: {}", warnings[0])]);
+    assert!(!stdout(&checked).contains("cells turn"));
+
+    let output = place.run(&["static", &shipped("beam-static-cauchy.toml"), "-q"]);
+    says(&stdout(&output), &["WARNING: cells turn by up to"]);
+    let report = place.report("out/beam-static-cauchy-static");
+    assert!(report["warnings"][1].as_str().unwrap().contains("cells turn by up to"));
+}
+
 #[test]
 fn solver_flags_reach_the_solver() {
     let place = Place::new();
@@ -241,6 +271,8 @@ fn bad_input_writes_nothing() {
         (&["run", good, "--step", "0"], &["pliant: sampling step = 0"]),
         (&["run", good, "--until", "-1"], &["pliant: end of phase \"pull\" = -1 s"]),
         (&["run", good, "--until", "nan"], &["pliant: end of phase \"pull\" = NaN"]),
+        (&["run", good, "--until", "2"], &["pliant: --until = 2 s", "ends at 1 s", "last longer"]),
+        (&["chart", good, "--until", "2"], &["pliant: --until = 2 s", "ends at 1 s"]),
         (&["run", good, "--track", "7"], &["pliant: node = 7", "1 to 6"]),
         (&["run", good, "--track", "lid"], &["pliant: node set = \"lid\"", "right"]),
         (&["static", good, "--track", "lid"], &["pliant: node set = \"lid\"", "right"]),

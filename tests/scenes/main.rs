@@ -23,3 +23,4 @@ mod square_press;
 mod threads;
 mod tunnelling;
 mod varying;
+mod warnings;

@@ -6,10 +6,11 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pliant::ContactEvents;
 use pliant::study::{Scenes, Stage, Study, all_methods};
-use pliant::{Method, Scene, SceneFile, Settings};
+use pliant::{Method, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
 use crate::files::Directory;
+use crate::settings::ended;
 
 /// Chart speed against accuracy on a scene, method by method and tolerance by tolerance
 ///
@@ -104,11 +105,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// The scene by all settings that are asked for, then the variants.
 fn problem(arguments: &Arguments, title: &str, file: &SceneFile) -> Result<Scenes, Failure> {
     let lines = lines(arguments, &file.settings);
-    let end = |scene: Scene| match arguments.until {
-        Some(end) => scene.ended_at(end),
-        None => scene,
-    };
-    let mut scenes = Scenes::new(title, end(file.scene.clone()))
+    let mut scenes = Scenes::new(title, ended(file.scene.clone(), arguments.until)?)
         .alpha(arguments.alpha.first().copied().unwrap_or(file.settings.alpha))
         .tolerances(arguments.rtol.clone());
     for (name, settings) in &lines {
@@ -117,7 +114,7 @@ fn problem(arguments: &Arguments, title: &str, file: &SceneFile) -> Result<Scene
     for path in &arguments.variants {
         let (variant, stem) = (SceneFile::read(path)?, stem(path));
         for (name, settings) in &lines {
-            let scene = end(variant.scene.clone());
+            let scene = ended(variant.scene.clone(), arguments.until)?;
             scenes = scenes.variant(format!("{stem}: {name}"), scene, settings.clone());
         }
     }

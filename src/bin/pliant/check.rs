@@ -12,7 +12,8 @@ use crate::failure::{Failure, print};
 ///
 /// For each phase: the number of constraints, the fastest rate (vibration or decay), the period of the
 /// slowest vibration and its damping ratio, and what acts besides. Rates and periods are estimates for
-/// the natural shape at rest; contacts and springs count as far as they act there.
+/// the natural shape at rest; contacts and springs count as far as they act there. Warnings tell what makes any
+/// motion of the scene doubtful.
 #[derive(Args)]
 pub struct Arguments {
     /// Scene file
@@ -29,7 +30,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     body(&file.scene)?;
     surroundings(&file.scene)?;
     solver(&file)?;
-    timeline(&phases)
+    timeline(&phases)?;
+    file.scene.warnings().iter().try_for_each(|warning| print(format_args!("WARNING: {warning}")))
 }
 
 fn line(label: &str, text: &str) -> Result<(), Failure> {

@@ -12,7 +12,7 @@ use pliant::{Error, OutputRequest, Scene, SceneFile};
 use crate::failure::{Failure, print};
 use crate::files::{Directory, OutputArguments};
 use crate::progress::Watch;
-use crate::settings::SettingsArguments;
+use crate::settings::{SettingsArguments, ended};
 
 /// Run a scene and write its motion
 ///
@@ -82,9 +82,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     settings.apply(&mut file.settings)?;
     output.apply(&mut file)?;
     file.output.step = step.or(file.output.step);
-    if let Some(end) = *until {
-        file.scene = file.scene.ended_at(end);
-    }
+    file.scene = ended(file.scene, *until)?;
     let SceneFile { title, scene, settings, output: request } = &file;
     let mut directory = output.directory(path, "")?;
 

@@ -1,7 +1,9 @@
 //! Flags that override `[solver]`, made from the table of all settings.
 
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
-use pliant::{InputError, Settings, SettingsOption, SettingsValue as Value};
+use pliant::{InputError, Scene, Settings, SettingsOption, SettingsValue as Value};
+
+use crate::failure::Failure;
 
 /// The flags that were given.
 pub struct SettingsArguments(ArgMatches);
@@ -45,6 +47,19 @@ impl FromArgMatches for SettingsArguments {
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
         self.0 = matches.clone();
         Ok(())
+    }
+}
+
+/// The scene, ended at the time of the flag `--until` (s) if that was given.
+pub fn ended(scene: Scene, until: Option<f64>) -> Result<Scene, Failure> {
+    match until {
+        Some(time) if time > scene.end() => Err(Failure::bad_input(format!(
+            "--until = {time} s cannot be used: the scene ends at {} s; let its last phase last longer (until in \
+             the scene file)",
+            scene.end()
+        ))),
+        Some(time) => Ok(scene.ended_at(time)),
+        None => Ok(scene),
     }
 }
 

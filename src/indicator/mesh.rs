@@ -1,0 +1,113 @@
+//! What a body tells before it moves: its units, its cells, its pieces.
+
+use crate::body::Body;
+use crate::constraint::PhaseStart;
+use crate::force::Force;
+use crate::material::Plane;
+use crate::mesh::CellKind;
+use crate::scene::Scene;
+
+/// Largest size (m) and mass (kg) of a soft body.
+const LARGEST: f64 = 20.0;
+const HEAVIEST: f64 = 1e4;
+/// Slowest and fastest waves sqrt(E/rho) in soft bodies (m/s): jelly has some 1 m/s, steel 5,000.
+const SPEEDS: [f64; 2] = [0.1, 1e4];
+/// Largest Poisson's ratio of cells that lock.
+const MOST_POISSON: f64 = 0.45;
+
+/// A body in other units than metres, kilograms and pascals.
+pub(super) fn units(body: &Body) -> Vec<String> {
+    let (size, mass) = (body.mesh().size(), body.mass());
+    let mend = "is the mesh in mm? Coordinates are metres: divide them by 1000 (in Gmsh: \
+                Mesh.ScalingFactor = 0.001)";
+    let size = (size > LARGEST)
+        .then(|| format!("the body is {size:.3} m across (limit: {LARGEST} m): {mend}"));
+    let mass = (mass > HEAVIEST)
+        .then(|| format!("the body weighs {mass:.3e} kg (limit: {HEAVIEST} kg): {mend}"));
+    let speeds = body.materials().iter().map(|material| material.wave_speed());
+    let strange = speeds.filter(|speed| !(SPEEDS[0]..=SPEEDS[1]).contains(speed)).map(|speed| {
+        format!(
+            "waves run through the body at {speed:.2e} m/s (limits: {} to {} m/s): young is in Pa, density \
+             in kg/m^3",
+            SPEEDS[0], SPEEDS[1]
+        )
+    });
+    size.or(mass).into_iter().chain(strange).collect()
+}
+
+/// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
+/// several times too stiff.
+pub(super) fn locking(body: &Body) -> Option<String> {
+    let mend = match body.mesh().kind() {
+        CellKind::Triangle if !is_crossed(body) => {
+            "take quadratic cells (\"triangles6\"; in Gmsh: Mesh.ElementOrder = 2) or \"crossed\" ones"
+        }
+        CellKind::Quadrilateral => "take quadratic cells (\"triangles6\") or \"crossed\" triangles",
+        CellKind::Tetrahedron | CellKind::Hexahedron => {
+            "take quadratic cells (\"tetrahedra10\"; in Gmsh: Mesh.ElementOrder = 2)"
+        }
+        _ => return None,
+    };
+    if body.mesh().kind().dimension() == 2 && body.plane() == Plane::Stress {
+        return None;
+    }
+    let most = body.materials().iter().map(|material| material.poisson).fold(-1.0, f64::max);
+    (most > MOST_POISSON).then(|| {
+        let cells = body.mesh().kind().name();
+        format!(
+            "Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON}): they lock, and may be several \
+             times too stiff in bending; {mend}, or a smaller ratio"
+        )
+    })
+}
+
+/// Whether each triangle has a corner at which just four meet (on the boundary, two or one), as those within a
+/// quadrilateral do that both its diagonals divide. One of their constraints on the volume follows there from the
+/// others.
+fn is_crossed(body: &Body) -> bool {
+    let mesh = body.mesh();
+    let mut cells_at = vec![0; mesh.node_count()];
+    mesh.cells().flatten().for_each(|&node| cells_at[node] += 1);
+    // as if the mesh went on beyond the boundary
+    mesh.boundary_nodes().iter().for_each(|&node| cells_at[node] = 2 * cells_at[node].max(2));
+    mesh.cells().all(|cell| cell.iter().any(|&node| cells_at[node] == 4))
+}
+
+/// Pieces of the body that neither cells nor springs, other forces or constraints of several nodes join.
+pub(super) fn pieces(scene: &Scene) -> Option<String> {
+    let pattern = scene.body().inertia().pattern();
+    if pattern.pieces().iter().all(|&piece| piece == 0) {
+        return None;
+    }
+    let pieces = pattern.with_pairs(&joints(scene)).pieces();
+    let count = pieces.iter().max().map_or(1, |last| last + 1);
+    let mut sizes = vec![0; count];
+    pieces.iter().for_each(|&piece| sizes[piece] += 1);
+    // a point mass comes after all others, so that the smallest piece is told by its first node
+    let (smallest, nodes) = sizes.iter().enumerate().min_by_key(|(_, nodes)| **nodes)?;
+    let first = pieces.iter().position(|&piece| piece == smallest)?;
+    (count > 1).then(|| {
+        format!(
+            "the body consists of {count} pieces that nothing joins and that pass through each other (limit: \
+             1 piece); the smallest, with node {}, has {nodes} of {} nodes: merge nodes in the same place (in \
+             Gmsh: Coherence), or join the pieces by springs",
+            first + 1,
+            pieces.len()
+        )
+    })
+}
+
+/// Pairs of nodes that are joined, but not by cells.
+fn joints(scene: &Scene) -> Vec<[usize; 2]> {
+    let body = scene.body();
+    let springs = scene.springs().iter().filter_map(|spring| spring.force(body.mesh()).ok());
+    let mut joints: Vec<[usize; 2]> = springs.flat_map(|spring| spring.couplings()).collect();
+    joints.extend(scene.other_forces().iter().flat_map(|force| force.couplings()));
+    let start = PhaseStart { time: 0.0, u: scene.initial_state()[0] };
+    let rows = scene.phases().iter().filter_map(|phase| scene.rows(phase, &start).ok());
+    for row in rows.flatten() {
+        let nodes: Vec<usize> = row.terms.iter().map(|(dof, _)| dof / body.dimension()).collect();
+        joints.extend(nodes.windows(2).map(|pair| [pair[0], pair[1]]));
+    }
+    joints
+}

@@ -1,0 +1,76 @@
+//! Indicators: numbers measured on a scene and on its motion, each with the limit beyond which the result is
+//! doubtful, and what to do then. They are looked at before a run or after it, never within.
+//!
+//! | indicator | limit |
+//! | --- | --- |
+//! | [`mesh`]: size and mass of the body, speed of waves in it | 20 m, 10 t, 0.1 to 10,000 m/s |
+//! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
+//! | [`mesh`]: pieces that nothing joins | one piece |
+//! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
+//! | [`touch`]: how deep nodes are inside obstacles | half a cell, 2 % of the body |
+//! | [`touch`]: obstacles that act and are never met | none |
+
+mod mesh;
+mod strain;
+mod touch;
+
+use crate::scene::Scene;
+use crate::trajectory::{Sample, Trajectory};
+
+impl Scene {
+    /// What makes any motion of this scene doubtful, as far as it can be known before a run: a body too large,
+    /// too heavy or too fast to be soft (its mesh may be in millimetres), cells that lock, pieces that nothing
+    /// joins. Each warning names what was measured, its limit, and what to change.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Scene};
+    ///
+    /// let mesh = Mesh::rectangle([300.0, 300.0], [4, 4], Cells::Triangles)?; // mm?
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
+    /// let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?);
+    /// assert!(scene.warnings()[0].contains("is the mesh in mm?"));
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn warnings(&self) -> Vec<String> {
+        let body = self.body();
+        mesh::units(body).into_iter().chain(mesh::locking(body)).chain(mesh::pieces(self)).collect()
+    }
+}
+
+/// What makes a motion doubtful, or the part of it that there is.
+pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<String> {
+    let samples = looked_at(trajectory);
+    let scene = trajectory.scene();
+    let is_whole = samples[0].time <= 0.0 && trajectory.last().time >= scene.end();
+    let meetings = touch::meetings(trajectory, &samples);
+    let missed = || touch::missed(&meetings, touch::Reach::between(scene, &samples));
+    let warnings = scene.warnings().into_iter().chain(strain::turning(trajectory, &samples));
+    let warnings = warnings.chain(touch::depths(&meetings));
+    warnings.chain(is_whole.then(missed).into_iter().flatten()).collect()
+}
+
+/// What makes an equilibrium doubtful, or the last one on the way to it.
+pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<String> {
+    let samples = [trajectory.last()];
+    let meetings = touch::meetings(trajectory, &samples);
+    let warnings = trajectory.scene().warnings().into_iter();
+    let warnings = warnings.chain(strain::turning(trajectory, &samples));
+    let warnings = warnings.chain(touch::depths(&meetings));
+    warnings
+        .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())
+        .collect()
+}
+
+/// Most samples that are looked at, and most cells in all of them; but so many samples always are.
+const MOST_SAMPLES: usize = 200;
+const MOST_CELLS: usize = 200_000;
+const FEW_SAMPLES: usize = 10;
+
+/// Samples of a motion, evenly spread over their order, the first and the last among them.
+fn looked_at(trajectory: &Trajectory) -> Vec<&Sample> {
+    let samples = trajectory.samples();
+    let most = MOST_CELLS / trajectory.body().mesh().cell_count();
+    let count = most.clamp(FEW_SAMPLES, MOST_SAMPLES).min(samples.len());
+    let last = samples.len() - 1; // there is one at least: see `Trajectory::new`
+    (0..count).map(|k| &samples[k * last / (count - 1).max(1)]).collect()
+}
