@@ -36,19 +36,21 @@ fn run(common: &Common) -> Result<(), Error> {
         let name = format!("{viscosity:?}").to_lowercase();
         let mut chart = Chart::new(format!("Centre of mass of the rolling ring, {name} viscosity"))
             .axes("time (s)", "distance (m)");
-        for friction in [0.02, 0.2, 2.0, 20.0, 200.0] {
-            let ring = RingRoll { friction, viscosity, until: 2.0, ..RingRoll::default() };
+        for tangential_damping in [0.02, 0.2, 2.0, 20.0, 200.0] {
+            let ring =
+                RingRoll { tangential_damping, viscosity, until: 2.0, ..RingRoll::default() };
             let trajectory = ring.scene()?.simulate(&common.settings(), &Sampling::every(0.01))?;
             let start = trajectory.centre_of_mass(&trajectory.samples()[0])[0];
             let distance = |sample: &Sample| trajectory.centre_of_mass(sample)[0] - start;
             let (last, steps) = (trajectory.last(), trajectory.report().steps());
             println!(
-                "{name:10} {friction:12} {:14.3} {:14.2} {steps:8}",
+                "{name:10} {tangential_damping:12} {:14.3} {:14.2} {steps:8}",
                 100.0 * distance(last),
                 trajectory.rotation(last).unwrap_or(0.0).to_degrees(),
             );
             let points = trajectory.samples().iter().map(|s| (s.time, distance(s)));
-            chart = chart.series(format!("B_t = {friction} N s/m"), points.collect::<Vec<_>>());
+            chart = chart
+                .series(format!("B_t = {tangential_damping} N s/m"), points.collect::<Vec<_>>());
         }
         chart.write(directory.join(format!("{name}.svg")))?;
     }

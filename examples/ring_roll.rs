@@ -23,7 +23,7 @@ struct Arguments {
     viscosity: Law,
     /// Tangential damping of the floor (N s/m per node)
     #[arg(long, default_value_t = 20.0)]
-    friction: f64,
+    tangential_damping: f64,
     /// End (s)
     #[arg(long, default_value_t = 5.0)]
     until: f64,
@@ -42,12 +42,12 @@ fn main() {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Error> {
-    let &Arguments { viscosity, friction, until, ref common } = arguments;
+    let &Arguments { viscosity, tangential_damping, until, ref common } = arguments;
     let (viscosity, name) = match viscosity {
         Law::Natural => (Viscosity::Natural, "natural"),
         Law::Objective => (Viscosity::Objective, "objective"),
     };
-    let scene = RingRoll { viscosity, friction, until, ..RingRoll::default() }.scene()?;
+    let scene = RingRoll { viscosity, tangential_damping, until, ..RingRoll::default() }.scene()?;
     let trajectory = scene.simulate(&common.settings(), &Sampling::every(0.01))?;
     println!("Rolling ring, {name} viscosity\n{}", trajectory.report());
     let centre = |sample: &Sample| trajectory.centre_of_mass(sample);

@@ -218,8 +218,17 @@ pub trait Force: Send + Sync {
     }
 
     /// Adds, node by node, bounds on what -df/du (to `stiffness`, N/m) and -df/dv (to `damping`,
-    /// N s/m) may grow by from one moment to the next: contacts that do not touch yet.
-    fn add_reserves(&self, _t: f64, _u: &[f64], _stiffness: &mut [f64], _damping: &mut [f64]) {}
+    /// N s/m) may grow by from one moment to the next: contacts that do not touch yet, and what slides and
+    /// may stick.
+    fn add_reserves(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        _stiffness: &mut [f64],
+        _damping: &mut [f64],
+    ) {
+    }
 
     /// Whether the force depends on u or v, so that the Newton matrix must follow it.
     fn is_nonlinear(&self) -> bool;

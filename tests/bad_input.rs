@@ -203,7 +203,21 @@ fn obstacles() {
     assert!(with(floor()).is_ok());
     says(with(floor().stiffness(0.0)), &["obstacle \"floor\" stiffness = 0", "N/m"]);
     says(with(floor().damping(-1.0)), &["obstacle \"floor\" damping = -1"]);
-    says(with(floor().friction(f64::NAN)), &["obstacle \"floor\" friction = NaN"]);
+    says(
+        with(floor().tangential_damping(f64::NAN)),
+        &["obstacle \"floor\" tangential_damping = NaN"],
+    );
+    let rough = |mu| with(floor().friction_coefficient(mu));
+    says(rough(-0.5), &["obstacle \"floor\" friction_coefficient = -0.5", "0 or above"]);
+    says(rough(f64::INFINITY), &["obstacle \"floor\" friction_coefficient = inf"]);
+    let swapped = with(floor().friction_coefficients(0.4, 0.5));
+    says(swapped, &["0.4 at rest, 0.5 sliding", "must not be above the static one"]);
+    let still = with(floor().friction_coefficient(0.5).sticking_speed(0.0));
+    says(still, &["obstacle \"floor\" sticking_speed = 0", "m/s"]);
+    says(
+        with(floor().sticking_speed(0.1)),
+        &["sticking_speed = 0.1", "give a friction coefficient"],
+    );
     let flat = Obstacle::half_plane([0.0, 0.0], [0.0, 0.0]).named("ramp").stiffness(1.0);
     says(with(flat), &["obstacle \"ramp\" normal", "must not be zero"]);
     says(with(Obstacle::half_plane([0.0], [0.0, 1.0]).stiffness(1.0)), &["point", "2 component"]);

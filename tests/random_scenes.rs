@@ -123,7 +123,7 @@ fn obstacle(random: &mut Random, dimension: usize, fall: f64) -> Obstacle {
         obstacle = obstacle.damping(random.scale(0.1, 10.0));
     }
     if random.is(0.5) {
-        obstacle = obstacle.friction(random.scale(0.1, 10.0));
+        obstacle = obstacle.tangential_damping(random.scale(0.1, 10.0));
     }
     obstacle
 }

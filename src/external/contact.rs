@@ -1,7 +1,11 @@
 //! Penalty contact (Hirai (4.3.5), (4.4.2)): obstacles push boundary nodes out of themselves.
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::friction::{Coulomb, Drag};
 use super::obstacle::{Law, Obstacle};
 use super::passage::{Path, deepest};
 use super::shape::Nearest;
@@ -20,26 +24,27 @@ pub(crate) struct Contact {
     /// w
     drift: [f64; 3],
     is_custom: bool,
+    coulomb: Option<Coulomb>,
     points: Vec<ContactPoint>,
     switches: Switches,
 }
 
-/// Which points touch, and which of their normal forces push: by the numbers that decide on it, or as
+/// Which points touch, and which of their normal forces press: by the numbers that decide on it, or as
 /// held from one contact event to the next.
 struct Switches {
     are_held: AtomicBool,
     touch: Vec<AtomicBool>,
-    /// None with adhesion, where normal forces may pull.
-    push: Vec<AtomicBool>,
+    /// None where nothing hangs on it: with adhesion, and without Coulomb's friction.
+    press: Vec<AtomicBool>,
 }
 
 impl Switches {
-    fn new(points: usize, adhesion: bool) -> Self {
+    fn new(points: usize, pressing: bool) -> Self {
         let off = |count| (0..count).map(|_| AtomicBool::new(false)).collect();
         Self {
             are_held: AtomicBool::new(false),
             touch: off(points),
-            push: off(if adhesion { 0 } else { points }),
+            press: off(if pressing { points } else { 0 }),
         }
     }
 
@@ -56,9 +61,10 @@ impl Switches {
         self.is_on(&self.touch[k], distance)
     }
 
-    /// Whether the normal force of point number `k` acts, of which the law has this `pull` (N).
-    fn acts(&self, k: usize, pull: f64) -> bool {
-        self.push.get(k).is_none_or(|push| self.is_on(push, pull))
+    /// Whether the normal force of point number `k` presses, or may pull as well; the law has this
+    /// `pull` (N).
+    fn presses(&self, k: usize, pull: f64) -> bool {
+        self.press.get(k).is_none_or(|press| self.is_on(press, pull))
     }
 }
 
@@ -81,6 +87,25 @@ struct Touch<'a> {
     rate: f64,
     /// Whether the normal force is cut off at 0 because it would pull.
     is_cut_off: bool,
+    /// Coulomb's friction, where the normal force presses.
+    slip: Option<Slip>,
+}
+
+/// Coulomb's friction of one point: -N `drag.per_speed` s.
+struct Slip {
+    /// s = r - (n . r) n with r = x' - w
+    sliding: [f64; 3],
+    /// N (N)
+    pressing: f64,
+    drag: Drag,
+}
+
+impl Touch<'_> {
+    /// What multiplies the sliding velocity (N s/m).
+    fn drag(&self) -> f64 {
+        let friction = |slip: &Slip| slip.pressing * slip.drag.per_speed;
+        self.point.law.tangential_damping + self.slip.as_ref().map_or(0.0, friction)
+    }
 }
 
 impl Contact {
@@ -105,8 +130,10 @@ impl Contact {
         });
         let (points, drift): (Vec<_>, _) = (points.collect(), obstacle.drift());
         let is_custom = obstacle.shape().is_custom();
-        let switches = Switches::new(points.len(), obstacle.has_adhesion());
-        Ok(Self { obstacle, dimension, drift, is_custom, points, switches })
+        let coulomb = obstacle.coulomb(body.mesh().size());
+        let pressing = coulomb.is_some() || !obstacle.has_adhesion();
+        let switches = Switches::new(points.len(), pressing);
+        Ok(Self { obstacle, dimension, drift, is_custom, coulomb, points, switches })
     }
 
     pub(crate) fn obstacle(&self) -> &Obstacle {
@@ -157,8 +184,14 @@ impl Contact {
             let mut velocity = point.on.at(v, self.dimension);
             velocity.iter_mut().zip(&self.drift).for_each(|(x, w)| *x -= w);
             let rate = dot(&nearest.normal, &velocity);
-            let is_cut_off = !self.switches.acts(k, point.law.pull(nearest.distance, rate));
-            Some(Touch { k, point, nearest, velocity, rate, is_cut_off })
+            let pull = point.law.pull(nearest.distance, rate);
+            let presses = self.switches.presses(k, pull);
+            let is_cut_off = !presses && !self.obstacle.has_adhesion();
+            let slip = self.coulomb.filter(|_| presses).map(|coulomb| {
+                let sliding = std::array::from_fn(|i| velocity[i] - rate * nearest.normal[i]);
+                Slip { sliding, pressing: -pull, drag: coulomb.drag(norm(&sliding)) }
+            });
+            Some(Touch { k, point, nearest, velocity, rate, is_cut_off, slip })
         })
     }
 
@@ -191,13 +224,14 @@ impl Force for Contact {
     ) -> Result<(), Failure> {
         for touch in self.touches(t, u, v) {
             self.check(t, &touch)?;
+            let drag = touch.drag();
             let Touch { point, ref nearest, velocity, rate, is_cut_off, .. } = touch;
             let spring = -point.law.stiffness * nearest.distance;
             let damper = if is_cut_off { -spring } else { -point.law.damping * rate };
             for (i, speed) in velocity.into_iter().take(self.dimension).enumerate() {
                 let (n, w) = (nearest.normal[i], self.drift[i]);
                 let sliding = speed - rate * n;
-                let (elastic, braking) = (spring * n, damper * n - point.law.friction * sliding);
+                let (elastic, braking) = (spring * n, damper * n - drag * sliding);
                 for (node, share) in point.on.nodes() {
                     forces.conservative[node * self.dimension + i] += share * elastic;
                     forces.dissipative[node * self.dimension + i] += share * braking;
@@ -210,9 +244,11 @@ impl Force for Contact {
         Ok(())
     }
 
-    /// With N the normal force, H the Hessian of d and r = x' - w: -df/du is
-    /// K_p n n^T + (B_p - B_t) n (H r)^T - (N + B_t d') H, and -df/dv is
-    /// B_p n n^T + B_t (I - n n^T).
+    /// With N the normal force, H the Hessian of d, r = x' - w and B the drag that multiplies the
+    /// sliding velocity s, B_t + N c with c = mu(w)/w: -df/du is
+    /// K_p n n^T + (B_p - B) n (H r)^T - (N + B d') H, and -df/dv is
+    /// B_p n n^T + B (I - n n^T), at a fixed B. As B changes, with g = c'/w, they have
+    /// -c s (K_p n + B_p H r)^T - N g d' s (H s)^T and -c B_p s n^T + N g s s^T besides.
     fn add_tangents(
         &self,
         t: f64,
@@ -222,37 +258,64 @@ impl Force for Contact {
         damping: &mut BlockMatrix,
     ) -> Tangents {
         for touch in self.touches(t, u, v) {
+            let drag = touch.drag();
             let Touch { point, ref nearest, velocity, rate, is_cut_off, .. } = touch;
             let (spring, damper) = match is_cut_off {
                 true => (0.0, 0.0),
                 false => (point.law.stiffness, point.law.damping),
             };
-            let (n, friction) = (&nearest.normal, point.law.friction);
+            let n = &nearest.normal;
             let normal_force = -spring * nearest.distance - damper * rate;
             let turning = nearest.bend(&velocity);
             let unit = |j: usize| std::array::from_fn(|i| f64::from(i == j));
             let bent: [[f64; 3]; 3] = std::array::from_fn(|j| nearest.bend(&unit(j)));
             let by_u = |i: usize, j: usize| {
-                spring * n[i] * n[j] + (damper - friction) * n[i] * turning[j]
-                    - (normal_force + friction * rate) * bent[i][j]
+                spring * n[i] * n[j] + (damper - drag) * n[i] * turning[j]
+                    - (normal_force + drag * rate) * bent[i][j]
             };
-            let by_v = |i: usize, j: usize| {
-                friction * f64::from(i == j) + (damper - friction) * n[i] * n[j]
-            };
+            let by_v =
+                |i: usize, j: usize| drag * f64::from(i == j) + (damper - drag) * n[i] * n[j];
             spread(&point.on, by_u, stiffness);
             spread(&point.on, by_v, damping);
+            if let Some(Slip { sliding: s, pressing, drag: Drag { per_speed, slope, .. } }) =
+                touch.slip
+            {
+                let (bent, change) = (nearest.bend(&s), pressing * slope);
+                let by_u = |i: usize, j: usize| {
+                    let normal = per_speed * (spring * n[j] + damper * turning[j]);
+                    -s[i] * (normal + change * rate * bent[j])
+                };
+                let by_v = |i: usize, j: usize| s[i] * (change * s[j] - per_speed * damper * n[j]);
+                spread(&point.on, by_u, stiffness);
+                spread(&point.on, by_v, damping);
+            }
         }
         Tangents::Added
     }
 
     /// A point shares K_p n n^T out among its nodes by parts that add up to 1, so that no row of
     /// entries sums up to more than its node's part.
-    fn add_reserves(&self, t: f64, u: &[f64], stiffness: &mut [f64], damping: &mut [f64]) {
+    fn add_reserves(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut [f64],
+        damping: &mut [f64],
+    ) {
         let apart = |point: &&ContactPoint| self.nearest(t, point, u).distance > 0.0;
         for point in self.points.iter().filter(apart) {
             for (node, share) in point.on.nodes() {
                 stiffness[node] += share * point.law.stiffness;
-                damping[node] += share * f64::max(point.law.damping, point.law.friction);
+                damping[node] += share * f64::max(point.law.damping, point.law.tangential_damping);
+            }
+        }
+        let Some(coulomb) = &self.coulomb else { return };
+        for touch in self.touches(t, u, v) {
+            let Some(Slip { pressing, drag, .. }) = touch.slip else { continue };
+            let lacking = pressing.max(0.0) * (coulomb.steepest() - drag.along.max(0.0));
+            for (node, share) in touch.point.on.nodes() {
+                damping[node] += share * lacking;
             }
         }
     }
@@ -274,10 +337,10 @@ impl Force for Contact {
         (self.drift != [0.0; 3]).then_some(self.drift)
     }
 
-    /// The distances of all points, then the pulls of all normal forces that must not pull; those of
+    /// The distances of all points, then the pulls of all normal forces that it matters of; those of
     /// points that do not touch stay off.
     fn switches(&self) -> usize {
-        self.switches.touch.len() + self.switches.push.len()
+        self.switches.touch.len() + self.switches.press.len()
     }
 
     fn switch_values(&self, t: f64, u: &[f64], v: &[f64], values: &mut [f64]) {
@@ -294,8 +357,8 @@ impl Force for Contact {
     }
 
     fn hold_switches(&self, on: Option<&[bool]>) {
-        let Switches { are_held, touch, push } = &self.switches;
-        for (held, &on) in touch.iter().chain(push).zip(on.into_iter().flatten()) {
+        let Switches { are_held, touch, press } = &self.switches;
+        for (held, &on) in touch.iter().chain(press).zip(on.into_iter().flatten()) {
             held.store(on, Ordering::Relaxed);
         }
         are_held.store(on.is_some(), Ordering::Relaxed);
@@ -339,63 +402,5 @@ fn spread(point: &SurfacePoint, entry: impl Fn(usize, usize) -> f64, matrix: &mu
                 *x += row_share * column_share * entry(k / d, k % d);
             }
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::mesh::{Cells, Mesh};
-    use crate::samples::SQUARE_MATERIAL;
-
-    /// Slope 3:4 through (0, 0.1): half of a 2 x 2 grid of nodes lies inside.
-    fn contact(adhesion: bool) -> Contact {
-        let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
-        let slope = Obstacle::half_plane([0.0, 0.1], [-3.0, 4.0]);
-        let slope = slope.stiffness(50.0).damping(7.0).friction(3.0).adhesion(adhesion);
-        let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
-        Contact::new(&body, &slope).unwrap()
-    }
-
-    const U: [f64; 8] = [0.02, -0.05, -0.03, 0.04, 0.01, 0.02, 0.03, -0.01];
-    const V: [f64; 8] = [0.3, -0.4, 0.7, 0.9, -0.5, 0.2, -0.1, 0.8];
-
-    fn forces(contact: &Contact, u: &[f64], v: &[f64]) -> NodalForces {
-        let mut forces = NodalForces::zeros(8);
-        contact.add_forces(0.0, u, v, &mut forces).unwrap();
-        forces
-    }
-
-    /// Hirai (4.4.2), written out for node 2, the one at (1, 0).
-    #[test]
-    fn the_law_of_the_documents() {
-        let forces = forces(&contact(true), &U, &V);
-        let (n, x) = ([-0.6, 0.8], [1.0 + U[2], 0.0 + U[3] - 0.1]);
-        let distance = n[0] * x[0] + n[1] * x[1];
-        let rate = n[0] * V[2] + n[1] * V[3];
-        assert!(distance < 0.0);
-        for i in 0..2 {
-            let sliding = V[2 + i] - rate * n[i];
-            assert!((forces.conservative[2 + i] - -50.0 * distance * n[i]).abs() < 1e-13);
-            let expected = -7.0 * rate * n[i] - 3.0 * sliding;
-            assert!((forces.dissipative[2 + i] - expected).abs() < 1e-13);
-        }
-        // node 3 at (0, 1) is outside
-        assert_eq!(forces.conservative[4..6], [0.0; 2]);
-        assert_eq!(forces.dissipative[4..6], [0.0; 2]);
-    }
-
-    /// A node that separates faster than the spring can push is pulled back by the damper, but
-    /// not without adhesion.
-    #[test]
-    fn without_adhesion_the_normal_force_never_pulls() {
-        let away = [0.0, 0.0, -60.0, 80.0, 0.0, 0.0, 0.0, 0.0];
-        let normal_force = |adhesion| {
-            let forces = forces(&contact(adhesion), &U, &away);
-            let along = |f: &[f64]| -0.6 * f[2] + 0.8 * f[3];
-            along(&forces.conservative) + along(&forces.dissipative)
-        };
-        assert!(normal_force(true) < -600.0);
-        assert!(normal_force(false).abs() < 1e-12);
     }
 }

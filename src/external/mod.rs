@@ -2,6 +2,7 @@
 
 mod chamber;
 mod contact;
+mod friction;
 mod gravity;
 mod load;
 mod obstacle;

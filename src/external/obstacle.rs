@@ -1,5 +1,6 @@
 //! Obstacles: a shape, how it moves, and the law of its force.
 
+use super::friction::Coulomb;
 use super::shape::{Nearest, Shape};
 use crate::input::{InputError, finite, not_negative, positive};
 
@@ -7,17 +8,46 @@ use crate::input::{InputError, finite, not_negative, positive};
 /// boundary node of a body with d <= 0 (or point of a face, see
 /// [`stiffness_density`](Self::stiffness_density)):
 ///
-/// f = (-K_p d - B_p d') n - B_t (I - n n^T) (x' - w)
+/// f = N n - B_t s - mu(|s|) N s/|s|,   N = -K_p d - B_p d'
 ///
-/// with the gradient n of d, the velocity w of the obstacle, and d' = n . (x' - w). Point masses
-/// belong to no boundary and pass through obstacles.
+/// with the gradient n of d, the velocity w of the obstacle, d' = n . (x' - w), and the sliding
+/// velocity s = (I - n n^T) (x' - w). Coulomb's friction, the last term, acts where N presses (is above 0).
+/// Point masses belong to no boundary and pass through obstacles.
+///
+/// # Friction
+///
+/// [`friction_coefficients`](Self::friction_coefficients) mu_s (static) and mu_k (kinetic) make
+///
+/// ```text
+/// mu(w) = mu_s (3 w/v0 - (w/v0)^3)/2                  up to v0, the sticking speed
+///         mu_s - (mu_s - mu_k) (3 y^2 - 2 y^3)        up to 3 v0, with y = (w/v0 - 1)/2
+///         mu_k                                        from there on
+/// ```
+///
+/// a force that is smooth in the speed, in place of one that jumps at rest: what sticks creeps, slower than
+/// v0. On a slope of angle a, for tan(a) below mu_s, a block creeps at
+///
+/// ```text
+/// w = 2 v0 sin(asin(tan(a)/mu_s)/3),
+/// ```
+///
+/// some 2/3 v0 tan(a)/mu_s; on a steeper one it slides with the acceleration g (sin(a) - mu_k cos(a)).
+/// Stick and slip are not located as events. What the force takes is heat, counted relative to the obstacle. In statics
+/// ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing slides, and there is no friction.
+///
+/// Near rest friction is a damper of 3 mu_s N/(2 v0). Implicit methods do not mind it. It bounds the step of explicit
+/// ones (on a node of mass m to 4 m v0/(3 mu_s N), about): give them a larger
+/// [`sticking_speed`](Self::sticking_speed).
 #[derive(Debug, Clone)]
 pub struct Obstacle {
     name: String,
     shape: Shape,
     stiffness: Stiffness,
     damping: f64,
-    friction: f64,
+    tangential_damping: f64,
+    /// mu_s and mu_k
+    friction: Option<[f64; 2]>,
+    sticking_speed: Option<f64>,
     adhesion: bool,
     velocity: Option<Vec<f64>>,
     /// How far from where it was said to be it would have been at t = 0 (m).
@@ -38,7 +68,7 @@ pub(super) struct Law {
     /// B_p (N s/m)
     pub(super) damping: f64,
     /// B_t (N s/m)
-    pub(super) friction: f64,
+    pub(super) tangential_damping: f64,
 }
 
 impl Law {
@@ -56,7 +86,9 @@ impl Obstacle {
             shape,
             stiffness: Stiffness::PerNode(0.0),
             damping: 0.0,
-            friction: 0.0,
+            tangential_damping: 0.0,
+            friction: None,
+            sticking_speed: None,
             adhesion: true,
             velocity: None,
             offset: [0.0; 3],
@@ -113,7 +145,7 @@ impl Obstacle {
     }
 
     /// Contact stiffness per area of the boundary of the body (N/m^3), above 0: pressure over
-    /// depth, the same for all meshes. Damping and friction are per area then, too (N s/m^3). The
+    /// depth, the same for all meshes. Damping, tangential too, is per area then (N s/m^3). The
     /// area is that of the faces in the natural shape: edge length times thickness in the plane,
     /// the cross section in one dimension.
     ///
@@ -130,9 +162,31 @@ impl Obstacle {
         self
     }
 
-    /// Tangential damping B_t (N s/m per node; default 0).
-    pub fn friction(mut self, friction: f64) -> Self {
-        self.friction = friction;
+    /// Tangential damping B_t (N s/m per node; default 0): a force in proportion to the sliding speed,
+    /// whatever the normal force. A block on a slope never comes to rest by it.
+    pub fn tangential_damping(mut self, damping: f64) -> Self {
+        self.tangential_damping = damping;
+        self
+    }
+
+    /// Coefficient mu of Coulomb's friction, static and kinetic, 0 or above (default: no friction). It
+    /// multiplies the normal force where that acts, so it is the same for all meshes.
+    pub fn friction_coefficient(self, coefficient: f64) -> Self {
+        self.friction_coefficients(coefficient, coefficient)
+    }
+
+    /// Coefficients of Coulomb's friction: `at_rest` (mu_s, static) while it sticks, `sliding` (mu_k,
+    /// kinetic), not above it, once it slides. See [Friction](Self#friction).
+    pub fn friction_coefficients(mut self, at_rest: f64, sliding: f64) -> Self {
+        self.friction = Some([at_rest, sliding]);
+        self
+    }
+
+    /// The sliding speed v0 (m/s) below which friction sticks, above 0; with
+    /// [friction coefficients](Self::friction_coefficients) only. Default: a thousandth of the size of the
+    /// body per second, little against motions that one looks at, as what sticks may creep so fast.
+    pub fn sticking_speed(mut self, speed: f64) -> Self {
+        self.sticking_speed = Some(speed);
         self
     }
 
@@ -170,7 +224,9 @@ impl Obstacle {
             }
         };
         not_negative(&input(&format!("damping{area}")), self.damping, rate)?;
-        not_negative(&input(&format!("friction{area}")), self.friction, rate)?;
+        let tangential = input(&format!("tangential_damping{area}"));
+        not_negative(&tangential, self.tangential_damping, rate)?;
+        self.validate_friction(&input)?;
         if let Some(velocity) = &self.velocity {
             if velocity.len() != dimension {
                 let mend = format!("it needs {dimension} component(s) (m/s)");
@@ -179,6 +235,27 @@ impl Obstacle {
             finite(&input("velocity"), velocity)?;
         }
         Ok(Self { shape, ..self.clone() })
+    }
+
+    fn validate_friction(&self, input: &impl Fn(&str) -> String) -> Result<(), InputError> {
+        if let Some([at_rest, sliding]) = self.friction {
+            not_negative(&input("friction_coefficient"), at_rest, "")?;
+            not_negative(&input("friction_coefficient"), sliding, "")?;
+            if sliding > at_rest {
+                let value = format!("{at_rest} at rest, {sliding} sliding");
+                let mend = "the kinetic coefficient must not be above the static one";
+                return Err(InputError::new(input("friction_coefficient"), value, mend));
+            }
+        }
+        let Some(speed) = self.sticking_speed else { return Ok(()) };
+        positive(&input("sticking_speed"), speed, "m/s")?;
+        match self.friction {
+            Some(_) => Ok(()),
+            None => {
+                let mend = "it belongs to friction: give a friction coefficient, too";
+                Err(InputError::new(input("sticking_speed"), speed, mend))
+            }
+        }
     }
 
     pub(crate) fn shape(&self) -> &Shape {
@@ -219,8 +296,13 @@ impl Obstacle {
         Law {
             stiffness: area * stiffness,
             damping: area * self.damping,
-            friction: area * self.friction,
+            tangential_damping: area * self.tangential_damping,
         }
+    }
+
+    /// Its friction with a body of `size` (m).
+    pub(super) fn coulomb(&self, size: f64) -> Option<Coulomb> {
+        self.friction.map(|coefficients| Coulomb::new(coefficients, self.sticking_speed, size))
     }
 
     /// d and its derivatives at time `t`.

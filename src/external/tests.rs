@@ -289,13 +289,21 @@ fn contacts() {
                     (Obstacle::new(shape.clone()).stiffness(50.0), [0.0; 3]),
                     (Obstacle::new(shape.clone()).stiffness_density(40.0), [0.3, -0.2, 0.1]),
                 ] {
-                    let obstacle = obstacle.damping(7.0).friction(3.0).adhesion(adhesion);
-                    let contact = Contact::new(&body, &obstacle.velocity(at(w))).unwrap();
+                    let obstacle = obstacle.damping(7.0).tangential_damping(3.0).adhesion(adhesion);
+                    let viscous = obstacle.velocity(at(w));
+                    // what sticks, what has begun to slide, what slides
+                    let rough = |v0: f64| {
+                        viscous.clone().friction_coefficients(0.8, 0.5).sticking_speed(v0)
+                    };
+                    let rough = [20.0, 1.0, 0.01].map(|part| rough(part * speed));
                     let v: Vec<f64> = v.iter().map(|v| speed * v).collect();
-                    println!("{dimension} {shape:?} {adhesion} {speed}");
-                    let largest = check(&contact, (dimension, &cells), 0.2, &u, &v, 1e-7);
-                    // without adhesion all may be cut off
-                    assert!(largest > 0.0 || !adhesion);
+                    for obstacle in rough.iter().chain([&viscous]) {
+                        println!("{dimension} {adhesion} {speed} {obstacle:?}");
+                        let contact = Contact::new(&body, obstacle).unwrap();
+                        let largest = check(&contact, (dimension, &cells), 0.2, &u, &v, 1e-7);
+                        // without adhesion all may be cut off
+                        assert!(largest > 0.0 || !adhesion);
+                    }
                 }
             }
         }
@@ -308,7 +316,7 @@ fn contacts() {
 fn a_moving_obstacle_supplies_what_its_drive_does() {
     let w = [0.4, -0.1];
     let slope = Obstacle::half_plane([0.5, 0.5], [-3.0, 4.0]).stiffness(50.0).damping(7.0);
-    let contact = Contact::new(&plate(2), &slope.friction(3.0).velocity(w)).unwrap();
+    let contact = Contact::new(&plate(2), &slope.tangential_damping(3.0).velocity(w)).unwrap();
     let (u, v) = (noise(8, 0.1, 2.0), noise(8, 2.0, 20.0));
     let forces = nodal_forces(&contact, 0.2, &u, &v);
     let (dissipated, supplied) = forces.powers(&v);

@@ -60,8 +60,9 @@ pub fn spring_ring(viscosity: Viscosity) -> Result<Scene, InputError> {
         .point_mass("mass", [0.0, 0.05], 0.001)
         .build()?;
     let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
-    let scene =
-        Scene::new(body).gravity([0.0, -9.8]).obstacle(floor.stiffness(1000.0).friction(20.0));
+    let scene = Scene::new(body)
+        .gravity([0.0, -9.8])
+        .obstacle(floor.stiffness(1000.0).tangential_damping(20.0));
     Ok((1..=8).fold(scene, |scene, k| {
         let inner = 12 * (k - 1) + 1;
         let spring = Spring::between([inner], "mass").named(format!("A{k}"));

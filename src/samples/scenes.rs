@@ -162,7 +162,7 @@ pub struct RingRoll {
     /// with objective viscosity it rolls through and swings.
     pub viscosity: Viscosity,
     /// Tangential damping B_t (N s/m per node). Default: 20.
-    pub friction: f64,
+    pub tangential_damping: f64,
     /// End (s). Default: 5.
     pub until: f64,
 }
@@ -170,7 +170,7 @@ pub struct RingRoll {
 impl Default for RingRoll {
     fn default() -> Self {
         let (strain, viscosity) = (Strain::Green, Viscosity::Natural);
-        Self { strain, viscosity, friction: 20.0, until: 5.0 }
+        Self { strain, viscosity, tangential_damping: 20.0, until: 5.0 }
     }
 }
 
@@ -178,7 +178,7 @@ impl RingRoll {
     /// The scene.
     ///
     /// # Errors
-    /// Friction or end out of range.
+    /// Tangential damping or end out of range.
     pub fn scene(&self) -> Result<Scene, InputError> {
         let light = Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 40.0 };
         let heavy = Material { density: 10_000.0, ..light };
@@ -192,7 +192,7 @@ impl RingRoll {
         let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
         let scene = Scene::new(body)
             .gravity([0.0, -9.8])
-            .obstacle(floor.stiffness(1000.0).friction(self.friction))
+            .obstacle(floor.stiffness(1000.0).tangential_damping(self.tangential_damping))
             .phase(Phase::until(self.until).named("rolls"));
         scene.validate().map(|()| scene)
     }

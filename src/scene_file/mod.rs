@@ -42,7 +42,7 @@
 //! | `[[point]]` | `name`, `position` (m), `mass` (kg): a point mass, whose name is a node set |
 //! | `[[spring]]` | `name`; `ends`: two selections of one node each; `stiffness` (N/m), `length` (m), `damping` (N s/m) |
 //! | `[[chamber]]` | `name`; `nodes` of its walls: a set, or a closed polygon of numbers ([`Chamber::within`](crate::Chamber::within)); `thickness` (m; default: that of the body) |
-//! | `[[obstacle]]` | `name`; `kind`: `"half-plane"` with `point`, `normal`, `"disc"` with `centre`, `radius`, `cavity`, `"box"` with `min`, `max`, or `"capsule"` with `from`, `to`, `radius`; `stiffness` (N/m per node) or `stiffness_density` (N/m^3); `damping`, `friction`; `adhesion` (default true); `velocity` (m/s) |
+//! | `[[obstacle]]` | `name`; `kind`: `"half-plane"` with `point`, `normal`, `"disc"` with `centre`, `radius`, `cavity`, `"box"` with `min`, `max`, or `"capsule"` with `from`, `to`, `radius`; `stiffness` (N/m per node) or `stiffness_density` (N/m^3); `damping`, `tangential_damping`; `friction_coefficient`: a number or { `static`, `kinetic` }, `sticking_speed` (m/s; [Friction](crate::Obstacle#friction)); `adhesion` (default true); `velocity` (m/s) |
 //! | `[[phase]]` | `name`; `until` (s); `contact`: `true` (default), `false` or names of obstacles; `project_velocity` (default false); and the lists below |
 //! | `hold` | { `nodes`, `axes` } |
 //! | `move` | { `nodes`, `axes`, `velocity` (m/s) } |
@@ -103,6 +103,8 @@ pub struct SceneFile {
     pub settings: Settings,
     /// What is to be written.
     pub output: OutputRequest,
+    /// What `pliant check` says about the text: keys that have another name now.
+    pub notes: Vec<String>,
 }
 
 /// What a run is to write.
@@ -242,5 +244,7 @@ fn convert(top: &Table) -> Result<SceneFile, Error> {
         settings::output(value, scene.body().mesh())
     })?;
     let (settings, output) = (settings.unwrap_or_default(), output.unwrap_or_default());
-    Ok(SceneFile { title: title.into(), scene, settings, output })
+    let obstacles = top.get("obstacle", "obstacles, [[obstacle]]");
+    let notes = obstacles.map_or(Ok(Vec::new()), |value| surroundings::notes(&value))?;
+    Ok(SceneFile { title: title.into(), scene, settings, output, notes })
 }

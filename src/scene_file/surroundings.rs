@@ -69,8 +69,36 @@ const KINDS: [(&str, Kind, &[&str]); 4] = [
 ];
 
 /// Keys of all obstacles.
-const LAW: &[&str] =
-    &["name", "stiffness", "stiffness_density", "damping", "friction", "adhesion", "velocity"];
+const LAW: &[&str] = &[
+    "name",
+    "stiffness",
+    "stiffness_density",
+    "damping",
+    "tangential_damping",
+    "friction_coefficient",
+    "sticking_speed",
+    "adhesion",
+    "velocity",
+    FRICTION,
+];
+
+/// The key of tangential damping before Coulomb's friction came.
+const FRICTION: &str = "friction";
+
+/// What is to be said about the obstacles that `value` describes.
+pub(super) fn notes(value: &Value) -> Result<Vec<String>, Error> {
+    let line = |value: &Value| {
+        let damping = value.entries()?.get(FRICTION)?;
+        Some(value.source.line(damping.span().start))
+    };
+    let note = |line: usize| {
+        format!(
+            "line {line}: obstacle.{FRICTION} is read as tangential_damping, its name now: a force in \
+             proportion to the sliding speed. Coulomb's friction is friction_coefficient"
+        )
+    };
+    Ok(value.one_or_more()?.iter().filter_map(line).map(note).collect())
+}
 
 /// The scene with the obstacle that `value` describes.
 pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> {
@@ -98,11 +126,7 @@ pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> 
     if let Some(damping) = table.optional("damping", "the damping (N s/m)", Value::number)? {
         obstacle = obstacle.damping(damping);
     }
-    if let Some(friction) =
-        table.optional("friction", "the tangential damping (N s/m)", Value::number)?
-    {
-        obstacle = obstacle.friction(friction);
-    }
+    obstacle = friction(obstacle, table)?;
     if let Some(adhesion) = table.optional("adhesion", "whether damping may pull", Value::flag)? {
         obstacle = obstacle.adhesion(adhesion);
     }
@@ -116,6 +140,41 @@ pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> 
     unique(table, obstacle.name(), scene.obstacles().iter().map(Obstacle::name))?;
     Contact::new(body, &obstacle).map_err(|error| table.blame(error))?;
     Ok(scene.obstacle(obstacle))
+}
+
+/// The `obstacle` with the tangential forces of `table`.
+fn friction(mut obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
+    let meaning = "the tangential damping (N s/m)";
+    let damping = table.optional("tangential_damping", meaning, Value::number)?;
+    let alias = table.optional(FRICTION, meaning, Value::number)?;
+    if damping.is_some() && alias.is_some() {
+        return Err(table.error("friction is the old name of tangential_damping: give that alone"));
+    }
+    if let Some(damping) = damping.or(alias) {
+        obstacle = obstacle.tangential_damping(damping);
+    }
+    let meaning = "the friction coefficient (no unit)";
+    let coefficients = table.optional("friction_coefficient", meaning, |value| {
+        if value.entries().is_none() {
+            let mu = value.number();
+            let mu = mu.map_err(|_| value.unexpected("a number or { static, kinetic }"))?;
+            return Ok([mu, mu]);
+        }
+        let table = value.table(&["static", "kinetic"])?;
+        let coefficient = |key, meaning| table.required(key, meaning, Value::number);
+        Ok([
+            coefficient("static", "the friction coefficient at rest (no unit)")?,
+            coefficient("kinetic", "the friction coefficient of what slides (no unit)")?,
+        ])
+    })?;
+    if let Some([at_rest, sliding]) = coefficients {
+        obstacle = obstacle.friction_coefficients(at_rest, sliding);
+    }
+    let meaning = "the speed below which friction sticks (m/s)";
+    if let Some(speed) = table.optional("sticking_speed", meaning, Value::number)? {
+        obstacle = obstacle.sticking_speed(speed);
+    }
+    Ok(obstacle)
 }
 
 /// Checks that no other one of its kind has the `name` of the thing that `table` describes.

@@ -116,7 +116,7 @@ fn compression(indefinite: usize) -> Option<String> {
     (indefinite > 0).then(|| {
         format!(
             "{indefinite} Newton matrices were not positive definite: the body is under strong \
-             compression, where it buckles or collapses"
+             compression, where it buckles or collapses, or friction falls with the speed"
         )
     })
 }

@@ -98,7 +98,7 @@ pub struct Energy {
     pub contact: f64,
     /// Stored in springs between nodes.
     pub springs: f64,
-    /// Turned into heat since t = 0 by viscosity, contact damping and friction.
+    /// Turned into heat since t = 0 by viscosity, damping and friction of contacts.
     pub dissipated: f64,
     /// Supplied since t = 0 by loads and constraints.
     pub supplied: f64,

@@ -68,14 +68,15 @@ impl RatesBound {
 }
 
 impl System {
-    /// The rates at (t, u, v), contacts that do not touch counted as if they did.
+    /// The rates at (t, u, v), contacts that do not touch counted as if they did, and what slides as if it
+    /// stuck.
     pub(super) fn rates(&mut self, t: f64, u: &[f64], v: &[f64], bound: &mut RatesBound) -> Rates {
         self.update_tangents(t, u, v, false);
         let RatesBound { masses, free, stiffness, damping } = bound;
         stiffness.reserve.fill(0.0);
         damping.reserve.fill(0.0);
         for force in &self.forces {
-            force.add_reserves(t, u, &mut stiffness.reserve, &mut damping.reserve);
+            force.add_reserves(t, u, v, &mut stiffness.reserve, &mut damping.reserve);
         }
         let (k, d) = self.tangents();
         Rates {

@@ -26,7 +26,7 @@ fn system() -> System {
         .load([7], [3.0, -2.0]);
     let scene = Scene::new(body)
         .gravity([0.0, -9.8])
-        .obstacle(floor.stiffness(5e3).damping(20.0).friction(30.0))
+        .obstacle(floor.stiffness(5e3).damping(20.0).tangential_damping(30.0))
         .phase(phase);
     let natural = vec![0.0; scene.body().dofs()];
     let start = PhaseStart { time: 0.0, u: &natural };

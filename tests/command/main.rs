@@ -380,6 +380,11 @@ fn check_prints_what_a_scene_contains() {
     // 0.4 % less on five cells, (k h)^2/24
     let text = stdout(&place.run(&["check", place.scene(&bar(1.0))]));
     says(&text, &["5.63", "loads on 1 node(s)", "6 displacements"]);
+    assert!(!text.contains("note:"), "{text}");
+    let old = fs::read_to_string(shipped("problem-4.toml")).unwrap();
+    let old = old.replace("\ntangential_damping =", "\nfriction =");
+    let text = stdout(&place.run(&["check", place.scene(&old)]));
+    says(&text, &["note: line 28: obstacle.friction is read as tangential_damping"]);
 }
 
 #[test]

@@ -72,6 +72,8 @@ fn in_space() {
     let mesh = mesh.translated(&[-0.05, -0.05, 0.0]).unwrap();
     let floor = Obstacle::half_plane([0.0, 0.0, -0.001], [0.0, 0.0, 2.0]).stiffness_density(1e7);
     let ball = Obstacle::disc([0.06, 0.0, 0.1], 0.02).named("ball").stiffness(200.0);
+    let ball = ball.friction_coefficients(0.6, 0.5).sticking_speed(0.01);
+    let hull = Obstacle::cavity([0.0, 0.0, 0.1], 0.12).named("hull").stiffness(50.0);
     let step = Shape::box_between([-0.2, -0.2, -1.0], [-0.04, 0.2, 0.01]);
     let rail = Obstacle::capsule([0.0, -1.0, 0.21], [0.0, 1.0, 0.21], 0.015).named("rail");
     let times = [0.0, 0.022, 0.03];
@@ -83,14 +85,24 @@ fn in_space() {
         .load_table("left", times, [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
     let scene = Scene::new(Body::new(mesh, rubber).strain(Strain::Green).build().unwrap())
         .gravity([0.0, 0.0, -9.8])
-        .obstacle(floor.damping(1e3).friction(1e4).adhesion(false))
+        .obstacle(floor.damping(1e3).tangential_damping(1e4).adhesion(false))
         .obstacle(ball.velocity([-0.1, 0.0, 0.0]))
-        .obstacle(Obstacle::cavity([0.0, 0.0, 0.1], 0.12).named("hull").stiffness(50.0))
+        .obstacle(hull.friction_coefficient(0.3))
         .obstacle(Obstacle::new(step).named("step").stiffness(100.0))
         .obstacle(rail.stiffness(100.0))
         .phase(Phase::until(0.02).named("fall").contact_with(["floor", "hull"]))
         .phase(press);
     agree(&file, &scene);
+    assert_eq!(file.notes, [""; 0]);
+    // the same by the old name of tangential damping, with a note
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/solid.toml");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let old = text.replace("tangential_damping", "friction");
+    let old = SceneFile::parse(&old, &path).unwrap();
+    agree(&old, &scene);
+    assert_eq!(old.notes.len(), 1);
+    let note = "line 21: obstacle.friction is read as tangential_damping";
+    assert!(old.notes[0].starts_with(note), "{:?}", old.notes);
     let settings = Settings {
         method: Method::CvodeBdf,
         rtol: 1e-4,

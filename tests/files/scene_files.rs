@@ -77,7 +77,7 @@ motions! {
         RingRoll { viscosity: Viscosity::Objective, ..RingRoll::default() }.scene();
     problem_2: "problem-2", RingRoll { strain: Strain::Cauchy, ..RingRoll::default() }.scene();
     problem_4: "problem-4",
-        RingRoll { viscosity: Viscosity::Objective, friction: 0.2, until: 2.0, ..RingRoll::default() }
+        RingRoll { viscosity: Viscosity::Objective, tangential_damping: 0.2, until: 2.0, ..RingRoll::default() }
             .scene();
     ring_springs: "ring-springs", samples::ring_springs(1.0);
     ring_jump: "ring-jump", samples::ring_jump();

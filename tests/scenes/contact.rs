@@ -34,8 +34,9 @@ fn the_floor_carries_the_weight() {
 /// A square set sliding at 1 m/s over the floor is slowed by B_t at its four lower nodes:
 /// v = exp(-4 B_t t / m), as a rigid body, for the springs keep all four in touch.
 #[test]
-fn friction_slows_a_sliding_square() {
-    let floor = Obstacle::half_plane([0.0, 0.002], [0.0, 1.0]).stiffness(5000.0).friction(0.05);
+fn tangential_damping_slows_a_sliding_square() {
+    let floor =
+        Obstacle::half_plane([0.0, 0.002], [0.0, 1.0]).stiffness(5000.0).tangential_damping(0.05);
     let touching: Vec<usize> = (1..=16).collect();
     let scene = square()
         .obstacle(floor)
@@ -55,7 +56,7 @@ fn friction_slows_a_sliding_square() {
         for sample in trajectory.samples().iter().filter(|s| s.phase == 1) {
             let expected = (-4.0 * 0.05 * (sample.time - 0.1) / MASS).exp();
             let found = trajectory.mean_velocity(sample)[0];
-            // the square shears under the friction: a soft body, not a rigid one
+            // the square shears under it: a soft body, not a rigid one
             assert!((found / expected - 1.0).abs() < 2e-4, "{method}: {found} {expected}");
         }
     }
@@ -119,12 +120,14 @@ fn a_stiffness_per_area_suits_all_meshes() {
     }
 }
 
-/// A conveyor belt: friction B_t at the four lower nodes brings the square to the speed of the
+/// A conveyor belt: tangential damping B_t at the four lower nodes brings the square to the speed of the
 /// belt, v = w (1 - exp(-4 B_t t / m)). The belt's drive pays for motion and heat.
 #[test]
 fn a_belt_carries_a_square_along() {
-    let (w, friction) = (0.5, 0.2);
-    let belt = Obstacle::half_plane([0.0, 0.002], [0.0, 1.0]).stiffness(5000.0).friction(friction);
+    let (w, damping) = (0.5, 0.2);
+    let belt = Obstacle::half_plane([0.0, 0.002], [0.0, 1.0])
+        .stiffness(5000.0)
+        .tangential_damping(damping);
     let scene = square()
         .obstacle(belt.named("belt").velocity([w, 0.0]))
         .phase(Phase::until(1.0).hold_axes("bottom", [Axis::Y]));
@@ -132,7 +135,7 @@ fn a_belt_carries_a_square_along() {
         let settings = Settings { method, rtol: 1e-7, ..Settings::default() };
         let trajectory = scene.simulate(&settings, &Sampling::every(0.1)).unwrap();
         for sample in trajectory.samples() {
-            let expected = w * (1.0 - (-4.0 * friction * sample.time / MASS).exp());
+            let expected = w * (1.0 - (-4.0 * damping * sample.time / MASS).exp());
             let found = trajectory.mean_velocity(sample)[0];
             // a soft body, whose lower edge is ahead
             assert!((found - expected).abs() < 3e-3 * w, "{method}: {found} {expected}");
@@ -155,7 +158,10 @@ fn a_ram_throws_a_square() {
     for strain in [Strain::Cauchy, Strain::Green] {
         let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
         let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(strain);
-        let ram = Obstacle::disc([0.16, -0.301], 0.3).stiffness(2000.0).damping(5.0).friction(1.0);
+        let ram = Obstacle::disc([0.16, -0.301], 0.3)
+            .stiffness(2000.0)
+            .damping(5.0)
+            .tangential_damping(1.0);
         let scene = Scene::new(body.build().unwrap())
             .gravity([0.0, -9.8])
             .obstacle(ram.named("ram").velocity([0.0, 2.0]).adhesion(false))
@@ -178,7 +184,8 @@ fn a_ram_throws_a_square() {
 /// In a bowl a body finds the lowest place, below the centre, and its weight rests on the bowl.
 #[test]
 fn a_square_settles_in_a_bowl() {
-    let bowl = Obstacle::cavity([0.2, 0.5], 0.6).stiffness(2000.0).damping(10.0).friction(5.0);
+    let bowl =
+        Obstacle::cavity([0.2, 0.5], 0.6).stiffness(2000.0).damping(10.0).tangential_damping(5.0);
     let scene = square().gravity([0.0, -9.8]).obstacle(bowl).phase(Phase::until(6.0));
     let settings = Settings { rtol: 1e-6, ..Settings::default() };
     let trajectory = scene.simulate(&settings, &Sampling::every(0.5)).unwrap();

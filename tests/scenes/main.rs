@@ -13,6 +13,7 @@ mod contact;
 mod contact_events;
 mod driving;
 mod forces;
+mod friction;
 mod index_two;
 mod observer;
 mod readings;

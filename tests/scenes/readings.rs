@@ -25,7 +25,7 @@ fn pressed(sampling: &Sampling) -> Result<Trajectory, Error> {
     let press = Phase::until(0.05).hold([1]).move_nodes([14, 15], [0.2, -0.16]);
     Scene::new(square(4)?)
         .gravity([0.0, -9.8])
-        .obstacle(floor.stiffness(100.0).damping(3.0).friction(2.0))
+        .obstacle(floor.stiffness(100.0).damping(3.0).tangential_damping(2.0))
         .obstacle(slope.stiffness(500.0).damping(1.0).velocity([-0.3, 0.0]))
         .phase(press)
         .phase(Phase::until(0.08).contact_with(["floor"]))
@@ -49,7 +49,7 @@ fn contact_forces_follow_the_law() -> Outcome {
         let floor = ([0.0, 0.0], [0.0, 1.0], [100.0, 3.0, 2.0], 0.0);
         let slope = ([0.31 - 0.3 * sample.time, 0.0], [-0.8, 0.6], [500.0, 1.0, 0.0], -0.3);
         let obstacles = [vec![floor, slope], vec![floor], vec![]];
-        for (point, n, [stiffness, damping, friction], w) in obstacles[sample.phase].clone() {
+        for (point, n, [stiffness, damping, tangential], w) in obstacles[sample.phase].clone() {
             for &node in mesh.boundary_nodes() {
                 let at = |i: usize| mesh.position(node)[i] + sample.u[2 * node + i] - point[i];
                 let distance = n[0] * at(0) + n[1] * at(1);
@@ -62,7 +62,7 @@ fn contact_forces_follow_the_law() -> Outcome {
                 for i in 0..2 {
                     let sliding = velocity[i] - rate * n[i];
                     expected[2 * node + i] +=
-                        (-stiffness * distance - damping * rate) * n[i] - friction * sliding;
+                        (-stiffness * distance - damping * rate) * n[i] - tangential * sliding;
                 }
             }
         }

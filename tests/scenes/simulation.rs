@@ -338,7 +338,7 @@ fn a_ring_rolls_by_feedback() {
     let distance = ring.view().centre_of_mass()[0];
     println!("{distance} m, turned by {turned}");
     assert!(distance > 0.2, "{distance}");
-    // it slips on a floor of viscous drag, and its rim is squashed
+    // it slips on a floor with tangential damping, and its rim is squashed
     assert!((distance / (0.05 * turned) - 1.0).abs() < 0.1, "{distance} {turned}");
 }
 

@@ -31,6 +31,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     surroundings(&file.scene)?;
     solver(&file)?;
     timeline(&phases)?;
+    file.notes.iter().try_for_each(|note| print(format_args!("note: {note}")))?;
     file.scene.warnings().iter().try_for_each(|warning| print(format_args!("WARNING: {warning}")))
 }
 

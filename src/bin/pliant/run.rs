@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     output.apply(&mut file)?;
     file.output.step = step.or(file.output.step);
     file.scene = ended(file.scene, *until)?;
-    let SceneFile { title, scene, settings, output: request } = &file;
+    let SceneFile { title, scene, settings, output: request, .. } = &file;
     let mut directory = output.directory(path, "")?;
 
     let mut watch = Watch::new(scene.end(), output.quiet)?;

@@ -111,7 +111,7 @@ fn all_at_once(factor: f64) -> AtRest {
         .gravity([1.0 * factor, -9.8 * factor])
         .spring(Spring::between([16], "bob").named("A1").stiffness(20.0).damping(5.0))
         .chamber(Chamber::within("cell", [6, 7, 11, 10]))
-        .obstacle(disc.stiffness(100.0).damping(50.0).friction(20.0))
+        .obstacle(disc.stiffness(100.0).damping(50.0).tangential_damping(20.0))
         .phase(phase.clone());
     let forces = scene.forces().unwrap();
     let (model, start) = (scene.model(&forces), vec![0.0; scene.body().dofs()]);

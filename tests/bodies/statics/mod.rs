@@ -382,7 +382,7 @@ fn obstacles_press_from_where_they_have_come_to() {
     let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4).build().unwrap();
     for (damping, adhesion) in [(0.0, true), (50.0, true), (50.0, false)] {
         let plate = Obstacle::half_plane([0.12], [-1.0]).velocity([-0.04]).stiffness(300.0);
-        let plate = plate.damping(damping).friction(damping).adhesion(adhesion);
+        let plate = plate.damping(damping).tangential_damping(damping).adhesion(adhesion);
         let scene = Scene::new(body.clone()).obstacle(plate).phase(Phase::until(1.0).hold("left"));
         for load_steps in [1, 8] {
             let statics = Statics { load_steps, ..Statics::default() };

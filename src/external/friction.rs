@@ -1,0 +1,70 @@
+//! Coulomb's law of friction, smooth in the sliding speed.
+//!
+//! ```text
+//! f = -N mu(w) s/w,   w = |s|,   s the sliding velocity,
+//!
+//! mu(w) = mu_s (3 x - x^3)/2               x = w/v0 up to 1: it sticks
+//!         mu_s - (mu_s - mu_k) (3 y^2 - 2 y^3)   y = (w/v0 - 1)/2 up to 1
+//!         mu_k                             from 3 v0 on: it slides
+//! ```
+//!
+//! mu(w) has a slope without a jump, and mu(w)/w is a polynomial in w^2 where it sticks, so that nothing
+//! happens at rest. mu_s is reached at v0 and nowhere passed.
+
+/// How fast v0 is where it is not given (1/s): sizes of the body per second.
+const STICKING_SPEED: f64 = 1e-3;
+
+/// The law's numbers.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Coulomb {
+    /// mu_s
+    pub(super) at_rest: f64,
+    /// mu_k, not above mu_s.
+    pub(super) sliding: f64,
+    /// v0 (m/s)
+    pub(super) sticking_speed: f64,
+}
+
+/// mu(w)/w and how it changes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Drag {
+    /// mu(w)/w (s/m)
+    pub(super) per_speed: f64,
+    /// Its derivative by w over w (s^3/m^3).
+    pub(super) slope: f64,
+    /// d mu/dw (s/m)
+    pub(super) along: f64,
+}
+
+impl Coulomb {
+    /// mu_s and mu_k with v0 as given, or as suits a body of `size` (m).
+    pub(super) fn new(
+        [at_rest, sliding]: [f64; 2],
+        sticking_speed: Option<f64>,
+        size: f64,
+    ) -> Self {
+        let sticking_speed = sticking_speed.unwrap_or(STICKING_SPEED * size);
+        Self { at_rest, sliding, sticking_speed }
+    }
+
+    /// The law at the sliding speed `w` (m/s).
+    pub(super) fn drag(&self, w: f64) -> Drag {
+        let Self { at_rest, sliding, sticking_speed } = *self;
+        let x = w / sticking_speed;
+        if x < 1.0 {
+            let (steepest, slope) = (self.steepest(), -at_rest / sticking_speed.powi(3));
+            let per_speed = steepest * (1.0 - x * x / 3.0);
+            return Drag { per_speed, slope, along: steepest * (1.0 - x * x) };
+        }
+        let y = (0.5 * (x - 1.0)).min(1.0);
+        let fall = at_rest - sliding;
+        let per_speed = (at_rest - fall * y * y * (3.0 - 2.0 * y)) / w;
+        let along = -3.0 * fall * y * (1.0 - y) / sticking_speed;
+        Drag { per_speed, slope: (along - per_speed) / (w * w), along }
+    }
+
+    /// The largest d mu/dw (s/m), that at rest.
+    pub(super) fn steepest(&self) -> f64 {
+        1.5 * self.at_rest / self.sticking_speed
+    }
+}
