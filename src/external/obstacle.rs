@@ -32,12 +32,14 @@ use crate::input::{InputError, finite, not_negative, positive};
 /// ```
 ///
 /// some 2/3 v0 tan(a)/mu_s; on a steeper one it slides with the acceleration g (sin(a) - mu_k cos(a)).
-/// Stick and slip are not located as events. What the force takes is heat, counted relative to the obstacle. In statics
-/// ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing slides, and there is no friction.
+/// Stick and slip are not located as events. What the force takes is heat, counted relative to the
+/// obstacle. In statics ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing slides, and there is no
+/// friction.
 ///
-/// Near rest friction is a damper of 3 mu_s N/(2 v0). Implicit methods do not mind it. It bounds the step of explicit
-/// ones (on a node of mass m to 4 m v0/(3 mu_s N), about): give them a larger
-/// [`sticking_speed`](Self::sticking_speed).
+/// Near rest friction is a damper of 3 mu_s N/(2 v0). Implicit methods do not mind it, but speeds are as good
+/// as their tolerances: what sticks creeps by the law alone once `atol_velocity` is well below v0. Explicit
+/// steps are bounded by it (central differences: on a node of mass m to 2 m v0/(3 mu_s N)): give them a
+/// larger [`sticking_speed`](Self::sticking_speed).
 #[derive(Debug, Clone)]
 pub struct Obstacle {
     name: String,
