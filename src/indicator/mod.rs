@@ -63,7 +63,7 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Str
 
 /// Most samples that are looked at, and most cells in all of them; but so many samples always are.
 const MOST_SAMPLES: usize = 200;
-const MOST_CELLS: usize = 200_000;
+const MOST_CELLS: usize = 50_000;
 const FEW_SAMPLES: usize = 10;
 
 /// Samples of a motion, evenly spread over their order, the first and the last among them.

@@ -80,6 +80,10 @@ fn cells_that_lock() {
     for cells in [Cells::Crossed, Cells::Triangles6] {
         assert_eq!(scene(flat(cells, 0.49)).warnings(), NONE);
     }
+    // with corners of one triangle and of two
+    let crossed = Mesh::rectangle([0.1, 0.1], [4, 4], Cells::Crossed).unwrap();
+    let crossed = Body::new(crossed, Material { poisson: 0.49, ..SOFT }).thickness(0.01);
+    assert_eq!(scene(crossed).warnings(), NONE);
     let ring = |cells| Mesh::ring(0.04, 0.05, [32, 3], cells).unwrap();
     let ring = |cells| Body::new(ring(cells), Material { poisson: 0.49, ..SOFT }).thickness(0.01);
     assert_eq!(scene(ring(Cells::Crossed)).warnings(), NONE);
