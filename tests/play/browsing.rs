@@ -1,5 +1,8 @@
 //! The page in a browser.
 
+use std::thread::sleep;
+use std::time::Duration;
+
 use super::browser::Browser;
 use super::{Outcome, served};
 
@@ -22,7 +25,12 @@ fn it_is_played_by_hand() -> Outcome {
     browser.press(" ", false)?;
     browser.click("#play")?;
     browser.wait_until("document.querySelector('#play').ariaLabel === 'Play'")?;
-    let paused = browser.number(CLOCK)?;
+    // what was computed when the button was pressed is still shown
+    let mut paused = f64::NAN;
+    while browser.number(CLOCK)? != paused {
+        paused = browser.number(CLOCK)?;
+        sleep(Duration::from_millis(300));
+    }
     assert!(browser.text("document.querySelector('#facts').textContent")?.contains("order"));
 
     // a node is pulled: a line goes from it to the mouse

@@ -261,10 +261,10 @@ fn bad_input_is_named() {
     let triangles = Cells::Triangles;
     says(Mesh::bar(f64::NAN, 3), &["bar.length = NaN"]);
     says(Mesh::bar(1.0, 1), &["bar.nodes = 1 "]);
-    says(Mesh::bar(1.0, usize::MAX), &["bar.nodes", "at most"]);
+    says(Mesh::bar(1.0, usize::MAX), &["bar.nodes", "are free"]);
     says(Mesh::rectangle([0.3, 0.0], [4, 4], triangles), &["rectangle.size[1] = 0 "]);
     says(Mesh::rectangle([0.3, 0.3], [4, 1], triangles), &["rectangle.nodes[1] = 1 "]);
-    says(Mesh::rectangle([0.3, 0.3], [usize::MAX, 2], triangles), &["rectangle.nodes", "at most"]);
+    says(Mesh::rectangle([0.3, 0.3], [usize::MAX, 2], triangles), &["rectangle.nodes", "are free"]);
     says(Mesh::ring(0.0, 0.4, [8, 2], triangles), &["ring.inner = 0 "]);
     says(Mesh::ring(0.4, 0.4, [8, 2], triangles), &["ring.outer = 0.4 ", "above the inner"]);
     says(Mesh::ring(0.2, f64::INFINITY, [8, 2], triangles), &["ring.outer = inf"]);
@@ -276,7 +276,7 @@ fn bad_input_is_named() {
     let cuboid = |size, nodes| Mesh::cuboid(size, nodes, SolidCells::Hexahedra);
     says(cuboid([1.0, 1.0, -1.0], [2, 2, 2]), &["cuboid.size[2] = -1 "]);
     says(cuboid([1.0, 1.0, 1.0], [2, 1, 2]), &["cuboid.nodes[1] = 1 "]);
-    says(cuboid([1.0, 1.0, 1.0], [2, 3000000, 3000000]), &["cuboid.nodes", "at most"]);
+    says(cuboid([1.0, 1.0, 1.0], [2, 3000000, 3000000]), &["cuboid.nodes", "are free"]);
     let grid = || Mesh::rectangle([1.0, 1.0], [2, 2], triangles).unwrap();
     says(
         grid().mapped(|x| [1.0 / x[0], x[1]]),
