@@ -132,8 +132,9 @@ fn a_run_owns_its_directory() {
     assert_eq!(place.run(&["run", scene]).status.code(), Some(0));
     assert_eq!(place.files("out/scene"), ["notes.txt", "report.json", "trajectory.csv"]);
 
+    fs::remove_file(place.path("out/scene/trajectory.csv")).unwrap();
     let mut child = endless(&place);
-    wait("no directory", || place.path("out/scene/trajectory.csv").exists());
+    wait("no rows", || place.path("out/scene/trajectory.csv").exists());
     let other = place.run(&["run", scene, "--step", "0.5"]);
     assert_eq!(other.status.code(), Some(2));
     says(&stderr(&other), &["another run writes to out/scene", "another directory by --out"]);
