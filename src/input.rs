@@ -1,5 +1,6 @@
 //! The error of an input that cannot be used, and the checks that raise it.
 
+#[cfg(feature = "gmsh")]
 mod file;
 mod memory;
 mod nearest;
