@@ -174,8 +174,9 @@ pub enum Tangents {
 ///   heat and which as supplied. The energy balance of the report shows what a force does not account for.
 /// - [`hold_switches`](Self::hold_switches) is called with `None` at the start of a phase and after each change of the
 ///   integrator; where contact events are located, with the switches as they are then, and anew after each event.
-/// - A panic passes through all integrators, those in C included, to the caller of the run. A
-///   [`Simulation`](crate::Simulation) is of no use after it.
+/// - A panic passes through all integrators, those in C included, to the caller of
+///   [`Scene::simulate`](crate::Scene::simulate). A [`Simulation`](crate::Simulation) makes an error of it, and can go on from
+///   the step before.
 pub trait Force: Send + Sync {
     /// Adds the force at (t, u, v).
     ///

@@ -1,6 +1,6 @@
 //! The error of an input that cannot be used, and the checks that raise it.
 
-#[cfg(feature = "gmsh")]
+#[cfg(any(feature = "checkpoint", feature = "gmsh"))]
 mod file;
 mod memory;
 mod nearest;
@@ -9,6 +9,8 @@ use std::fmt::Display;
 
 #[cfg(feature = "gmsh")]
 pub(crate) use file::read_at_most;
+#[cfg(feature = "checkpoint")]
+pub(crate) use file::read_if_at_most;
 pub(crate) use memory::check_memory;
 pub(crate) use nearest::unknown_among;
 #[cfg(feature = "scene-file")]

@@ -4,14 +4,13 @@ mod commands;
 mod identity;
 mod record;
 
-use std::fs::{self, File};
-use std::io::Read;
+use std::fs;
 use std::path::Path;
 
 use self::record::{Head, Record, WHAT};
 use crate::error::Error;
 use crate::file::write_file;
-use crate::input::InputError;
+use crate::input::{InputError, read_if_at_most};
 use crate::simulate::{Checkpoint, Simulation};
 
 impl Checkpoint {
@@ -93,13 +92,9 @@ fn open(path: &Path, most: u64) -> std::io::Result<Result<Vec<u8>, String>> {
     if !fs::metadata(path)?.is_file() {
         return Ok(Err("it is no regular file: name one".into()));
     }
-    let mut text = Vec::new();
-    File::open(path)?.take(most + 1).read_to_end(&mut text)?;
-    if text.len() as u64 > most {
-        let mend = "it is no checkpoint of this scene, or was damaged: write it anew";
-        return Ok(Err(format!("it has more than {most} bytes: {mend}")));
-    }
-    Ok(Ok(text))
+    let mend = "it is no checkpoint of this scene, or was damaged: write it anew";
+    let too_long = || format!("it has more than {most} bytes: {mend}");
+    Ok(read_if_at_most(path, most)?.ok_or_else(too_long))
 }
 
 fn parse(text: &[u8], simulation: &Simulation) -> Result<Checkpoint, String> {

@@ -335,9 +335,12 @@ impl Phase {
         }
     }
 
-    /// The phase with constants in place of numbers that commands can set.
-    pub(crate) fn frozen(&self) -> Self {
-        let mut frozen = self.clone();
+    /// The phase with constants in place of numbers that commands can set: those to come do not change it.
+    pub(crate) fn frozen(self: &Arc<Self>) -> Arc<Self> {
+        if !self.is_live() {
+            return self.clone();
+        }
+        let mut frozen = Self::clone(self);
         for (_, load) in &mut frozen.loads {
             if let Load::Varying(VectorSignal::Live(live)) = load {
                 *load = Load::Each(live.get());
@@ -347,11 +350,11 @@ impl Phase {
         for signal in actuations.chain(frozen.pressures.iter_mut().map(|(_, pressure)| pressure)) {
             *signal = signal.frozen();
         }
-        frozen
+        Arc::new(frozen)
     }
 
     /// Whether there are any.
-    pub(crate) fn is_live(&self) -> bool {
+    fn is_live(&self) -> bool {
         let mut loads = self.loads.iter();
         loads.any(|(_, load)| matches!(load, Load::Varying(VectorSignal::Live(_))))
             || self.actuations.iter().any(|(_, force)| force.live().is_some())

@@ -55,6 +55,11 @@ pub(super) struct Leg {
 }
 
 impl Leg {
+    /// The next sampling time (s).
+    pub(super) fn next_sample(&self) -> Option<f64> {
+        self.times.get(self.taken)
+    }
+
     /// Where it ends, or pauses (s).
     pub(super) fn end(&self) -> f64 {
         self.inside.unwrap_or(self.stop)

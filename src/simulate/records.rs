@@ -43,9 +43,7 @@ pub(super) fn complete(
     phase: &Arc<Phase>,
     is_commanded: bool,
 ) {
-    // commands to come do not change what it was
-    let frozen = || if phase.is_live() { Arc::new(phase.frozen()) } else { phase.clone() };
-    sample.commanded = Commanded(is_commanded.then(frozen));
+    sample.commanded = Commanded(is_commanded.then(|| phase.frozen()));
     if sensors.is_empty() {
         return;
     }

@@ -223,7 +223,7 @@ impl Run {
             kept: Kept {
                 time,
                 state: state.to_vec(),
-                phase: self.frozen_phase(),
+                phase: self.phase.frozen(),
                 number: self.number,
                 is_commanded: self.is_commanded,
                 origins: rows.iter().map(Row::origin).collect(),
@@ -234,11 +234,6 @@ impl Run {
                 energies: self.trajectory.noted(),
             },
         }
-    }
-
-    /// The phase in force, which later commands do not touch.
-    fn frozen_phase(&self) -> Arc<Phase> {
-        if self.phase.is_live() { Arc::new(self.phase.frozen()) } else { self.phase.clone() }
     }
 
     /// Comes back to a state.
@@ -281,7 +276,7 @@ impl Run {
     /// A run of its own from `state` = (u, v, energies) at time `t` (s) on.
     pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
         let rows = self.system().map_or_else(Vec::new, |system| system.rows().to_vec());
-        let phase = self.frozen_phase();
+        let phase = self.phase.frozen();
         let forces = self.scene.forces_in(&phase)?;
         let (alpha, name) = (self.settings.alpha, &phase.name);
         let system = System::new(self.model.clone(), forces, rows, alpha, name)?;

@@ -337,10 +337,11 @@ impl Run {
     fn step(&mut self, work: &mut Work) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
         let Work { stepper, stop, sample, .. } = work;
-        let (stepper, leg) = (&mut **stepper, &mut self.stage.leg);
+        let stepper = &mut **stepper;
         let reached = stepper.step(*stop)?;
         let times = [self.time, reached];
-        let event = match leg.events.met(stepper, &self.state, times, self.atol.position, sample)? {
+        let (events, tolerance) = (&mut self.stage.leg.events, self.atol.position);
+        let event = match events.met(stepper, &self.state, times, tolerance, sample)? {
             Met::Nothing => None,
             Met::Event(t) => Some(t),
             Met::Passage(t) => return Ok(Outcome::Refused(t)),
@@ -354,14 +355,12 @@ impl Run {
         let (system, arrived) = arrival(stepper, event, sample)?;
         let before = &self.state[..n];
         system.check_step(time, before, &arrived[..n]).map_err(Failure::into_error)?;
-        while let Some(t) = leg.times.get(leg.taken).filter(|&t| t <= time) {
-            leg.taken += 1;
+        while let Some(t) = self.stage.leg.next_sample().filter(|&t| t <= time) {
+            self.stage.leg.taken += 1;
             stepper.interpolate(t, sample)?;
             let taken = records::sample(self.number, stepper.system_mut(), t, sample);
-            let (mut taken, own) =
-                (taken.map_err(Failure::into_error)?, (&*self.scene, &*self.gauges));
-            let sensors = &self.sampling.sensors;
-            records::complete(&mut taken, sensors, own, &self.phase, self.is_commanded);
+            let mut taken = taken.map_err(Failure::into_error)?;
+            self.complete(&mut taken);
             self.trajectory.push(taken);
         }
         let (system, arrived) = arrival(stepper, event, sample)?;
@@ -370,7 +369,7 @@ impl Run {
         self.steps += 1;
         self.state.copy_from_slice(&arrived[..length]);
         if event.is_some() {
-            leg.events.pass(system, time, &self.state, step);
+            self.stage.leg.events.pass(system, time, &self.state, step);
         }
         let drift = system.drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
