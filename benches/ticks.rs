@@ -77,7 +77,9 @@ impl Drive {
 
 fn cases() -> Result<[Case; 4], Box<dyn Error>> {
     let square = Mesh::rectangle([0.3, 0.3], [10, 10], Cells::Triangles)?;
-    let square = Scene::new(Body::new(square, SQUARE_MATERIAL).thickness(0.01).build()?);
+    let square = Scene::new(
+        Body::new(square, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()?,
+    );
     let mesh = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/meshes/bending-actuator.msh");
     let rubber = Material { density: 1100.0, young: 5e5, poisson: 0.4, viscosity: 50.0 };
     let finger = Mesh::cuboid([0.12, 0.02, 0.02], [56, 6, 6], SolidCells::Hexahedra)?;

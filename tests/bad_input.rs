@@ -11,7 +11,9 @@ fn grid() -> Mesh {
 }
 
 fn scene() -> Scene {
-    Scene::new(Body::new(grid(), SQUARE_MATERIAL).thickness(0.01).build().unwrap())
+    Scene::new(
+        Body::new(grid(), SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap(),
+    )
 }
 
 fn simulate(scene: &Scene) -> Result<Trajectory, Error> {
@@ -39,7 +41,7 @@ fn meshes() {
     let triangle = |positions: [f64; 6], cell: [usize; 3]| {
         let kind = grid().kind();
         let mesh = Mesh::new(2, positions.into(), kind, cell.into())?;
-        Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()
     };
     let corners = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
     assert!(triangle(corners, [0, 1, 2]).is_ok());
@@ -56,23 +58,33 @@ fn loose_nodes() {
     positions.extend([1.0, 1.0]);
     let cells = grid().cells().flatten().copied().collect();
     let mesh = Mesh::new(2, positions, grid().kind(), cells).unwrap();
-    says(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build(), &["node", "17", "no cell"]);
+    says(
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build(),
+        &["node", "17", "no cell"],
+    );
 }
 
 #[test]
 fn materials_and_sections() {
-    let body = |material| Body::new(grid(), material).thickness(0.01).build();
+    let body =
+        |material| Body::new(grid(), material).strain(Strain::Cauchy).thickness(0.01).build();
     let good = SQUARE_MATERIAL;
     says(body(Material { poisson: 0.5, ..good }), &["material.poisson = 0.5", "below 0.5"]);
     says(body(Material { density: -1000.0, ..good }), &["material.density = -1000", "kg/m^3"]);
     says(body(Material { young: f64::NAN, ..good }), &["material.young = NaN", "Pa"]);
     says(body(Material { viscosity: -1.0, ..good }), &["material.viscosity = -1", "Pa s"]);
-    says(Body::new(grid(), good).build(), &["thickness", "missing"]);
-    says(Body::new(grid(), good).thickness(0.0).build(), &["thickness = 0"]);
-    says(Body::new(grid(), good).area(1.0).build(), &["area = 1", "Triangle"]);
+    says(Body::new(grid(), good).strain(Strain::Cauchy).build(), &["thickness", "missing"]);
+    says(Body::new(grid(), good).strain(Strain::Cauchy).thickness(0.0).build(), &["thickness = 0"]);
+    says(
+        Body::new(grid(), good).strain(Strain::Cauchy).area(1.0).build(),
+        &["area = 1", "Triangle"],
+    );
     let bar = || Mesh::bar(0.1, 6).unwrap();
-    says(Body::new(bar(), good).build(), &["area", "missing"]);
-    says(Body::new(bar(), good).thickness(1.0).plane(Plane::Stress).build(), &["thickness = 1"]);
+    says(Body::new(bar(), good).strain(Strain::Cauchy).build(), &["area", "missing"]);
+    says(
+        Body::new(bar(), good).strain(Strain::Cauchy).thickness(1.0).plane(Plane::Stress).build(),
+        &["thickness = 1"],
+    );
 }
 
 #[test]
@@ -309,7 +321,7 @@ fn chambers() {
 #[test]
 fn closed_surfaces() {
     let mesh = Mesh::cuboid([1.0, 1.0, 1.0], [2, 2, 2], SolidCells::Tetrahedra).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).build().unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).build().unwrap();
     let with = |walls: &[[usize; 3]]| {
         let chamber = Chamber::surface("bag", walls.iter().copied());
         simulate(&Scene::new(body.clone()).chamber(chamber).phase(Phase::until(0.01)))

@@ -71,7 +71,7 @@ fn body(random: &mut Random) -> (Body, usize) {
         poisson: random.between(0.0, 0.45),
         viscosity: [0.0, random.scale(1.0, 1e3)][random.below(2)],
     };
-    let mut body = Body::new(mesh.unwrap(), material);
+    let mut body = Body::new(mesh.unwrap(), material).strain(Strain::Cauchy);
     body = match dimension {
         1 => body.area(1e-4),
         2 => body.thickness(0.01),

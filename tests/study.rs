@@ -8,7 +8,7 @@ use pliant::samples::clamped_beam;
 use pliant::study::{
     Failed, Findings, General, Line, Measured, Point, Problem, Row, Scenes, Study,
 };
-use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings};
+use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Strain};
 
 /// Nothing is watched.
 fn run(problem: &mut dyn Problem) -> Findings {
@@ -24,7 +24,11 @@ fn rows<'a>(findings: &'a Findings, line: &str) -> &'a [Row] {
 /// its lowest mode as displacement.
 fn bar(nodes: usize) -> Scene {
     let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 };
-    let body = Body::new(Mesh::bar(1.0, nodes).unwrap(), material).area(1.0).build().unwrap();
+    let body = Body::new(Mesh::bar(1.0, nodes).unwrap(), material)
+        .strain(Strain::Cauchy)
+        .area(1.0)
+        .build()
+        .unwrap();
     Scene::new(body)
         .initial_displacement(|x| vec![0.1 * (0.5 * PI * x[0]).sin()])
         .phase(Phase::until(20.0).hold("left"))
@@ -125,7 +129,11 @@ fn a_mesh_study_finds_the_error_of_the_mesh() {
 #[test]
 fn a_variant_is_wrong_by_what_it_does_differently() {
     let material = Material { density: 1.0, young: 1.1, poisson: 0.0, viscosity: 0.0 };
-    let stiffer = Body::new(Mesh::bar(1.0, 5).unwrap(), material).area(1.0).build().unwrap();
+    let stiffer = Body::new(Mesh::bar(1.0, 5).unwrap(), material)
+        .strain(Strain::Cauchy)
+        .area(1.0)
+        .build()
+        .unwrap();
     let stiffer = Scene::new(stiffer)
         .initial_displacement(|x| vec![0.1 * (0.5 * PI * x[0]).sin()])
         .phase(Phase::until(20.0).hold("left"));
@@ -377,7 +385,8 @@ fn bad_input_is_named() {
     let elsewhere = Body::new(
         Mesh::bar(1.0, 3).unwrap().translated(&[5.0]).unwrap(),
         Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 },
-    );
+    )
+    .strain(Strain::Cauchy);
     let elsewhere = Scene::new(elsewhere.area(1.0).build().unwrap()).phase(Phase::until(20.0));
     let said = message(study(&mut scenes().variant("elsewhere", elsewhere, Settings::default())));
     assert!(said.starts_with("number of nodes that all meshes share = 0"), "{said}");

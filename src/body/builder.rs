@@ -39,7 +39,7 @@ impl BodyBuilder {
         self
     }
 
-    /// How strain is measured (default: Cauchy).
+    /// How strain is measured (default: Green).
     pub fn strain(mut self, strain: Strain) -> Self {
         self.strain = strain;
         self

@@ -204,7 +204,8 @@ fn elastic_forces_of_cauchy_bodies_are_k_u() {
 #[test]
 fn cauchy_strain_takes_rotation_for_swelling() {
     let mesh = Mesh::rectangle([1.0, 1.0], [3, 3], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let theta = 0.7_f64;
     let (c, s) = (theta.cos(), theta.sin());
     let u: Vec<f64> = body
@@ -239,17 +240,24 @@ fn regions_have_their_own_material() {
     let mesh = Mesh::rectangle([2.0, 1.0], [3, 2], Cells::Triangles).unwrap();
     let heavy = Material { density: 10_000.0, ..SQUARE_MATERIAL };
     let right = CellSelection::inside([1.0, 0.0], [2.0, 1.0]);
-    let body = Body::new(mesh.clone(), SQUARE_MATERIAL).thickness(0.01).region(right, heavy);
+    let body = Body::new(mesh.clone(), SQUARE_MATERIAL)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
+        .region(right, heavy);
     assert!((body.build().unwrap().mass() - (10.0 + 100.0)).abs() < 1e-10);
     let nowhere = CellSelection::inside([5.0, 0.0], [6.0, 1.0]);
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).region(nowhere, heavy).build();
+    let body = Body::new(mesh, SQUARE_MATERIAL)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
+        .region(nowhere, heavy)
+        .build();
     assert!(body.unwrap_err().to_string().contains("contains no cell"));
 }
 
 #[test]
 fn a_point_mass_is_a_node_without_cells() {
     let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01);
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01);
     let body = body.point_mass("hub", [0.5, 0.5], 0.25).build().unwrap();
     assert!((body.mass() - 10.25).abs() < 1e-12);
     assert_eq!(body.mesh().sets()["hub"], [4]);

@@ -91,7 +91,7 @@ impl Obstacle {
             tangential_damping: 0.0,
             friction: None,
             sticking_speed: None,
-            adhesion: true,
+            adhesion: false,
             velocity: None,
             offset: [0.0; 3],
         }
@@ -192,7 +192,7 @@ impl Obstacle {
         self
     }
 
-    /// Whether damping may pull a node back while it separates (default: true, Hirai's law).
+    /// Whether damping may pull a node back while it separates (default: no). Hirai's law is `true`.
     /// With `false` the normal force is never negative.
     pub fn adhesion(mut self, adhesion: bool) -> Self {
         self.adhesion = adhesion;

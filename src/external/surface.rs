@@ -112,6 +112,7 @@ fn measure(body: &Body, corners: &[usize]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::Strain;
     use crate::mesh::{Cells, Mesh, SolidCells};
     use crate::samples::SQUARE_MATERIAL;
 
@@ -130,14 +131,23 @@ mod tests {
     fn areas_add_up_to_the_boundary() {
         for cells in [Cells::Triangles, Cells::Rectangles, Cells::Triangles6] {
             let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], cells).unwrap();
-            let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+            let body = Body::new(mesh, SQUARE_MATERIAL)
+                .strain(Strain::Cauchy)
+                .thickness(0.01)
+                .build()
+                .unwrap();
             assert_total(&body, 0.01);
         }
         for cells in [SolidCells::Tetrahedra, SolidCells::Hexahedra, SolidCells::Tetrahedra10] {
             let mesh = Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells).unwrap();
-            assert_total(&Body::new(mesh, SQUARE_MATERIAL).build().unwrap(), 0.22);
+            assert_total(
+                &Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).build().unwrap(),
+                0.22,
+            );
         }
-        let bar = Body::new(Mesh::bar(0.1, 5).unwrap(), SQUARE_MATERIAL).area(2e-4);
+        let bar = Body::new(Mesh::bar(0.1, 5).unwrap(), SQUARE_MATERIAL)
+            .strain(Strain::Cauchy)
+            .area(2e-4);
         assert_total(&bar.build().unwrap(), 4e-4);
     }
 }

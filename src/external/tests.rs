@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::body::Body;
+use crate::body::{Body, Strain};
 use crate::force::{Force, NodalForces, Tangents};
 use crate::mesh::{CellKind, Cells, Mesh};
 use crate::samples::SQUARE_MATERIAL;
@@ -132,7 +132,11 @@ fn plate(dimension: usize) -> Body {
     };
     let positions = flat.chunks(2).flat_map(space).collect();
     let mesh = Mesh::new(dimension, positions, CellKind::Triangle, vec![0, 1, 2, 0, 2, 3]);
-    Body::new(mesh.unwrap(), SQUARE_MATERIAL).thickness(0.01).build().unwrap()
+    Body::new(mesh.unwrap(), SQUARE_MATERIAL)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
+        .build()
+        .unwrap()
 }
 
 #[test]
@@ -167,7 +171,8 @@ fn pressure_in_a_regular_polygon() {
     let positions = rim.chain([0.0, 0.0]).collect();
     let spokes = (0..n).flat_map(|k| [k, (k + 1) % n, n]).collect();
     let mesh = Mesh::new(2, positions, CellKind::Triangle, spokes).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(h).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(h).build().unwrap();
     let around: Vec<usize> = (1..=n).collect();
     let backwards: Vec<usize> = around.iter().rev().copied().collect();
     // as part of its boundary, the body is pressed from outside
@@ -217,7 +222,8 @@ fn pressure_in_an_octahedron() {
     }
     let connectivity = triangles.iter().flatten().map(|number| number - 1).collect();
     let mesh = Mesh::new(3, positions, CellKind::Triangle, connectivity).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.001).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.001).build().unwrap();
     let inward: Vec<_> = triangles.iter().map(|&[a, b, c]| [b, a, c]).collect();
     for walls in [triangles, inward] {
         let force = Chamber::surface("bag", walls).force(&body, vec![Signal::constant(p)]);
@@ -239,7 +245,8 @@ fn pressure_in_a_hole_enlarges_it() {
     let connectivity = outside.flatten().copied().collect();
     let mesh = Mesh::new(2, grid.positions().to_vec(), CellKind::Triangle, connectivity).unwrap();
     let mesh = mesh.name_nodes("hole", [6, 7, 10, 11]).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     assert_eq!(body.mesh().cell_count(), 16);
     let force = Chamber::within("hole", "hole").force(&body, vec![Signal::constant(1e3)]);
     let rest = vec![0.0; body.dofs()];
@@ -262,7 +269,7 @@ fn contacts() {
         let positions = corners[..=dimension].iter().flat_map(|&x| cut(x, dimension)).collect();
         let kind = [CellKind::Segment, CellKind::Triangle, CellKind::Tetrahedron][dimension - 1];
         let mesh = Mesh::new(dimension, positions, kind, (0..=dimension).collect()).unwrap();
-        let body = Body::new(mesh, SQUARE_MATERIAL);
+        let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy);
         let body = match dimension {
             1 => body.area(2.0),
             2 => body.thickness(2.0),

@@ -18,7 +18,7 @@ pub const MEMBRANE_MATERIAL: Material = Material { viscosity: 40.0, ..BENT_BEAM_
 /// None; the signature is that of its kind.
 pub fn membrane() -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([0.10, 0.01], [11, 2], Cells::Triangles)?;
-    let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).build()?;
+    let body = Body::new(mesh, MEMBRANE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()?;
     let bottom: Vec<usize> = (1..=11).rev().collect();
     let hold = |until: f64| Phase::until(until).hold([1, 11, 12, 22]);
     Ok(Scene::new(body)

@@ -118,7 +118,10 @@ impl BeamJump {
     /// # Errors
     /// None; the signature is that of its kind.
     pub fn scene(&self) -> Result<Scene, InputError> {
-        let body = Body::new(Mesh::bar(0.10, 6)?, BEAM_MATERIAL).area(2e-4).build()?;
+        let body = Body::new(Mesh::bar(0.10, 6)?, BEAM_MATERIAL)
+            .strain(Strain::Cauchy)
+            .area(2e-4)
+            .build()?;
         let push = Phase::until(0.2).named("push").hold("left").load("right", [-2.0]);
         let mut scene = Scene::new(body)
             .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
@@ -278,7 +281,7 @@ fn square(nodes: usize, cells: Cells) -> Result<BodyBuilder, InputError> {
         ));
     }
     let mesh = Mesh::rectangle([0.30, 0.30], [nodes, nodes], cells)?;
-    Ok(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01))
+    Ok(Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01))
 }
 
 /// The phases in which the square is pressed and held, bottom fixed.

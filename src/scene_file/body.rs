@@ -1,6 +1,8 @@
 //! `[body]`, `[[body.region]]` and `[[point]]`.
 
-use super::selection::{BOX, corners};
+use super::keys::{Holds, Key, TableKeys};
+use super::mesh::MESH;
+use super::selection::{CORNERS, corners};
 use super::value::Value;
 use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
 use crate::error::Error;
@@ -8,8 +10,106 @@ use crate::input::positive;
 use crate::material::{Material, Plane};
 use crate::mesh::Mesh;
 
-const BODY: &[&str] =
-    &["mesh", "thickness", "area", "strain", "plane", "viscous", "inertia", "material", "region"];
+pub(super) const BODY: TableKeys = TableKeys::new(
+    "[body]",
+    "What moves: a mesh made of a material.",
+    &[
+        Key::new("mesh", Holds::Table(&MESH), "the mesh").required(),
+        Key::number("thickness", "the thickness of a body in the plane", "m")
+            .default("required in two dimensions"),
+        Key::number("area", "the cross section of a string", "m^2")
+            .default("required in one dimension"),
+        Key::new(
+            "strain",
+            Holds::Word(|| STRAINS.map(|(word, _)| word).into()),
+            "the measure of strain",
+        )
+        .law(
+            "Cauchy's is linear, right while no cell turns by more than some degrees; Green's follows any rotation \
+             (St. Venant-Kirchhoff); `auto` is Green's.",
+        )
+        .default("auto"),
+        Key::new(
+            "viscous",
+            Holds::Word(|| VISCOUS.map(|(word, _)| word).into()),
+            "the law of viscosity",
+        )
+        .law("Natural viscosity, -B v, brakes rotations, too; objective viscosity takes the rate of Green's strain.")
+        .default("natural with Cauchy strain, objective with Green strain"),
+        Key::new(
+            "inertia",
+            Holds::Word(|| INERTIA.map(|(word, _)| word).into()),
+            "how inertia is shared out",
+        )
+        .law("Consistent with the shape functions, or lumped at the nodes.")
+        .default("consistent"),
+        Key::new(
+            "plane",
+            Holds::Word(|| PLANE.map(|(word, _)| word).into()),
+            "what is 0 across the plane",
+        )
+        .default("strain"),
+        Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
+        Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
+    ],
+    "[body]\n\
+     mesh = { kind = \"rectangle\", size = [0.1, 0.02], nodes = [11, 3], cells = \"triangles6\" }\n\
+     thickness = 0.01\n\
+     strain = \"green\"\n\
+     material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
+);
+
+/// `auto` is Green: it is right however far a body turns, at a small cost.
+const STRAINS: [(&str, Strain); 3] =
+    [("cauchy", Strain::Cauchy), ("green", Strain::Green), ("auto", Strain::Green)];
+const VISCOUS: [(&str, Viscosity); 2] =
+    [("natural", Viscosity::Natural), ("objective", Viscosity::Objective)];
+const INERTIA: [(&str, Inertia); 2] =
+    [("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)];
+const PLANE: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+
+const MATERIAL: TableKeys = TableKeys::new(
+    "material",
+    "An isotropic viscoelastic material: Lamé's parameters follow from `young` and `poisson`, and those of \
+     viscosity from `viscosity` and `poisson` in the same way.",
+    &[
+        Key::number("density", "the density", "kg/m^3").default(OF_BODY),
+        Key::number("young", "Young's modulus", "Pa").default(OF_BODY),
+        Key::number("poisson", "Poisson's ratio, below 0.5", "1").default(OF_BODY),
+        Key::number("viscosity", "the viscous modulus", "Pa s").default(OF_BODY),
+    ],
+    "material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
+);
+const OF_BODY: &str = "required; in a region, that of the body";
+
+const REGION: TableKeys = TableKeys::new(
+    "[[body.region]]",
+    "A part of the body with a material of its own.",
+    &[
+        Key::new("name", Holds::Text, "the name of the region, for who reads the file"),
+        Key::new("box", Holds::Corners, CORNERS).in_unit("m"),
+        Key::new("group", Holds::Text, "the name of a group of cells")
+            .law("A physical group of Gmsh."),
+        Key::new("material", Holds::Table(&MATERIAL), "the keys of the material that differ")
+            .required(),
+    ],
+    "[[body.region]]\n\
+     name = \"tough half\"\n\
+     box = [[0.0, 0.0], [0.05, 0.02]] # cells whose centroid lies in it\n\
+     material = { young = 2.0e5 }",
+)
+.one_of(&[&["box"], &["group"]]);
+
+pub(super) const POINT: TableKeys = TableKeys::new(
+    "[[point]]",
+    "A point mass: a node that belongs to no cell. Its name is a node set.",
+    &[
+        Key::new("name", Holds::Text, "the name of the point").required(),
+        Key::new("position", Holds::Vector, "its natural position").in_unit("m").required(),
+        Key::number("mass", "its mass", "kg").required(),
+    ],
+    "[[point]]\nname = \"hub\"\nposition = [0.05, 0.05]\nmass = 0.001",
+);
 
 /// The body that `value`, the table `[body]`, describes, with the point masses of `points`.
 pub(super) fn body(
@@ -17,36 +117,29 @@ pub(super) fn body(
     dimension: Option<&Value>,
     points: Option<&Value>,
 ) -> Result<Body, Error> {
-    let table = value.table(BODY)?;
-    let mut mesh = table
-        .required("mesh", "the mesh: { kind = .. }", |value| super::mesh::mesh(value, dimension))?;
-    let material =
-        table.required("material", "what the body is made of", |value| material(value, None))?;
+    let table = value.table(&BODY)?;
+    let mut mesh = table.required("mesh", |value| super::mesh::mesh(value, dimension))?;
+    let material = table.required("material", |value| material(value, None))?;
     let mut body = Body::new(mesh.clone(), material);
-    if let Some(thickness) = table.optional("thickness", "the thickness (m)", Value::number)? {
+    if let Some(thickness) = table.optional("thickness", Value::number)? {
         body = body.thickness(thickness);
     }
-    if let Some(area) = table.optional("area", "the cross section (m^2)", Value::number)? {
+    if let Some(area) = table.optional("area", Value::number)? {
         body = body.area(area);
     }
-    body =
-        body.strain(table.optional("strain", "the measure of strain", strain)?.unwrap_or_default());
-    if let Some(viscosity) = table.optional("viscous", "the law of viscosity", |value| {
-        value.word(&[("natural", Viscosity::Natural), ("objective", Viscosity::Objective)])
-    })? {
+    if let Some(strain) = table.optional("strain", |value| value.word(&STRAINS))? {
+        body = body.strain(strain);
+    }
+    if let Some(viscosity) = table.optional("viscous", |value| value.word(&VISCOUS))? {
         body = body.viscosity(viscosity);
     }
-    if let Some(inertia) = table.optional("inertia", "how inertia is shared out", |value| {
-        value.word(&[("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)])
-    })? {
+    if let Some(inertia) = table.optional("inertia", |value| value.word(&INERTIA))? {
         body = body.inertia(inertia);
     }
-    if let Some(plane) = table.optional("plane", "what is 0 across the plane", |value| {
-        value.word(&[("strain", Plane::Strain), ("stress", Plane::Stress)])
-    })? {
+    if let Some(plane) = table.optional("plane", |value| value.word(&PLANE))? {
         body = body.plane(plane);
     }
-    if let Some(regions) = table.get("region", "parts with a material of their own") {
+    if let Some(regions) = table.get("region") {
         body = add_regions(body, &regions, &mesh, material)?;
     }
     if let Some(points) = points {
@@ -55,23 +148,18 @@ pub(super) fn body(
     body.build().map_err(|error| table.blame(error))
 }
 
-/// `auto` is Green: it is right however far a body turns, at a small cost.
-fn strain(value: &Value) -> Result<Strain, Error> {
-    value.word(&[("cauchy", Strain::Cauchy), ("green", Strain::Green), ("auto", Strain::Green)])
-}
-
 /// A material; keys that are missing are those of `base`, if there is one.
 fn material(value: &Value, base: Option<Material>) -> Result<Material, Error> {
-    let table = value.table(&["density", "young", "poisson", "viscosity"])?;
-    let number = |key: &str, meaning: &'static str, base: Option<f64>| {
-        let given = table.optional(key, meaning, Value::number)?;
-        given.or(base).ok_or_else(|| table.missing(key, format!("expected {meaning}")))
+    let table = value.table(&MATERIAL)?;
+    let number = |key: &str, base: Option<f64>| match base {
+        Some(base) => Ok(table.optional(key, Value::number)?.unwrap_or(base)),
+        None => table.required(key, Value::number),
     };
     let material = Material {
-        density: number("density", "the density (kg/m^3)", base.map(|m| m.density))?,
-        young: number("young", "Young's modulus (Pa)", base.map(|m| m.young))?,
-        poisson: number("poisson", "Poisson's ratio (no unit)", base.map(|m| m.poisson))?,
-        viscosity: number("viscosity", "the viscous modulus (Pa s)", base.map(|m| m.viscosity))?,
+        density: number("density", base.map(|m| m.density))?,
+        young: number("young", base.map(|m| m.young))?,
+        poisson: number("poisson", base.map(|m| m.poisson))?,
+        viscosity: number("viscosity", base.map(|m| m.viscosity))?,
     };
     material.validate().map_err(|error| table.blame(error))?;
     Ok(material)
@@ -83,26 +171,21 @@ fn add_regions(
     mesh: &Mesh,
     base: Material,
 ) -> Result<BodyBuilder, Error> {
-    for table in regions.tables(&["name", "box", "group", "material"])? {
-        table.optional("name", "the name of the region", Value::string)?;
+    for table in regions.tables(&REGION)? {
+        table.optional("name", Value::string)?;
         let checked = |value: &Value, cells: CellSelection| match cells.cells(mesh) {
             Ok(_) => Ok(cells),
             Err(error) => Err(value.error(error)),
         };
-        let group = table.optional("group", "a group of cells of the mesh", |value| {
-            checked(value, value.string()?.into())
-        })?;
-        let inside = table.optional("box", BOX, |value| {
-            let [min, max] = corners(value, mesh)?;
-            checked(value, CellSelection::Box { min, max })
-        })?;
-        let cells = match (group, inside) {
-            (Some(cells), None) | (None, Some(cells)) => cells,
-            (None, None) => return Err(table.missing("box", format!("expected {BOX}; or `group`"))),
-            (Some(_), Some(_)) => return Err(table.error("expected `box` or `group`, not both")),
+        let group = table.optional("group", |value| checked(value, value.string()?.into()))?;
+        let cells = match group {
+            Some(cells) => cells,
+            None => table.required("box", |value| {
+                let [min, max] = corners(value, mesh)?;
+                checked(value, CellSelection::Box { min, max })
+            })?,
         };
-        let meaning = "the keys of the material that differ";
-        let material = table.required("material", meaning, |value| material(value, Some(base)))?;
+        let material = table.required("material", |value| self::material(value, Some(base)))?;
         body = body.region(cells, material);
     }
     Ok(body)
@@ -114,12 +197,10 @@ fn add_points(
     points: &Value,
     mesh: &mut Mesh,
 ) -> Result<BodyBuilder, Error> {
-    for table in points.tables(&["name", "position", "mass"])? {
-        let name = table.required("name", "the name of the point", Value::string)?;
-        let position = table.required("position", "its natural position (m)", |value| {
-            value.vector(mesh.dimension())
-        })?;
-        let mass = table.required("mass", "its mass (kg)", Value::number)?;
+    for table in points.tables(&POINT)? {
+        let name = table.required("name", Value::string)?;
+        let position = table.required("position", |value| value.vector(mesh.dimension()))?;
+        let mass = table.required("mass", Value::number)?;
         positive("mass", mass, "kg").map_err(|error| table.blame(error))?;
         mesh.push_node(name, &position).map_err(|error| table.blame(error))?;
         body = body.point_mass(name, position, mass);

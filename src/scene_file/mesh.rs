@@ -1,93 +1,127 @@
 //! `mesh` of `[body]`: generators and files.
 
+use super::keys::{Holds, Key, Kind, TableKeys};
 use super::table::Table;
 use super::value::Value;
 use crate::error::Error;
 use crate::mesh::{Cells, Mesh, SolidCells};
 
-#[derive(Clone, Copy)]
-enum Kind {
-    Bar,
-    Rectangle,
-    Ring,
-    HalfRing,
-    Cuboid,
-    Gmsh,
-}
+pub(super) const MESH: TableKeys = TableKeys::new(
+    "mesh",
+    "The mesh of the body, made by a generator or read from a file. Generated meshes name the node sets `left`, \
+     `right`, `bottom`, `top` (in space `front` and `back`, too), rings `inner` and `outer`; those of Gmsh have the \
+     names of physical groups.",
+    &[Key::new("origin", Holds::Vector, "the place of the lower corner, or of the centre of a ring")
+        .in_unit("m")
+        .default("the origin")],
+    "mesh = { kind = \"ring\", inner = 0.04, outer = 0.05, nodes = [32, 3], cells = \"crossed\", origin = [0.0, 0.05] }",
+)
+.kinds(&[
+    Kind {
+        word: "bar",
+        about: "segments along x",
+        keys: &[
+            Key::number("length", "the length", "m").required(),
+            Key::new("nodes", Holds::Count, "the number of nodes").required(),
+        ],
+    },
+    Kind { word: "rectangle", about: "a grid along x and y", keys: &[SIZE, NODES, CELLS] },
+    Kind { word: "ring", about: "a grid around a circle", keys: ROUND },
+    Kind { word: "half-ring", about: "its upper half", keys: ROUND },
+    Kind {
+        word: "cuboid",
+        about: "a grid along x, y and z",
+        keys: &[
+            Key::new("size", Holds::Array(&Holds::Number, 3), "lengths along x, y and z")
+                .in_unit("m")
+                .required(),
+            Key::new("nodes", Holds::Array(&Holds::Count, 3), "corner nodes along x, y and z")
+                .required(),
+            Key::new(
+                "cells",
+                Holds::Word(|| SOLID_CELLS.map(|(word, _)| word).into()),
+                "how the grid is divided",
+            )
+            .required(),
+        ],
+    },
+    Kind {
+        word: "gmsh",
+        about: "a file of Gmsh; coordinates are metres",
+        keys: &[Key::new("file", Holds::Text, "the path of a Gmsh mesh, relative to the scene file")
+            .required()],
+    },
+]);
 
-const GRID: &[&str] = &["size", "nodes", "cells"];
-const ROUND: &[&str] = &["inner", "outer", "nodes", "cells"];
+const SIZE: Key =
+    Key::new("size", Holds::Array(&Holds::Number, 2), "width and height").in_unit("m").required();
+const NODES: Key =
+    Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes along x and y").required();
+const CELLS: Key = Key::new(
+    "cells",
+    Holds::Word(|| Cells::ALL.map(Cells::name).into()),
+    "how the grid is divided",
+)
+.law("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well.")
+.required();
+const ROUND: &[Key] = &[
+    Key::number("inner", "the inner radius", "m").required(),
+    Key::number("outer", "the outer radius", "m").required(),
+    Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes around and along the radius")
+        .required(),
+    CELLS,
+];
 
-/// The words for them, and their keys.
-const KINDS: [(&str, Kind, &[&str]); 6] = [
-    ("bar", Kind::Bar, &["length", "nodes"]),
-    ("rectangle", Kind::Rectangle, GRID),
-    ("ring", Kind::Ring, ROUND),
-    ("half-ring", Kind::HalfRing, ROUND),
-    ("cuboid", Kind::Cuboid, GRID),
-    ("gmsh", Kind::Gmsh, &["file"]),
+const SOLID_CELLS: [(&str, SolidCells); 3] = [
+    ("tetrahedra", SolidCells::Tetrahedra),
+    ("hexahedra", SolidCells::Hexahedra),
+    ("tetrahedra10", SolidCells::Tetrahedra10),
 ];
 
 /// The mesh that `value` describes, in a space of `dimension` (default: its own).
 pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Error> {
-    let (kind, table) = value.table_of_kind(&KINDS, &["origin"])?;
-    let mesh = generate(kind, &table).map_err(|error| table.blame(error))?;
+    let table = value.table(&MESH)?;
+    let mesh = generate(&table).map_err(|error| table.blame(error))?;
     let mesh = match dimension {
         Some(dimension) => placed(mesh, dimension)?,
         None => mesh,
     };
-    let origin = table
-        .optional("origin", "the place of the mesh (m)", |value| value.vector(mesh.dimension()))?;
+    let origin = table.optional("origin", |value| value.vector(mesh.dimension()))?;
     match origin {
         Some(origin) => mesh.translated(&origin).map_err(|error| table.blame(error)),
         None => Ok(mesh),
     }
 }
 
-fn generate(kind: Kind, table: &Table) -> Result<Mesh, Error> {
-    Ok(match kind {
-        Kind::Bar => Mesh::bar(
-            table.required("length", "the length (m)", Value::number)?,
-            table.required("nodes", "the number of nodes", Value::count)?,
+fn generate(table: &Table) -> Result<Mesh, Error> {
+    let number = |key: &str| table.required(key, Value::number);
+    let cells = |value: &Value| value.word(&Cells::ALL.map(|cells| (cells.name(), cells)));
+    Ok(match table.kind() {
+        "bar" => Mesh::bar(number("length")?, table.required("nodes", Value::count)?)?,
+        "rectangle" => Mesh::rectangle(
+            table.required("size", Value::array)?,
+            table.required("nodes", Value::counts)?,
+            table.required("cells", cells)?,
         )?,
-        Kind::Rectangle => Mesh::rectangle(
-            table.required("size", "width and height (m)", Value::array)?,
-            table.required("nodes", "corner nodes along x and y", Value::counts)?,
-            table.required("cells", "how the grid is divided", cells)?,
-        )?,
-        Kind::Ring | Kind::HalfRing => {
-            let inner = table.required("inner", "the inner radius (m)", Value::number)?;
-            let outer = table.required("outer", "the outer radius (m)", Value::number)?;
-            let meaning = "corner nodes around and along the radius";
-            let nodes = table.required("nodes", meaning, Value::counts)?;
-            let cells = table.required("cells", "how the grid is divided", cells)?;
-            match kind {
-                Kind::Ring => Mesh::ring(inner, outer, nodes, cells)?,
+        round @ ("ring" | "half-ring") => {
+            let (inner, outer) = (number("inner")?, number("outer")?);
+            let nodes = table.required("nodes", Value::counts)?;
+            let cells = table.required("cells", cells)?;
+            match round {
+                "ring" => Mesh::ring(inner, outer, nodes, cells)?,
                 _ => Mesh::half_ring(inner, outer, nodes, cells)?,
             }
         }
-        Kind::Cuboid => Mesh::cuboid(
-            table.required("size", "lengths along x, y and z (m)", Value::array)?,
-            table.required("nodes", "corner nodes along x, y and z", Value::counts)?,
-            table.required("cells", "how the grid is divided", solid_cells)?,
+        "cuboid" => Mesh::cuboid(
+            table.required("size", Value::array)?,
+            table.required("nodes", Value::counts)?,
+            table.required("cells", |value| value.word(&SOLID_CELLS))?,
         )?,
-        Kind::Gmsh => table.required("file", "the path of a Gmsh mesh", |value| {
+        _ => table.required("file", |value| {
             let file = value.source.beside(value.string()?);
             Mesh::read_gmsh(file).map_err(|error| value.error(error))
         })?,
     })
-}
-
-fn cells(value: &Value) -> Result<Cells, Error> {
-    value.word(&Cells::ALL.map(|cells| (cells.name(), cells)))
-}
-
-fn solid_cells(value: &Value) -> Result<SolidCells, Error> {
-    value.word(&[
-        ("tetrahedra", SolidCells::Tetrahedra),
-        ("hexahedra", SolidCells::Hexahedra),
-        ("tetrahedra10", SolidCells::Tetrahedra10),
-    ])
 }
 
 /// The mesh in a space of `dimension`: along its first axes, where the mesh has fewer of its own.

@@ -2,6 +2,7 @@
 
 use toml::de::DeValue;
 
+use super::keys::{Holds, Key, TableKeys};
 use super::selection::selection;
 use super::table::Table;
 use super::value::{Value, number_of};
@@ -11,56 +12,158 @@ use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::scene::{Phase, Scene};
 
-const KEYS: &[&str] = &[
-    "name",
-    "until",
+pub(super) const PHASE: TableKeys = TableKeys::new(
+    "[[phase]]",
+    "A stretch of time with its own constraints, loads and contacts. Displacements and velocities carry over from \
+     phase to phase. Times in it are those of the scene.",
+    &[
+        Key::new("name", Holds::Text, "the name of the phase").default("phase 1, ..."),
+        Key::number("until", "the end of the phase", "s").required(),
+        part("hold", &HOLD, "nodes that stay where they are"),
+        part("move", &MOVE, "nodes that move on"),
+        part("path", &PATH, "nodes that follow a path"),
+        part("load", &LOAD, "forces on nodes"),
+        part("pressure", &PRESSURE, "pressures in chambers"),
+        part("actuate", &ACTUATE, "forces in springs"),
+        Key::new(
+            "contact",
+            Holds::Either(&[Holds::Flag, Holds::OneOrMore(&Holds::Text)]),
+            "the obstacles that act",
+        )
+        .law("All, none, or those of these names.")
+        .default("true"),
+        Key::new(
+            "project_velocity",
+            Holds::Flag,
+            "whether the phase begins with velocities that its constraints allow",
+        )
+        .law("What is taken away is lost, as in a perfectly plastic impact.")
+        .default("false"),
+    ],
+    "[[phase]]\nname = \"push\"\nuntil = 0.5\nhold = [{ nodes = \"bottom\" }]\ncontact = false",
+);
+
+const fn part(name: &'static str, keys: &'static TableKeys, meaning: &'static str) -> Key {
+    Key::new(name, Holds::Tables(keys), meaning)
+}
+
+const NODES: Key = Key::new("nodes", Holds::Nodes, "nodes").required();
+const AXES: Key =
+    Key::new("axes", Holds::Axes, "the axes that are prescribed").default("all of them");
+const TIMES: Key =
+    Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s");
+
+const HOLD: TableKeys = TableKeys::new(
     "hold",
+    "Nodes stay where they are when the phase begins.",
+    &[NODES, AXES],
+    "hold = [{ nodes = \"left\" }, { nodes = 3, axes = \"y\" }]",
+);
+
+const MOVE: TableKeys = TableKeys::new(
     "move",
+    "Nodes move on, with a constant velocity, from where they are when the phase begins.",
+    &[NODES, AXES, Key::new("velocity", Holds::Along, "the velocity").in_unit("m/s").required()],
+    "move = [{ nodes = \"right\", velocity = [0.0, -0.16] }]",
+);
+
+const PATH: TableKeys = TableKeys::new(
     "path",
+    "Nodes run smoothly (a cubic spline) through points, and begin and end at rest; before and after they stay.",
+    &[
+        NODES,
+        AXES,
+        TIMES.required(),
+        Key::new(
+            "displacements",
+            Holds::List(&Holds::Along),
+            "displacements from the natural position at these times",
+        )
+        .in_unit("m")
+        .required(),
+    ],
+    "path = [{ nodes = \"right\", axes = \"x\", times = [0.0, 0.1, 0.3], displacements = [0.0, 0.01, 0.0] }]",
+);
+
+const LOAD: TableKeys = TableKeys::new(
     "load",
+    "Forces on nodes. Those of tables run along straight lines, and are constant before and after.",
+    &[
+        NODES,
+        Key::new("force", Holds::Vector, "the force on each node").in_unit("N"),
+        Key::new("total", Holds::Vector, "the force on all nodes together").in_unit("N"),
+        TIMES,
+        Key::new("forces", Holds::List(&Holds::Vector), "the force on each node at these times")
+            .in_unit("N"),
+    ],
+    "load = [{ nodes = \"right\", times = [0.0, 0.1], forces = [[0.0, 0.0], [0.0, -0.01]] }]",
+)
+.one_of(&[&["force"], &["total"], &["times", "forces"]]);
+
+const PRESSURE: TableKeys = TableKeys::new(
     "pressure",
+    "The pressure in a chamber, positive if it blows it up. That of a table runs along straight lines, and is \
+     constant before and after.",
+    &[
+        Key::new("chamber", Holds::Text, "the name of a chamber").required(),
+        Key::number("value", "the pressure", "Pa"),
+        TIMES,
+        Key::new("values", Holds::List(&Holds::Number), "pressures at these times").in_unit("Pa"),
+    ],
+    "pressure = [{ chamber = \"inside\", times = [0.0, 0.1], values = [0.0, 500.0] }]",
+)
+.one_of(&[&["value"], &["times", "values"]]);
+
+const ACTUATE: TableKeys = TableKeys::new(
     "actuate",
-    "contact",
-    "project_velocity",
-];
+    "Forces of the actuators in springs. Those of a table run along straight lines, and \
+     are constant before and after.",
+    &[
+        Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs").required(),
+        Key::number("force", "the force, positive if it extends", "N"),
+        TIMES,
+        Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
+    ],
+    "actuate = [{ springs = \"down\", times = [0.2, 0.3], forces = [0.0, -0.8] }]",
+)
+.one_of(&[&["force"], &["times", "forces"]]);
 
 /// Adds a table inside of a phase.
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
-/// The tables inside of a phase: key, meaning, their own keys, what they add.
-const PARTS: [(&str, &str, &[&str], Add); 6] = [
-    ("hold", "nodes that stay where they are", &["nodes", "axes"], hold),
-    ("move", "nodes that move on", &["nodes", "axes", "velocity"], moving),
-    ("path", "nodes that follow a path", &["nodes", "axes", "times", "displacements"], path),
-    ("load", "forces on nodes", &["nodes", "force", "total", "times", "forces"], load),
-    ("pressure", "pressures in chambers", &["chamber", "value", "times", "values"], pressure),
-    ("actuate", "forces in springs", &["springs", "force", "times", "forces"], actuate),
+/// The tables inside of a phase: what they add.
+const PARTS: [(&TableKeys, Add); 6] = [
+    (&HOLD, hold),
+    (&MOVE, moving),
+    (&PATH, path),
+    (&LOAD, load),
+    (&PRESSURE, pressure),
+    (&ACTUATE, actuate),
 ];
 
 /// The scene with the phase that `value` describes at its end.
 pub(super) fn add_phase(scene: Scene, value: &Value) -> Result<Scene, Error> {
-    let table = value.table(KEYS)?;
-    let until = table.required("until", "the end of the phase (s)", |value| {
+    let table = value.table(&PHASE)?;
+    let until = table.required("until", |value| {
         let until = value.number()?;
         check(&scene, &Phase::until(until)).map_err(|error| value.error(error))?;
         Ok(until)
     })?;
     let mut phase = Phase::until(until);
-    if let Some(name) = table.optional("name", "the name of the phase", Value::string)? {
+    if let Some(name) = table.optional("name", Value::string)? {
         phase = phase.named(name);
     }
-    if let Some(value) = table.get("contact", "the obstacles that act") {
+    if let Some(value) = table.get("contact") {
         phase = contact(phase, &value, &scene)?;
     }
-    for (key, meaning, keys, add) in PARTS {
-        let Some(value) = table.get(key, meaning) else { continue };
+    for (keys, add) in PARTS {
+        let Some(value) = table.get(keys.name) else { continue };
         for part in value.tables(keys)? {
             phase = add(phase, &part, &scene)?;
             check(&scene, &phase).map_err(|error| part.blame(error))?;
         }
     }
-    let meaning = "whether the phase begins with velocities that its constraints allow";
-    if table.optional("project_velocity", meaning, Value::flag)? == Some(true) {
+    if table.optional("project_velocity", Value::flag)? == Some(true) {
         phase = phase.project_velocity();
     }
     Ok(scene.phase(phase))
@@ -81,7 +184,7 @@ fn hold(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 
 fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let (nodes, axes) = (nodes(table, scene)?, axes(table, scene)?);
-    table.required("velocity", "the velocity (m/s)", |value| {
+    table.required("velocity", |value| {
         let Some(axes) = axes else {
             return Ok(phase.move_nodes(nodes, along(value, all_axes(scene), scene)?));
         };
@@ -96,8 +199,8 @@ fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
     let axes = axes(table, scene)?.unwrap_or_else(|| all_axes(scene).into());
-    let times = table.required("times", "times, ascending (s)", Value::numbers)?;
-    let points = table.required("displacements", "displacements at these times (m)", |value| {
+    let times = table.required("times", Value::numbers)?;
+    let points = table.required("displacements", |value| {
         value.list_of("points, one per time", |point| along(point, &axes, scene))
     })?;
     let axes = axes.into_iter().enumerate();
@@ -110,29 +213,21 @@ fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let vector = |value: &Value| value.vector(scene.body().dimension());
     let nodes = nodes(table, scene)?;
-    let force = table.optional("force", "the force on each node (N)", vector)?;
-    let total = table.optional("total", "the force on all nodes together (N)", vector)?;
-    let times = table.optional("times", "times, ascending (s)", Value::numbers)?;
-    let forces =
-        table.optional("forces", "the force on each node at these times (N)", |value| {
-            value.list_of("forces, one per time", vector)
-        })?;
-    match (force, total, times, forces) {
-        (Some(force), None, None, None) => Ok(phase.load(nodes, force)),
-        (None, Some(total), None, None) => Ok(phase.load_total(nodes, total)),
-        (None, None, Some(times), Some(forces)) => Ok(phase.load_table(nodes, times, forces)),
-        _ => Err(table.error(
-            "expected either force (N, on each node), or total (N, on all nodes together), or times \
-             (s) and forces (N, on each node)",
-        )),
+    if let Some(force) = table.optional("force", vector)? {
+        return Ok(phase.load(nodes, force));
     }
+    if let Some(total) = table.optional("total", vector)? {
+        return Ok(phase.load_total(nodes, total));
+    }
+    let times = table.required("times", Value::numbers)?;
+    let forces = table.required("forces", |value| value.list_of("forces, one per time", vector))?;
+    Ok(phase.load_table(nodes, times, forces))
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.chambers().iter().map(|chamber| chamber.name()).collect();
-    let chamber = table.required("chamber", "the name of a chamber", |v| named(v, &known))?;
-    let value = ("value", "the pressure (Pa)");
-    Ok(match course(table, value, ("values", "pressures at these times (Pa)"))? {
+    let chamber = table.required("chamber", |v| named(v, &known))?;
+    Ok(match course(table, "value", "values")? {
         Course::Constant(pressure) => phase.pressure(chamber, pressure),
         Course::Table(times, values) => phase.pressure_table(chamber, times, values),
     })
@@ -140,9 +235,8 @@ fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> 
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
-    let springs = table.required("springs", "names of springs", |value| names(value, &known))?;
-    let force = ("force", "the force, positive if it extends (N)");
-    Ok(match course(table, force, ("forces", "forces at these times (N)"))? {
+    let springs = table.required("springs", |value| names(value, &known))?;
+    Ok(match course(table, "force", "forces")? {
         Course::Constant(force) => phase.actuate(springs, force),
         Course::Table(times, forces) => phase.actuate_table(springs, times, forces),
     })
@@ -164,34 +258,26 @@ enum Course {
     Table(Vec<f64>, Vec<f64>),
 }
 
-/// Either `one` number, or `times` and `many` numbers (keys and their meanings).
-fn course(
-    table: &Table,
-    one: (&str, &'static str),
-    many: (&str, &'static str),
-) -> Result<Course, Error> {
-    let constant = table.optional(one.0, one.1, Value::finite)?;
-    let times = table.optional("times", "times, ascending (s)", Value::numbers)?;
-    let values = table.optional(many.0, many.1, Value::numbers)?;
-    match (constant, times, values) {
-        (Some(constant), None, None) => Ok(Course::Constant(constant)),
-        (None, Some(times), Some(values)) => Ok(Course::Table(times, values)),
-        _ => Err(table.error(format!(
-            "expected either {}, {}, or times (s) and {}, {}",
-            one.0, one.1, many.0, many.1
-        ))),
-    }
+/// `one` number, or `times` and `many` numbers.
+fn course(table: &Table, one: &str, many: &str) -> Result<Course, Error> {
+    Ok(match table.optional(one, Value::finite)? {
+        Some(constant) => Course::Constant(constant),
+        None => Course::Table(
+            table.required("times", Value::numbers)?,
+            table.required(many, Value::numbers)?,
+        ),
+    })
 }
 
 fn nodes(table: &Table, scene: &Scene) -> Result<Selection, Error> {
-    table.required("nodes", "nodes", |value| selection(value, scene.body().mesh()))
+    table.required("nodes", |value| selection(value, scene.body().mesh()))
 }
 
 /// The named axes; `None` stands for all.
 fn axes(table: &Table, scene: &Scene) -> Result<Option<Vec<Axis>>, Error> {
     let known = [("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z)];
     let known = &known[..scene.body().dimension()];
-    table.optional("axes", "the axes that are prescribed", |value| {
+    table.optional("axes", |value| {
         value.one_or_more()?.iter().map(|axis| axis.word(known)).collect()
     })
 }

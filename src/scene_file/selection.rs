@@ -2,6 +2,7 @@
 
 use toml::de::DeValue;
 
+use super::keys::{Holds, Key, Meaning, TableKeys};
 use super::value::{Value, number_of};
 use crate::error::Error;
 use crate::mesh::{Mesh, Selection};
@@ -22,8 +23,8 @@ pub(super) fn selection(value: &Value, mesh: &Mesh) -> Result<Selection, Error> 
             Selection::Numbers(numbers.collect::<Result<_, Error>>()?)
         }
         DeValue::Table(_) => {
-            let table = value.table(&["box"])?;
-            let [min, max] = table.required("box", BOX, |value| corners(value, mesh))?;
+            let table = value.table(&BOX)?;
+            let [min, max] = table.required("box", |value| corners(value, mesh))?;
             Selection::Box { min, max }
         }
         _ => {
@@ -41,11 +42,23 @@ fn number(value: Value) -> Result<usize, Error> {
         DeValue::String(name) => Err(value.error(format!(
             "a list holds node numbers: name the set alone, \"{name}\", without a list around it"
         ))),
-        _ => Value { meaning: "the number of a node, from 1", ..value }.count(),
+        _ => {
+            let meaning = Meaning { text: "the number of a node, from 1", unit: "" };
+            Value { meaning, ..value }.count()
+        }
     }
 }
 
-pub(super) const BOX: &str = "the lower and the upper corner (m)";
+/// The nodes in a box.
+pub(super) const BOX: TableKeys = TableKeys::new(
+    "box",
+    "All nodes within a box.",
+    &[Key::new("box", Holds::Corners, CORNERS).in_unit("m").required()],
+    "hold = [{ nodes = { box = [[0.0, 0.0], [0.1, 0.02]] } }]",
+);
+
+/// What the two corners of a box are.
+pub(super) const CORNERS: &str = "the lower and the upper corner";
 
 /// The two corners of a box.
 pub(super) fn corners(value: &Value, mesh: &Mesh) -> Result<[Vec<f64>; 2], Error> {

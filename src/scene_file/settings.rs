@@ -1,19 +1,62 @@
 //! `[solver]` and `[output]`.
 
+use super::contents::{Format, OutputRequest};
+use super::keys::{Holds, Key, TableKeys};
 use super::selection::selection;
 use super::value::Value;
-use super::{Format, OutputRequest};
 use crate::error::Error;
 use crate::input::positive;
 use crate::mesh::Mesh;
 use crate::settings::{Settings, SettingsOption, SettingsValue as Kind};
 
+pub(super) const SOLVER: TableKeys = TableKeys::new(
+    "[solver]",
+    "How the equations of motion are integrated.",
+    &OPTIONS,
+    "[solver]\nmethod = \"cvode-bdf\"\nrtol = 1e-6\nalpha = 1e4",
+);
+
+const OPTIONS: [Key; SettingsOption::ALL.len()] = {
+    let mut keys = [Key::number("", "", ""); SettingsOption::ALL.len()];
+    let mut number = 0;
+    while number < keys.len() {
+        keys[number] = key(&SettingsOption::ALL[number]);
+        number += 1;
+    }
+    keys
+};
+
+const fn key(option: &SettingsOption) -> Key {
+    let holds = match option.value {
+        Kind::Number(_) => Holds::Number,
+        Kind::Count(_) => Holds::Count,
+        Kind::Flag(_) => Holds::Flag,
+        Kind::Word(words, _) => Holds::Word(words),
+    };
+    Key::new(option.key, holds, option.meaning).in_unit(option.unit).default(option.default)
+}
+
+pub(super) const OUTPUT: TableKeys = TableKeys::new(
+    "[output]",
+    "What `pliant run` writes.",
+    &[
+        Key::number("step", "the time between samples", "s").default("the ends of the phases only"),
+        Key::new("track", Holds::Nodes, "nodes whose displacements the table lists"),
+        Key::new(
+            "formats",
+            Holds::OneOrMore(&Holds::Word(|| Format::ALL.map(Format::name).into())),
+            "what is written: a table, files for ParaView, snapshots, an animation",
+        )
+        .default("csv, which is always written"),
+    ],
+    "[output]\nstep = 0.01\ntrack = \"right\"\nformats = [\"csv\", \"svg\", \"html\"]",
+);
+
 pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
-    let options = SettingsOption::ALL.map(|option| (option.key(), option));
-    let table = value.table(&options.each_ref().map(|(key, _)| key.as_str()))?;
+    let table = value.table(&SOLVER)?;
     let mut settings = Settings::default();
-    for (key, option) in &options {
-        let Some(value) = table.get(key, option.meaning) else { continue };
+    for option in SettingsOption::ALL {
+        let Some(value) = table.get(option.key) else { continue };
         match option.value {
             Kind::Number(set) => set(&mut settings, value.number()?),
             Kind::Count(set) => set(&mut settings, value.count()?),
@@ -29,14 +72,13 @@ pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
 }
 
 pub(super) fn output(value: &Value, mesh: &Mesh) -> Result<OutputRequest, Error> {
-    let table = value.table(&["step", "track", "formats"])?;
-    let step = table.optional("step", "the time between samples (s)", Value::number)?;
+    let table = value.table(&OUTPUT)?;
+    let step = table.optional("step", Value::number)?;
     if let Some(step) = step {
         positive("step", step, "s").map_err(|error| table.blame(error))?;
     }
-    let meaning = "nodes whose motion is written";
-    let track = table.optional("track", meaning, |value| selection(value, mesh))?;
-    let formats = table.optional("formats", "what is written", |value| {
+    let track = table.optional("track", |value| selection(value, mesh))?;
+    let formats = table.optional("formats", |value| {
         let known = Format::ALL.map(|format| (format.name(), format));
         value.one_or_more()?.iter().map(|format| format.word(&known)).collect()
     })?;

@@ -1,5 +1,6 @@
 //! The text of a scene file, and errors that point into it.
 
+use std::cell::RefCell;
 use std::fmt::Display;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -10,6 +11,8 @@ use crate::error::Error;
 pub(super) struct Source<'a> {
     pub(super) path: &'a Path,
     pub(super) text: &'a str,
+    /// What `pliant check` says about it.
+    pub(super) notes: RefCell<Vec<String>>,
 }
 
 impl Source<'_> {
@@ -20,6 +23,14 @@ impl Source<'_> {
             key => format!("{key}: {message}"),
         };
         Error::SceneFile { path: self.path.into(), line: self.line(at.start), message }
+    }
+
+    /// Adds to the notes, unless it stands there.
+    pub(super) fn note(&self, note: String) {
+        let mut notes = self.notes.borrow_mut();
+        if !notes.contains(&note) {
+            notes.push(note);
+        }
     }
 
     /// The path of a `file` that is named relative to this one.

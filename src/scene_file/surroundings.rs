@@ -1,5 +1,6 @@
 //! `[[spring]]`, `[[chamber]]` and `[[obstacle]]`.
 
+use super::keys::{Holds, Key, Kind, TableKeys};
 use super::selection::selection;
 use super::table::Table;
 use super::value::Value;
@@ -8,14 +9,139 @@ use crate::external::{Chamber, Contact, Obstacle, Shape, Spring};
 use crate::input::InputError;
 use crate::scene::Scene;
 
+pub(super) const SPRING: TableKeys = TableKeys::new(
+    "[[spring]]",
+    "A spring with damper and actuator between two nodes. It acts in all phases; `actuate` in a phase adds a force.",
+    &[
+        Key::new("name", Holds::Text, "the name of the spring").default("spring 1, spring 2, ..."),
+        Key::new("ends", Holds::Array(&Holds::Nodes, 2), "one node each, by number or name")
+            .required(),
+        Key::number("stiffness", "the stiffness", "N/m").default("0"),
+        Key::number("length", "the natural length", "m").default("that at the start"),
+        Key::number("damping", "the damping", "N s/m").default("0"),
+    ],
+    "[[spring]]\nname = \"down\"\nends = [1, 3]\nstiffness = 20.0\nlength = 0.04",
+);
+
+pub(super) const CHAMBER: TableKeys = TableKeys::new(
+    "[[chamber]]",
+    "A closed space that `pressure` in a phase blows up.",
+    &[
+        Key::new("name", Holds::Text, "the name of the chamber").required(),
+        Key::new(
+            "nodes",
+            Holds::Nodes,
+            "the nodes of its walls: part of the boundary, or a closed polygon of numbers",
+        )
+        .required(),
+        Key::number("thickness", "the thickness", "m").default("that of the body"),
+    ],
+    "[[chamber]]\nname = \"inside\"\nnodes = \"inner\"",
+);
+
+pub(super) const OBSTACLE: TableKeys = TableKeys::new(
+    "[[obstacle]]",
+    "A rigid obstacle, felt by penalty: a node at depth d inside is pushed out by `stiffness` d (N). With \
+     `stiffness_density` (N/m^3) pressure is felt at points of boundary faces, so that no mesh changes the result, and \
+     `damping` and `tangential_damping` are per area as well (N s/m^3). Coulomb's friction is a part of the \
+     normal force, and needs no scaling: what sticks creeps, slower than `sticking_speed`.",
+    &[
+        Key::new("name", Holds::Text, "the name of the obstacle")
+            .default("obstacle 1, ..."),
+        Key::number("stiffness", "the stiffness per node", "N/m"),
+        Key::number("stiffness_density", "the stiffness per area of the body's boundary", "N/m^3"),
+        Key::number("damping", "the damping along the normal", "N s/m").default("0"),
+        Key::number("tangential_damping", "a force against sliding in proportion to its speed", "N s/m")
+            .default("0"),
+        Key::new(
+            "friction_coefficient",
+            Holds::Either(&[Holds::Number, Holds::Table(&COEFFICIENTS)]),
+            "Coulomb's coefficient of friction, or both of them",
+        )
+        .in_unit("1")
+        .default("0"),
+        Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
+            .default("a thousandth of the size of the body per second"),
+        Key::new("adhesion", Holds::Flag, "whether damping may pull at a body that leaves")
+            .default("false"),
+        Key::new("velocity", Holds::Vector, "the velocity of the obstacle").in_unit("m/s").default("0"),
+        Key::number(
+            "friction",
+            "a force against sliding in proportion to its speed",
+            "N s/m",
+        )
+        .now("tangential_damping"),
+    ],
+    "[[obstacle]]\n\
+     name = \"floor\"\n\
+     kind = \"half-plane\"\n\
+     point = [0.0, 0.0]\n\
+     normal = [0.0, 1.0]\n\
+     stiffness_density = 1.0e7\n\
+     friction_coefficient = { static = 0.6, kinetic = 0.5 }",
+)
+.one_of(&[&["stiffness"], &["stiffness_density"]])
+.kinds(&[
+    Kind {
+        word: "half-plane",
+        about: "all that lies beyond an edge (in space, a face)",
+        keys: &[
+            vector("point", "a point on its edge", "m"),
+            vector("normal", "the direction out of it", "1"),
+        ],
+    },
+    Kind {
+        word: "disc",
+        about: "a disc (in space, a ball), or all around one",
+        keys: &[
+            vector("centre", "the centre", "m"),
+            RADIUS,
+            Key::new("cavity", Holds::Flag, "whether bodies are inside of it").default("false"),
+        ],
+    },
+    Kind {
+        word: "box",
+        about: "a box along the axes",
+        keys: &[
+            vector("min", "the lower corner", "m"),
+            vector("max", "the upper corner", "m"),
+        ],
+    },
+    Kind {
+        word: "capsule",
+        about: "all that is no farther than `radius` from a straight line",
+        keys: &[
+            vector("from", "one end of its axis", "m"),
+            vector("to", "the other end of its axis", "m"),
+            RADIUS,
+        ],
+    },
+]);
+
+const RADIUS: Key = Key::number("radius", "the radius", "m").required();
+
+const fn vector(name: &'static str, meaning: &'static str, unit: &'static str) -> Key {
+    Key::new(name, Holds::Vector, meaning).in_unit(unit).required()
+}
+
+const COEFFICIENTS: TableKeys = TableKeys::new(
+    "friction_coefficient",
+    "Two coefficients of friction.",
+    &[
+        Key::number("static", "the friction coefficient at rest", "1").required(),
+        Key::number("kinetic", "the friction coefficient of what slides", "1").required(),
+    ],
+    "friction_coefficient = { static = 0.6, kinetic = 0.5 }",
+);
+
 /// The scene with the spring that `value` describes.
 pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
-    let table = &value.table(&["name", "ends", "stiffness", "length", "damping"])?;
+    let table = &value.table(&SPRING)?;
     let body = scene.body();
-    let name = table.optional("name", "the name of the spring", Value::string)?;
+    let name = table.optional("name", Value::string)?;
     let name = name.map_or_else(|| format!("spring {}", scene.springs().len() + 1), Into::into);
     unique(table, &name, scene.springs().iter().map(Spring::name))?;
-    let mut spring = table.required("ends", "one node each, by number or name", |value| {
+    let mut spring = table.required("ends", |value| {
         let list = value.list()?;
         let [first, second] = &list[..] else { return Err(value.unexpected("two ends")) };
         let ends = [selection(first, body.mesh())?, selection(second, body.mesh())?];
@@ -23,13 +149,13 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
         spring.force(body.mesh()).map_err(|error| value.error(error))?;
         Ok(spring)
     })?;
-    if let Some(k) = table.optional("stiffness", "the stiffness (N/m)", Value::number)? {
+    if let Some(k) = table.optional("stiffness", Value::number)? {
         spring = spring.stiffness(k);
     }
-    if let Some(length) = table.optional("length", "the natural length (m)", Value::number)? {
+    if let Some(length) = table.optional("length", Value::number)? {
         spring = spring.length(length);
     }
-    if let Some(c) = table.optional("damping", "the damping (N s/m)", Value::number)? {
+    if let Some(c) = table.optional("damping", Value::number)? {
         spring = spring.damping(c);
     }
     spring.force(body.mesh()).map_err(|error| table.blame(error))?;
@@ -38,13 +164,12 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
 
 /// The scene with the chamber that `value` describes.
 pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
-    let table = &value.table(&["name", "nodes", "thickness"])?;
+    let table = &value.table(&CHAMBER)?;
     let body = scene.body();
-    let name = table.required("name", "the name of the chamber", Value::string)?;
-    let meaning = "the nodes of its walls: part of the boundary, or a closed polygon of numbers";
-    let nodes = table.required("nodes", meaning, |value| selection(value, body.mesh()))?;
+    let name = table.required("name", Value::string)?;
+    let nodes = table.required("nodes", |value| selection(value, body.mesh()))?;
     let mut chamber = Chamber::within(name, nodes);
-    if let Some(h) = table.optional("thickness", "the thickness (m)", Value::number)? {
+    if let Some(h) = table.optional("thickness", Value::number)? {
         chamber = chamber.thickness(h);
     }
     unique(table, name, scene.chambers().iter().map(Chamber::name))?;
@@ -52,89 +177,26 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
     Ok(scene.chamber(chamber))
 }
 
-#[derive(Clone, Copy)]
-enum Kind {
-    HalfPlane,
-    Disc,
-    Box,
-    Capsule,
-}
-
-/// The words for them, and their keys.
-const KINDS: [(&str, Kind, &[&str]); 4] = [
-    ("half-plane", Kind::HalfPlane, &["point", "normal"]),
-    ("disc", Kind::Disc, &["centre", "radius", "cavity"]),
-    ("box", Kind::Box, &["min", "max"]),
-    ("capsule", Kind::Capsule, &["from", "to", "radius"]),
-];
-
-/// Keys of all obstacles.
-const LAW: &[&str] = &[
-    "name",
-    "stiffness",
-    "stiffness_density",
-    "damping",
-    "tangential_damping",
-    "friction_coefficient",
-    "sticking_speed",
-    "adhesion",
-    "velocity",
-    FRICTION,
-];
-
-/// The key of tangential damping before Coulomb's friction came.
-const FRICTION: &str = "friction";
-
-/// What is to be said about the obstacles that `value` describes.
-pub(super) fn notes(value: &Value) -> Result<Vec<String>, Error> {
-    let line = |value: &Value| {
-        let damping = value.entries()?.get(FRICTION)?;
-        Some(value.source.line(damping.span().start))
-    };
-    let note = |line: usize| {
-        format!(
-            "line {line}: obstacle.{FRICTION} is read as tangential_damping, its name now: a force in \
-             proportion to the sliding speed. Coulomb's friction is friction_coefficient"
-        )
-    };
-    Ok(value.one_or_more()?.iter().filter_map(line).map(note).collect())
-}
-
 /// The scene with the obstacle that `value` describes.
 pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let body = scene.body();
-    let (kind, table) = &value.table_of_kind(&KINDS, LAW)?;
-    let mut obstacle = Obstacle::new(shape(*kind, table, body.dimension())?);
-    if let Some(name) = table.optional("name", "the name of the obstacle", Value::string)? {
+    let table = &value.table(&OBSTACLE)?;
+    let mut obstacle = Obstacle::new(shape(table, body.dimension())?);
+    if let Some(name) = table.optional("name", Value::string)? {
         obstacle = obstacle.named(name);
     }
-    let meaning = "the stiffness per node (N/m)";
-    let per_node = table.optional("stiffness", meaning, Value::number)?;
-    let meaning = "the stiffness per area of the body's boundary (N/m^3)";
-    let per_area = table.optional("stiffness_density", meaning, Value::number)?;
-    obstacle = match (per_node, per_area) {
-        (Some(stiffness), None) => obstacle.stiffness(stiffness),
-        (None, Some(stiffness)) => obstacle.stiffness_density(stiffness),
-        (None, None) => {
-            let mend = "expected the stiffness per node (N/m), or stiffness_density (N/m^3)";
-            return Err(table.missing("stiffness", mend));
-        }
-        (Some(_), Some(_)) => {
-            return Err(table.error("expected stiffness or stiffness_density, found both"));
-        }
+    obstacle = match table.optional("stiffness_density", Value::number)? {
+        Some(stiffness) => obstacle.stiffness_density(stiffness),
+        None => obstacle.stiffness(table.required("stiffness", Value::number)?),
     };
-    if let Some(damping) = table.optional("damping", "the damping (N s/m)", Value::number)? {
+    if let Some(damping) = table.optional("damping", Value::number)? {
         obstacle = obstacle.damping(damping);
     }
     obstacle = friction(obstacle, table)?;
-    if let Some(adhesion) = table.optional("adhesion", "whether damping may pull", Value::flag)? {
+    if let Some(adhesion) = table.optional("adhesion", Value::flag)? {
         obstacle = obstacle.adhesion(adhesion);
     }
-    if let Some(velocity) =
-        table.optional("velocity", "the velocity of the obstacle (m/s)", |v| {
-            v.vector(body.dimension())
-        })?
-    {
+    if let Some(velocity) = table.optional("velocity", |v| v.vector(body.dimension()))? {
         obstacle = obstacle.velocity(velocity);
     }
     unique(table, obstacle.name(), scene.obstacles().iter().map(Obstacle::name))?;
@@ -144,34 +206,23 @@ pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> 
 
 /// The `obstacle` with the tangential forces of `table`.
 fn friction(mut obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
-    let meaning = "the tangential damping (N s/m)";
-    let damping = table.optional("tangential_damping", meaning, Value::number)?;
-    let alias = table.optional(FRICTION, meaning, Value::number)?;
-    if damping.is_some() && alias.is_some() {
-        return Err(table.error("friction is the old name of tangential_damping: give that alone"));
-    }
-    if let Some(damping) = damping.or(alias) {
+    if let Some(damping) = table.optional("tangential_damping", Value::number)? {
         obstacle = obstacle.tangential_damping(damping);
     }
-    let meaning = "the friction coefficient (no unit)";
-    let coefficients = table.optional("friction_coefficient", meaning, |value| {
+    let coefficients = table.optional("friction_coefficient", |value| {
         if value.entries().is_none() {
             let mu = value.number();
             let mu = mu.map_err(|_| value.unexpected("a number or { static, kinetic }"))?;
             return Ok([mu, mu]);
         }
-        let table = value.table(&["static", "kinetic"])?;
-        let coefficient = |key, meaning| table.required(key, meaning, Value::number);
-        Ok([
-            coefficient("static", "the friction coefficient at rest (no unit)")?,
-            coefficient("kinetic", "the friction coefficient of what slides (no unit)")?,
-        ])
+        let table = value.table(&COEFFICIENTS)?;
+        let coefficient = |key| table.required(key, Value::number);
+        Ok([coefficient("static")?, coefficient("kinetic")?])
     })?;
     if let Some([at_rest, sliding]) = coefficients {
         obstacle = obstacle.friction_coefficients(at_rest, sliding);
     }
-    let meaning = "the speed below which friction sticks (m/s)";
-    if let Some(speed) = table.optional("sticking_speed", meaning, Value::number)? {
+    if let Some(speed) = table.optional("sticking_speed", Value::number)? {
         obstacle = obstacle.sticking_speed(speed);
     }
     Ok(obstacle)
@@ -192,32 +243,19 @@ fn unique<'a>(
     }
 }
 
-fn shape(kind: Kind, table: &Table, dimension: usize) -> Result<Shape, Error> {
-    let vector = |key: &str, meaning: &'static str| {
-        table.required(key, meaning, |value| value.vector(dimension))
-    };
-    let radius = || table.required("radius", "the radius (m)", Value::number);
-    Ok(match kind {
-        Kind::HalfPlane => Shape::half_plane(
-            vector("point", "a point on its edge (m)")?,
-            vector("normal", "the direction out of it (no unit)")?,
-        ),
-        Kind::Disc => {
-            let centre = vector("centre", "the centre (m)")?;
-            let meaning = "whether bodies are inside of it";
-            match table.optional("cavity", meaning, Value::flag)? {
+fn shape(table: &Table, dimension: usize) -> Result<Shape, Error> {
+    let vector = |key: &str| table.required(key, |value| value.vector(dimension));
+    let radius = || table.required("radius", Value::number);
+    Ok(match table.kind() {
+        "half-plane" => Shape::half_plane(vector("point")?, vector("normal")?),
+        "disc" => {
+            let centre = vector("centre")?;
+            match table.optional("cavity", Value::flag)? {
                 Some(true) => Shape::cavity(centre, radius()?),
                 _ => Shape::disc(centre, radius()?),
             }
         }
-        Kind::Box => Shape::box_between(
-            vector("min", "the lower corner (m)")?,
-            vector("max", "the upper corner (m)")?,
-        ),
-        Kind::Capsule => Shape::capsule(
-            vector("from", "one end of its axis (m)")?,
-            vector("to", "the other end of its axis (m)")?,
-            radius()?,
-        ),
+        "box" => Shape::box_between(vector("min")?, vector("max")?),
+        _ => Shape::capsule(vector("from")?, vector("to")?, radius()?),
     })
 }

@@ -6,49 +6,72 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
+use super::keys::{Key, Kind, Meaning, TableKeys};
 use super::source::Source;
 use super::value::Value;
 use crate::error::Error;
 use crate::input::{InputError, list, unknown};
 
-/// A table all of whose keys are known.
+/// The key that says what kind of thing a table describes.
+const KIND: &str = "kind";
+
+/// A table all of whose keys are known, and none of whose groups of keys is missing or there beside another.
 pub(super) struct Table<'a> {
     source: &'a Source<'a>,
     /// Its key, with those of the tables around it; empty for the whole file.
     key: String,
     at: Range<usize>,
     entries: &'a DeTable<'a>,
+    keys: &'static TableKeys,
+    kind: Option<&'static Kind>,
 }
 
 impl<'a> Table<'a> {
     /// # Errors
-    /// A key that is none of the `known` ones.
+    /// A key that is none of `keys`; groups of keys of which not exactly one is there.
     pub(super) fn new(
         source: &'a Source<'a>,
         key: String,
         at: Range<usize>,
         entries: &'a DeTable<'a>,
-        known: &[&str],
+        keys: &'static TableKeys,
     ) -> Result<Self, Error> {
-        let table = Self { source, key, at, entries };
-        match table.first_beside(known) {
-            None => Ok(table),
-            Some(key) => {
-                let message = format!("unknown key; {}", unknown(key.get_ref(), known));
-                Err(source.error(&key.span(), &table.full(key.get_ref()), message))
-            }
+        let mut table = Self { source, key, at, entries, keys, kind: None };
+        if let Some(key) = table.first_beside(&table.names(keys.all())) {
+            let known = table.names(keys.all().filter(|key| key.now.is_none()));
+            let message = format!("unknown key; {}", unknown(key.get_ref(), &known));
+            return Err(source.error(&key.span(), &table.full(key.get_ref()), message));
         }
+        if !keys.kinds.is_empty() {
+            let words: Vec<_> = keys.kinds.iter().map(|kind| (kind.word, kind)).collect();
+            let kind = table.required(KIND, |value| value.word(&words))?;
+            let all = || kind.keys.iter().chain(keys.keys);
+            if let Some(key) = table.first_beside(&table.names(all())) {
+                let known = table.names(all().filter(|key| key.now.is_none()));
+                let (word, known) = (kind.word, list(&known));
+                let message = format!("kind = \"{word}\" has no such key; it has {known}");
+                return Err(source.error(&key.span(), &table.full(key.get_ref()), message));
+            }
+            table.kind = Some(kind);
+        }
+        table.check_groups()?;
+        table.note_old_names()?;
+        Ok(table)
     }
 
-    /// The same table, if it has no keys but those of its `kind`.
-    pub(super) fn restricted(self, known: &[&str], kind: &str) -> Result<Self, Error> {
-        match self.first_beside(known) {
-            None => Ok(self),
-            Some(key) => {
-                let message = format!("kind = \"{kind}\" has no such key; it has {}", list(known));
-                Err(self.source.error(&key.span(), &self.full(key.get_ref()), message))
+    /// The word that stands for the key `kind`.
+    pub(super) fn kind(&self) -> &'static str {
+        self.kind.map_or("", |kind| kind.word)
+    }
+
+    fn names(&self, keys: impl Iterator<Item = &'static Key>) -> Vec<&'static str> {
+        let mut names = if self.keys.kinds.is_empty() { Vec::new() } else { vec![KIND] };
+        for key in keys {
+            if !names.contains(&key.name) {
+                names.push(key.name);
             }
         }
+        names
     }
 
     /// The first key in the file that is none of the `known` ones.
@@ -57,10 +80,63 @@ impl<'a> Table<'a> {
         strange.min_by_key(|key| key.span().start)
     }
 
-    /// The value of `key`, if it is there. `meaning` says what it is, with its unit.
-    pub(super) fn get(&self, key: &str, meaning: &'static str) -> Option<Value<'a>> {
+    fn check_groups(&self) -> Result<(), Error> {
+        let groups = self.keys.one_of;
+        let there = |key: &&&str| self.entries.contains_key(**key);
+        let found: Vec<&str> = groups.concat().iter().filter(there).copied().collect();
+        if groups.is_empty() || groups.iter().any(|group| *group == found) {
+            return Ok(());
+        }
+        let told = |key: &&str| format!("{key}: {}", self.meaning(key));
+        let told = |group: &&[&str]| group.iter().map(told).collect::<Vec<_>>().join(", and ");
+        let groups: Vec<String> = groups.iter().map(told).collect();
+        let expected = format!("expected either {}", groups.join("; or "));
+        Err(match found[..] {
+            [] => self.missing(self.keys.one_of[0][0], expected),
+            _ => self.error(format!("{expected}; found {}", found.join(" and "))),
+        })
+    }
+
+    fn note_old_names(&self) -> Result<(), Error> {
+        for key in self.keys.all() {
+            let (Some(now), Some(value)) = (key.now, self.entries.get(key.name)) else { continue };
+            let old = key.name;
+            if self.entries.contains_key(now) {
+                return Err(self.error(format!("{old} is the old name of {now}: give that alone")));
+            }
+            let (line, full) = (self.source.line(value.span().start), self.full(old));
+            self.source.note(format!(
+                "line {line}: {full} is read as {now}, its name now: {}",
+                key.meaning.text
+            ));
+        }
+        Ok(())
+    }
+
+    /// What the key `name` means.
+    fn meaning(&self, name: &str) -> Meaning {
+        if name == KIND {
+            return Meaning { text: "the kind", unit: "" };
+        }
+        let mut of_kind = self.kind.iter().flat_map(|kind| kind.keys);
+        let key = of_kind.find(|key| key.name == name);
+        let key = key.or_else(|| self.keys.keys.iter().find(|key| key.name == name));
+        debug_assert!(key.is_some(), "{} has no key {name}", self.keys.name);
+        key.map_or(Meaning { text: "", unit: "" }, |key| key.meaning)
+    }
+
+    /// The value of `key`, or of its old name, if it is there.
+    pub(super) fn get(&self, name: &str) -> Option<Value<'a>> {
+        let meaning = self.meaning(name);
+        let mut old = self.keys.all().filter(|key| key.now == Some(name)).map(|key| key.name);
+        let value = self.entry(name).or_else(|| old.find_map(|old| self.entry(old)))?;
+        Some(Value { meaning, ..value })
+    }
+
+    fn entry(&self, key: &str) -> Option<Value<'a>> {
         let value = self.entries.get(key)?;
         let (key, at) = (self.full(key), value.span());
+        let meaning = Meaning { text: "", unit: "" };
         Some(Value { source: self.source, key, meaning, at, value: value.get_ref() })
     }
 
@@ -68,21 +144,19 @@ impl<'a> Table<'a> {
     pub(super) fn optional<T>(
         &self,
         key: &str,
-        meaning: &'static str,
         read: impl FnOnce(&Value<'a>) -> Result<T, Error>,
     ) -> Result<Option<T>, Error> {
-        self.get(key, meaning).map(|value| read(&value)).transpose()
+        self.get(key).map(|value| read(&value)).transpose()
     }
 
     /// The value of `key` as `read` reads it.
     pub(super) fn required<T>(
         &self,
         key: &str,
-        meaning: &'static str,
         read: impl FnOnce(&Value<'a>) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        self.optional(key, meaning, read)?
-            .ok_or_else(|| self.missing(key, format!("expected {meaning}")))
+        self.optional(key, read)?
+            .ok_or_else(|| self.missing(key, format!("expected {}", self.meaning(key))))
     }
 
     /// `key` should be there.
@@ -123,46 +197,25 @@ impl<'a> Table<'a> {
     /// The value, in this table or one inside of it, that the last possible word of `input` names.
     fn culprit(&self, input: &str) -> Option<Value<'a>> {
         let mut words = input.split(|c: char| !c.is_alphanumeric() && c != '_').rev();
-        let found = words.find_map(|word| self.get(word, ""))?;
+        let found = words.find_map(|word| self.entry(word))?;
         let Some(entries) = found.entries() else { return Some(found) };
         let Value { source, key, at, .. } = found.clone();
-        Table { source, key, at, entries }.culprit(input).or(Some(found))
+        Table { source, key, at, entries, ..*self }.culprit(input).or(Some(found))
     }
 }
 
 impl<'a> Value<'a> {
-    /// A table with the keys `known`.
-    pub(super) fn table(&self, known: &[&str]) -> Result<Table<'a>, Error> {
+    /// A table with these `keys`.
+    pub(super) fn table(&self, keys: &'static TableKeys) -> Result<Table<'a>, Error> {
         let DeValue::Table(entries) = self.value else {
             return Err(self.unexpected("a table"));
         };
-        Table::new(self.source, self.key.clone(), self.at.clone(), entries, known)
+        Table::new(self.source, self.key.clone(), self.at.clone(), entries, keys)
     }
 
-    /// Tables with the keys `known`: a list of them, or one alone.
-    pub(super) fn tables(&self, known: &[&str]) -> Result<Vec<Table<'a>>, Error> {
-        self.one_or_more()?.iter().map(|value| value.table(known)).collect()
-    }
-
-    /// A table with a key `kind`, one of the words of `kinds`. Its other keys are those that come
-    /// with the kind and the `common` ones.
-    pub(super) fn table_of_kind<K: Copy>(
-        &self,
-        kinds: &[(&str, K, &[&str])],
-        common: &[&str],
-    ) -> Result<(K, Table<'a>), Error> {
-        let mut all = [&["kind"], common].concat();
-        for key in kinds.iter().flat_map(|(_, _, keys)| keys.iter()) {
-            if !all.contains(key) {
-                all.push(key);
-            }
-        }
-        let words: Vec<(&str, usize)> = kinds.iter().map(|(word, ..)| *word).zip(0..).collect();
-        let table = self.table(&all)?;
-        let chosen = table.required("kind", "the kind", |value| value.word(&words))?;
-        let (word, kind, keys) = kinds[chosen];
-        let table = table.restricted(&[&["kind"], keys, common].concat(), word)?;
-        Ok((kind, table))
+    /// Tables with these `keys`: a list of them, or one alone.
+    pub(super) fn tables(&self, keys: &'static TableKeys) -> Result<Vec<Table<'a>>, Error> {
+        self.one_or_more()?.iter().map(|value| value.table(keys)).collect()
     }
 }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use toml::de::{DeTable, DeValue};
 
+use super::keys::Meaning;
 use super::source::Source;
 use crate::error::Error;
 use crate::input::{list, unknown};
@@ -15,8 +16,7 @@ pub(super) struct Value<'a> {
     pub(super) source: &'a Source<'a>,
     /// Its key, with those of the tables around it.
     pub(super) key: String,
-    /// What it means, with its unit.
-    pub(super) meaning: &'static str,
+    pub(super) meaning: Meaning,
     pub(super) at: Range<usize>,
     pub(super) value: &'a DeValue<'a>,
 }

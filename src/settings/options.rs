@@ -7,10 +7,14 @@ use crate::input::InputError;
 /// A field of [`Settings`] as it is read from a text.
 #[derive(Debug, Clone, Copy)]
 pub struct SettingsOption {
-    /// Name of the flag of the command.
-    pub name: &'static str,
-    /// What it is, with its unit.
+    /// Its name in the table `[solver]` of scene files, and in [`Settings`].
+    pub key: &'static str,
+    /// What it is.
     pub meaning: &'static str,
+    /// Its unit: "1" for numbers without, empty for what is no number.
+    pub unit: &'static str,
+    /// What holds without it: the value as in a scene file, or words.
+    pub default: &'static str,
     /// What stands for its value in the help of the command.
     pub value_name: &'static str,
     /// How its value is read and put into [`Settings`].
@@ -31,16 +35,18 @@ pub enum SettingsValue {
 }
 
 impl SettingsOption {
-    /// Its name in the table `[solver]` of scene files, and in [`Settings`].
-    pub fn key(&self) -> String {
-        self.name.replace('-', "_")
+    /// Name of its flag of the command.
+    pub fn flag(&self) -> String {
+        self.key.replace('_', "-")
     }
 
     /// All options, one for each field of [`Settings`].
     pub const ALL: [Self; 10] = [
         Self {
-            name: "method",
+            key: "method",
             meaning: "integration method: see \"pliant methods\"",
+            unit: "",
+            default: "auto",
             value_name: "METHOD",
             value: SettingsValue::Word(
                 || Method::ALL.map(Method::name).into(),
@@ -48,46 +54,60 @@ impl SettingsOption {
             ),
         },
         Self {
-            name: "rtol",
-            meaning: "relative tolerance (no unit)",
+            key: "rtol",
+            meaning: "relative tolerance",
+            unit: "1",
+            default: "1e-5",
             value_name: "RTOL",
             value: SettingsValue::Number(|settings, rtol| settings.rtol = rtol),
         },
         Self {
-            name: "atol-position",
-            meaning: "absolute tolerance of displacements (m)",
+            key: "atol_position",
+            meaning: "absolute tolerance of displacements",
+            unit: "m",
+            default: "`rtol` times a hundredth of the size of the body",
             value_name: "METRES",
             value: SettingsValue::Number(|settings, atol| settings.atol_position = Some(atol)),
         },
         Self {
-            name: "atol-velocity",
-            meaning: "absolute tolerance of velocities (m/s)",
+            key: "atol_velocity",
+            meaning: "absolute tolerance of velocities",
+            unit: "m/s",
+            default: "`rtol` times a hundredth of the speed of waves",
             value_name: "METRES/SECOND",
             value: SettingsValue::Number(|settings, atol| settings.atol_velocity = Some(atol)),
         },
         Self {
-            name: "alpha",
-            meaning: "rate at which errors of constraints decay (1/s)",
+            key: "alpha",
+            meaning: "rate at which errors of constraints decay",
+            unit: "1/s",
+            default: "1e3",
             value_name: "1/SECONDS",
             value: SettingsValue::Number(|settings, alpha| settings.alpha = alpha),
         },
         Self {
-            name: "max-order",
+            key: "max_order",
             meaning: "highest order of a multistep method, order of arkode's",
+            unit: "",
+            default: "5; `cvode-adams`: 12, `arkode`: 4",
             value_name: "ORDER",
             value: SettingsValue::Count(|settings, order| {
                 settings.max_order = Some(u32::try_from(order).unwrap_or(u32::MAX));
             }),
         },
         Self {
-            name: "stability-limit-detection",
+            key: "stability_limit_detection",
             meaning: "whether BDF lowers its order where stability bounds its steps",
+            unit: "",
+            default: "false",
             value_name: "true|false",
             value: SettingsValue::Flag(|settings, flag| settings.stability_limit_detection = flag),
         },
         Self {
-            name: "contact-events",
+            key: "contact_events",
             meaning: "how contact events are met: auto, step-over or locate",
+            unit: "",
+            default: "auto",
             value_name: "WAY",
             value: SettingsValue::Word(
                 || ContactEvents::ALL.map(ContactEvents::name).into(),
@@ -95,14 +115,18 @@ impl SettingsOption {
             ),
         },
         Self {
-            name: "max-step",
-            meaning: "longest step (s)",
+            key: "max_step",
+            meaning: "longest step",
+            unit: "s",
+            default: "none",
             value_name: "SECONDS",
             value: SettingsValue::Number(|settings, step| settings.max_step = Some(step)),
         },
         Self {
-            name: "max-steps",
+            key: "max_steps",
             meaning: "steps that a phase may take",
+            unit: "",
+            default: "10000000",
             value_name: "STEPS",
             value: SettingsValue::Count(|settings, steps| settings.max_steps = steps),
         },
@@ -131,7 +155,7 @@ mod tests {
                     }
                 }
             }
-            assert_ne!(one, default, "{}", option.name);
+            assert_ne!(one, default, "{}", option.key);
         }
         let Settings {
             method,
@@ -151,12 +175,31 @@ mod tests {
         assert_eq!((max_order, max_steps, stability_limit_detection), (Some(3), 3, true));
     }
 
+    /// Defaults that are told are those in force.
+    #[test]
+    fn defaults_are_told() {
+        let mut told = 0;
+        for option in SettingsOption::ALL {
+            let mut settings = Settings::default();
+            match (option.value, option.default.parse::<f64>()) {
+                (SettingsValue::Number(set), Ok(number)) => set(&mut settings, number),
+                (SettingsValue::Count(set), Ok(count)) => set(&mut settings, count as usize),
+                (SettingsValue::Flag(set), _) => set(&mut settings, option.default == "true"),
+                (SettingsValue::Word(_, set), _) => set(&mut settings, option.default).unwrap(),
+                _ => continue,
+            }
+            assert_eq!(settings, Settings::default(), "{}", option.key);
+            told += 1;
+        }
+        assert_eq!(told, 6);
+    }
+
     #[test]
     fn words_that_mean_nothing_are_refused() {
         for option in SettingsOption::ALL {
             if let SettingsValue::Word(words, set) = option.value {
                 let error = set(&mut Settings::default(), "nothing").unwrap_err().to_string();
-                assert!(error.contains(&option.key()), "{error}");
+                assert!(error.contains(&option.key), "{error}");
                 assert!(words().iter().all(|word| error.contains(word)), "{error}");
             }
         }

@@ -8,7 +8,7 @@ use crate::constraint::{Axis, PhaseStart};
 use crate::ode::{Dae, Ode};
 use crate::samples::SQUARE_MATERIAL;
 use crate::state::ENERGIES;
-use crate::{Body, Cells, InputError, Mesh, Obstacle, Phase, Scene};
+use crate::{Body, Cells, InputError, Mesh, Obstacle, Phase, Scene, Strain};
 
 const ALPHA: f64 = 30.0;
 
@@ -16,7 +16,8 @@ const ALPHA: f64 = 30.0;
 /// loads, gravity, contact with damping and friction at some nodes.
 fn system() -> System {
     let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let floor = Obstacle::half_plane([0.0, 0.05], [0.6, 0.8]);
     let phase = Phase::until(1.0)
         .hold_axes([1, 2], [Axis::Y])
@@ -242,7 +243,8 @@ fn projection_changes_velocities_to_allowed_ones_only() {
 #[test]
 fn a_row_that_follows_from_others_is_named() {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let phase = Phase::until(1.0)
         .named("pull")
         .hold_combination([(6, Axis::X, 1.0), (7, Axis::X, 1.0)])

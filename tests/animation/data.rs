@@ -8,6 +8,7 @@ use base64::engine::general_purpose::STANDARD;
 use pliant::samples::{beam_jump, square_jump};
 use pliant::{
     Body, CellField, Cells, Mesh, Obstacle, Phase, Sample, Sampling, Scene, Settings, Spring,
+    Strain,
 };
 use serde_json::Value;
 
@@ -82,7 +83,7 @@ fn the_data_are_those_of_the_samples() -> Outcome {
 #[test]
 fn a_driven_motion_is_drawn_as_it_was() -> Outcome {
     let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Triangles)?;
-    let body = Body::new(mesh, RUBBER).thickness(0.01).build()?;
+    let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01).build()?;
     let plate = Obstacle::half_plane([0.0, -0.02], [0.0, 1.0]).stiffness(1e3).named("plate");
     let mut square = Scene::new(body)
         .spring(Spring::between([1], [9]).named("tendon"))

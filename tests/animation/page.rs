@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use pliant::output::write_animation;
 use pliant::{
-    Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Shape, Spring,
+    Body, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Shape, Spring, Strain,
     Trajectory,
 };
 use tempfile::TempDir;
@@ -23,7 +23,11 @@ pub const END: f64 = 0.16;
 /// pulls and then pushes. All names are hostile to HTML.
 pub fn square() -> Result<Trajectory, pliant::Error> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
-    let body = Body::new(mesh, RUBBER).thickness(0.01).point_mass("bob", [0.5, 0.1], 0.1);
+    let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01).point_mass(
+        "bob",
+        [0.5, 0.1],
+        0.1,
+    );
     let named = |name: &str, shape: Shape| Obstacle::new(shape).named(name).stiffness(1e3);
     let pair = [Shape::disc([0.0, -0.2], 0.03), Shape::capsule([0.1, -0.2], [0.2, -0.2], 0.03)];
     let press = Phase::until(PRESSED).named("</script><script>throw 1</script>");

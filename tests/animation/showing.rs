@@ -147,7 +147,7 @@ pub fn bodies_of_all_dimensions(browser: &mut Browser) -> Outcome {
 pub fn the_near_side_of_a_solid_is_seen(browser: &mut Browser) -> Outcome {
     let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [3, 3, 3], SolidCells::Hexahedra)?;
     let still = [0.0, 0.0, 0.0];
-    let scene = Scene::new(Body::new(mesh, RUBBER).build()?)
+    let scene = Scene::new(Body::new(mesh, RUBBER).strain(Strain::Cauchy).build()?)
         .phase(Phase::until(0.01).move_nodes("front", still))
         .phase(Phase::until(0.02).move_nodes("back", still));
     let _page = shown(browser, &scene.simulate(&Settings::default(), &Sampling::every(0.01))?)?;

@@ -2,7 +2,7 @@
 
 use faer::Side;
 use pliant::mesh::CellKind;
-use pliant::{Body, Cells, Material, Mesh, SolidCells};
+use pliant::{Body, Cells, Material, Mesh, SolidCells, Strain};
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
 /// Sides of the bodies (m).
@@ -68,7 +68,7 @@ fn irregular(mesh: Mesh, straight: bool) -> Mesh {
 
 fn body(mesh: Mesh) -> Body {
     let flat = mesh.dimension() == 2;
-    let body = Body::new(mesh, RUBBER);
+    let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy);
     if flat { body.thickness(THICKNESS) } else { body }.build().unwrap()
 }
 
@@ -279,7 +279,7 @@ fn cells_that_are_turned_over_are_named() {
             2 => mesh.mapped(|x| [x[1], x[0]]),
             _ => mesh.mapped(|x| [x[1], x[0], x[2]]),
         };
-        let builder = Body::new(turned.unwrap(), RUBBER);
+        let builder = Body::new(turned.unwrap(), RUBBER).strain(Strain::Cauchy);
         let builder = if dimension == 2 { builder.thickness(THICKNESS) } else { builder };
         let message = builder.build().unwrap_err().to_string();
         assert!(message.starts_with("signed volume of cell 1 (nodes ["), "{kind:?}: {message}");
@@ -289,7 +289,7 @@ fn cells_that_are_turned_over_are_named() {
 #[test]
 fn solids_have_no_section() {
     let message = |body: pliant::body::BodyBuilder| body.build().unwrap_err().to_string();
-    let solid = || Body::new(cuboid(SolidCells::Hexahedra), RUBBER);
+    let solid = || Body::new(cuboid(SolidCells::Hexahedra), RUBBER).strain(Strain::Cauchy);
     assert!(message(solid().thickness(0.1)).contains("Hexahedron cells has no thickness"));
     assert!(message(solid().area(0.1)).contains("Hexahedron cells has no area"));
 }

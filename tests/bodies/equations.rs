@@ -2,7 +2,7 @@
 //! finite differences.
 
 use pliant::samples::{ClampedBeam, SquareJump, square_jump};
-use pliant::{Axis, Body, Cells, Inertia, InputError, Material, Mesh, Phase, Scene};
+use pliant::{Axis, Body, Cells, Inertia, InputError, Material, Mesh, Phase, Scene, Strain};
 
 /// Displacements (m) that push the square into the floor, and velocities (m/s).
 fn state(dofs: usize) -> [Vec<f64>; 2] {
@@ -109,7 +109,7 @@ fn bad_input_is_named() {
     assert!(message(scene.equations(0, &[0.0; 31])).contains("31 numbers"));
     let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
     let material = Material { density: 1.0, young: 1.0, poisson: 0.3, viscosity: 0.0 };
-    let body = Body::new(mesh, material).thickness(1.0).build().unwrap();
+    let body = Body::new(mesh, material).strain(Strain::Cauchy).thickness(1.0).build().unwrap();
     let tied = Phase::until(1.0).named("tied");
     let tied = tied.hold_combination([(1, Axis::X, 1.0), (2, Axis::X, -1.0)]);
     let error = message(Scene::new(body).phase(tied).equations(0, &[0.0; 8]));

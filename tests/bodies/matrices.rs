@@ -1,14 +1,14 @@
 //! The constant matrices of a body, against printed ones, closed forms and invariants.
 
 use faer::Side;
-use pliant::{Body, Cells, Material, Mesh, Plane};
+use pliant::{Body, Cells, Material, Mesh, Plane, Strain};
 
 /// Slides, "Example (inertia matrix)": isosceles right triangles of legs 1, thickness 2. With
 /// this density rho h Delta / 12 = 1, as printed.
 fn six_nodes() -> Body {
     let mesh = Mesh::rectangle([2.0, 1.0], [3, 2], Cells::Triangles).unwrap();
     let material = Material { density: 12.0, young: 1.0, poisson: 0.3, viscosity: 0.0 };
-    Body::new(mesh, material).thickness(2.0).build().unwrap()
+    Body::new(mesh, material).strain(Strain::Cauchy).thickness(2.0).build().unwrap()
 }
 
 /// An irregular square: the inner nodes of a 4 x 4 grid pushed about.
@@ -92,7 +92,11 @@ fn connection_matrices_as_printed() {
 fn bar_matrices_as_printed() {
     // spec: K = (E A / h) tridiag(-1; 1, 2, ..., 2, 1; -1), M = (rho A h / 6) tridiag(1; 2, 4, ..., 2; 1)
     let material = Material { density: 6.0, young: 5.0, poisson: 0.3, viscosity: 2.0 };
-    let body = Body::new(Mesh::bar(4.0, 5).unwrap(), material).area(3.0).build().unwrap();
+    let body = Body::new(Mesh::bar(4.0, 5).unwrap(), material)
+        .strain(Strain::Cauchy)
+        .area(3.0)
+        .build()
+        .unwrap();
     for i in 0..5_usize {
         for j in 0..5 {
             let end = i == 0 || i == 4;
@@ -110,7 +114,11 @@ fn bar_matrices_as_printed() {
 
 #[test]
 fn total_mass_and_centre() {
-    let body = Body::new(irregular_square(), RUBBER).thickness(0.01).build().unwrap();
+    let body = Body::new(irregular_square(), RUBBER)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
+        .build()
+        .unwrap();
     assert!((body.mass() - 1000.0 * 9.0 * 0.01).abs() < 2e-12);
 }
 
@@ -123,7 +131,11 @@ fn forces(body: &Body, field: impl Fn(&[f64]) -> [f64; 2]) -> Vec<f64> {
 
 #[test]
 fn rigid_modes_cost_nothing_and_there_are_three_of_them() {
-    let body = Body::new(irregular_square(), RUBBER).thickness(0.01).build().unwrap();
+    let body = Body::new(irregular_square(), RUBBER)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
+        .build()
+        .unwrap();
     let scale = body.stiffness().get(0, 0);
     for mode in [|_: &[f64]| [1.0, 0.0], |_: &[f64]| [0.0, 1.0], |x: &[f64]| [-x[1], x[0]]] {
         let largest = forces(&body, mode).iter().fold(0.0_f64, |worst, f| worst.max(f.abs()));
@@ -139,7 +151,11 @@ fn rigid_modes_cost_nothing_and_there_are_three_of_them() {
 /// equilibrium and costs the energy of its strain.
 #[test]
 fn patch_test() {
-    let body = Body::new(irregular_square(), RUBBER).thickness(0.01).build().unwrap();
+    let body = Body::new(irregular_square(), RUBBER)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
+        .build()
+        .unwrap();
     let field = |x: &[f64]| [0.02 * x[0] + 0.03 * x[1], -0.01 * x[0] + 0.05 * x[1]];
     let forces = forces(&body, field);
     for node in [5, 6, 9, 10] {
@@ -167,7 +183,10 @@ fn patch_test() {
 /// none across.
 #[test]
 fn plane_stress_stretches_with_youngs_modulus() {
-    let body = Body::new(irregular_square(), RUBBER).thickness(0.01).plane(Plane::Stress);
+    let body = Body::new(irregular_square(), RUBBER)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
+        .plane(Plane::Stress);
     let body = body.build().unwrap();
     let forces = forces(&body, |x| [0.01 * x[0], -0.48 * 0.01 * x[1]]);
     let total: f64 = body.mesh().sets()["all"]
@@ -205,7 +224,7 @@ fn static_square_is_in_equilibrium() {
     ];
     let mesh = Mesh::rectangle([3.0, 3.0], [4, 4], Cells::Triangles).unwrap();
     let material = Material { density: 1.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
-    let body = Body::new(mesh, material).thickness(1.0).build().unwrap();
+    let body = Body::new(mesh, material).strain(Strain::Cauchy).thickness(1.0).build().unwrap();
     let mut expected = vec![0.0; 32];
     multipliers.iter().for_each(|&(dof, force)| expected[dof] = force);
     let k = body.stiffness().to_dense();

@@ -9,11 +9,11 @@ mod forces;
 use forces::{Magnet, Wind};
 use pliant::force::{Force, NodalForces};
 use pliant::samples::SQUARE_MATERIAL;
-use pliant::{Body, Cells, Mesh, Phase, Scene};
+use pliant::{Body, Cells, Mesh, Phase, Scene, Strain};
 
 fn body() -> Body {
     let mesh = Mesh::rectangle([0.02, 0.02], [2, 2], Cells::Triangles).unwrap();
-    Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap()
+    Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap()
 }
 
 fn magnet(body: &Body) -> Magnet {

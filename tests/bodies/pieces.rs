@@ -21,7 +21,7 @@ fn pieces(inertia: Inertia) -> Body {
     let positions = at(0.0, 6).chain(at(0.2, 4)).collect();
     let cells = (0..5).chain(6..9).flat_map(|node| [node, node + 1]).collect();
     let mesh = Mesh::new(1, positions, CellKind::Segment, cells).unwrap();
-    let body = Body::new(mesh, SOFT).area(2e-4).inertia(inertia);
+    let body = Body::new(mesh, SOFT).strain(Strain::Cauchy).area(2e-4).inertia(inertia);
     body.point_mass("bob", [0.4], 0.003).build().unwrap()
 }
 

@@ -9,7 +9,7 @@ const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, 
 /// Fig. 2.2: six nodes, four right isosceles triangles with legs of `leg`, thickness 1.
 fn six_nodes(leg: f64, material: Material) -> Body {
     let mesh = Mesh::rectangle([2.0 * leg, leg], [3, 2], Cells::Triangles).unwrap();
-    Body::new(mesh, material).thickness(1.0).build().unwrap()
+    Body::new(mesh, material).strain(Strain::Cauchy).thickness(1.0).build().unwrap()
 }
 
 #[test]
@@ -47,7 +47,11 @@ fn coefficients_as_printed() {
         let a11 = |material: Material| {
             let positions = vec![0.0, 0.0, leg, 0.0, 0.0, leg];
             let mesh = Mesh::new(2, positions, pliant::mesh::CellKind::Triangle, vec![0, 1, 2]);
-            let body = Body::new(mesh.unwrap(), material).thickness(1.0).build().unwrap();
+            let body = Body::new(mesh.unwrap(), material)
+                .strain(Strain::Cauchy)
+                .thickness(1.0)
+                .build()
+                .unwrap();
             GreenPolynomial::new(&body).unwrap().to_dense(Coefficients::A11)
         };
         // nu = 0: lambda = 0, mu = E/2; nu = 1/4: lambda = mu = 0.4 E
@@ -134,12 +138,17 @@ fn forces_are_those_of_the_sum_over_cells() {
 #[test]
 fn other_bodies_are_refused() {
     let message = |body: &Body| GreenPolynomial::new(body).unwrap_err().to_string();
-    let bar = Body::new(Mesh::bar(0.1, 6).unwrap(), RUBBER).area(1e-4).build().unwrap();
+    let bar = Body::new(Mesh::bar(0.1, 6).unwrap(), RUBBER)
+        .strain(Strain::Cauchy)
+        .area(1e-4)
+        .build()
+        .unwrap();
     assert!(message(&bar).starts_with("cells of the body = Segment in 1 dimensions"));
     let positions = vec![0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
     let membrane =
         Mesh::new(3, positions, pliant::mesh::CellKind::Triangle, vec![0, 1, 2]).unwrap();
-    let membrane = Body::new(membrane, RUBBER).thickness(0.01).build().unwrap();
+    let membrane =
+        Body::new(membrane, RUBBER).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     assert!(message(&membrane).starts_with("cells of the body = Triangle in 3 dimensions"));
     let mut polynomial = GreenPolynomial::new(&six_nodes(1.0, RUBBER)).unwrap();
     let short = polynomial.forces(&[0.0; 11], &mut [0.0; 12]).unwrap_err().to_string();

@@ -1,7 +1,7 @@
 //! How far cells have turned: bodies that are stretched and then turned rigidly, by a known angle.
 
 use pliant::mesh::CellKind;
-use pliant::{Body, Cells, Material, Mesh, SolidCells};
+use pliant::{Body, Cells, Material, Mesh, SolidCells, Strain};
 
 const SOFT: Material = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
 /// Of length 1, along no axis.
@@ -37,7 +37,8 @@ fn assert_all(body: &Body, u: &[f64], expected: f64) {
 fn in_the_plane() {
     for cells in [Cells::Triangles, Cells::Triangles6, Cells::Rectangles] {
         let mesh = Mesh::rectangle([0.2, 0.1], [3, 3], cells).unwrap();
-        let body = Body::new(mesh.clone(), SOFT).thickness(0.01).build().unwrap();
+        let body =
+            Body::new(mesh.clone(), SOFT).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
         for angle in ANGLES {
             let (sin, cos) = f64::sin_cos(angle);
             // stretched, sheared by a symmetric map, turned
@@ -54,7 +55,7 @@ fn in_the_plane() {
 fn in_space() {
     for cells in [SolidCells::Tetrahedra, SolidCells::Tetrahedra10, SolidCells::Hexahedra] {
         let mesh = Mesh::cuboid([0.2, 0.1, 0.1], [2, 2, 2], cells).unwrap();
-        let body = Body::new(mesh.clone(), SOFT).build().unwrap();
+        let body = Body::new(mesh.clone(), SOFT).strain(Strain::Cauchy).build().unwrap();
         for angle in ANGLES {
             let u = displacements(&mesh, |x| {
                 let y = [1.3 * x[0] + 0.2 * x[1], 0.2 * x[0] + 0.8 * x[1], 1.1 * x[2]];
@@ -70,18 +71,23 @@ fn of_lower_dimension() {
     for cells in [Cells::Triangles, Cells::Rectangles] {
         let flat = Mesh::rectangle([0.2, 0.1], [3, 3], cells).unwrap();
         let mesh = flat.mapped(|x| [x[0], x[1], 0.0]).unwrap();
-        let body = Body::new(mesh.clone(), SOFT).thickness(0.01).build().unwrap();
+        let body =
+            Body::new(mesh.clone(), SOFT).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
         for angle in ANGLES {
             let u = displacements(&mesh, |x| turned([1.3 * x[0], 0.9 * x[1], 0.0], angle).to_vec());
             assert_all(&body, &u, angle);
         }
     }
     // on a line nothing turns
-    let bar = Body::new(Mesh::bar(0.1, 2).unwrap(), SOFT).area(1e-4).build().unwrap();
+    let bar = Body::new(Mesh::bar(0.1, 2).unwrap(), SOFT)
+        .strain(Strain::Cauchy)
+        .area(1e-4)
+        .build()
+        .unwrap();
     assert_eq!(bar.cell_rotations(&[0.0, -0.3]), [0.0]);
     // a string tells the angle between its tangents: e_x and R e_x
     let string = Mesh::bar(0.1, 4).unwrap().mapped(|x| [x[0], 0.0, 0.0]).unwrap();
-    let body = Body::new(string.clone(), SOFT).area(1e-4).build().unwrap();
+    let body = Body::new(string.clone(), SOFT).strain(Strain::Cauchy).area(1e-4).build().unwrap();
     for angle in ANGLES {
         let u = displacements(&string, |x| turned([1.3 * x[0], 0.0, 0.0], angle).to_vec());
         assert_all(&body, &u, turned([1.0, 0.0, 0.0], angle)[0].clamp(-1.0, 1.0).acos());

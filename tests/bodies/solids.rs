@@ -93,7 +93,10 @@ fn quadratic_triangles_meet_cooks_membrane() {
         [48.0 * s, 44.0 * s + t * (44.0 * (1.0 - s) + 16.0 * s)]
     });
     let material = Material { density: 1.0, young: 1.0, poisson: 1.0 / 3.0, viscosity: 0.0 };
-    let body = Body::new(mesh.unwrap(), material).thickness(1.0).plane(Plane::Stress);
+    let body = Body::new(mesh.unwrap(), material)
+        .strain(Strain::Cauchy)
+        .thickness(1.0)
+        .plane(Plane::Stress);
     let body = body.build().unwrap();
     let place = |node: usize| body.mesh().position(node).to_vec();
     let middle = body.mesh().sets()["right"].iter().copied();

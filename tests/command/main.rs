@@ -178,8 +178,9 @@ fn wrong_motions_are_told() {
     let place = Place::new();
     let text = fs::read_to_string(shipped("ring-roll-objective.toml")).unwrap();
     assert!(text.contains("strain = \"green\"\nviscous = \"objective\"\n"));
-    let forgetful = text.replace("strain = \"green\"\nviscous = \"objective\"\n", "");
-    let scene = place.scene(&forgetful);
+    let linear =
+        text.replace("strain = \"green\"\nviscous = \"objective\"\n", "strain = \"cauchy\"\n");
+    let scene = place.scene(&linear);
     let output = place.run(&["run", scene, "--until", "0.5", "--formats", "html", "-q"]);
     assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
     says(&stdout(&output), &["WARNING: cells turn by up to", "use strain = \"green\""]);
@@ -335,7 +336,8 @@ fn static_finds_the_equilibrium() {
 #[test]
 fn static_tells_what_it_cannot_hold() {
     let place = Place::new();
-    let loose = bar(1.0).replace("hold = [{ nodes = \"left\" }]", "");
+    let linear = bar(1.0).replace("area", "strain = \"cauchy\"\narea");
+    let loose = linear.replace("hold = [{ nodes = \"left\" }]", "");
     let output = place.run(&["static", place.scene(&loose)]);
     assert_eq!(output.status.code(), Some(2));
     says(&stderr(&output), &["pliant: constraints of phase \"pull\"", "hold more of its nodes"]);
@@ -484,4 +486,22 @@ fn new_writes_scenes_that_run() {
     assert_eq!(place.run(&["new", "blank", "mine.toml"]).status.code(), Some(0));
     assert_eq!(place.run(&["static", "cantilever.toml"]).status.code(), Some(0));
     assert_eq!(place.run(&["new", "pyramid"]).status.code(), Some(2));
+}
+
+/// `docs/reference.md` is what the command prints. Made anew by `pliant reference > docs/reference.md`.
+#[cfg(feature = "play")]
+#[test]
+fn the_reference_is_up_to_date() {
+    let printed = stdout(&Place::new().run(&["reference"]));
+    let page = include_str!("../../docs/reference.md");
+    let apart = page.lines().zip(printed.lines()).find(|(old, new)| old != new);
+    assert_eq!(apart, None);
+    assert_eq!(page.len(), printed.len());
+}
+
+#[test]
+fn the_schema_is_json() {
+    let printed = stdout(&Place::new().run(&["schema"]));
+    let schema: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!(schema["properties"]["phase"]["anyOf"][0]["$ref"], "#/definitions/[[phase]]");
 }

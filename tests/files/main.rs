@@ -4,6 +4,7 @@ mod documentation;
 mod gmsh;
 mod output;
 mod output_of_cells;
+mod reference;
 mod report;
 mod scene_file_errors;
 mod scene_file_words;

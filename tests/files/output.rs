@@ -7,7 +7,7 @@ use std::path::Path;
 use pliant::output::{Chart, Snapshots, write_csv, write_energies, write_vtk};
 use pliant::{
     Body, CellField, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Shape,
-    SolidCells, Trajectory,
+    SolidCells, Strain, Trajectory,
 };
 use vtkio::model::{
     Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
@@ -20,7 +20,7 @@ fn square() -> Result<Trajectory, pliant::Error> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
     let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
     let press = Phase::until(0.02).named("press <down>");
-    Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+    Scene::new(Body::new(mesh, rubber).strain(Strain::Cauchy).thickness(0.01).build()?)
         .gravity([0.0, -9.8])
         .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 2.0]).stiffness(100.0))
         .phase(press.hold("bottom").move_nodes([14, 15], [0.0, -0.16]))
@@ -30,7 +30,7 @@ fn square() -> Result<Trajectory, pliant::Error> {
 
 fn bar() -> Result<Trajectory, pliant::Error> {
     let soft = Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 200.0 };
-    Scene::new(Body::new(Mesh::bar(0.1, 6)?, soft).area(2e-4).build()?)
+    Scene::new(Body::new(Mesh::bar(0.1, 6)?, soft).strain(Strain::Cauchy).area(2e-4).build()?)
         .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(2000.0))
         .phase(Phase::until(0.01).hold("left").load("right", [-2.0]).without_contact())
         .simulate(&Settings::default(), &Sampling::every(0.005))
@@ -39,7 +39,7 @@ fn bar() -> Result<Trajectory, pliant::Error> {
 fn block() -> Result<Trajectory, pliant::Error> {
     let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], SolidCells::Hexahedra)?;
     let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
-    Scene::new(Body::new(mesh, soft).build()?)
+    Scene::new(Body::new(mesh, soft).strain(Strain::Cauchy).build()?)
         .phase(Phase::until(0.01).hold("bottom").move_nodes("top", [0.3, -0.2, 0.1]))
         .simulate(&Settings::default(), &Sampling::phase_ends())
 }
@@ -158,7 +158,7 @@ fn snapshots_show_obstacles() -> Outcome {
     let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
     let named = |name: &str, shape: Shape| Obstacle::new(shape).named(name).stiffness(1.0);
     let pair = [Shape::disc([0.0, -0.1], 0.05), Shape::capsule([0.1, -0.1], [0.2, -0.1], 0.05)];
-    let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+    let scene = Scene::new(Body::new(mesh, rubber).strain(Strain::Cauchy).thickness(0.01).build()?)
         .obstacle(named("floor", Shape::half_plane([0.0, -0.2], [0.0, 1.0])))
         .obstacle(named("bowl", Shape::cavity([0.15, 0.15], 0.3)))
         .obstacle(named("step", Shape::box_between([0.4, 0.0], [0.45, 0.1])).velocity([1.0, 0.0]))

@@ -4,7 +4,7 @@ use std::fs;
 
 use pliant::output::{Snapshots, write_vtk};
 use pliant::{
-    Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, SolidCells, Trajectory,
+    Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, SolidCells, Strain, Trajectory,
 };
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
@@ -12,7 +12,7 @@ const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.3, v
 /// A bar, rectangle or cuboid, pulled at its upper or right end.
 fn pulled(mesh: Mesh) -> Trajectory {
     let (kind, dimension) = (mesh.kind(), mesh.dimension());
-    let body = Body::new(mesh, RUBBER);
+    let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy);
     let body = match kind.dimension() {
         1 => body.area(1e-4),
         2 => body.thickness(0.01),

@@ -117,7 +117,7 @@ fn runs_that_end_early() {
 fn warnings_are_told() {
     let bar = Mesh::bar(0.1, 6).unwrap();
     let material = pliant::Material { viscosity: 0.0, ..pliant::samples::BEAM_MATERIAL };
-    let body = Body::new(bar, material).area(2e-4).build().unwrap();
+    let body = Body::new(bar, material).strain(Strain::Cauchy).area(2e-4).build().unwrap();
     let scene = Scene::new(body)
         .initial_velocity(|x| vec![20.0 * x[0]])
         .phase(Phase::until(0.5).hold("left"));

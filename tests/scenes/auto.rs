@@ -111,7 +111,8 @@ fn a_choice_that_creates_energy_is_revoked() {
     let stiff = Material { young: 1e7, viscosity: 0.0, ..soft };
     let mesh = Mesh::bar(0.2, 41).unwrap();
     let end = CellSelection::Box { min: vec![0.1], max: vec![0.2] };
-    let body = Body::new(mesh, soft).region(end, stiff).area(1e-4).build().unwrap();
+    let body =
+        Body::new(mesh, soft).strain(Strain::Cauchy).region(end, stiff).area(1e-4).build().unwrap();
     let scene = Scene::new(body)
         .initial_velocity(|x| vec![if x[0] > 0.15 { 1.0 } else { 0.0 }])
         .phase(Phase::until(0.5).hold("left"));

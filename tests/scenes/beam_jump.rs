@@ -3,7 +3,7 @@
 
 use crate::common::{Table, difference, global_error, run, tolerances};
 use pliant::samples::{BEAM_MATERIAL, BeamJump, beam_jump};
-use pliant::{Body, Mesh, Method, Phase, Sampling, Scene, Settings, Trajectory};
+use pliant::{Body, Mesh, Method, Phase, Sampling, Scene, Settings, Strain, Trajectory};
 
 const ALPHAS: [f64; 4] = [10.0, 1e2, 1e4, 1e6];
 
@@ -49,7 +49,11 @@ fn every_method_meets_the_reference_whatever_alpha() {
 /// Pressed long enough the beam shortens by F L / (E A) = 2 cm.
 #[test]
 fn static_shortening() {
-    let body = Body::new(Mesh::bar(0.10, 6).unwrap(), BEAM_MATERIAL).area(2e-4).build().unwrap();
+    let body = Body::new(Mesh::bar(0.10, 6).unwrap(), BEAM_MATERIAL)
+        .strain(Strain::Cauchy)
+        .area(2e-4)
+        .build()
+        .unwrap();
     let push = Phase::until(5.0).hold("left").load("right", [-2.0]);
     let settings = Settings { rtol: 1e-9, ..Settings::default() };
     let trajectory =

@@ -148,7 +148,7 @@ fn files_are_handed_on_from_process_to_process() {
     let settings = settings(Method::Auto, 1e-5);
     let mesh = Mesh::rectangle([0.1, 0.01], [11, 3], Cells::Rectangles).unwrap();
     let rubber = Material { viscosity: 2e4, ..SQUARE_MATERIAL };
-    let body = Body::new(mesh, rubber).thickness(0.01).build().unwrap();
+    let body = Body::new(mesh, rubber).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let scene = Scene::new(body).phase(Phase::until(1.0).hold("left"));
     let mut beam = scene.start(&settings).unwrap();
     let mut methods = Vec::new();
@@ -177,7 +177,8 @@ fn files_are_handed_on_from_process_to_process() {
 fn what_is_held_is_held_where_it_was() {
     let (_folder, path) = folder();
     let mesh = Mesh::rectangle([0.05, 0.05], [3, 3], Cells::Rectangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let scene = Scene::new(body).initial_velocity(|_| vec![1.0, 0.0]).phase(Phase::until(0.2));
     let settings = Settings { alpha: 1e3, ..settings(Method::Arkode, 1e-8) };
     let mut square = scene.start(&settings).unwrap();

@@ -69,7 +69,11 @@ fn other_scenes_are_refused_by_what_differs() {
     assert!(read(phases(like(body(0.1, 11, Cells::Rectangles, young)))).is_ok());
     let file = path.to_str().unwrap();
     let mend = "read it by a simulation of the scene that it was written for";
-    let bar = Body::new(Mesh::bar(0.1, 5).unwrap(), SQUARE_MATERIAL).area(1e-4).build().unwrap();
+    let bar = Body::new(Mesh::bar(0.1, 5).unwrap(), SQUARE_MATERIAL)
+        .strain(Strain::Cauchy)
+        .area(1e-4)
+        .build()
+        .unwrap();
     says(read(phases(Scene::new(bar))), &[file, "nodes: it is of a scene with 33", "has 5", mend]);
     says(
         read(phases(like(body(0.1, 11, Cells::Triangles, young)))),

@@ -10,7 +10,9 @@ const MASS: f64 = 0.9;
 
 fn square() -> Scene {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-    Scene::new(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap())
+    Scene::new(
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap(),
+    )
 }
 
 /// At rest the penalty springs carry the weight, and store (K/2) sum d^2.
@@ -98,7 +100,11 @@ fn a_stiffness_per_area_suits_all_meshes() {
         (Cells::Triangles6, [4, 3]),
     ] {
         let mesh = Mesh::rectangle([0.3, 0.1], nodes, cells).unwrap();
-        let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.02).build().unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL)
+            .strain(Strain::Cauchy)
+            .thickness(0.02)
+            .build()
+            .unwrap();
         let bottom = body.mesh().sets()["bottom"].clone();
         let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness_density(stiffness);
         let scene = Scene::new(body)

@@ -2,7 +2,7 @@
 
 use pliant::{
     Body, ContactEvents, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
-    Trajectory,
+    Strain, Trajectory,
 };
 
 /// A short bar that hits a floor of 2000 N/m at 1 m/s: so stiff that it bounces as one mass.
@@ -11,7 +11,7 @@ const STIFFNESS: f64 = 2e3;
 fn bounce() -> Scene {
     let steel = Material { density: 1000.0, young: 1e9, poisson: 0.0, viscosity: 1e3 };
     let mesh = Mesh::bar(0.1, 2).unwrap().translated(&[0.01]).unwrap();
-    let body = Body::new(mesh, steel).area(2e-4).build().unwrap();
+    let body = Body::new(mesh, steel).strain(Strain::Cauchy).area(2e-4).build().unwrap();
     Scene::new(body)
         .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(STIFFNESS))
         .initial_velocity(|_| vec![-1.0])
@@ -92,7 +92,7 @@ fn a_rolling_ring_passes_its_events() {
 fn damped_bounce(adhesion: bool) -> Scene {
     let steel = Material { density: 1000.0, young: 1e9, poisson: 0.0, viscosity: 1e3 };
     let mesh = Mesh::bar(0.1, 2).unwrap().translated(&[0.01]).unwrap();
-    let body = Body::new(mesh, steel).area(2e-4).build().unwrap();
+    let body = Body::new(mesh, steel).strain(Strain::Cauchy).area(2e-4).build().unwrap();
     let floor = Obstacle::half_plane([0.0], [1.0]).stiffness(STIFFNESS).damping(2.0);
     Scene::new(body)
         .gravity([-9.8])

@@ -8,7 +8,7 @@ use pliant::samples::SQUARE_MATERIAL;
 use pliant::simulate::Direction;
 use pliant::{
     Body, Cells, Error, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings, Signal,
-    Simulation, Spring,
+    Simulation, Spring, Strain,
 };
 
 fn settings(method: Method, rtol: f64) -> Settings {
@@ -17,7 +17,7 @@ fn settings(method: Method, rtol: f64) -> Settings {
 
 fn square() -> Body {
     let mesh = Mesh::rectangle([0.1, 0.1], [4, 4], Cells::Rectangles).unwrap();
-    Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap()
+    Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap()
 }
 
 /// A plate with its surface at height `y` (m).
@@ -119,7 +119,8 @@ fn an_action_gives_the_velocity_back() {
 /// A clamped strip with a chamber and a tendon above a plate.
 fn strip() -> Scene {
     let mesh = Mesh::rectangle([0.1, 0.02], [11, 3], Cells::Rectangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     Scene::new(body)
         .chamber(pliant::Chamber::within("inside", [1, 11, 33, 23]))
         .spring(Spring::between([11], [23]).named("tendon").stiffness(3.0))

@@ -12,7 +12,7 @@ use pliant::{
 /// A square of rubber, 3 cm wide, with point masses of 10 g and 30 g beside it, 4 cm apart.
 fn two_masses() -> Body {
     let mesh = Mesh::rectangle([0.03, 0.03], [2, 2], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01);
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01);
     let body = body.point_mass("light", [0.10, 0.0], 0.01).point_mass("heavy", [0.14, 0.0], 0.03);
     body.build().unwrap()
 }
@@ -39,7 +39,7 @@ fn a_mass_on_a_spring_swings() {
     let phase = Phase::until(1.0).hold("light").hold("all-but-heavy").actuate(["A1"], f);
     let mesh = Mesh::rectangle([0.03, 0.03], [2, 2], Cells::Triangles).unwrap();
     let mesh = mesh.name_nodes("all-but-heavy", [1, 2, 3, 4]).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01);
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01);
     let body = body.point_mass("light", [0.10, 0.0], 0.01).point_mass("heavy", [0.14, 0.0], m);
     let scene = Scene::new(body.build().unwrap()).spring(spring).phase(phase);
     let omega = (k / m).sqrt();
@@ -175,7 +175,8 @@ fn a_chamber_bulges_a_strip() {
 #[test]
 fn loads_push_the_centre_of_mass() {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let mass = body.mass();
     let phase = Phase::until(0.5)
         .load_with("top", |t| [0.5 * t, 0.0])
@@ -273,7 +274,8 @@ impl Force for Trap {
 fn forces_of_other_crates_act() {
     let (omega, a) = (20.0, 0.01);
     let mesh = Mesh::rectangle([0.03, 0.03], [3, 3], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let masses = body.nodal_masses().to_vec();
     let scene = Scene::new(body)
         .initial_displacement(|_| vec![a, 0.0])

@@ -19,7 +19,11 @@ fn block(angle: f64) -> Body {
         [cosine * x - sine * y, sine * x + cosine * y]
     };
     let mesh = Mesh::rectangle([0.2, 0.1], [5, 3], Cells::Rectangles).unwrap();
-    Body::new(mesh.mapped(turned).unwrap(), STIFF).thickness(0.1).build().unwrap()
+    Body::new(mesh.mapped(turned).unwrap(), STIFF)
+        .strain(Strain::Cauchy)
+        .thickness(0.1)
+        .build()
+        .unwrap()
 }
 
 /// Contact stiffness (N/m^3): a block of 10 cm sinks by 0.1 mm.
@@ -146,7 +150,11 @@ fn a_block_on_a_belt_sticks_and_slips() {
         let mesh = Mesh::rectangle([0.2, 0.1], [5, 3], Cells::Rectangles).unwrap();
         let mesh = mesh.translated(&[0.0, -1000.0 * 0.1 * G / STIFFNESS]).unwrap();
         let damped = Material { viscosity: 1000.0, ..STIFF };
-        Body::new(mesh, damped).thickness(0.1).point_mass("wall", [-0.3, 0.05], 1.0)
+        Body::new(mesh, damped).strain(Strain::Cauchy).thickness(0.1).point_mass(
+            "wall",
+            [-0.3, 0.05],
+            1.0,
+        )
     };
     let belt = plane(0.0).friction_coefficients(at_rest, sliding).sticking_speed(4e-4);
     let scene = Scene::new(body.build().unwrap())
@@ -188,7 +196,8 @@ fn a_ring_rolls_down_a_slope() {
     let up = [-angle.sin(), angle.cos()].map(|n| (outer - 2e-4) * n);
     let mesh = Mesh::ring(inner, outer, [96, 2], Cells::Rectangles).unwrap();
     let stiff = Material { young: 1e8, viscosity: 10.0, ..STIFF };
-    let ring = Body::new(mesh.translated(&up).unwrap(), stiff).thickness(0.1);
+    let ring =
+        Body::new(mesh.translated(&up).unwrap(), stiff).strain(Strain::Cauchy).thickness(0.1);
     let ring = ring.strain(Strain::Green).viscosity(Viscosity::Objective).build().unwrap();
     let expected =
         G * angle.sin() / (1.0 + 0.5 * (inner * inner + outer * outer) / (outer * outer));

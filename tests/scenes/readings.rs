@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use pliant::{
     Axis, Body, Cells, Error, InputError, Material, Mesh, Obstacle, Phase, Sample, Sampling, Scene,
-    Settings, SolidCells, Statics, Trajectory,
+    Settings, SolidCells, Statics, Strain, Trajectory,
 };
 
 type Outcome = Result<(), Error>;
@@ -15,7 +15,7 @@ const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.48, 
 /// A square of 30 cm, 1 cm thick: 0.9 kg.
 fn square(nodes: usize) -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.3, 0.3], [nodes, nodes], Cells::Triangles)?;
-    Body::new(mesh, RUBBER).thickness(0.01).build()
+    Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01).build()
 }
 
 /// Pressed on a floor and a slope that moves, then free over the floor alone, then without contact.
@@ -130,7 +130,7 @@ fn weight_is_carried_by_what_holds_or_stops_a_body() -> Outcome {
 /// A row over two nodes pulls them as its coefficients say, and carries part of the weight.
 #[test]
 fn a_combination_shares_its_force_out() -> Outcome {
-    let bar = Body::new(Mesh::bar(0.1, 6)?, RUBBER).area(1e-4).build()?;
+    let bar = Body::new(Mesh::bar(0.1, 6)?, RUBBER).strain(Strain::Cauchy).area(1e-4).build()?;
     let phase = Phase::until(1.0).hold([1]);
     let phase = phase.hold_combination([(5, Axis::X, 0.5), (6, Axis::X, 1.5)]);
     let hung = Scene::new(bar).gravity([-9.8]).phase(phase).equilibrium(&Statics::default())?;
@@ -156,7 +156,9 @@ fn angular_momentum_of_a_spinning_block() -> Outcome {
         ]
     };
     for cells in [SolidCells::Hexahedra, SolidCells::Tetrahedra, SolidCells::Tetrahedra10] {
-        let body = Body::new(Mesh::cuboid([a, b, c], [2, 3, 4], cells)?, RUBBER).build()?;
+        let body = Body::new(Mesh::cuboid([a, b, c], [2, 3, 4], cells)?, RUBBER)
+            .strain(Strain::Cauchy)
+            .build()?;
         let scene = Scene::new(body).initial_velocity(spin).phase(Phase::until(1e-6));
         let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
         let found = trajectory.angular_momentum(&trajectory.samples()[0]);

@@ -116,7 +116,8 @@ fn commands_are_phases_that_nobody_wrote_down() {
 #[test]
 fn commands_take_effect_exactly_at_the_present_time() {
     let mesh = Mesh::rectangle([0.05, 0.05], [3, 3], Cells::Rectangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let mass = body.mass();
     let scene = Scene::new(body).phase(Phase::until(1.0));
     for method in Method::ALL {
@@ -137,7 +138,7 @@ fn commands_take_effect_exactly_at_the_present_time() {
 #[test]
 fn signals_change_with_time_between_commands() {
     let mesh = Mesh::rectangle([0.05, 0.05], [3, 3], Cells::Rectangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01);
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01);
     let body = body.point_mass("bob", [0.0, 0.1], 0.01).build().unwrap();
     let scene = Scene::new(body)
         .spring(Spring::between([7], "bob").named("arm"))
@@ -258,7 +259,8 @@ fn forks_are_independent() {
 #[test]
 fn an_event_is_met_where_the_closed_form_has_it() {
     let mesh = Mesh::rectangle([0.05, 0.05], [3, 3], Cells::Rectangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let scene = Scene::new(body).gravity([0.0, -9.8]).phase(Phase::until(2.0));
     for method in Method::ALL {
         let mut square = scene.start(&settings(method, 1e-8)).unwrap();
@@ -346,7 +348,8 @@ fn a_ring_rolls_by_feedback() {
 #[test]
 fn obstacles_act_when_told_to() {
     let mesh = Mesh::rectangle([0.05, 0.05], [3, 3], Cells::Rectangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(500.0).named("floor");
     let scene = Scene::new(body)
         .gravity([0.0, -9.8])

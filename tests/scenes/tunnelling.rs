@@ -4,19 +4,26 @@
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
     Body, Cells, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
-    SolidCells,
+    SolidCells, Strain,
 };
 
 fn square(side: f64, nodes: usize, at: [f64; 2]) -> Scene {
     let mesh = Mesh::rectangle([side, side], [nodes, nodes], Cells::Rectangles).unwrap();
     let mesh = mesh.translated(&[at[0] - 0.5 * side, at[1]]).unwrap();
-    Scene::new(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap())
+    Scene::new(
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap(),
+    )
 }
 
 fn cube(side: f64, at: [f64; 3]) -> Scene {
     let mesh = Mesh::cuboid([side; 3], [3; 3], SolidCells::Hexahedra).unwrap();
     let at = [at[0] - 0.5 * side, at[1] - 0.5 * side, at[2]];
-    Scene::new(Body::new(mesh.translated(&at).unwrap(), SQUARE_MATERIAL).build().unwrap())
+    Scene::new(
+        Body::new(mesh.translated(&at).unwrap(), SQUARE_MATERIAL)
+            .strain(Strain::Cauchy)
+            .build()
+            .unwrap(),
+    )
 }
 
 /// Centre of mass along the last axis at the end (m).

@@ -3,12 +3,15 @@
 use crate::common::{difference, run};
 use pliant::samples::{MEMBRANE_MATERIAL, SQUARE_MATERIAL};
 use pliant::{
-    Axis, Body, Cells, Chamber, Mesh, Phase, Prescribed, Scene, Settings, Spring, Trajectory,
+    Axis, Body, Cells, Chamber, Mesh, Phase, Prescribed, Scene, Settings, Spring, Strain,
+    Trajectory,
 };
 
 fn square() -> Scene {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-    Scene::new(Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap())
+    Scene::new(
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap(),
+    )
 }
 
 /// The scenes are the same but for round-off in what they are told. Both integrations err by less
@@ -63,7 +66,11 @@ fn loads() {
 fn pressures() {
     let membrane = || {
         let mesh = Mesh::rectangle([0.10, 0.01], [11, 2], Cells::Triangles).unwrap();
-        let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).build().unwrap();
+        let body = Body::new(mesh, MEMBRANE_MATERIAL)
+            .strain(Strain::Cauchy)
+            .thickness(0.01)
+            .build()
+            .unwrap();
         Scene::new(body).chamber(Chamber::within("chamber", (1..=11).rev().collect::<Vec<_>>()))
     };
     let hold = || Phase::until(0.2).hold([1, 11, 12, 22]);

@@ -9,7 +9,9 @@ use pliant::{
 const SOFT: Material = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
 
 fn square(cells: Cells, material: Material) -> pliant::body::BodyBuilder {
-    Body::new(Mesh::rectangle([0.1, 0.1], [3, 3], cells).unwrap(), material).thickness(0.01)
+    Body::new(Mesh::rectangle([0.1, 0.1], [3, 3], cells).unwrap(), material)
+        .strain(Strain::Cauchy)
+        .thickness(0.01)
 }
 
 fn scene(body: pliant::body::BodyBuilder) -> Scene {
@@ -55,7 +57,12 @@ fn rotations_under_cauchy_strain() {
 fn units_of_other_systems() {
     let large = |size: f64, density: f64, young: f64| {
         let mesh = Mesh::rectangle([0.6 * size, 0.8 * size], [2, 2], Cells::Triangles).unwrap();
-        scene(Body::new(mesh, Material { density, young, ..SOFT }).thickness(1e-3)).warnings()
+        scene(
+            Body::new(mesh, Material { density, young, ..SOFT })
+                .strain(Strain::Cauchy)
+                .thickness(1e-3),
+        )
+        .warnings()
     };
     assert_eq!(large(19.9, 1000.0, 1e5), NONE);
     only(&large(20.1, 1000.0, 1e5), &["20.100 m", "limit: 20 m", "is the mesh in mm?", "0.001"]);
@@ -82,10 +89,16 @@ fn cells_that_lock() {
     }
     // with corners of one triangle and of two
     let crossed = Mesh::rectangle([0.1, 0.1], [4, 4], Cells::Crossed).unwrap();
-    let crossed = Body::new(crossed, Material { poisson: 0.49, ..SOFT }).thickness(0.01);
+    let crossed = Body::new(crossed, Material { poisson: 0.49, ..SOFT })
+        .strain(Strain::Cauchy)
+        .thickness(0.01);
     assert_eq!(scene(crossed).warnings(), NONE);
     let ring = |cells| Mesh::ring(0.04, 0.05, [32, 3], cells).unwrap();
-    let ring = |cells| Body::new(ring(cells), Material { poisson: 0.49, ..SOFT }).thickness(0.01);
+    let ring = |cells| {
+        Body::new(ring(cells), Material { poisson: 0.49, ..SOFT })
+            .strain(Strain::Cauchy)
+            .thickness(0.01)
+    };
     assert_eq!(scene(ring(Cells::Crossed)).warnings(), NONE);
     only(&scene(ring(Cells::Triangles)).warnings(), &["0.49", "\"crossed\""]);
     for (cells, locks) in [
@@ -94,7 +107,9 @@ fn cells_that_lock() {
         (SolidCells::Tetrahedra10, false),
     ] {
         let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], cells).unwrap();
-        let warnings = scene(Body::new(mesh, Material { poisson: 0.46, ..SOFT })).warnings();
+        let warnings =
+            scene(Body::new(mesh, Material { poisson: 0.46, ..SOFT }).strain(Strain::Cauchy))
+                .warnings();
         assert_eq!(warnings.len(), usize::from(locks), "{warnings:?}");
     }
     // what no cell is made of does not count; what some are made of does
@@ -110,7 +125,11 @@ fn cells_that_lock() {
 fn locking_cells_are_too_stiff_and_crossed_ones_are_not() {
     let sinks = |cells, nodes: [usize; 2], poisson| {
         let mesh = Mesh::rectangle([0.1, 0.02], nodes, cells).unwrap();
-        let body = Body::new(mesh, Material { poisson, ..SOFT }).thickness(0.01).build().unwrap();
+        let body = Body::new(mesh, Material { poisson, ..SOFT })
+            .strain(Strain::Cauchy)
+            .thickness(0.01)
+            .build()
+            .unwrap();
         let pull = Phase::until(1.0).hold("left").load_total("right", [0.0, -0.005]);
         let rest = Scene::new(body).phase(pull).equilibrium(&Statics::default()).unwrap();
         -rest.displacements()[2 * nodes[0] - 1]
@@ -128,7 +147,7 @@ fn pieces_that_nothing_joins() {
     // two bars on a line, with nodes 3 and 4 in the same place, as files of meshes have them
     let positions = vec![0.0, 0.1, 0.2, 0.2, 0.3];
     let mesh = Mesh::new(1, positions, CellKind::Segment, vec![0, 1, 1, 2, 3, 4]).unwrap();
-    let bars = || Body::new(mesh.clone(), SOFT).area(1e-4);
+    let bars = || Body::new(mesh.clone(), SOFT).strain(Strain::Cauchy).area(1e-4);
     let apart = ["2 pieces", "with node 4, has 2 of 5 nodes", "limit: 1 piece", "springs"];
     only(&scene(bars()).warnings(), &apart);
     let sprung = scene(bars()).spring(Spring::between([2], [5]).stiffness(1.0));
@@ -175,7 +194,13 @@ fn obstacles_that_are_never_touched() {
 /// A bar that stands on a floor of stiffness k is inside it by its weight over k. Half a cell is 1 cm.
 #[test]
 fn deep_in_the_floor() {
-    let bar = || Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4).build().unwrap();
+    let bar = || {
+        Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT)
+            .strain(Strain::Cauchy)
+            .area(2e-4)
+            .build()
+            .unwrap()
+    };
     let weight = 0.02 * 9.8;
     let standing = |depth: f64| {
         let scene = Scene::new(bar())

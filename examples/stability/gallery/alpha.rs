@@ -4,7 +4,7 @@ use pliant::ode::Failure;
 use pliant::output::Chart;
 use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::{Pendulum, SQUARE_MATERIAL};
-use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings};
+use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings, Strain};
 
 use super::Outcome;
 use super::page::{Page, count, few};
@@ -16,7 +16,7 @@ pub const SPEED: f64 = 0.16;
 /// the constraints is wrong by [`SPEED`]; unless velocities are projected.
 pub fn pressed(projected: bool) -> Result<Scene, Error> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()?;
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()?;
     let push = Phase::until(0.1).hold("bottom").move_nodes([14, 15], [0.0, -SPEED]);
     let push = if projected { push.project_velocity() } else { push };
     Ok(Scene::new(body).phase(push))

@@ -6,7 +6,7 @@ use pliant::output::Chart;
 use pliant::samples::{BEAM_MATERIAL, SQUARE_MATERIAL};
 use pliant::{
     Body, Cells, ContactEvents, Error, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene,
-    Settings, Trajectory,
+    Settings, Strain, Trajectory,
 };
 
 use super::Outcome;
@@ -20,7 +20,7 @@ const GRAVITY: f64 = 9.8;
 pub fn falling(stiffness: f64) -> Result<Scene, Error> {
     let mesh =
         Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Rectangles)?.translated(&[0.0, HEIGHT])?;
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()?;
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()?;
     Ok(Scene::new(body)
         .gravity([0.0, -GRAVITY])
         .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(stiffness))
@@ -65,7 +65,7 @@ pub fn error(motion: &Trajectory, exact: &Trajectory) -> f64 {
 pub fn restitution(zeta: f64, adhesion: bool) -> Result<f64, Error> {
     let stiff = Material { density: 1000.0, young: 1e9, poisson: 0.0, viscosity: 1e3 };
     let mesh = Mesh::bar(0.1, 2)?.translated(&[0.001])?;
-    let body = Body::new(mesh, stiff).area(2e-4).build()?;
+    let body = Body::new(mesh, stiff).strain(Strain::Cauchy).area(2e-4).build()?;
     let floor_stiffness: f64 = 2e3;
     let damping = 2.0 * zeta * (floor_stiffness * body.mass()).sqrt();
     let floor = Obstacle::half_plane([0.0], [1.0]).stiffness(floor_stiffness);
@@ -102,7 +102,10 @@ pub fn wave_speed() -> f64 {
 pub fn bar(hardness: f64, cells: usize) -> Result<Trajectory, Error> {
     let [length, area, speed] = BAR;
     let material = Material { viscosity: 0.0, ..BEAM_MATERIAL };
-    let body = Body::new(Mesh::bar(length, cells + 1)?, material).area(area).build()?;
+    let body = Body::new(Mesh::bar(length, cells + 1)?, material)
+        .strain(Strain::Cauchy)
+        .area(area)
+        .build()?;
     let until = 5.0 * length / wave_speed();
     let scene = Scene::new(body)
         .obstacle(Obstacle::half_plane([0.0], [1.0]).stiffness(floor(hardness)))

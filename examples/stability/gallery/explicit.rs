@@ -5,7 +5,7 @@ use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::SQUARE_MATERIAL;
 use pliant::{
     Body, Cells, Error, Inertia, InputError, Material, Mesh, Method, Phase, Sampling, Scene,
-    Settings,
+    Settings, Strain,
 };
 
 use super::Outcome;
@@ -21,7 +21,7 @@ pub const UNTIL: f64 = 0.05;
 pub fn square(nodes: usize, viscosity: f64, inertia: Inertia) -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.3, 0.3], [nodes, nodes], Cells::Triangles)?;
     let material = Material { viscosity, ..SQUARE_MATERIAL };
-    Body::new(mesh, material).thickness(0.01).inertia(inertia).build()
+    Body::new(mesh, material).strain(Strain::Cauchy).thickness(0.01).inertia(inertia).build()
 }
 
 /// It stands on its bottom, pressed flat by a tenth, and is let go.

@@ -6,7 +6,7 @@ use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, MatMut};
 use pliant::ode::{Dae, Failure};
 use pliant::samples::{Pendulum, SQUARE_MATERIAL};
-use pliant::{Body, Cells, InputError, Mesh, Prescribed};
+use pliant::{Body, Cells, InputError, Mesh, Prescribed, Strain};
 
 use super::Outcome;
 use super::linear::Linear;
@@ -133,7 +133,7 @@ pub fn path(t: f64) -> Prescribed {
 /// Hirai's square.
 pub fn square_body() -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
-    Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build()
+    Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()
 }
 
 /// The same square as a DAE in one of the forms: u, v, lambda and, for one of them, eta.

@@ -1,7 +1,7 @@
 //! Poisson's ratio near 1/2: cells that lock.
 
 use pliant::output::Chart;
-use pliant::{Body, Cells, Error, InputError, Material, Mesh, Phase, Scene, Statics};
+use pliant::{Body, Cells, Error, InputError, Material, Mesh, Phase, Scene, Statics, Strain};
 
 use super::Outcome;
 use super::linear::Linear;
@@ -14,7 +14,7 @@ pub const DISTANCES: [f64; 6] = [0.2, 0.1, 0.05, 0.01, 1e-3, 1e-4];
 pub fn beam(cells: Cells, [along, across]: [usize; 2], poisson: f64) -> Result<Body, InputError> {
     let mesh = Mesh::rectangle([0.1, 0.02], [along + 1, across + 1], cells)?;
     let material = Material { density: 1000.0, young: 1e5, poisson, viscosity: 0.0 };
-    Body::new(mesh, material).thickness(0.01).build()
+    Body::new(mesh, material).strain(Strain::Cauchy).thickness(0.01).build()
 }
 
 /// Deflection (m) of the free end of the beam under 0.01 N, the other end clamped.

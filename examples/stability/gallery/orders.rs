@@ -6,7 +6,8 @@ use pliant::output::Chart;
 use pliant::samples::{ClampedBeam, FLAG_MATERIAL};
 use pliant::sundials::{Cvode, CvodeOptions, Integrator, Jacobian, LinearSolver};
 use pliant::{
-    Body, Cells, Error, InputError, Material, Mesh, Method, Sampling, Scene, Settings, Trajectory,
+    Body, Cells, Error, InputError, Material, Mesh, Method, Sampling, Scene, Settings, Strain,
+    Trajectory,
 };
 
 use super::Outcome;
@@ -94,7 +95,9 @@ impl LinearBeam {
         let build = |viscosity| -> Result<Linear, Error> {
             let mesh = Mesh::rectangle([0.35, 0.02], [along, across], Cells::Rectangles)?;
             let held = mesh.select(&"left".into())?;
-            let body = Body::new(mesh, Material { viscosity, ..FLAG_MATERIAL }).thickness(1.0);
+            let body = Body::new(mesh, Material { viscosity, ..FLAG_MATERIAL })
+                .strain(Strain::Cauchy)
+                .thickness(1.0);
             Ok(Linear::new(&body.build()?, &held))
         };
         let lowest = build(0.0)?.lowest_frequency()?;

@@ -4,7 +4,7 @@ use pliant::ode::Failure;
 use pliant::output::Chart;
 use pliant::samples::BEAM_MATERIAL;
 use pliant::sundials::{Cvode, CvodeOptions, Integrator};
-use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings};
+use pliant::{Body, Error, Material, Mesh, Method, Phase, Sampling, Scene, Settings, Strain};
 
 use super::Outcome;
 use super::page::{Page, few};
@@ -49,7 +49,8 @@ impl Pulse {
             viscosity: if vibrates { 0.0 } else { BEAM_MATERIAL.viscosity },
             ..BEAM_MATERIAL
         };
-        let body = Body::new(Mesh::bar(0.1, 6)?, material).area(2e-4).build()?;
+        let body =
+            Body::new(Mesh::bar(0.1, 6)?, material).strain(Strain::Cauchy).area(2e-4).build()?;
         let (times, forces) = pulse(width);
         let force = pulse_at(width);
         let phase = Phase::until(END);

@@ -9,14 +9,16 @@ mod new;
 #[cfg(feature = "play")]
 mod play;
 mod progress;
+mod reference;
 mod run;
+mod schema;
 mod settings;
 mod statics;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 
 /// Dynamics of soft elastic bodies, from scene files.
@@ -41,6 +43,8 @@ enum Command {
     Chart(chart::Arguments),
     Methods(methods::Arguments),
     New(new::Arguments),
+    Reference(reference::Arguments),
+    Schema(schema::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -53,6 +57,8 @@ fn main() -> ExitCode {
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
+        Command::Reference(arguments) => reference::run(&arguments, Cli::command()),
+        Command::Schema(arguments) => schema::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

@@ -11,21 +11,21 @@ pub struct SettingsArguments(ArgMatches);
 impl SettingsArguments {
     /// Has them override `settings`.
     pub fn apply(&self, settings: &mut Settings) -> Result<(), InputError> {
-        for SettingsOption { name, value, .. } in SettingsOption::ALL {
+        for SettingsOption { key, value, .. } in SettingsOption::ALL {
             match value {
-                Value::Number(set) => self.get(name).map(|&number| set(settings, number)),
-                Value::Count(set) => self.get(name).map(|&count| set(settings, count)),
-                Value::Flag(set) => self.get(name).map(|&flag| set(settings, flag)),
+                Value::Number(set) => self.get(key).map(|&number| set(settings, number)),
+                Value::Count(set) => self.get(key).map(|&count| set(settings, count)),
+                Value::Flag(set) => self.get(key).map(|&flag| set(settings, flag)),
                 Value::Word(_, set) => {
-                    self.get::<String>(name).map(|word| set(settings, word)).transpose()?
+                    self.get::<String>(key).map(|word| set(settings, word)).transpose()?
                 }
             };
         }
         settings.validate()
     }
 
-    fn get<T: Clone + Send + Sync + 'static>(&self, name: &str) -> Option<&T> {
-        self.0.get_one(name)
+    fn get<T: Clone + Send + Sync + 'static>(&self, key: &str) -> Option<&T> {
+        self.0.get_one(key)
     }
 }
 
@@ -64,10 +64,13 @@ pub fn ended(scene: Scene, until: Option<f64>) -> Result<Scene, Failure> {
 }
 
 fn argument(option: &SettingsOption) -> Arg {
-    let SettingsOption { name, meaning, value_name, value } = *option;
-    let mut help = meaning.to_owned();
+    let SettingsOption { key, meaning, unit, value_name, value, .. } = *option;
+    let mut help = match unit {
+        "" | "1" => meaning.to_owned(),
+        unit => format!("{meaning} ({unit})"),
+    };
     help[..1].make_ascii_uppercase();
-    let argument = Arg::new(name).long(name).value_name(value_name).help(help);
+    let argument = Arg::new(key).long(option.flag()).value_name(value_name).help(help);
     match value {
         Value::Number(_) => argument.value_parser(value_parser!(f64)),
         Value::Count(_) => argument.value_parser(value_parser!(usize)),
@@ -91,7 +94,7 @@ mod tests {
     fn every_setting_has_a_flag() {
         let command = SettingsArguments::augment_args(Command::new("run"));
         for option in SettingsOption::ALL {
-            let flag = format!("--{}", option.name);
+            let flag = format!("--{}", option.flag());
             let mut expected = Settings::default();
             let given = match option.value {
                 Value::Number(set) => {

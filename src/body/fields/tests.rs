@@ -137,7 +137,7 @@ fn membranes_carry_their_tensors_with_them() {
 #[test]
 fn strings_are_pulled_along_themselves() {
     let Material { young, poisson, .. } = SOFT;
-    let bar = Body::new(Mesh::bar(0.1, 4).unwrap(), SOFT).area(1e-4);
+    let bar = Body::new(Mesh::bar(0.1, 4).unwrap(), SOFT).strain(Strain::Cauchy).area(1e-4);
     let uniaxial = diagonal([0.03, -poisson * 0.03, -poisson * 0.03]);
     let stress = diagonal([young * 0.03, 0.0, 0.0]);
     check(&bar.build().unwrap(), &diagonal([1.03, 1.0, 1.0]), uniaxial, stress);
@@ -184,7 +184,10 @@ fn stretch_and_shear_of_solids() {
 fn cells_have_the_stress_of_their_region() {
     let mesh = Mesh::bar(0.2, 3).unwrap();
     let hard = Material { young: 7e5, ..SOFT };
-    let body = Body::new(mesh, SOFT).area(1e-4).region(CellSelection::Numbers(vec![2]), hard);
+    let body = Body::new(mesh, SOFT)
+        .strain(Strain::Cauchy)
+        .area(1e-4)
+        .region(CellSelection::Numbers(vec![2]), hard);
     let body = body.build().unwrap();
     let fields = body.cell_fields(&[0.0, 0.001, 0.002]);
     for (field, young) in fields.iter().zip([1e5, 7e5]) {

@@ -1,13 +1,13 @@
 //! Chambers beside a body: areas and volumes in closed form, and what encloses none.
 
 use super::{Chamber, Geometry};
-use crate::body::Body;
+use crate::body::{Body, Strain};
 use crate::mesh::{CellKind, Cells, Mesh, Selection, SolidCells};
 use crate::samples::SQUARE_MATERIAL;
 
 fn body(mesh: Mesh) -> Body {
     let dimension = mesh.kind().dimension();
-    let body = Body::new(mesh, SQUARE_MATERIAL);
+    let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy);
     match dimension {
         1 => body.area(1e-4),
         2 => body.thickness(0.01),

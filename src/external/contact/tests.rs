@@ -1,4 +1,5 @@
 use super::*;
+use crate::body::Strain;
 use crate::mesh::{Cells, Mesh};
 use crate::samples::SQUARE_MATERIAL;
 
@@ -7,7 +8,8 @@ fn contact(adhesion: bool) -> Contact {
     let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
     let slope = Obstacle::half_plane([0.0, 0.1], [-3.0, 4.0]);
     let slope = slope.stiffness(50.0).damping(7.0).tangential_damping(3.0).adhesion(adhesion);
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     Contact::new(&body, &slope).unwrap()
 }
 
@@ -58,7 +60,8 @@ fn without_adhesion_the_normal_force_never_pulls() {
 #[test]
 fn friction_goes_with_what_presses() {
     let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let floor = Obstacle::half_plane([0.0, 0.1], [0.0, 1.0]).stiffness(50.0).damping(7.0);
     // nodes 1 and 2 are 0.1 m deep
     let pressing = |rate: f64| 50.0 * 0.1 - 7.0 * rate;
@@ -90,7 +93,8 @@ fn friction_goes_with_what_presses() {
 #[test]
 fn reserves_are_for_what_may_stick() {
     let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let floor = Obstacle::half_plane([0.0, 0.1], [0.0, 1.0]).stiffness(50.0);
     let floor = floor.friction_coefficients(0.8, 0.5).sticking_speed(0.2);
     let contact = Contact::new(&body, &floor).unwrap();

@@ -18,9 +18,9 @@ use super::hooke::Hooke;
 pub enum Strain {
     /// Cauchy's small strain: force -K u, linear. Not invariant to rotation: a body that turns by
     /// theta swells as if strained by cos(theta) - 1.
-    #[default]
     Cauchy,
     /// Green's strain E = (F^T F - I)/2, invariant to rotation: St. Venant-Kirchhoff material.
+    #[default]
     Green,
 }
 

@@ -6,7 +6,7 @@ use faer::prelude::Solve;
 use super::{Coupling, Reduced, Source, nodal_multipliers};
 use crate::constraint::{Axis, PhaseStart, Row};
 use crate::samples::SQUARE_MATERIAL;
-use crate::{Body, Cells, Inertia, Mesh, Phase, Scene};
+use crate::{Body, Cells, Inertia, Mesh, Phase, Scene, Strain};
 
 /// Two pieces of 3 x 3 nodes each that nothing joins.
 fn scene(inertia: Inertia, phase: Phase) -> Scene {
@@ -16,7 +16,8 @@ fn scene(inertia: Inertia, phase: Phase) -> Scene {
     let cells: Vec<usize> = square.cells().flatten().copied().collect();
     let cells = cells.iter().copied().chain(cells.iter().map(|node| node + 9)).collect();
     let mesh = Mesh::new(2, positions, square.kind(), cells).unwrap();
-    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).inertia(inertia);
+    let body =
+        Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).inertia(inertia);
     Scene::new(body.build().unwrap()).phase(phase)
 }
 

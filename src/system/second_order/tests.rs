@@ -47,7 +47,7 @@ fn after(central: &mut CentralDifference<SecondOrderForm>, steps: usize) -> &[f6
 /// time c/E (s).
 fn bar(cells: usize, viscosity: f64) -> Scene {
     let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity };
-    let body = Body::new(Mesh::bar(1.0, cells + 1).unwrap(), material);
+    let body = Body::new(Mesh::bar(1.0, cells + 1).unwrap(), material).strain(Strain::Cauchy);
     let body = body.area(1.0).inertia(Inertia::Lumped).build().unwrap();
     Scene::new(body).phase(Phase::until(1e9).hold("left"))
 }
@@ -170,7 +170,8 @@ fn contacts_count_before_they_touch() {
     let body = Body::new(
         Mesh::bar(1.0, 2).unwrap(),
         Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 },
-    );
+    )
+    .strain(Strain::Cauchy);
     let body =
         body.area(1.0).inertia(Inertia::Lumped).viscosity(Viscosity::Natural).build().unwrap();
     let floor = Obstacle::half_plane([-1.0], [1.0]).stiffness(1e4).damping(30.0);
@@ -189,7 +190,7 @@ fn contacts_count_before_they_touch() {
 #[test]
 fn work_along_a_path_is_booked() {
     let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 };
-    let body = Body::new(Mesh::bar(1.0, 41).unwrap(), material);
+    let body = Body::new(Mesh::bar(1.0, 41).unwrap(), material).strain(Strain::Cauchy);
     let body = body.area(1.0).inertia(Inertia::Lumped).build().unwrap();
     let wave = |t: f64| Prescribed {
         displacement: 0.01 * (1.0 - (PI * t).cos()),
@@ -214,7 +215,9 @@ fn a_path_without_numbers_within_a_step_is_an_error() {
         let velocity = if (0.004..0.006).contains(&t) { f64::NAN } else { 0.0 };
         Prescribed { displacement: 0.0, velocity, acceleration: 0.0 }
     };
-    let body = Body::new(Mesh::bar(1.0, 5).unwrap(), crate::samples::SQUARE_MATERIAL).area(1.0);
+    let body = Body::new(Mesh::bar(1.0, 5).unwrap(), crate::samples::SQUARE_MATERIAL)
+        .strain(Strain::Cauchy)
+        .area(1.0);
     let scene = Scene::new(body.inertia(Inertia::Lumped).build().unwrap())
         .phase(Phase::until(1.0).follow("left", Axis::X, path));
     let error = fixed(&scene, 0.01).step(1.0).unwrap_err();

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 
 use pliant::mesh::CellKind;
-use pliant::{Body, Cells, InputError, Material, Mesh, SolidCells};
+use pliant::{Body, Cells, InputError, Material, Mesh, SolidCells, Strain};
 
 const ALL_CELLS: [Cells; 4] =
     [Cells::Triangles, Cells::Crossed, Cells::Rectangles, Cells::Triangles6];
@@ -16,7 +16,7 @@ const ALL_SOLIDS: [SolidCells; 3] =
 /// Area or volume of all cells (m^2, m^3).
 fn volume(mesh: &Mesh) -> f64 {
     let unit = Material { density: 1.0, young: 1.0, poisson: 0.3, viscosity: 0.0 };
-    let body = Body::new(mesh.clone(), unit);
+    let body = Body::new(mesh.clone(), unit).strain(Strain::Cauchy);
     let body = if mesh.dimension() == 2 { body.thickness(1.0) } else { body };
     body.build().unwrap().mass()
 }

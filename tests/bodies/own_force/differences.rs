@@ -151,7 +151,7 @@ impl<F: Force> Force for With<F> {
 /// 5 x 4 nodes.
 fn body() -> Body {
     let mesh = Mesh::rectangle([0.04, 0.03], [5, 4], Cells::Triangles).unwrap();
-    Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap()
+    Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build().unwrap()
 }
 
 /// Threads across the body, and along its bottom between neighbours.

@@ -276,7 +276,7 @@ fn large_motions_are_brought_on_in_steps() {
 fn what_is_not_held_is_told() {
     let square = || {
         let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-        Scene::new(Body::new(mesh, RUBBER).thickness(0.01).build().unwrap())
+        Scene::new(Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01).build().unwrap())
     };
     for (phase, told) in [
         (
@@ -358,7 +358,7 @@ fn the_flag_of_turek_and_hron() {
 /// held, against a spring of stiffness c: u = f/(k + c). In steps or at once.
 #[test]
 fn actuators_pull_as_in_the_textbook() {
-    let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4);
+    let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).strain(Strain::Cauchy).area(2e-4);
     let body = body.point_mass("hook", [0.15], 0.01).build().unwrap();
     for (c, f) in [(0.0, 0.3), (25.0, 0.3), (25.0, -1.0)] {
         let scene = Scene::new(body.clone())
@@ -379,7 +379,11 @@ fn actuators_pull_as_in_the_textbook() {
 /// u = -c d/(k + c). It stands there: its speed, damping and drag are those of no motion.
 #[test]
 fn obstacles_press_from_where_they_have_come_to() {
-    let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4).build().unwrap();
+    let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT)
+        .strain(Strain::Cauchy)
+        .area(2e-4)
+        .build()
+        .unwrap();
     for (damping, adhesion) in [(0.0, true), (50.0, true), (50.0, false)] {
         let plate = Obstacle::half_plane([0.12], [-1.0]).velocity([-0.04]).stiffness(300.0);
         let plate = plate.damping(damping).tangential_damping(damping).adhesion(adhesion);

@@ -105,7 +105,7 @@ fn a_collapse_is_told_with_the_load_that_was_reached() {
 #[test]
 fn a_block_rests_on_the_floor() {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, RUBBER).thickness(0.01).build().unwrap();
+    let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01).build().unwrap();
     let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(1000.0);
     let scene = Scene::new(body).gravity([0.0, -9.8]).obstacle(floor).phase(Phase::until(1.0));
     let equilibrium = solve(&scene);

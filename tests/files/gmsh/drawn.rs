@@ -29,9 +29,9 @@ fn gmsh_draws_a_brick() {
         assert_eq!(both, mesh.cell_count());
         let heavy = Material { density: 3000.0, ..RUBBER };
         let builder = match kind.dimension() {
-            1 => Body::new(mesh.clone(), RUBBER).area(0.01),
-            2 => Body::new(mesh.clone(), RUBBER).thickness(0.01),
-            _ => Body::new(mesh.clone(), RUBBER),
+            1 => Body::new(mesh.clone(), RUBBER).strain(Strain::Cauchy).area(0.01),
+            2 => Body::new(mesh.clone(), RUBBER).strain(Strain::Cauchy).thickness(0.01),
+            _ => Body::new(mesh.clone(), RUBBER).strain(Strain::Cauchy),
         };
         let halves = builder.region("second", heavy).build().unwrap();
         assert!((halves.mass() / (2000.0 * volume) - 1.0).abs() < 1e-13, "{cells}");
@@ -76,7 +76,7 @@ fn the_bending_actuator_is_as_drawn() {
     let light = Material { density: 1.0, ..RUBBER };
     let weightless = Material { density: 1e-30, ..RUBBER };
     let body = |region: &str| {
-        let body = Body::new(mesh.clone(), weightless).thickness(1.0);
+        let body = Body::new(mesh.clone(), weightless).strain(Strain::Cauchy).thickness(1.0);
         body.region(region, light).build().unwrap()
     };
     // mm^2: what is below the gaps, and the bellows above that, without the rooms

@@ -36,7 +36,7 @@ fn loose_nodes_are_dropped() {
 fn regions_that_do_not_exist() {
     let mesh = committed("tests/data/gmsh/brick-triangles.msh");
     let body = |mesh: Mesh| {
-        let body = Body::new(mesh, RUBBER).thickness(0.01);
+        let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01);
         body.region(CellSelection::Group("bottom".into()), RUBBER).build()
     };
     let message = body(mesh.clone()).unwrap_err().to_string();

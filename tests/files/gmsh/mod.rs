@@ -149,7 +149,7 @@ fn space_has_the_dimensions_that_the_body_needs() {
 
 /// A body of any kind of cells, section 0.01.
 fn body(mesh: &Mesh) -> Result<Body, InputError> {
-    let body = Body::new(mesh.clone(), RUBBER);
+    let body = Body::new(mesh.clone(), RUBBER).strain(Strain::Cauchy);
     match mesh.kind().dimension() {
         1 => body.area(0.01),
         2 => body.thickness(0.01),

@@ -1,0 +1,86 @@
+//! `pliant reference`
+
+use std::fmt::Write;
+
+use clap::{Arg, Args, Command};
+use pliant::scene_file;
+
+use crate::failure::{Failure, print};
+
+/// Print the reference of scene files, flags and results: docs/reference.md
+#[derive(Args)]
+pub struct Arguments {}
+
+pub fn run(_: &Arguments, command: Command) -> Result<(), Failure> {
+    print(page(command).trim_end())
+}
+
+const HEAD: &str = "\
+# Reference
+
+All that `pliant` reads and writes. This page is made by `pliant reference > docs/reference.md`; a test keeps it true.
+[scene-files.md](scene-files.md) teaches scene files by examples.
+
+## Scene files
+
+";
+
+const RESULTS: &str = "
+## Exit codes
+
+| code | meaning |
+| --- | --- |
+| 0 | done; warnings do not change it |
+| 1 | a computation failed or was interrupted, a result could not be written: what was computed is kept, and `report.json` says where and why |
+| 2 | bad input: nothing was computed or written |
+| 130 | ended by Ctrl-C, SIGTERM or SIGHUP before there was anything to keep |
+
+## Files
+
+All stand in `--out`, by default `out/` and the name of the scene file (`static`: with `-static`). A run takes the results of an earlier one there away.
+
+| file | what is in it |
+| --- | --- |
+| `trajectory.csv` | one row per sample; it grows while the scene runs |
+| `report.json` | how it was computed, warnings, and why it ended |
+| `snapshots.svg` | pictures (format `svg`) |
+| `animation.html` | an animation for the web browser, in one file (format `html`) |
+| `body.pvd`, `body_0000.vtu`, ... | for ParaView (format `vtk`) |
+";
+
+/// The page.
+fn page(command: Command) -> String {
+    let mut page = format!("{HEAD}{}\n## Commands and flags\n", scene_file::reference());
+    for command in command.get_subcommands() {
+        // writing to a text cannot fail
+        let _ = section(&mut page, command);
+    }
+    page + RESULTS
+}
+
+fn section(page: &mut String, command: &Command) -> std::fmt::Result {
+    let about = command.get_about().map(ToString::to_string).unwrap_or_default();
+    writeln!(page, "\n### `pliant {}`\n\n{about}.\n", command.get_name())?;
+    let arguments: Vec<&Arg> = command.get_arguments().collect();
+    if arguments.is_empty() {
+        return Ok(());
+    }
+    writeln!(page, "| argument | meaning |\n| --- | --- |")?;
+    arguments.into_iter().try_for_each(|argument| {
+        let help = argument.get_help().map(ToString::to_string).unwrap_or_default();
+        let (help, written) = (help.replace('\n', " "), written(argument));
+        writeln!(page, "| `{written}` | {help} |", written = written.replace('|', "\\|"))
+    })
+}
+
+/// An argument as it is written.
+fn written(argument: &Arg) -> String {
+    let values: Vec<&str> =
+        argument.get_value_names().unwrap_or_default().iter().map(|name| name.as_str()).collect();
+    let takes = argument.get_action().takes_values();
+    let values = if takes { values.join(" ") } else { String::new() };
+    match argument.get_long() {
+        Some(long) => format!("--{long} {values}").trim_end().into(),
+        None => values,
+    }
+}

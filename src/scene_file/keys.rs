@@ -1,0 +1,165 @@
+//! What tables and keys a scene file may have: reading, the reference page and the JSON Schema go by these.
+
+use std::fmt;
+
+/// A table of a scene file.
+#[derive(Debug)]
+pub(super) struct TableKeys {
+    /// What it is called, as in `[body]` or `hold`.
+    pub(super) name: &'static str,
+    /// What it describes, and what the keys mean together: sentences in Markdown.
+    pub(super) about: &'static str,
+    pub(super) keys: &'static [Key],
+    /// The words of the key `kind`, if there is one.
+    pub(super) kinds: &'static [Kind],
+    /// Groups of keys of which exactly one stands there.
+    pub(super) one_of: &'static [&'static [&'static str]],
+    /// A piece of a scene file.
+    pub(super) example: &'static str,
+}
+
+/// A word of the key `kind`, with the keys that come with it.
+#[derive(Debug)]
+pub(super) struct Kind {
+    pub(super) word: &'static str,
+    pub(super) about: &'static str,
+    pub(super) keys: &'static [Key],
+}
+
+/// A key of a table.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Key {
+    pub(super) name: &'static str,
+    pub(super) holds: Holds,
+    pub(super) meaning: Meaning,
+    /// More to know, a sentence in Markdown; often empty.
+    pub(super) law: &'static str,
+    pub(super) default: Default,
+    /// The key that has taken its place; this one is still read.
+    pub(super) now: Option<&'static str>,
+}
+
+/// What a value means, with its unit.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Meaning {
+    pub(super) text: &'static str,
+    /// Empty for what is no number.
+    pub(super) unit: &'static str,
+}
+
+/// What stands for a key that is left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Default {
+    /// Nothing may.
+    Required,
+    /// As the words say.
+    Words(&'static str),
+}
+
+/// What kind of value a key has.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Holds {
+    Number,
+    /// A whole number, 0 or above.
+    Count,
+    Flag,
+    Text,
+    /// One of some words.
+    Word(fn() -> Vec<&'static str>),
+    /// So many of them.
+    Array(&'static Self, usize),
+    List(&'static Self),
+    /// One alone, or a list.
+    OneOrMore(&'static Self),
+    Either(&'static [Self]),
+    /// One number per dimension of space.
+    Vector,
+    /// Numbers along the axes of the table.
+    Along,
+    Nodes,
+    Corners,
+    Axes,
+    Table(&'static TableKeys),
+    /// One alone, or a list.
+    Tables(&'static TableKeys),
+}
+
+impl TableKeys {
+    /// A table with these keys.
+    pub(super) const fn new(
+        name: &'static str,
+        about: &'static str,
+        keys: &'static [Key],
+        example: &'static str,
+    ) -> Self {
+        Self { name, about, keys, kinds: &[], one_of: &[], example }
+    }
+
+    /// With a key `kind`.
+    pub(super) const fn kinds(self, kinds: &'static [Kind]) -> Self {
+        Self { kinds, ..self }
+    }
+
+    /// With groups of keys of which exactly one has to be there.
+    pub(super) const fn one_of(self, groups: &'static [&'static [&'static str]]) -> Self {
+        Self { one_of: groups, ..self }
+    }
+
+    /// The keys of all kinds and its own.
+    pub(super) fn all(&self) -> impl Iterator<Item = &'static Key> {
+        self.kinds.iter().flat_map(|kind| kind.keys).chain(self.keys)
+    }
+}
+
+impl Key {
+    /// A key that may be left out.
+    pub(super) const fn new(name: &'static str, holds: Holds, meaning: &'static str) -> Self {
+        let meaning = Meaning { text: meaning, unit: "" };
+        Self { name, holds, meaning, law: "", default: Default::Words("none"), now: None }
+    }
+
+    /// A key of a number that may be left out. Unit "1": it has none.
+    pub(super) const fn number(
+        name: &'static str,
+        meaning: &'static str,
+        unit: &'static str,
+    ) -> Self {
+        Self::new(name, Holds::Number, meaning).in_unit(unit)
+    }
+
+    pub(super) const fn in_unit(mut self, unit: &'static str) -> Self {
+        self.meaning.unit = unit;
+        self
+    }
+
+    pub(super) const fn law(mut self, law: &'static str) -> Self {
+        self.law = law;
+        self
+    }
+
+    pub(super) const fn required(mut self) -> Self {
+        self.default = Default::Required;
+        self
+    }
+
+    pub(super) const fn default(mut self, words: &'static str) -> Self {
+        self.default = Default::Words(words);
+        self
+    }
+
+    /// An old name of the key `now`.
+    pub(super) const fn now(mut self, now: &'static str) -> Self {
+        self.now = Some(now);
+        self
+    }
+}
+
+impl fmt::Display for Meaning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.unit {
+            "" => f.write_str(self.text),
+            "1" => write!(f, "{} (no unit)", self.text),
+            unit => write!(f, "{} ({unit})", self.text),
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! The reference page of scene files.
+
+use std::fmt::Write;
+
+use super::keys::{Default, Holds, Key, TableKeys};
+use super::top::TOP;
+
+/// All tables and keys of scene files in Markdown, with types, units, defaults and examples.
+pub fn reference() -> String {
+    let mut page = String::from(VALUES);
+    for table in tables() {
+        // writing to a text cannot fail
+        let _ = section(&mut page, table);
+    }
+    page
+}
+
+const VALUES: &str = "\
+A scene file is [TOML](https://toml.io), in SI units. Numbers need no decimal point. Where a list of tables is expected, a table
+alone will do. Types below:
+
+| type | what is written |
+| --- | --- |
+| number | `0.3`, `1e6`, `2` |
+| whole number | 0 or above: `14` |
+| vector | one number per dimension of space: `[0.0, -9.8]` |
+| numbers along axes | one number per named axis (for one axis a number alone), or one per dimension, 0 along axes that are not named |
+| nodes | the name of a node set `\"left\"`, a number (from 1) `14`, a list of numbers `[14, 15]`, or `{ box = [[0.0, 0.0], [0.1, 0.02]] }` |
+| corners | the lower and the upper corner of a box: `[[0.0, 0.0], [0.1, 0.02]]` |
+| axes | `\"x\"`, or a list `[\"x\", \"y\"]` |
+";
+
+/// All tables, each once, the file itself first.
+pub(super) fn tables() -> Vec<&'static TableKeys> {
+    let mut tables = vec![&TOP];
+    let mut at = 0;
+    while let Some(table) = tables.get(at) {
+        let inner: Vec<_> = table.all().flat_map(|key| inside(&key.holds)).collect();
+        let known = |inner: &&TableKeys| tables.iter().any(|table| table.name == inner.name);
+        let mut fresh: Vec<&TableKeys> = Vec::new();
+        for inner in inner {
+            if !known(&inner) && fresh.iter().all(|table| table.name != inner.name) {
+                fresh.push(inner);
+            }
+        }
+        at += 1;
+        tables.splice(at..at, fresh);
+    }
+    tables
+}
+
+/// The tables in a value.
+fn inside(holds: &'static Holds) -> Vec<&'static TableKeys> {
+    match holds {
+        Holds::Table(keys) | Holds::Tables(keys) => vec![*keys],
+        Holds::Array(inner, _) | Holds::List(inner) | Holds::OneOrMore(inner) => inside(inner),
+        Holds::Either(several) => several.iter().flat_map(inside).collect(),
+        _ => Vec::new(),
+    }
+}
+
+fn section(page: &mut String, table: &TableKeys) -> std::fmt::Result {
+    writeln!(page, "\n### {}\n\n{}\n", heading(table), table.about)?;
+    if !table.one_of.is_empty() {
+        let groups: Vec<String> = table.one_of.iter().map(|group| quoted(group, " and ")).collect();
+        writeln!(page, "Exactly one of {} stands there.\n", groups.join(", or "))?;
+    }
+    writeln!(page, "```toml\n{}\n```\n", table.example)?;
+    writeln!(page, "| key | type | unit | default | meaning |\n| --- | --- | --- | --- | --- |")?;
+    if !table.kinds.is_empty() {
+        let words: Vec<&str> = table.kinds.iter().map(|kind| kind.word).collect();
+        writeln!(page, "| `kind` | {} | | required | the kind |", words_of(&words))?;
+    }
+    for key in table.keys {
+        row(page, key)?;
+    }
+    for kind in table.kinds {
+        writeln!(page, "| | **kind = \"{}\"** | | | {} |", kind.word, kind.about)?;
+        for key in kind.keys {
+            row(page, key)?;
+        }
+    }
+    Ok(())
+}
+
+/// The heading of a table.
+fn heading(table: &TableKeys) -> String {
+    match table.name.contains(' ') {
+        true => table.name.into(),
+        false => format!("`{}`", table.name),
+    }
+}
+
+fn row(page: &mut String, key: &Key) -> std::fmt::Result {
+    let Key { name, holds, meaning, law, default, now } = key;
+    let default = match default {
+        Default::Required => "required",
+        Default::Words(words) => words,
+    };
+    let (kind, unit) = (kind_of(holds), meaning.unit);
+    let meaning = match (now, *law) {
+        (Some(now), _) => format!("old name of `{now}`"),
+        (None, "") => meaning.text.into(),
+        (None, law) => format!("{}. {law}", meaning.text),
+    };
+    writeln!(page, "| `{name}` | {kind} | {unit} | {default} | {meaning} |")
+}
+
+/// What kind of value this is, in words.
+fn kind_of(holds: &Holds) -> String {
+    match holds {
+        Holds::Number => "number".into(),
+        Holds::Count => "whole number".into(),
+        Holds::Flag => "`true` or `false`".into(),
+        Holds::Text => "text".into(),
+        Holds::Word(words) => words_of(&words()),
+        Holds::Array(inner, count) => format!("list of {count}: {}", kind_of(inner)),
+        Holds::List(inner) => format!("list: {}", kind_of(inner)),
+        Holds::OneOrMore(inner) => format!("{}, or a list", kind_of(inner)),
+        Holds::Either(several) => several.iter().map(kind_of).collect::<Vec<_>>().join("; or "),
+        Holds::Vector => "vector".into(),
+        Holds::Along => "numbers along axes".into(),
+        Holds::Nodes => "nodes".into(),
+        Holds::Corners => "corners".into(),
+        Holds::Axes => "axes".into(),
+        Holds::Table(keys) => {
+            format!("table [{}](#{})", keys.name.trim_matches(['[', ']']), anchor(keys))
+        }
+        Holds::Tables(keys) => {
+            format!("tables [{}](#{})", keys.name.trim_matches(['[', ']']), anchor(keys))
+        }
+    }
+}
+
+/// The anchor of a heading, as GitHub makes it.
+fn anchor(table: &TableKeys) -> String {
+    let kept = |c: &char| c.is_alphanumeric() || *c == '_' || *c == '-';
+    table.name.to_lowercase().chars().filter(kept).collect()
+}
+
+fn words_of(words: &[&str]) -> String {
+    let words: Vec<String> = words.iter().map(|word| format!("`\"{word}\"`")).collect();
+    words.join(", ")
+}
+
+fn quoted(keys: &[&str], between: &str) -> String {
+    keys.iter().map(|key| format!("`{key}`")).collect::<Vec<_>>().join(between)
+}

@@ -1,0 +1,134 @@
+//! The JSON Schema of scene files, by which editors complete and check them.
+
+use serde_json::{Map, Value, json};
+
+use super::keys::{Default, Holds, Key, TableKeys};
+use super::reference::tables;
+use super::top::TOP;
+
+/// The JSON Schema (draft 7) of scene files, for editors that check TOML by it.
+pub fn schema() -> Value {
+    let mut root = object(&TOP);
+    let inner = tables().into_iter().skip(1).map(|keys| (keys.name.into(), object(keys)));
+    let mut definitions: Map<String, Value> = inner.collect();
+    for (name, definition) in shared() {
+        definitions.insert(name.into(), definition);
+    }
+    root["$schema"] = json!("http://json-schema.org/draft-07/schema#");
+    root["title"] = json!("Scene file of pliant");
+    root["definitions"] = definitions.into();
+    root
+}
+
+/// Values of which many keys are.
+fn shared() -> [(&'static str, Value); 5] {
+    let number = json!({ "type": "number" });
+    let whole = json!({ "type": "integer", "minimum": 1 });
+    let numbers = |least: usize| json!({ "type": "array", "items": number, "minItems": least, "maxItems": 3 });
+    let axis = json!({ "enum": ["x", "y", "z"] });
+    [
+        ("a vector", numbers(1)),
+        ("numbers along axes", json!({ "anyOf": [number, numbers(1)] })),
+        ("corners", json!({ "type": "array", "items": numbers(1), "minItems": 2, "maxItems": 2 })),
+        (
+            "nodes",
+            json!({ "anyOf": [
+                { "type": "string" },
+                whole,
+                { "type": "array", "items": whole },
+                reference("box"),
+            ] }),
+        ),
+        ("axes", json!({ "anyOf": [axis, { "type": "array", "items": axis }] })),
+    ]
+}
+
+fn reference(name: &str) -> Value {
+    json!({ "$ref": format!("#/definitions/{name}") })
+}
+
+/// The schema of a table.
+fn object(table: &TableKeys) -> Value {
+    let mut schema = match table.kinds {
+        [] => closed(table.keys.iter()),
+        kinds => {
+            let kinds = kinds.iter().map(|kind| {
+                let mut schema = closed(table.keys.iter().chain(kind.keys));
+                schema["properties"]["kind"] =
+                    json!({ "const": kind.word, "description": kind.about });
+                if let Some(required) = schema["required"].as_array_mut() {
+                    required.insert(0, "kind".into());
+                }
+                schema
+            });
+            json!({ "type": "object", "oneOf": kinds.collect::<Vec<_>>() })
+        }
+    };
+    schema["description"] = json!(table.about);
+    if !table.one_of.is_empty() {
+        let groups = table.one_of.iter().map(|group| {
+            let others = table.one_of.concat();
+            let others = others.iter().filter(|key| !group.contains(key));
+            let others: Vec<Value> = others.map(|key| json!({ "required": [key] })).collect();
+            json!({ "required": group, "not": { "anyOf": others } })
+        });
+        schema["anyOf"] = groups.collect();
+    }
+    schema
+}
+
+/// A table that has no other keys than these.
+fn closed(keys: impl Iterator<Item = &'static Key> + Clone) -> Value {
+    let required = keys.clone().filter(|key| key.default == Default::Required);
+    let required: Vec<&str> = required.map(|key| key.name).collect();
+    let properties: Map<String, Value> =
+        keys.map(|key| (key.name.into(), described(key))).collect();
+    json!({
+        "type": "object",
+        "properties": properties,
+        "required": required,
+        "additionalProperties": false,
+    })
+}
+
+/// The schema of a value with the words that an editor shows.
+fn described(key: &Key) -> Value {
+    let mut schema = value(&key.holds);
+    let words = match (key.now, key.default) {
+        (Some(now), _) => format!("Old name of {now}."),
+        (None, Default::Required) => format!("{}. Required.", key.meaning),
+        (None, Default::Words(words)) => format!("{}. Default: {words}.", key.meaning),
+    };
+    if schema.get("$ref").is_some() {
+        schema = json!({ "allOf": [schema] }); // beside a reference nothing else counts
+    }
+    schema["description"] = [&words, key.law].join(" ").trim().into();
+    schema
+}
+
+fn value(holds: &Holds) -> Value {
+    let one_or_more = |inner: Value| {
+        let list = json!({ "type": "array", "items": inner });
+        json!({ "anyOf": [inner, list] })
+    };
+    match holds {
+        Holds::Number => json!({ "type": "number" }),
+        Holds::Count => json!({ "type": "integer", "minimum": 0 }),
+        Holds::Flag => json!({ "type": "boolean" }),
+        Holds::Text => json!({ "type": "string" }),
+        Holds::Word(words) => json!({ "enum": words() }),
+        Holds::Array(inner, count) => json!({
+            "type": "array", "items": value(inner), "minItems": count, "maxItems": count,
+        }),
+        Holds::List(inner) => json!({ "type": "array", "items": value(inner) }),
+        Holds::OneOrMore(inner) => one_or_more(value(inner)),
+        Holds::Either(several) => json!({ "anyOf": several.iter().map(value).collect::<Vec<_>>() }),
+        Holds::Vector => reference("a vector"),
+        Holds::Along => reference("numbers along axes"),
+        Holds::Nodes => reference("nodes"),
+        Holds::Corners => reference("corners"),
+        Holds::Axes => reference("axes"),
+        Holds::Table(keys) => reference(keys.name),
+        Holds::Tables(keys) => one_or_more(reference(keys.name)),
+    }
+}

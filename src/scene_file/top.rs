@@ -1,0 +1,69 @@
+//! The whole file.
+
+use super::body::{self, BODY, POINT};
+use super::contents::{OutputRequest, SceneFile};
+use super::keys::{Holds, Key, TableKeys};
+use super::phase::{self, PHASE};
+use super::settings::{self, OUTPUT, SOLVER};
+use super::surroundings::{self, CHAMBER, OBSTACLE, SPRING};
+use super::table::Table;
+use super::value::Value;
+use crate::error::Error;
+use crate::scene::Scene;
+
+pub(super) const TOP: TableKeys = TableKeys::new(
+    "The file",
+    "The keys before the first table.",
+    &[
+        Key::new("title", Holds::Text, "the title, for pictures and pages"),
+        Key::new("dimension", Holds::Count, "the dimension of space")
+            .law("1, 2 or 3. In a higher one than the mesh has, bars are strings and surfaces membranes.")
+            .default("that of the mesh"),
+        Key::new("gravity", Holds::Vector, "the acceleration of gravity")
+            .in_unit("m/s^2")
+            .default("0"),
+        Key::new("body", Holds::Table(&BODY), "what moves").required(),
+        Key::new("point", Holds::Tables(&POINT), "point masses"),
+        Key::new("spring", Holds::Tables(&SPRING), "springs"),
+        Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
+        Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
+        Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
+        Key::new("solver", Holds::Table(&SOLVER), "how it is integrated"),
+        Key::new("output", Holds::Table(&OUTPUT), "what is written"),
+    ],
+    "title = \"A beam sinks\"\ndimension = 2\ngravity = [0.0, -9.8]",
+);
+
+/// Adds a table to a scene.
+type Add = fn(Scene, &Value) -> Result<Scene, Error>;
+
+/// What the file `top` says.
+pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
+    let title = top.optional("title", Value::string)?.unwrap_or_default();
+    let (dimension, points) = (top.get("dimension"), top.get("point"));
+    let body =
+        top.required("body", |value| body::body(value, dimension.as_ref(), points.as_ref()))?;
+    let mut scene = Scene::new(body);
+    if let Some(gravity) = top.get("gravity") {
+        let gravity = gravity.vector(scene.body().dimension())?;
+        scene = scene.gravity(gravity);
+    }
+    let parts: [(&str, Add); 4] = [
+        ("spring", surroundings::add_spring),
+        ("chamber", surroundings::add_chamber),
+        ("obstacle", surroundings::add_obstacle),
+        ("phase", phase::add_phase),
+    ];
+    for (key, add) in parts {
+        if let Some(values) = top.get(key) {
+            scene = values.one_or_more()?.iter().try_fold(scene, add)?;
+        }
+    }
+    if scene.phases().is_empty() {
+        return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
+    }
+    let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
+    let output = top.optional("output", |value| settings::output(value, scene.body().mesh()))?;
+    let output = output.unwrap_or_else(OutputRequest::default);
+    Ok(SceneFile { title: title.into(), scene, settings, output, notes: Vec::new() })
+}

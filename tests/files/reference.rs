@@ -1,0 +1,105 @@
+//! The reference page and the JSON Schema of scene files.
+
+use std::path::Path;
+
+use pliant::{SceneFile, scene_file};
+use serde_json::Value;
+
+const PAGE: &str = include_str!("../../docs/reference.md");
+
+/// A file of these parts, each of which may be replaced.
+const PARTS: [(&str, &str); 6] = [
+    ("top", "title = \"base\"\n"),
+    ("[body]", "[body]\nthickness = 0.01\n"),
+    ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
+    ("[[chamber]]", "[[chamber]]\nname = \"inside\"\nnodes = [1, 2, 3, 4]\n"),
+    (
+        "[[obstacle]]",
+        "[[obstacle]]\nkind = \"disc\"\ncentre = [0.0, -1.0]\nradius = 0.1\nstiffness = 1e3\n",
+    ),
+    ("[[phase]]", "[[phase]]\nuntil = 0.5\n"),
+];
+const MATERIAL: &str =
+    "material = { density = 1000.0, young = 1.0e5, poisson = 0.4, viscosity = 40.0 }\n";
+const MESHES: [&str; 2] = [
+    "mesh = { kind = \"rectangle\", size = [0.1, 0.1], nodes = [11, 11], cells = \"crossed\" }\n",
+    "mesh = { kind = \"ring\", inner = 0.04, outer = 0.05, nodes = [32, 3], cells = \"crossed\" }\n",
+];
+
+/// A scene file with an example of the page in its place.
+fn with(example: &str, mesh: &str) -> String {
+    let key = example.split([' ', '\n']).next().unwrap();
+    let place = match key {
+        "title" => "top",
+        "mesh" | "material" => "[body]",
+        "friction_coefficient" => "[[obstacle]]",
+        header if header.starts_with('[') => header,
+        _ => "[[phase]]",
+    };
+    let mut text = String::new();
+    for (part, base) in PARTS {
+        let is_whole = part == place && (key == place || key == "title");
+        text += if is_whole { "" } else { base };
+        if part == "[body]" && !is_whole {
+            text += if key == "mesh" { "" } else { mesh };
+            text += if key == "material" { "" } else { MATERIAL };
+        }
+        if part == place {
+            text += example;
+        }
+    }
+    if !PARTS.iter().any(|(part, _)| *part == place) {
+        text += example; // a table of its own
+    }
+    text
+}
+
+#[test]
+fn examples_are_read() {
+    let blocks: Vec<&str> =
+        PAGE.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
+    assert!(blocks.len() > 15);
+    for block in blocks {
+        let read = |mesh: &&str| SceneFile::parse(&with(block, mesh), Path::new("example.toml"));
+        let errors: Vec<_> = MESHES.iter().map(read).filter_map(Result::err).collect();
+        assert!(errors.len() < MESHES.len(), "{block}: {errors:?}");
+    }
+}
+
+/// Each table of the shipped scenes has its keys in the schema. (Values are checked by validators of
+/// JSON Schema, of which there is none here.)
+#[test]
+fn the_schema_knows_the_scenes() {
+    let schema = scene_file::schema();
+    let text = schema.to_string();
+    for (at, _) in text.match_indices("#/definitions/") {
+        let name = text[at + 14..].split('"').next().unwrap();
+        assert!(schema["definitions"][name].is_object(), "{name}");
+    }
+    for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")).unwrap() {
+        let path = entry.unwrap().path();
+        let Ok(scene) = std::fs::read_to_string(&path) else { continue };
+        let mut table = &schema["properties"];
+        for line in scene.lines() {
+            if line.starts_with('[') {
+                let name = line.split_inclusive(']').collect::<String>();
+                let name = name.split('#').next().unwrap().trim();
+                let definition = &schema["definitions"][name];
+                assert!(definition.is_object(), "{path:?}: {name}");
+                table = definition;
+            } else if let Some((key, _)) = line.split_once(" = ")
+                && !key.starts_with([' ', '#', '{'])
+            {
+                assert!(has(table, key), "{path:?}: {key}");
+            }
+        }
+    }
+}
+
+/// Whether a table of the schema, or the list of properties itself, has a key.
+fn has(table: &Value, key: &str) -> bool {
+    let kinds = table["oneOf"].as_array().into_iter().flatten();
+    table[key].is_object()
+        || table["properties"][key].is_object()
+        || kinds.into_iter().any(|kind| kind["properties"][key].is_object())
+}
