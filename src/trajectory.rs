@@ -88,6 +88,12 @@ impl Trajectory {
         self.sensors = sensors;
     }
 
+    /// Puts a sample in the place of the last one.
+    pub(crate) fn replace_last(&mut self, sample: Sample) {
+        self.samples.pop();
+        self.samples.push(sample);
+    }
+
     /// Takes note of the energies of a state.
     pub(crate) fn note_energy(&mut self, energy: &Energy) {
         let start = self.samples.first().map_or(energy.balance(), |s| s.energy.balance());
@@ -113,7 +119,13 @@ impl Trajectory {
 
     /// The last sample alone, with the same report.
     pub fn at_end(&self) -> Self {
-        let samples = vec![self.last().clone()];
+        self.since(self.last().time)
+    }
+
+    /// The samples from time `time` (s) on, and the last one in any case, with the same report.
+    pub fn since(&self, time: f64) -> Self {
+        let first = self.samples.partition_point(|sample| sample.time < time);
+        let samples = self.samples[first.min(self.samples.len() - 1)..].to_vec();
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
         Self { scene, samples, sensors, report: self.report.clone() }
     }

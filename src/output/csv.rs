@@ -1,11 +1,12 @@
 //! Tables.
 
-use std::fs::OpenOptions;
+use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::write_file;
 use crate::error::Error;
+use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::scene::Scene;
 use crate::system::Energy;
@@ -67,6 +68,8 @@ pub struct GrowingTable {
     /// Rows written, and the time (s) of the last.
     rows: usize,
     last: f64,
+    /// The time (s) of the state that the run has gone on from; rows until then are those of an earlier run.
+    began: Option<f64>,
 }
 
 impl GrowingTable {
@@ -80,7 +83,46 @@ impl GrowingTable {
         track: Option<&Selection>,
     ) -> Result<Self, Error> {
         let nodes = track.map(|selection| scene.body().mesh().select(selection)).transpose()?;
-        Ok(Self { path: path.into(), nodes: nodes.unwrap_or_default(), rows: 0, last: 0.0 })
+        Ok(Self {
+            path: path.into(),
+            nodes: nodes.unwrap_or_default(),
+            rows: 0,
+            last: 0.0,
+            began: None,
+        })
+    }
+
+    /// For a run that goes on from a state at time `began` (s), with `trajectory` so far: the rows until then, which
+    /// an earlier run has written, will stay.
+    ///
+    /// # Errors
+    /// [`Error::Read`] if there is no table; one with other columns.
+    pub fn going_on(self, trajectory: &Trajectory, began: f64) -> Result<Self, Error> {
+        let header = header_of(trajectory, &self.nodes).join(",");
+        if self.text()?.lines().next() != Some(&*header) {
+            let mend =
+                "its columns are others: resume with the same nodes and sensors, or run anew";
+            return Err(InputError::new("table to go on with", self.path.display(), mend).into());
+        }
+        Ok(Self { began: Some(began), ..self })
+    }
+
+    fn text(&self) -> Result<String, Error> {
+        fs::read_to_string(&self.path)
+            .map_err(|source| Error::Read { path: self.path.clone(), source })
+    }
+
+    /// Takes the rows after time `began` (s) away.
+    fn cut(&self, began: f64) -> Result<(), Error> {
+        let text = self.text()?;
+        let mut lines = text.split_inclusive('\n');
+        let header = lines.next().unwrap_or_default();
+        let is_kept = |line: &&str| {
+            let time = line.split(',').next().and_then(|time| time.parse::<f64>().ok());
+            line.ends_with('\n') && time.is_some_and(|time| time <= began)
+        };
+        let kept: String = [header].into_iter().chain(lines.take_while(is_kept)).collect();
+        write_file(&self.path, |file| file.write_all(kept.as_bytes()))
     }
 
     /// Adds the samples that are not yet in it. Where the run has gone back and forgotten some, all are written anew.
@@ -89,6 +131,11 @@ impl GrowingTable {
     /// [`Error::Output`] if the file cannot be written.
     pub fn catch_up(&mut self, trajectory: &Trajectory) -> Result<(), Error> {
         let samples = trajectory.samples();
+        if let Some(began) = self.began.take() {
+            self.cut(began)?;
+            self.rows = samples.partition_point(|sample| sample.time <= began);
+            self.last = samples.get(self.rows.wrapping_sub(1)).map_or(0.0, |sample| sample.time);
+        }
         let fits = |last: usize| samples.get(last).is_some_and(|sample| sample.time == self.last);
         let written =
             self.rows.checked_sub(1).filter(|&last| fits(last)).map_or(0, |last| last + 1);

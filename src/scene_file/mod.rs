@@ -40,6 +40,7 @@ mod body;
 mod contents;
 mod keys;
 mod mesh;
+mod overrides;
 mod phase;
 mod reference;
 #[cfg(feature = "play")]
@@ -60,6 +61,7 @@ use std::path::Path;
 use toml::de::DeTable;
 
 pub use self::contents::{Format, OutputRequest, SceneFile};
+use self::overrides::{as_toml, merge};
 pub use self::reference::reference;
 #[cfg(feature = "play")]
 pub(crate) use self::rewrite::{Rewritten, rewritten};
@@ -80,12 +82,22 @@ impl SceneFile {
     /// A file that cannot be read; [`Error::SceneFile`] with the line for anything that is wrong
     /// inside.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(path, &[])
+    }
+
+    /// As [`read`](Self::read), with other values: each of `overrides` is as `body.material.young=2e5` or
+    /// `phase.free.until=1.5`, where a list of tables is followed by the name or the number (from 1) of one of them.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read); [`Error::Input`] for an override that is no key and value.
+    pub fn read_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<Self, Error> {
         let path = path.as_ref();
         let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
             String::from_utf8(bytes)
                 .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))
         });
-        Self::parse(&text.map_err(|source| Error::Read { path: path.into(), source })?, path)
+        let text = text.map_err(|source| Error::Read { path: path.into(), source })?;
+        parse(text, path, overrides)
     }
 
     /// As [`read`](Self::read), from the `text` of a file at `path`.
@@ -93,18 +105,33 @@ impl SceneFile {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(text: &str, path: &Path) -> Result<Self, Error> {
-        let source = Source { path, text, notes: RefCell::default() };
-        let document = DeTable::parse(text).map_err(|error| {
-            let at = error.span().unwrap_or(0..0);
-            let line = source.line(at.start);
-            let written = text.lines().nth(line - 1).unwrap_or_default().trim();
-            source.error(&at, "", format!("this is not TOML ({}): {written}", error.message()))
-        })?;
-        let (at, entries) = (document.span(), document.get_ref());
-        let top = Table::new(&source, String::new(), at, entries, &TOP)?;
-        let mut file = top::scene_file(&top)?;
-        drop(top);
-        file.notes = source.notes.into_inner();
-        Ok(file)
+        parse(text.into(), path, &[])
     }
+}
+
+fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFile, Error> {
+    let own = text.len();
+    // overrides follow the text, so that errors have a place to point to
+    let mut padded = Vec::with_capacity(overrides.len());
+    for over in overrides {
+        let toml = as_toml(over)?;
+        text.push('\n');
+        padded.push(" ".repeat(text.len()) + &toml);
+        text.push_str(&toml);
+    }
+    let source = Source { path, text: &text, own, notes: RefCell::default() };
+    let no_toml = |error: toml::de::Error| {
+        let at = error.span().unwrap_or(0..0);
+        let line = source.line(at.start);
+        let written = text.lines().nth(line - 1).unwrap_or_default().trim();
+        source.error(&at, "", format!("this is not TOML ({}): {written}", error.message()))
+    };
+    let document = DeTable::parse(&text[..own]).map_err(no_toml)?;
+    let (at, mut entries) = (document.span(), document.into_inner());
+    for over in &padded {
+        merge(&mut entries, DeTable::parse(over).map_err(no_toml)?.into_inner(), &text)?;
+    }
+    let top = Table::new(&source, String::new(), at, &entries, &TOP)?;
+    let file = top::scene_file(&top)?;
+    Ok(SceneFile { notes: source.notes.take(), ..file })
 }

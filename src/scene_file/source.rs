@@ -10,7 +10,10 @@ use crate::error::Error;
 /// The text of a scene file and where it comes from.
 pub(super) struct Source<'a> {
     pub(super) path: &'a Path,
+    /// With the overrides of its values behind it, one in each line.
     pub(super) text: &'a str,
+    /// Length of the file itself.
+    pub(super) own: usize,
     /// What `pliant check` says about it.
     pub(super) notes: RefCell<Vec<String>>,
 }
@@ -22,7 +25,14 @@ impl Source<'_> {
             "" => message.to_string(),
             key => format!("{key}: {message}"),
         };
-        Error::SceneFile { path: self.path.into(), line: self.line(at.start), message }
+        let line = self.line(at.start);
+        match at.start.checked_sub(self.own + 1) {
+            None => Error::SceneFile { path: self.path.into(), line, message },
+            Some(_) => {
+                let line = line - self.line(self.own);
+                Error::SceneFile { path: "--set".into(), line, message }
+            }
+        }
     }
 
     /// Adds to the notes, unless it stands there.

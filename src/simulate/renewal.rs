@@ -348,6 +348,11 @@ impl Run {
         self.sampling = sampling.clone();
         let sensors = sampling.quantities();
         self.trajectory.unread(sensors);
+        if self.trajectory.last().time == self.time {
+            let mut now = self.trajectory.last().clone();
+            self.complete(&mut now);
+            self.trajectory.replace_last(now);
+        }
         self.sample_from(self.time);
     }
 

@@ -455,6 +455,19 @@ impl Run {
         records::complete(sample, sensors, own, &self.phase, self.is_commanded);
     }
 
+    /// Size (s) and order of the last step of the integrator at work.
+    pub(super) fn last_step(&self) -> (f64, u32) {
+        match &self.at {
+            At::Work(work) => (work.stepper.counts().last_step, work.stepper.last_order()),
+            _ => (0.0, 0),
+        }
+    }
+
+    /// The error of a run that was stopped.
+    pub(super) fn interrupted(&mut self) -> Error {
+        self.give_up(Interrupted.into())
+    }
+
     pub(super) fn failure(&self, source: Failed, step: f64) -> Error {
         let mut trajectory = self.trajectory.clone();
         trajectory.report = self.report();

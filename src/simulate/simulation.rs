@@ -155,6 +155,55 @@ impl Simulation {
         Ok(true)
     }
 
+    /// Lets the rest of the scene pass. After each step `observer` looks on, and stops it by
+    /// [`ControlFlow::Break`]. Gives the samples that were asked for by [`record`](Self::record), with the report.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    ///
+    /// use pliant::{Sampling, Settings, samples};
+    ///
+    /// # let directory = tempfile::tempdir().unwrap();
+    /// # let path = directory.path().join("square.json");
+    /// let mut square = samples::square_jump(4)?.start(&Settings::default())?;
+    /// square.record(&Sampling::every(0.01))?;
+    /// let motion = square.finish(|square| {
+    ///     if square.steps() % 100 == 0 {
+    ///         square.checkpoint().write(&path).unwrap(); // to go on from, should this end before its time
+    ///     }
+    ///     ControlFlow::Continue(())
+    /// })?;
+    /// assert_eq!(motion.last().time, motion.scene().end());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Integration`] with the motion until then if the integrator gives up, or if the observer stops it:
+    /// [`is_interruption`](crate::IntegrationFailure::is_interruption).
+    pub fn finish(
+        mut self,
+        mut observer: impl FnMut(&Self) -> ControlFlow<()>,
+    ) -> Result<Trajectory, Error> {
+        let end = self.run.scene.end();
+        while self.step()? {
+            // the last step leaves nothing to be stopped
+            if observer(&self).is_break() && self.time < end {
+                return Err(self.run.interrupted());
+            }
+        }
+        Ok(self.into_trajectory())
+    }
+
+    /// Steps taken since t = 0.
+    pub fn steps(&self) -> usize {
+        self.run.steps
+    }
+
+    /// Size (s) and order of the last step of the present integrator; 0 before there was one.
+    pub fn last_step(&self) -> (f64, u32) {
+        self.run.last_step()
+    }
+
     /// Lets time go on to `t` (s). Returns whether it came so far: an action of [`when`](Self::when) may have
     /// stopped it before.
     ///

@@ -1,12 +1,11 @@
 //! `pliant check`
 
-use std::path::PathBuf;
-
 use clap::Args;
 use pliant::scene_file::Format;
 use pliant::{PhaseSummary, Scene, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
+use crate::scene::SceneArguments;
 
 /// Check a scene file and print what the scene contains
 ///
@@ -16,13 +15,12 @@ use crate::failure::{Failure, print};
 /// motion of the scene doubtful.
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file
-    #[arg(value_name = "FILE")]
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneArguments,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let file = SceneFile::read(&arguments.scene)?;
+    let file = arguments.scene.read()?;
     let phases = file.scene.summary()?;
     if !file.title.is_empty() {
         print(&file.title)?;

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use pliant::output::{GrowingTable, Snapshots, write_animation, write_csv, write_vtk};
 use pliant::scene_file::Format;
-use pliant::{Error, OutputRequest, Scene, SceneFile, Selection, Trajectory};
+use pliant::simulate::{Checkpoint, Simulation};
+use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
 
 use crate::failure::{Failure, print};
 
@@ -68,13 +69,19 @@ pub struct Directory {
     written: Vec<&'static str>,
     /// The directory itself, locked, once it is claimed.
     lock: Option<File>,
+    /// Whether the run goes on with the one that is there.
+    pub resumes: bool,
 }
+
+/// From which a run that was ended can go on.
+const CHECKPOINT: &str = "checkpoint.json";
+const TABLE: &str = "trajectory.csv";
 
 /// Whether a file of this name is what `run` or `static` writes.
 fn is_result(name: &str) -> bool {
     let frame = name.strip_prefix("body_").and_then(|rest| rest.strip_suffix(".vtu"));
     frame.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()))
-        || ["trajectory.csv", "report.json", "snapshots.svg", "animation.html", "body.pvd"]
+        || [TABLE, CHECKPOINT, "report.json", "snapshots.svg", "animation.html", "body.pvd"]
             .contains(&name)
 }
 
@@ -84,7 +91,7 @@ impl Directory {
         let here = Path::new(".");
         let existing = path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(here);
         match tempfile::tempfile_in(existing) {
-            Ok(_) => Ok(Self { path, written: Vec::new(), lock: None }),
+            Ok(_) => Ok(Self { path, written: Vec::new(), lock: None, resumes: false }),
             Err(error) => {
                 let path = path.display();
                 Err(Failure::bad_input(format!("cannot write to {path}: {error}")))
@@ -108,7 +115,9 @@ impl Directory {
             return Err(Failure::bad_input(format!("another run writes to {place}: {mend}")));
         }
         for entry in fs::read_dir(&self.path).map_err(failed)?.flatten() {
-            if entry.file_name().to_str().is_some_and(is_result) {
+            let goes_on = |name: &str| self.resumes && [TABLE, CHECKPOINT].contains(&name);
+            let is_old = |name: &str| is_result(name) && !goes_on(name);
+            if entry.file_name().to_str().is_some_and(is_old) {
                 fs::remove_file(entry.path()).map_err(failed)?;
             }
         }
@@ -116,14 +125,42 @@ impl Directory {
         Ok(())
     }
 
-    /// A `trajectory.csv` that grows during the run.
+    /// A `trajectory.csv` that grows during the run of `simulation`.
     pub fn growing_table(
         &self,
-        scene: &Scene,
+        simulation: &Simulation,
         output: &OutputRequest,
     ) -> Result<GrowingTable, Failure> {
-        let path = self.path.join("trajectory.csv");
-        Ok(GrowingTable::new(scene, path, output.track.as_ref())?)
+        let (path, track) = (self.path.join(TABLE), output.track.as_ref());
+        let table = GrowingTable::new(simulation.scene(), path, track)?;
+        Ok(match self.resumes {
+            true => table.going_on(simulation.trajectory(), simulation.time())?,
+            false => table,
+        })
+    }
+
+    /// The path of the checkpoint that an earlier run has left.
+    pub fn checkpoint(&self) -> Result<PathBuf, Failure> {
+        let path = self.path.join(CHECKPOINT);
+        match path.exists() {
+            true => Ok(path),
+            false => Err(Failure::bad_input(format!(
+                "--resume: there is no {}; a run writes it every ten seconds and when it is interrupted, and takes it \
+                 away at its end: run without --resume, or name the directory of the run by --out",
+                path.display()
+            ))),
+        }
+    }
+
+    /// Writes a checkpoint.
+    pub fn keep(&self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        checkpoint.write(self.path.join(CHECKPOINT))
+    }
+
+    /// Takes the checkpoint of a run away that has come to its end.
+    pub fn forget_checkpoint(&self) {
+        // without it nothing is lost
+        let _ = fs::remove_file(self.path.join(CHECKPOINT));
     }
 
     /// Writes `trajectory.csv`.
@@ -132,7 +169,7 @@ impl Directory {
         trajectory: &Trajectory,
         output: &OutputRequest,
     ) -> Result<(), Failure> {
-        self.write("trajectory.csv", |path| write_csv(trajectory, path, output.track.as_ref()))
+        self.write(TABLE, |path| write_csv(trajectory, path, output.track.as_ref()))
     }
 
     /// Has a file written.

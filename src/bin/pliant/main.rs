@@ -11,6 +11,7 @@ mod play;
 mod progress;
 mod reference;
 mod run;
+mod scene;
 mod schema;
 mod settings;
 mod statics;

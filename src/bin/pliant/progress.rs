@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pliant::simulate::Progress;
+use pliant::simulate::Simulation;
 
 use crate::failure::Failure;
 
@@ -61,13 +61,14 @@ impl Watch {
     }
 
     /// Called after each step; stops the run after Ctrl-C.
-    pub fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
+    pub fn see(&mut self, simulation: &Simulation) -> ControlFlow<()> {
         self.stepping.store(true, Ordering::Relaxed);
         if self.interrupted.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
         if self.drawn.elapsed() > PERIOD && !self.bar.is_hidden() {
-            let &Progress { time, name, step, order, .. } = progress;
+            let (time, name) = (simulation.time(), simulation.phase());
+            let (step, order) = simulation.last_step();
             self.bar.set_position((PARTS * time / self.end) as u64);
             let end = self.end;
             self.bar.set_message(format!(

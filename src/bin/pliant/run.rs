@@ -1,17 +1,17 @@
 //! `pliant run`
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
 use pliant::output::{GrowingTable, write_report};
-use pliant::simulate::Progress;
-use pliant::{Error, OutputRequest, Scene, SceneFile};
+use pliant::simulate::Simulation;
+use pliant::{Error, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::{Directory, OutputArguments};
 use crate::progress::Watch;
+use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
 
 /// Run a scene and write its motion
@@ -19,13 +19,12 @@ use crate::settings::{SettingsArguments, ended};
 /// Writes trajectory.csv (one row per output time), report.json (how it was computed) and what
 /// --formats asks for. Flags override the tables [solver] and [output] of the file. Ctrl-C (or
 /// SIGTERM, SIGHUP) ends the run after the present step; what was computed until then is written.
-/// trajectory.csv grows every second while the scene runs. Results of an earlier run in the same
-/// directory are taken away.
+/// trajectory.csv grows every second while the scene runs, and checkpoint.json is renewed every ten seconds: --resume
+/// goes on from there. Results of an earlier run in the same directory are taken away.
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file
-    #[arg(value_name = "FILE")]
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneArguments,
     #[command(flatten)]
     settings: SettingsArguments,
     /// Time between rows of trajectory.csv (s)
@@ -34,66 +33,89 @@ pub struct Arguments {
     /// End the scene at this time (s)
     #[arg(long, value_name = "SECONDS")]
     until: Option<f64>,
+    /// Go on with a run of the same scene that was interrupted or killed, from the checkpoint in its directory;
+    /// pictures show the motion from there on
+    #[arg(long)]
+    resume: bool,
     #[command(flatten)]
     output: OutputArguments,
 }
 
-/// Keeps what a run has sampled, while it runs.
+/// Keeps what a run has computed, while it runs.
 struct Keeper<'a> {
     directory: &'a mut Directory,
     table: GrowingTable,
-    /// When the table has grown last.
+    /// When the table has grown last, and when the checkpoint was written.
     grown: Instant,
+    kept: Instant,
     /// Why the directory could not be claimed.
     refused: Option<Failure>,
 }
 
 /// Time between two looks for new rows: a kill loses what was sampled in it.
-const PERIOD: Duration = Duration::from_secs(1);
+const GROWTH: Duration = Duration::from_secs(1);
+/// Time between two checkpoints: a kill loses what was computed in it.
+const KEEPING: Duration = Duration::from_secs(10);
 
 impl<'a> Keeper<'a> {
-    fn new(
-        directory: &'a mut Directory,
-        scene: &Scene,
-        request: &OutputRequest,
-    ) -> Result<Self, Failure> {
-        let table = directory.growing_table(scene, request)?;
-        Ok(Self { directory, table, grown: Instant::now(), refused: None })
+    fn new(directory: &'a mut Directory, table: GrowingTable) -> Self {
+        let now = Instant::now();
+        Self { directory, table, grown: now, kept: now, refused: None }
     }
 
     /// Called after each step; the first one claims the directory, as all input is known to be right by then.
-    fn see(&mut self, progress: &Progress) -> ControlFlow<()> {
+    fn see(&mut self, simulation: &Simulation) -> ControlFlow<()> {
         if let Err(failure) = self.directory.claim() {
             self.refused = Some(failure);
             return ControlFlow::Break(());
         }
-        if self.grown.elapsed() > PERIOD {
-            // a full disk is told at the end, when all is written once more
-            let _ = self.table.catch_up(progress.trajectory);
+        // a full disk is told at the end, when all is written once more
+        if self.grown.elapsed() > GROWTH {
+            let _ = self.table.catch_up(simulation.trajectory());
             self.grown = Instant::now();
         }
+        if self.kept.elapsed() > KEEPING {
+            self.keep(simulation);
+        }
         ControlFlow::Continue(())
+    }
+
+    fn keep(&mut self, simulation: &Simulation) {
+        // rows first: those after the checkpoint are computed once more
+        let _ = self.table.catch_up(simulation.trajectory());
+        let _ = self.directory.keep(&simulation.checkpoint());
+        self.kept = Instant::now();
     }
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene: path, settings, step, until, output } = arguments;
-    let mut file = SceneFile::read(path)?;
+    let Arguments { scene, settings, step, until, resume, output } = arguments;
+    let mut file = scene.read()?;
     settings.apply(&mut file.settings)?;
     output.apply(&mut file)?;
     file.output.step = step.or(file.output.step);
     file.scene = ended(file.scene, *until)?;
     let SceneFile { title, scene, settings, output: request, .. } = &file;
-    let mut directory = output.directory(path, "")?;
+    let mut directory = output.directory(&arguments.scene.path, "")?;
 
     let mut watch = Watch::new(scene.end(), output.quiet)?;
-    let mut keeper = Keeper::new(&mut directory, scene, request)?;
-    let result = scene.simulate_with(settings, &request.sampling(), |progress| {
-        keeper.see(progress)?;
-        watch.see(progress)
+    let mut simulation = scene.start(settings)?;
+    if *resume {
+        directory.resumes = true;
+        let checkpoint = simulation.read_checkpoint(directory.checkpoint()?)?;
+        simulation.restore(&checkpoint)?;
+    }
+    let began = simulation.time();
+    simulation.record(&request.sampling())?;
+    let table = directory.growing_table(&simulation, request)?;
+    let mut keeper = Keeper::new(&mut directory, table);
+    let result = simulation.finish(|simulation| {
+        keeper.see(simulation)?;
+        watch.see(simulation).map_break(|()| keeper.keep(simulation))
     });
     watch.finish();
-    keeper.refused.map_or(Ok(()), Err)?;
+    let Keeper { refused, mut table, .. } = keeper;
+    refused.map_or(Ok(()), Err)?;
     let outcome = match &result {
         Ok(trajectory) => Ok(trajectory),
         Err(Error::Integration(failure)) => Err(&**failure),
@@ -102,11 +124,20 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let trajectory = outcome.unwrap_or_else(|failure| &failure.trajectory);
     directory.claim()?;
     directory.write("report.json", |path| write_report(outcome, path))?;
-    directory.write_table(trajectory, request)?;
-    directory.write_formats(trajectory, title, request)?;
+    match resume {
+        true => directory.write("trajectory.csv", |_| table.catch_up(trajectory))?,
+        false => directory.write_table(trajectory, request)?,
+    }
+    directory.write_formats(&trajectory.since(began), title, request)?;
+    if outcome.is_ok() {
+        directory.forget_checkpoint();
+    }
 
     if !output.quiet && !title.is_empty() {
         print(title)?;
+    }
+    if *resume && !output.quiet {
+        print(format_args!("resumed at t = {began} s"))?;
     }
     print(trajectory.report())?;
     if !output.quiet {

@@ -1,13 +1,12 @@
 //! `pliant static`
 
-use std::path::PathBuf;
-
 use clap::Args;
 use pliant::output::write_static_report;
 use pliant::{Error, SceneFile, Statics};
 
 use crate::failure::{Failure, print};
 use crate::files::OutputArguments;
+use crate::scene::SceneArguments;
 
 /// Find the equilibrium of the first phase of a scene
 ///
@@ -16,19 +15,18 @@ use crate::files::OutputArguments;
 /// out/NAME-static for the scene file NAME.toml if --out does not say otherwise.
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file
-    #[arg(value_name = "FILE")]
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneArguments,
     #[command(flatten)]
     output: OutputArguments,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene: path, output } = arguments;
-    let mut file = SceneFile::read(path)?;
+    let Arguments { scene, output } = arguments;
+    let mut file = scene.read()?;
     output.apply(&mut file)?;
     let SceneFile { title, scene, output: request, .. } = &file;
-    let mut directory = output.directory(path, "-static")?;
+    let mut directory = output.directory(&arguments.scene.path, "-static")?;
 
     let result = scene.equilibrium(&Statics::default());
     let outcome = match &result {
