@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::keys::{Default, Holds, Key, TableKeys};
 use super::reference::tables;
+use super::selection::BOX;
 use super::top::TOP;
 
 /// The JSON Schema (draft 7) of scene files, for editors that check TOML by it.
@@ -11,6 +12,7 @@ pub fn schema() -> Value {
     let mut root = object(&TOP);
     let inner = tables().into_iter().skip(1).map(|keys| (keys.name.into(), object(keys)));
     let mut definitions: Map<String, Value> = inner.collect();
+    definitions.insert(BOX.name.into(), object(&BOX));
     for (name, definition) in shared() {
         definitions.insert(name.into(), definition);
     }
@@ -36,7 +38,7 @@ fn shared() -> [(&'static str, Value); 5] {
                 { "type": "string" },
                 whole,
                 { "type": "array", "items": whole },
-                reference("box"),
+                reference(BOX.name),
             ] }),
         ),
         ("axes", json!({ "anyOf": [axis, { "type": "array", "items": axis }] })),

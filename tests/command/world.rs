@@ -33,10 +33,14 @@ fn send(signal: &str, child: &Child) {
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
 }
 
+fn endless_bar() -> String {
+    bar(1e6).replace("viscosity = 200.0", "viscosity = 0.0")
+}
+
 /// A run of days of motion that never comes to rest: it cannot be over before it is stopped.
-fn endless(place: &Place) -> Child {
-    let scene = place.scene(&bar(1e6).replace("viscosity = 200.0", "viscosity = 0.0"));
-    let mut run = place.command(&["run", scene, "--max-steps", "1000000000"]);
+fn endless(place: &Place, flags: &[&str]) -> Child {
+    let scene = place.scene(&endless_bar());
+    let mut run = place.command(&[&["run", scene, "--max-steps", "1000000000"], flags].concat());
     run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -44,7 +48,7 @@ fn endless(place: &Place) -> Child {
 fn a_signal_keeps_what_was_computed() {
     for signal in ["INT", "TERM", "HUP"] {
         let place = Place::new();
-        let child = endless(&place);
+        let child = endless(&place, &[]);
         wait_for_watch(&child);
         // it takes steps
         wait("no directory", || place.path("out/scene").exists());
@@ -63,8 +67,52 @@ fn a_signal_keeps_what_was_computed() {
         assert!(report["steps"].as_u64().unwrap() >= 1 && rows.len() >= 2);
         let (last, time) = (rows.last().unwrap()[0], report["failure"]["time"].as_f64().unwrap());
         assert!((last - time).abs() <= f64::EPSILON * time, "{last} {time}");
-        assert_eq!(place.files("out/scene"), ["report.json", "trajectory.csv"]);
+        assert_eq!(place.files("out/scene"), ["checkpoint.json", "report.json", "trajectory.csv"]);
     }
+}
+
+/// Two runs, of which the second goes on with the first, leave one table without gaps, and the energy balance
+/// closes from the start on.
+#[test]
+fn a_run_that_was_ended_goes_on() {
+    let place = Place::new();
+    let table = place.path("out/scene/trajectory.csv");
+    let rows = || fs::read_to_string(&table).map_or(0, |text| text.lines().count());
+    let mut ends = Vec::new();
+    for flags in [&[][..], &["--resume"]] {
+        let (child, before) = (endless(&place, flags), rows());
+        wait("no rows", || rows() > before + 10);
+        send("TERM", &child);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+        ends.push(place.report("out/scene")["failure"]["time"].as_f64().unwrap());
+    }
+    let times: Vec<f64> = place.table("out/scene").1.iter().map(|row| row[0]).collect();
+    assert!(ends[1] > ends[0] && times.last() == Some(&ends[1]));
+    // samples every 0.1 s, and where each run has ended
+    let mut expected: Vec<f64> =
+        (0..).map(|k| 0.1 * f64::from(k)).take_while(|&t| t < ends[1]).collect();
+    expected.extend(&ends);
+    expected.sort_by(f64::total_cmp);
+    expected.dedup();
+    assert_eq!(times.len(), expected.len());
+    assert!(times.iter().zip(&expected).all(|(t, expected)| (t - expected).abs() < 1e-9));
+    let report = place.report("out/scene");
+    let [error, scale] =
+        ["energy_balance_error", "energy_scale"].map(|key| report[key].as_f64().unwrap());
+    assert!(error < 1e-2 * scale, "{error} {scale}");
+
+    // other columns, no checkpoint
+    let scene = place.scene(&endless_bar());
+    let refused = |flags: &[&str]| {
+        let output = place.run(&[&["run", scene, "--resume"], flags].concat());
+        assert_eq!(output.status.code(), Some(2));
+        stderr(&output)
+    };
+    says(&refused(&["--track", "3"]), &["its columns are others"]);
+    says(&refused(&["--out", "elsewhere"]), &["there is no elsewhere/checkpoint.json"]);
+    says(&refused(&["--until", "5"]), &["checkpoint file", "phases"]);
+    assert_eq!(place.table("out/scene").1.len(), times.len());
 }
 
 /// Before the first step there is nothing to be kept: here of a mesh so fine that it takes seconds.
@@ -93,7 +141,7 @@ fn ctrl_c_before_the_first_step_ends_at_once() {
 #[test]
 fn a_kill_leaves_the_rows_until_then() {
     let place = Place::new();
-    let mut child = endless(&place);
+    let mut child = endless(&place, &[]);
     let table = place.path("out/scene/trajectory.csv");
     let rows = || fs::read_to_string(&table).map_or(0, |text| text.lines().count());
     wait("no rows", || rows() > 2);
@@ -133,7 +181,7 @@ fn a_run_owns_its_directory() {
     assert_eq!(place.files("out/scene"), ["notes.txt", "report.json", "trajectory.csv"]);
 
     fs::remove_file(place.path("out/scene/trajectory.csv")).unwrap();
-    let mut child = endless(&place);
+    let mut child = endless(&place, &[]);
     wait("no rows", || place.path("out/scene/trajectory.csv").exists());
     let other = place.run(&["run", scene, "--step", "0.5"]);
     assert_eq!(other.status.code(), Some(2));

@@ -12,7 +12,7 @@ const PARTS: [(&str, &str); 6] = [
     ("top", "title = \"base\"\n"),
     ("[body]", "[body]\nthickness = 0.01\n"),
     ("[[spring]]", "[[spring]]\nname = \"down\"\nends = [1, 3]\n"),
-    ("[[chamber]]", "[[chamber]]\nname = \"inside\"\nnodes = [1, 2, 3, 4]\n"),
+    ("[[chamber]]", "[[chamber]]\nname = \"inside\"\nnodes = [1, 2, 13, 12]\n"),
     (
         "[[obstacle]]",
         "[[obstacle]]\nkind = \"disc\"\ncentre = [0.0, -1.0]\nradius = 0.1\nstiffness = 1e3\n",
@@ -39,7 +39,12 @@ fn with(example: &str, mesh: &str) -> String {
     let mut text = String::new();
     for (part, base) in PARTS {
         let is_whole = part == place && (key == place || key == "title");
-        text += if is_whole { "" } else { base };
+        let is_needed = match part {
+            "[[chamber]]" => key == "pressure",
+            "[[spring]]" => key == "actuate",
+            _ => true,
+        };
+        text += if is_whole || !is_needed { "" } else { base };
         if part == "[body]" && !is_whole {
             text += if key == "mesh" { "" } else { mesh };
             text += if key == "material" { "" } else { MATERIAL };
