@@ -165,6 +165,18 @@ impl Body {
         self.elements.fields(&self.regions, u)
     }
 
+    /// Part of the strain energy (0 to 1) under the displacements `u` (m) that is stored in differences between the
+    /// strain and a continuous one. `None` without strain.
+    pub(crate) fn strain_jumps(&self, u: &[f64]) -> Option<f64> {
+        let [energy, jumps] = self.elements.jumps(&self.regions, self.strain, u);
+        (energy > 0.0).then(|| jumps / energy)
+    }
+
+    /// Cells (counted from 0) that the displacements `u` (m) turn inside out.
+    pub(crate) fn inverted_cells(&self, u: &[f64]) -> Vec<usize> {
+        self.elements.inverted(u)
+    }
+
     /// Natural volume of each cell (m^3).
     pub fn cell_volumes(&self) -> Vec<f64> {
         self.elements.volumes()

@@ -4,15 +4,19 @@ use super::elements::ElementsOf;
 use super::fields::Fields;
 use super::forces::Forces;
 use super::inertia::Masses;
+use super::recovery::Recovery;
 use super::tangents::Tangents;
 use crate::element::{ReferenceCell, with_element};
 use crate::input::InputError;
 use crate::mesh::Mesh;
 
 /// All elements of a body.
-pub(super) trait Elements: Masses + Forces + Tangents + Fields + Send + Sync {}
+pub(super) trait Elements:
+    Masses + Forces + Tangents + Fields + Recovery + Send + Sync
+{
+}
 
-impl<T: Masses + Forces + Tangents + Fields + Send + Sync> Elements for T {}
+impl<T: Masses + Forces + Tangents + Fields + Recovery + Send + Sync> Elements for T {}
 
 /// The elements on the cells of `mesh`; `section` is the area or thickness of the body.
 pub(super) fn elements(mesh: &Mesh, section: f64) -> Result<Box<dyn Elements>, InputError> {

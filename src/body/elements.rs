@@ -17,6 +17,8 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) nodes: Vec<[usize; N]>,
     /// Strain points, those of one cell after those of the other; volumes times section.
     points: Vec<StrainPoint<N, M, D>>,
+    /// Shape functions at the strain points of a cell.
+    pub(super) values: [[f64; N]; Q],
     /// For each cell, sum w N_a N_b (m^3).
     pub(super) products: Vec<[[f64; N]; N]>,
     pub(super) quadratic: bool,
@@ -50,9 +52,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             products.push(product);
             nodes.push(std::array::from_fn(|a| cell[a]));
         }
+        let values = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
         let quadratic = mesh.kind().is_quadratic();
         let shares = Shares::new(&nodes, mesh.node_count());
-        Ok(Self { nodes, points, products, quadratic, shares })
+        Ok(Self { nodes, points, values, products, quadratic, shares })
     }
 
     /// The strain points of each cell.

@@ -55,6 +55,9 @@ pub(super) trait Fields {
     /// Angle (rad) by which each cell has turned.
     fn rotations(&self, u: &[f64]) -> Vec<f64>;
 
+    /// Cells with det F <= 0 somewhere; none where cells do not fill space.
+    fn inverted(&self, u: &[f64]) -> Vec<usize>;
+
     /// Present over natural volume of each cell.
     fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
 
@@ -98,6 +101,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
         (0..self.nodes.len()).map(of_cell).collect()
     }
 
+    fn inverted(&self, u: &[f64]) -> Vec<usize> {
+        let is_inverted =
+            |&cell: &usize| M == D && self.deformed(cell, u).any(|(_, at)| at.stretch() <= 0.0);
+        (0..self.nodes.len()).filter(is_inverted).collect()
+    }
+
     fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
         let of_cell = |(cell, natural): (usize, f64)| {
             let present = self.deformed(cell, u).map(|(volume, at)| volume * at.stretch());
@@ -114,7 +123,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// The strain points of a cell, their volumes and how they are deformed.
-    fn deformed(
+    pub(super) fn deformed(
         &self,
         cell: usize,
         u: &[f64],

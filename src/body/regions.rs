@@ -159,6 +159,16 @@ impl Regions {
         &self.substances[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
     }
 
+    /// The cells of each substance, of `count` in all.
+    pub(super) fn by_substance(&self, count: usize) -> Vec<Vec<usize>> {
+        let mut cells = vec![Vec::new(); self.substances.len()];
+        for cell in 0..count {
+            let number = self.of_cell.get(cell).map_or(0, |&index| usize::from(index));
+            cells[number].push(cell);
+        }
+        cells
+    }
+
     /// `cells`, divided into runs of one substance.
     pub(super) fn runs(
         &self,

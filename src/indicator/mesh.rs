@@ -38,16 +38,13 @@ pub(super) fn units(body: &Body) -> Vec<String> {
 /// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
 /// several times too stiff.
 pub(super) fn locking(body: &Body) -> Option<String> {
-    let mend = match body.mesh().kind() {
-        CellKind::Triangle if !is_crossed(body) => {
-            "take quadratic cells (\"triangles6\"; in Gmsh: Mesh.ElementOrder = 2) or \"crossed\" ones"
-        }
-        CellKind::Quadrilateral => "take quadratic cells (\"triangles6\") or \"crossed\" triangles",
-        CellKind::Tetrahedron | CellKind::Hexahedron => {
-            "take quadratic cells (\"tetrahedra10\"; in Gmsh: Mesh.ElementOrder = 2)"
-        }
-        _ => return None,
+    let crossed = match body.mesh().kind() {
+        CellKind::Triangle if is_crossed(body) => return None,
+        CellKind::Triangle => " or \"crossed\" ones",
+        CellKind::Quadrilateral => " or \"crossed\" triangles",
+        _ => "",
     };
+    let mend = quadratic_cells(body.mesh().kind())?;
     if body.mesh().kind().dimension() == 2 && body.plane() == Plane::Stress {
         return None;
     }
@@ -56,9 +53,23 @@ pub(super) fn locking(body: &Body) -> Option<String> {
         let cells = body.mesh().kind().name();
         format!(
             "Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON}): they lock, and may be several \
-             times too stiff in bending; {mend}, or a smaller ratio"
+             times too stiff in bending; take {mend}{crossed}, or a smaller ratio"
         )
     })
+}
+
+/// Quadratic cells to take for linear ones that fill a plane or space.
+pub(super) fn quadratic_cells(kind: CellKind) -> Option<&'static str> {
+    match kind {
+        CellKind::Triangle => {
+            Some("quadratic cells (\"triangles6\"; in Gmsh: Mesh.ElementOrder = 2)")
+        }
+        CellKind::Quadrilateral => Some("quadratic cells (\"triangles6\")"),
+        CellKind::Tetrahedron | CellKind::Hexahedron => {
+            Some("quadratic cells (\"tetrahedra10\"; in Gmsh: Mesh.ElementOrder = 2)")
+        }
+        CellKind::Segment | CellKind::Triangle6 | CellKind::Tetrahedron10 => None,
+    }
 }
 
 /// Whether each triangle has a corner at which just four meet (on the boundary, two or one), as those within a

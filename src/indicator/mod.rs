@@ -7,9 +7,12 @@
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
+//! | [`strain`]: cells turned inside out under Cauchy strain | none |
+//! | [`coarse`]: how much stiffer linear cells are than the strains that they show | 1.25 times |
 //! | [`touch`]: how deep nodes are inside obstacles | half a cell, 2 % of the body |
 //! | [`touch`]: obstacles that act and are never met | none |
 
+mod coarse;
 mod mesh;
 mod strain;
 mod touch;
@@ -44,7 +47,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<String> {
     let is_whole = samples[0].time <= 0.0 && trajectory.last().time >= scene.end();
     let meetings = touch::meetings(trajectory, &samples);
     let missed = || touch::missed(&meetings, touch::Reach::between(scene, &samples));
-    let warnings = scene.warnings().into_iter().chain(strain::turning(trajectory, &samples));
+    let warnings = scene.warnings().into_iter().chain(of_cells(trajectory, &samples));
     let warnings = warnings.chain(touch::depths(&meetings));
     warnings.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
@@ -54,11 +57,21 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Str
     let samples = [trajectory.last()];
     let meetings = touch::meetings(trajectory, &samples);
     let warnings = trajectory.scene().warnings().into_iter();
-    let warnings = warnings.chain(strain::turning(trajectory, &samples));
+    let warnings = warnings.chain(of_cells(trajectory, &samples));
     let warnings = warnings.chain(touch::depths(&meetings));
     warnings
         .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())
         .collect()
+}
+
+/// What cells cannot follow.
+fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item = String> {
+    let warnings = [
+        strain::turning(trajectory, samples),
+        strain::inversion(trajectory, samples),
+        coarse::coarse(trajectory, samples),
+    ];
+    warnings.into_iter().flatten()
 }
 
 /// Most samples that are looked at, and most cells in all of them; but so many samples always are.

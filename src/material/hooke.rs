@@ -53,7 +53,7 @@ impl Hooke {
 
     /// lambda tr(E)^2 / 2 + mu E : E of 2 E
     #[inline(always)]
-    pub(super) fn energy<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> T {
+    pub(crate) fn energy<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> T {
         let strain = times(*twice, T::from(0.5));
         let trace = trace(&strain);
         let square = strain.iter().fold(T::from(-0.0), |sum, column| sum + dot(column, column));
