@@ -40,6 +40,9 @@ pub struct Equilibrium {
     pub(crate) trajectory: Trajectory,
     /// What a small push does to it.
     pub stability: Stability,
+    /// Rigid motions, in words, that nothing holds in a linear body whose loads balance each other, and that were taken out of
+    /// the displacements u: R^T M u = 0 for each motion R, so that the body has neither moved nor turned in the mean over its mass.
+    pub removed: Vec<String>,
     /// Largest nodal force that is not balanced (N).
     pub residual: f64,
     /// Largest nodal force of those that balance each other (N): the scale of `residual`.
@@ -70,7 +73,8 @@ impl Equilibrium {
     }
 
     /// The same as a trajectory, for [`output`](crate::output): the natural shape at t = 0, and
-    /// the equilibrium at the end of the phase.
+    /// the equilibrium at the end of the phase; between them those for parts of the load, if
+    /// [`Statics`](crate::Statics) asks for several steps.
     pub fn trajectory(&self) -> &Trajectory {
         &self.trajectory
     }
@@ -84,6 +88,13 @@ impl fmt::Display for Equilibrium {
             "{stability}; forces balanced to {residual:.1e} of {force_scale:.3e} N, \
              {iterations} iteration(s), {load_steps} load step(s)"
         )?;
+        if !self.removed.is_empty() {
+            write!(
+                f,
+                "; nothing holds the body: rigid motions removed ({})",
+                self.removed.join(", ")
+            )?;
+        }
         let differences = self.difference_evaluations;
         if differences > 0 {
             write!(
@@ -111,7 +122,8 @@ pub struct NoEquilibrium {
     pub iterations: usize,
     /// The likely cause, and what to try.
     pub cause: String,
-    /// The natural shape and, at the end of the phase, the last equilibrium found, if any.
+    /// The natural shape and, at that part of the end of the phase, the last equilibrium found, if any; those
+    /// before it as in [`Equilibrium::trajectory`].
     pub trajectory: Trajectory,
 }
 

@@ -283,6 +283,11 @@ impl Obstacle {
         std::array::from_fn(|i| velocity.get(i).copied().unwrap_or(0.0))
     }
 
+    /// Whether what slides on it is held back by Coulomb's friction.
+    pub(crate) fn has_friction(&self) -> bool {
+        self.friction.is_some_and(|[at_rest, _]| at_rest > 0.0)
+    }
+
     pub(super) fn is_per_area(&self) -> bool {
         matches!(self.stiffness, Stiffness::Density(_))
     }

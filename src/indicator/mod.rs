@@ -10,6 +10,7 @@
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
 //! | [`coarse`]: how much stiffer linear cells are than the strains that they show | 1.25 times |
 //! | [`touch`]: how deep nodes are inside obstacles | half a cell, 2 % of the body |
+//! | [`touch`]: obstacles with friction that are met in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never met | none |
 
 mod coarse;
@@ -59,6 +60,7 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Str
     let warnings = trajectory.scene().warnings().into_iter();
     let warnings = warnings.chain(of_cells(trajectory, &samples));
     let warnings = warnings.chain(touch::depths(&meetings));
+    let warnings = warnings.chain(touch::slippery(trajectory, &meetings));
     warnings
         .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())
         .collect()

@@ -99,6 +99,22 @@ pub(super) fn depths(meetings: &[Meeting]) -> impl Iterator<Item = String> {
     })
 }
 
+/// Obstacles that touch and would hold the body by friction, in an equilibrium that knows none.
+pub(super) fn slippery(
+    trajectory: &Trajectory,
+    meetings: &[Meeting],
+) -> impl Iterator<Item = String> {
+    let obstacles = trajectory.scene().obstacles().iter();
+    let is_met = |name: &str| meetings.iter().any(|met| met.obstacle == name && met.nearest <= 0.0);
+    obstacles.filter(move |obstacle| obstacle.has_friction() && is_met(obstacle.name())).map(|obstacle| {
+        format!(
+            "obstacle \"{}\" has friction, which does not act in statics (limit: none): the body slides as if there were \
+             none; run the scene until it is at rest instead",
+            obstacle.name()
+        )
+    })
+}
+
 /// Obstacles that acted and were further from the body at all times than it may come nearer unseen.
 pub(super) fn missed(meetings: &[Meeting], reach: Reach) -> impl Iterator<Item = String> {
     let is_missed = move |meeting: &&Meeting| meeting.nearest > reach.towards(meeting.speed);

@@ -1,6 +1,6 @@
 //! Statics: the shape in which a scene is in equilibrium.
 //!
-//! What holds the body and what loads it is that of the first phase, at its end:
+//! What holds the body and what loads it is that of one phase, at its end:
 //!
 //! | forces | equations | solved by |
 //! | --- | --- | --- |
@@ -11,26 +11,33 @@
 //! search goes on downhill. If it does not converge, what moves and loads the body is brought on in smaller
 //! and smaller steps: constraints and obstacles along their way; gravity, loads, pressure and the forces
 //! of actuators by a factor. Obstacles in motion count as standing where they are: nothing is dragged
-//! along.
+//! along. Nor does friction act, for how it acts depends on how the body came there.
+//!
+//! A linear body that nothing holds is in equilibrium if its loads balance each other. Of all its places that
+//! one is taken in which it has not moved as a whole: the displacements have no part in any rigid motion R, R^T M u = 0.
+//!
+//! By arc length the load is no longer given, but found with the displacements, along the path of equilibria: it falls
+//! where the body snaps through.
 
+mod arc_length;
 mod newton;
 mod options;
 mod rigid;
 
 use std::time::Instant;
 
-use newton::{Search, Stuck};
+use newton::{Point, Search, Stuck};
 pub use options::Statics;
 
-use crate::constraint::PhaseStart;
+use crate::constraint::{PhaseStart, prescribe};
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
 use crate::indicator;
-use crate::input::InputError;
+use crate::input::{InputError, find};
 use crate::report::Report;
-use crate::scene::Scene;
-use crate::system::{AtRest, Energy};
-use crate::trajectory::{Commanded, Sample, Trajectory};
+use crate::scene::{Phase, Scene};
+use crate::system::{AtRest, ForceBalance};
+use crate::trajectory::{Commanded, Quantity, Sample, Trajectory};
 
 impl Scene {
     /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first
@@ -50,45 +57,78 @@ impl Scene {
     ///
     /// # Errors
     /// Bad input; [`Error::Input`] if a linear body is held so that it can still move as a
-    /// whole; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
+    /// whole, and its loads move it; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
     pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
+        self.at_rest_in(0, statics)
+    }
+
+    /// As [`equilibrium`](Self::equilibrium), of the phase of that name (`"phase 2"`, say, if it was given none): under what acts
+    /// at its end.
+    ///
+    /// What earlier phases held or moved, and this one holds, stays where it was left; nodes that were free until
+    /// then are held in their natural place, for where a motion would have brought them, statics does not know.
+    ///
+    /// # Errors
+    /// As [`equilibrium`](Self::equilibrium); no phase of that name.
+    pub fn equilibrium_of(&self, phase: &str, statics: &Statics) -> Result<Equilibrium, Error> {
+        let names = self.phases().iter().map(Phase::name);
+        self.at_rest_in(find(phase, names, "phase of statics", "phases")?, statics)
+    }
+
+    fn at_rest_in(&self, number: usize, statics: &Statics) -> Result<Equilibrium, Error> {
         let clock = Instant::now();
         statics.validate()?;
         let mut forces = self.forces()?;
         let model = self.model(&forces);
-        let phase = self.first_phase()?;
-        let start = PhaseStart { time: 0.0, u: &vec![0.0; self.body().dofs()] };
-        let system = self.system(&model, phase, forces.swap_remove(0), &start, 0.0)?;
+        let phase = &self.phases()[number]; // `forces` makes sure that there is one
+        let (time, u) = self.left_by_phases_before(number)?;
+        let start = PhaseStart { time, u: &u };
+        let system = self.system(&model, phase, forces.swap_remove(number), &start, 0.0)?;
         let free =
             rigid::free_motions(self.body().mesh(), self.body().inertia().pattern(), system.rows());
-        let rest = AtRest::new(system, phase.end(), phase.name())?;
-        let loose = |freedom: &str| {
+        let words: Vec<&str> = free.iter().map(|motion| &*motion.words).collect();
+        let words = words.join(", ");
+        let mut rest = AtRest::new(system, phase.end(), phase.name())?;
+        let loose = |freedom: &str, mend: &str| {
             let input = format!("constraints of phase \"{}\"", phase.name());
             let value = format!("leaving the body free {freedom}");
-            Error::from(InputError::new(input, value, "hold more of its nodes"))
+            Error::from(InputError::new(input, value, mend))
         };
+        let natural = vec![0.0; self.body().dofs()];
         let linear = rest.is_linear();
         if linear && !free.is_empty() {
-            return Err(loose(&format!("for {}", free.join(", "))));
+            let mut loads = ForceBalance::zeros(natural.len());
+            // linear forces have a meaning everywhere
+            let _ = rest.evaluate(1.0, &natural, &mut loads);
+            if let Some(resultant) = free.iter().find_map(|motion| motion.resultant(&loads.total)) {
+                let freedom = format!("for {words}; {resultant}");
+                return Err(loose(&freedom, "hold more of its nodes, or balance the loads"));
+            }
+        }
+        if statics.arc_steps > 0 {
+            if !free.is_empty() {
+                return Err(loose(
+                    &format!("for {words}"),
+                    "for arc length, hold more of its nodes",
+                ));
+            }
+            if rest.is_driven() {
+                let input = format!("statics.arc_steps for phase \"{}\"", phase.name());
+                let mend = "obstacles that move cannot go back with the load: let them stand, or leave it 0";
+                return Err(InputError::new(input, statics.arc_steps, mend).into());
+            }
         }
         let mut search = Search::new(rest, statics, self.body().mesh().size(), !free.is_empty());
-        let result = search.all();
-        let natural = vec![0.0; self.body().dofs()];
-        let natural_energy = search.rest.energy(0.0, &natural);
-        let first = sample(0.0, &natural, &vec![0.0; search.mu.len()], natural_energy);
-        let mut trajectory = Trajectory::new(self, Report::default(), first);
-        if search.fraction > 0.0 {
-            let mut energy = search.rest.energy(search.fraction, &search.u);
-            energy.supplied = energy.balance() - natural_energy.balance();
-            let mut state = sample(phase.end(), &search.u, &search.mu, energy);
-            state.constraint_drift = search.drift();
-            trajectory.push(state);
+        let result = if statics.arc_steps > 0 { search.trace() } else { search.all() };
+        if linear && result.is_ok() {
+            rigid::remove(&free, self.body().inertia(), search.displacements());
         }
+        let mut trajectory = self.load_curve(number, &mut search);
         trajectory.report.wall_seconds = clock.elapsed().as_secs_f64();
         trajectory.report.doubts = indicator::of_equilibrium(&trajectory, result.is_ok());
         if let Err(Stuck { mut cause, residual }) = result {
             if !free.is_empty() {
-                cause += &format!("; the constraints leave the body free for {}", free.join(", "));
+                cause += &format!("; the constraints leave the body free for {words}");
             }
             return Err(Box::new(NoEquilibrium {
                 phase: phase.name().into(),
@@ -102,12 +142,17 @@ impl Scene {
             .into());
         }
         let stability = search.stability();
-        if linear && stability == Stability::Neutral {
-            return Err(loose("to deform without force"));
+        if linear && free.is_empty() && stability == Stability::Neutral {
+            return Err(loose("to deform without force", "hold more of its nodes"));
         }
         Ok(Equilibrium {
             trajectory,
             stability,
+            removed: if linear {
+                free.into_iter().map(|motion| motion.words).collect()
+            } else {
+                Vec::new()
+            },
             residual: search.residual,
             force_scale: search.at.scale,
             iterations: search.iterations,
@@ -117,18 +162,45 @@ impl Scene {
             failed_steps: search.failed_steps,
         })
     }
-}
 
-fn sample(time: f64, u: &[f64], multipliers: &[f64], energy: Energy) -> Sample {
-    Sample {
-        time,
-        phase: 0,
-        u: u.to_vec(),
-        v: vec![0.0; u.len()],
-        multipliers: multipliers.to_vec(),
-        energy,
-        constraint_drift: 0.0,
-        sensors: Vec::new(),
-        commanded: Commanded::default(),
+    /// When the phase of that `number` begins (s), and the displacements (m) that the constraints of those before it
+    /// have left.
+    fn left_by_phases_before(&self, number: usize) -> Result<(f64, Vec<f64>), InputError> {
+        let (mut time, mut u) = (0.0, vec![0.0; self.body().dofs()]);
+        for phase in &self.phases()[..number] {
+            let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
+            time = phase.end();
+            prescribe(&rows, time, &mut u);
+        }
+        Ok((time, u))
+    }
+
+    /// The natural shape and the equilibria that were found, as samples.
+    fn load_curve(&self, phase: usize, search: &mut Search) -> Trajectory {
+        let natural = Point::new(0.0, self.body().dofs(), search.mu.len());
+        let unloaded = search.rest.energy(0.0, &natural.u);
+        let points = std::mem::take(&mut search.curve);
+        let is_curve = search.is_recorded();
+        let sample = |(number, point): (usize, &Point)| {
+            let mut energy = search.rest.energy(point.fraction, &point.u);
+            energy.supplied = energy.balance() - unloaded.balance();
+            Sample {
+                time: search.time(number, points.len(), point.fraction),
+                phase,
+                u: point.u.clone(),
+                v: vec![0.0; point.u.len()],
+                multipliers: point.mu.clone(),
+                energy,
+                constraint_drift: point.drift,
+                sensors: if is_curve { vec![point.fraction] } else { Vec::new() },
+                commanded: Commanded::default(),
+            }
+        };
+        let mut trajectory = Trajectory::new(self, Report::default(), sample((0, &natural)));
+        if is_curve {
+            trajectory.sensors = vec![Quantity { name: "load factor".into(), unit: "1".into() }];
+        }
+        (1..).zip(&points).map(sample).for_each(|sample| trajectory.push(sample));
+        trajectory
     }
 }

@@ -12,12 +12,30 @@ pub(super) struct Stuck {
     pub(super) residual: f64,
 }
 
+/// An equilibrium on the way.
+pub(super) struct Point {
+    /// Part of constraints and loads.
+    pub(super) fraction: f64,
+    pub(super) u: Vec<f64>,
+    /// Constraint forces.
+    pub(super) mu: Vec<f64>,
+    /// Largest |A^T u - b| (m).
+    pub(super) drift: f64,
+}
+
+impl Point {
+    /// The natural shape.
+    pub(super) fn new(fraction: f64, dofs: usize, rows: usize) -> Self {
+        Self { fraction, u: vec![0.0; dofs], mu: vec![0.0; rows], drift: 0.0 }
+    }
+}
+
 /// A search on its way.
 pub(super) struct Search<'a> {
     pub(super) rest: AtRest,
-    statics: &'a Statics,
+    pub(super) statics: &'a Statics,
     /// Size of the body (m): no iteration moves a node by more than half of it.
-    size: f64,
+    pub(super) size: f64,
     /// Multiples of M that are added to K: the least one, and the present one (1/s^2).
     floor: f64,
     shift: f64,
@@ -38,10 +56,12 @@ pub(super) struct Search<'a> {
     pub(super) iterations: usize,
     pub(super) load_steps: usize,
     pub(super) failed_steps: usize,
-    trial: ForceBalance,
-    x: Vec<f64>,
-    d: Vec<f64>,
-    work: Vec<f64>,
+    /// The equilibria found: all if they are [recorded](Self::is_recorded), or else the last one.
+    pub(super) curve: Vec<Point>,
+    pub(super) trial: ForceBalance,
+    pub(super) x: Vec<f64>,
+    pub(super) d: Vec<f64>,
+    pub(super) work: Vec<f64>,
 }
 
 /// Parts of the highest eigenvalue: the smallest shift that is tried (and the one that stays on if
@@ -75,6 +95,7 @@ impl<'a> Search<'a> {
             iterations: 0,
             load_steps: 0,
             failed_steps: 0,
+            curve: Vec::new(),
             trial: ForceBalance::zeros(dofs),
             x: vec![0.0; dofs],
             d: vec![0.0; rows],
@@ -93,8 +114,7 @@ impl<'a> Search<'a> {
             let (u, mu) = (self.u.clone(), self.mu.clone());
             match self.balance() {
                 Ok(()) => {
-                    self.fraction = self.tried;
-                    self.load_steps += 1;
+                    self.arrive();
                     step = largest.min(2.0 * step);
                 }
                 Err(stuck) => {
@@ -110,8 +130,39 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
+    /// Takes note of the equilibrium that was found.
+    pub(super) fn arrive(&mut self) {
+        self.fraction = self.tried;
+        self.load_steps += 1;
+        if !self.is_recorded() {
+            self.curve.clear();
+        }
+        let drift = self.drift();
+        let (u, mu) = (self.u.clone(), self.mu.clone());
+        self.curve.push(Point { fraction: self.fraction, u, mu, drift });
+    }
+
+    /// Whether a load curve is asked for.
+    pub(super) fn is_recorded(&self) -> bool {
+        self.statics.load_steps > 1 || self.statics.arc_steps > 0
+    }
+
+    /// Time (s) of the equilibrium of that `number`, of `count`, for a part of the load.
+    pub(super) fn time(&self, number: usize, count: usize, fraction: f64) -> f64 {
+        let part = match self.statics.arc_steps {
+            0 => fraction,
+            _ => number as f64 / count.max(1) as f64,
+        };
+        part * self.rest.time()
+    }
+
+    /// The displacements of the last equilibrium.
+    pub(super) fn displacements(&mut self) -> &mut [f64] {
+        self.curve.last_mut().map_or(&mut [], |point| &mut point.u)
+    }
+
     /// Finds the equilibrium for the part `tried` of the load, from `u`.
-    fn balance(&mut self) -> Result<(), Stuck> {
+    pub(super) fn balance(&mut self) -> Result<(), Stuck> {
         let Statics { rtol, max_iterations, .. } = *self.statics;
         self.shift = self.floor;
         self.evaluate()?;
@@ -143,7 +194,7 @@ impl<'a> Search<'a> {
         )))
     }
 
-    fn evaluate(&mut self) -> Result<(), Stuck> {
+    pub(super) fn evaluate(&mut self) -> Result<(), Stuck> {
         let result = self.rest.evaluate(self.tried, &self.u, &mut self.at);
         result.map_err(|failure| self.stuck(reason(failure)))
     }
@@ -216,17 +267,17 @@ impl<'a> Search<'a> {
     }
 
     /// Largest |A^T u - b| (m).
-    pub(super) fn drift(&mut self) -> f64 {
+    fn drift(&mut self) -> f64 {
         self.rest.lacking(self.fraction, &self.u, &mut self.d);
         largest(&self.d)
     }
 
-    fn stuck(&self, cause: String) -> Stuck {
+    pub(super) fn stuck(&self, cause: String) -> Stuck {
         Stuck { cause, residual: self.residual }
     }
 }
 
-fn reason(failure: Failure) -> String {
+pub(super) fn reason(failure: Failure) -> String {
     match failure {
         Failure::Recoverable(message) => message,
         Failure::Fatal(error) => error.to_string(),

@@ -5,6 +5,9 @@ use std::ops::RangeInclusive;
 use crate::input::InputError;
 
 /// How an equilibrium is sought.
+///
+/// All forces act as they do at rest: dampers, friction and obstacles in motion drag nothing along. Where a body would
+/// stick to an obstacle depends on how it came there; [`Scene::simulate`](crate::Scene::simulate) knows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statics {
     /// Forces are in balance when none is left that is larger than this part of the largest one.
@@ -14,14 +17,23 @@ pub struct Statics {
     pub max_iterations: usize,
     /// Steps in which constraints and loads are brought on. Default: 1, everything at once; more
     /// of them when it converges to an equilibrium other than the one that a slow loading reaches.
+    ///
+    /// With more than one, the trajectory is a load curve: it has the equilibrium of each step, the time of which is that part
+    /// of the end of the phase, and a sensor `load factor` tells the part.
     pub load_steps: usize,
-    /// Smallest load step, as a part of the whole load, at most 1. Default: 1e-3.
+    /// Most steps by arc length; default: 0, the load is given. With them the load rises and falls as the path of
+    /// equilibria has it, stable or not, past limit points in load or displacement (snap-through, snap-back), until it
+    /// reaches 1 for the first time. The first step is that of a `load_steps`th of the load, and no later one
+    /// moves the body further. The trajectory is the load curve, its samples evenly spread over the phase.
+    /// Of what the equilibria look like between steps nothing is known: take enough `load_steps`.
+    pub arc_steps: usize,
+    /// Smallest load step, as a part of the whole load, at most 1 (by arc length, as a part of the first step). Default: 1e-3.
     pub min_load_step: f64,
 }
 
 impl Default for Statics {
     fn default() -> Self {
-        Self { rtol: 1e-10, max_iterations: 100, load_steps: 1, min_load_step: 1e-3 }
+        Self { rtol: 1e-10, max_iterations: 100, load_steps: 1, arc_steps: 0, min_load_step: 1e-3 }
     }
 }
 

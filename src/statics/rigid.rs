@@ -1,16 +1,59 @@
 //! Rigid motions that constraints leave free.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use crate::constraint::Row;
 use crate::mesh::Mesh;
-use crate::sparse::NodePattern;
+use crate::sparse::{NodeMatrix, NodePattern};
+use crate::vector::{dot, norm};
 
 /// Squares of velocities below this, relative to the largest, are round-off.
 const NOTHING: f64 = 1e-12;
 
-/// The rigid motions that `rows` leave free, in words; those of each connected piece of the body.
-pub(super) fn free_motions(mesh: &Mesh, pattern: &NodePattern, rows: &[Row]) -> Vec<String> {
+/// Resultants of loads below this, relative to the sum of their absolute values, are round-off.
+const BALANCED: f64 = 1e-12;
+
+/// A rigid motion.
+pub(super) struct RigidMotion {
+    pub(super) words: String,
+    /// Displacements (m): of a unit along a direction, or of a unit angle about a point.
+    values: Vec<f64>,
+    is_turn: bool,
+}
+
+impl RigidMotion {
+    /// What the nodal `loads` (N) that are not in balance come to along the motion, in words.
+    pub(super) fn resultant(&self, loads: &[f64]) -> Option<String> {
+        let sum = dot(&self.values, loads);
+        let terms: f64 = self.values.iter().zip(loads).map(|(r, f)| (r * f).abs()).sum();
+        let what = if self.is_turn { "moment of" } else { "force of" };
+        let unit = if self.is_turn { "N m" } else { "N" };
+        (sum.abs() > BALANCED * terms)
+            .then(|| format!("loads leave a {what} {sum:.3e} {unit} for {}", self.words))
+    }
+}
+
+/// Takes the `motions` out of the displacements `u`: R^T M u = 0 after that. `inertia` is M.
+pub(super) fn remove(motions: &[RigidMotion], inertia: &NodeMatrix, u: &mut [f64]) {
+    let Some(first) = motions.first() else { return };
+    let dimension = first.values.len() / inertia.pattern().nodes();
+    let weigh = |motion: &RigidMotion| {
+        let mut product = vec![0.0; motion.values.len()];
+        inertia.add_product(dimension, 1.0, &motion.values, &mut product);
+        product
+    };
+    let weighed: Vec<Vec<f64>> = motions.iter().map(weigh).collect();
+    let count = motions.len();
+    let masses = DMatrix::from_fn(count, count, |i, j| dot(&weighed[i], &motions[j].values));
+    let momenta = DVector::from_fn(count, |i, _| dot(&weighed[i], u));
+    let Some(parts) = masses.cholesky().map(|masses| masses.solve(&momenta)) else { return };
+    for (motion, part) in motions.iter().zip(parts.iter()) {
+        u.iter_mut().zip(&motion.values).for_each(|(u, r)| *u -= part * r);
+    }
+}
+
+/// The rigid motions that `rows` leave free; those of each connected piece of the body.
+pub(super) fn free_motions(mesh: &Mesh, pattern: &NodePattern, rows: &[Row]) -> Vec<RigidMotion> {
     let pieces = pattern.pieces();
     let count = pieces.iter().max().map_or(0, |last| last + 1);
     let mut nodes = vec![Vec::new(); count];
@@ -24,7 +67,11 @@ pub(super) fn free_motions(mesh: &Mesh, pattern: &NodePattern, rows: &[Row]) -> 
                 1 => String::new(),
                 _ => format!("the piece with node {} ", nodes[0] + 1),
             };
-            motions.push(who + &modes.describe(&mode));
+            motions.push(RigidMotion {
+                words: who + &modes.describe(&mode),
+                values: modes.displacements(&mode, mesh, nodes),
+                is_turn: modes.turn(&mode) > 0.0,
+            });
         }
     }
     motions
@@ -95,6 +142,27 @@ impl Modes {
         let held = moving.transpose() * hold * &moving;
         let free = &moving * eigenvectors(&held, |value, largest| value <= NOTHING * largest);
         echelon(free.transpose())
+    }
+
+    /// Size of the turn in a mode (rad).
+    fn turn(&self, mode: &[f64]) -> f64 {
+        norm(&mode[self.dimension..]) / self.radius
+    }
+
+    /// Displacements of the `nodes` in a mode, of unit angle or length; of the other nodes 0.
+    fn displacements(&self, mode: &[f64], mesh: &Mesh, nodes: &[usize]) -> Vec<f64> {
+        let turn = self.turn(mode);
+        let size = if turn > 0.0 { turn } else { norm(mode) };
+        let mut values = vec![0.0; mesh.node_count() * self.dimension];
+        for &node in nodes {
+            for axis in 0..self.dimension {
+                let value =
+                    |(number, c): (usize, &f64)| c * self.value(number, mesh.position(node), axis);
+                values[node * self.dimension + axis] =
+                    mode.iter().enumerate().map(value).sum::<f64>() / size;
+            }
+        }
+        values
     }
 
     fn describe(&self, mode: &[f64]) -> String {

@@ -123,6 +123,24 @@ impl AtRest {
         &self.system
     }
 
+    /// The end of the phase (s).
+    pub(crate) fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Whether obstacles move, as far as the load has come on.
+    pub(crate) fn is_driven(&self) -> bool {
+        let moves = |force: &Arc<dyn Force>| force.velocity().is_some_and(|w| w != [0.0; 3]);
+        self.system.forces.iter().any(moves)
+    }
+
+    /// M x
+    pub(crate) fn weigh(&self, x: &[f64], product: &mut [f64]) {
+        product.fill(0.0);
+        let model = &self.system.model;
+        model.inertia.add_product(model.dimension, 1.0, x, product);
+    }
+
     /// Number of factorizations so far.
     pub(crate) fn factorizations(&self) -> usize {
         self.factorizations
@@ -216,6 +234,11 @@ impl AtRest {
         let System { model, newton, .. } = &mut self.system;
         let (inertia, stiffness) = (&model.inertia, newton.stiffness.get());
         newton.solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
+    }
+
+    /// Factorizes the symmetric part of K, definite or not. Returns whether it could.
+    pub(crate) fn factorize_any(&mut self) -> bool {
+        self.factorize(0.0) || self.system.newton.solver.factorize_indefinite().is_ok()
     }
 
     /// Solves the saddle-point system above, K shifted as in the last factorization. `mu` gets the

@@ -212,20 +212,22 @@ fn cells_too_coarse_for_bending() {
     }
 }
 
-/// What any cells can follow: a uniform stretch, also of two materials one beside the other; a rotation, which leaves nothing
+/// What any cells can follow: a uniform stretch, also of two materials; a rotation, which leaves nothing
 /// but round-off in Green's strain, in the natural shape or on its way.
 #[test]
 fn cells_fine_enough_for_anything() {
-    let half = pliant::CellSelection::inside([0.0, 0.0], [0.1, 0.05]);
+    let half = pliant::CellSelection::inside([0.0, 0.0], [0.05, 0.1]);
     for cells in [Cells::Triangles, Cells::Crossed, Cells::Rectangles] {
         let stretched = Phase::until(1.0)
             .hold_axes("left", [Axis::X])
             .hold_axes([1], [Axis::Y])
             .move_axis("right", Axis::X, 0.01);
-        let stiff = Material { young: 10.0 * SOFT.young, ..SOFT };
-        for body in [square(cells, SOFT), square(cells, SOFT).region(half.clone(), stiff)] {
-            let rest = scene(body.strain(Strain::Green)).clone();
-            let rest = Scene::new(rest.body().clone()).phase(stretched.clone());
+        // one after the other: without contraction their strains are uniform, and ten times as large in the one
+        let soft = Material { poisson: 0.0, ..SOFT };
+        let stiff = Material { young: 10.0 * soft.young, ..soft };
+        for body in [square(cells, SOFT), square(cells, soft).region(half.clone(), stiff)] {
+            let body = body.strain(Strain::Green).build().unwrap();
+            let rest = Scene::new(body).phase(stretched.clone());
             let rest = rest.equilibrium(&Statics::default()).unwrap();
             assert_eq!(rest.trajectory().report().warnings(), NONE, "{cells:?}");
         }
@@ -337,4 +339,25 @@ fn deep_in_the_floor() {
     assert_eq!(standing(0.0099), NONE);
     let parts = ["node 1 is 1.01e-2 m inside obstacle \"floor\"", "limit: 1.00e-2 m", "stiffness"];
     only(&standing(0.0101), &parts);
+}
+
+/// A bar that stands on a floor with friction, which statics does not know; not so where it does not reach the floor.
+#[test]
+fn friction_in_statics() {
+    let warnings = |floor: f64, coefficient: f64| {
+        let bar = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4).build().unwrap();
+        let floor = Obstacle::half_plane([floor], [1.0]).stiffness(100.0);
+        let scene =
+            Scene::new(bar).gravity([-9.8]).obstacle(floor.friction_coefficient(coefficient));
+        let held =
+            if coefficient > 0.5 { Phase::until(1.0).hold("right") } else { Phase::until(1.0) };
+        let rest = scene.phase(held).equilibrium(&Statics::default()).unwrap();
+        rest.trajectory().report().warnings()
+    };
+    only(
+        &warnings(0.0, 0.5),
+        &["\"floor\" has friction", "does not act in statics", "run the scene"],
+    );
+    assert_eq!(warnings(0.0, 0.0), NONE);
+    only(&warnings(-0.05, 0.9), &["never touched"]);
 }

@@ -23,7 +23,7 @@ fn frequency(equilibrium: &Equilibrium) -> f64 {
 }
 
 /// A truss of two bars from (-1, 0) and (1, 0) to the apex (0, `height`), E A = 10.
-fn truss(height: f64, phase: Phase) -> Scene {
+pub(super) fn truss(height: f64, phase: Phase) -> Scene {
     let material = Material { density: 1.0, young: 10.0, poisson: 0.3, viscosity: 0.0 };
     let positions = vec![-1.0, 0.0, 0.0, height, 1.0, 0.0];
     let mesh = Mesh::new(2, positions, CellKind::Segment, vec![0, 1, 1, 2]).unwrap();
