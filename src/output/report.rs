@@ -127,6 +127,7 @@ fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
 /// | `method` | `"static"` |
 /// | `states` | displacement components |
 /// | `stability` | `kind` (`"stable"`, `"neutral"` or `"unstable"`), `frequency` (lowest natural one, Hz; `null` if nothing can move) and `growth` (1/s) |
+/// | `removed` | rigid motions, in words, that nothing holds and that were taken out of the displacements |
 /// | `residual`, `force_scale` | largest nodal force left unbalanced, and largest of those that balance each other (N) |
 /// | `iterations`, `factorizations`, `load_steps`, `failed_steps` | what it took |
 /// | `wall_seconds` | wall-clock time of the search (s) |
@@ -166,6 +167,7 @@ pub fn write_static_report(
             "method": "static",
             "states": trajectory.body().dofs(),
             "stability": found.ok().map(stability),
+            "removed": found.ok().map(|found| &found.removed),
             "residual": residual,
             "force_scale": found.ok().map(|found| found.force_scale),
             "iterations": iterations,

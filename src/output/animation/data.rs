@@ -133,14 +133,16 @@ pub(super) fn phases(scene: &Scene, geometry: &Geometry) -> Result<Value, Error>
     phases.map(|phase| self::phase(scene, phase, phase.end(), geometry)).collect()
 }
 
-/// As [`phases`], where commands have changed them cut into stretches that hold and move the same nodes.
+/// As [`phases`], where commands have changed them cut into stretches that hold and move the same nodes; likewise where
+/// frames begin in a later phase, as those of its equilibrium do.
 fn phases_in_force(
     trajectory: &Trajectory,
     frames: &[&Sample],
     geometry: &Geometry,
 ) -> Result<Value, Error> {
     let scene = trajectory.scene();
-    if frames.iter().all(|sample| sample.commanded.0.is_none()) {
+    let begins = frames.first().is_none_or(|sample| sample.phase == 0);
+    if begins && frames.iter().all(|sample| sample.commanded.0.is_none()) {
         return phases(scene, geometry);
     }
     let mut stretches: Vec<Value> = Vec::new();
