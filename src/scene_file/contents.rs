@@ -1,9 +1,12 @@
 //! What a scene file says.
 
+use crate::equilibrium::Equilibrium;
+use crate::error::Error;
 use crate::mesh::Selection;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::simulate::Sampling;
+use crate::statics::Statics;
 
 /// The contents of a scene file.
 #[derive(Debug, Clone)]
@@ -14,10 +17,35 @@ pub struct SceneFile {
     pub scene: Scene,
     /// How it is integrated.
     pub settings: Settings,
+    /// How its equilibrium is sought.
+    pub statics: StaticsRequest,
     /// What is to be written.
     pub output: OutputRequest,
     /// What `pliant check` says about the text: keys that have another name now.
     pub notes: Vec<String>,
+}
+
+/// Which equilibrium is sought, and how.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StaticsRequest {
+    /// Name of the phase; the first one without it.
+    pub phase: Option<String>,
+    /// How it is sought.
+    pub options: Statics,
+}
+
+impl SceneFile {
+    /// The equilibrium that the file asks for.
+    ///
+    /// # Errors
+    /// As [`Scene::equilibrium_of`].
+    pub fn equilibrium(&self) -> Result<Equilibrium, Error> {
+        let StaticsRequest { phase, options } = &self.statics;
+        match phase {
+            None => self.scene.equilibrium(options),
+            Some(phase) => self.scene.equilibrium_of(phase, options),
+        }
+    }
 }
 
 /// What a run is to write.

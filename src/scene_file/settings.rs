@@ -1,13 +1,15 @@
-//! `[solver]` and `[output]`.
+//! `[solver]`, `[statics]` and `[output]`.
 
-use super::contents::{Format, OutputRequest};
+use super::contents::{Format, OutputRequest, StaticsRequest};
 use super::keys::{Holds, Key, TableKeys};
 use super::selection::selection;
 use super::value::Value;
 use crate::error::Error;
-use crate::input::positive;
+use crate::input::{find, positive};
 use crate::mesh::Mesh;
+use crate::scene::{Phase, Scene};
 use crate::settings::{Settings, SettingsOption, SettingsValue as Kind};
+use crate::statics::Statics;
 
 pub(super) const SOLVER: TableKeys = TableKeys::new(
     "[solver]",
@@ -35,6 +37,31 @@ const fn key(option: &SettingsOption) -> Key {
     };
     Key::new(option.key, holds, option.meaning).in_unit(option.unit).default(option.default)
 }
+
+pub(super) const STATICS: TableKeys = TableKeys::new(
+    "[statics]",
+    "How `pliant static` seeks an equilibrium: that under the constraints, loads, obstacles and springs of a phase at its end. \
+     What earlier phases have moved and this one holds stays there. Friction does not act.",
+    &[
+        Key::new("phase", Holds::Text, "the name of the phase").default("the first one"),
+        Key::new("load_steps", Holds::Count, "steps in which constraints and loads are brought on")
+            .law("With more than one, the results have the equilibrium of each, with its `load factor`.")
+            .default("1"),
+        Key::new("arc_steps", Holds::Count, "most steps by arc length")
+            .law(
+                "With them the load rises and falls as the path of equilibria has it, through snap-through and \
+                 snap-back, until all of it acts. The first step is that of one of the `load_steps`, and none is longer.",
+            )
+            .default("0: the load is given"),
+        Key::number("rtol", "the largest force left over, relative to the largest force", "1")
+            .default("1e-10"),
+        Key::new("max_iterations", Holds::Count, "Newton iterations of one load step")
+            .default("100"),
+        Key::number("min_load_step", "the smallest load step, as a part of the whole load", "1")
+            .default("1e-3"),
+    ],
+    "[statics]\nphase = \"phase 1\"\nload_steps = 20",
+);
 
 pub(super) const OUTPUT: TableKeys = TableKeys::new(
     "[output]",
@@ -69,6 +96,27 @@ pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
     }
     settings.validate().map_err(|error| table.blame(error))?;
     Ok(settings)
+}
+
+pub(super) fn statics(value: &Value, scene: &Scene) -> Result<StaticsRequest, Error> {
+    let table = value.table(&STATICS)?;
+    let phase = table.optional("phase", Value::string)?;
+    if let Some(phase) = &phase {
+        let names = scene.phases().iter().map(Phase::name);
+        find(phase, names, "phase", "phases").map_err(|error| table.blame(error))?;
+    }
+    let count = |key| table.optional(key, Value::count);
+    let number = |key| table.optional(key, Value::number);
+    let default = Statics::default();
+    let options = Statics {
+        rtol: number("rtol")?.unwrap_or(default.rtol),
+        max_iterations: count("max_iterations")?.unwrap_or(default.max_iterations),
+        load_steps: count("load_steps")?.unwrap_or(default.load_steps),
+        arc_steps: count("arc_steps")?.unwrap_or(default.arc_steps),
+        min_load_step: number("min_load_step")?.unwrap_or(default.min_load_step),
+    };
+    options.validate().map_err(|error| table.blame(error))?;
+    Ok(StaticsRequest { phase: phase.map(Into::into), options })
 }
 
 pub(super) fn output(value: &Value, mesh: &Mesh) -> Result<OutputRequest, Error> {

@@ -4,7 +4,7 @@ use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
 use super::keys::{Holds, Key, TableKeys};
 use super::phase::{self, PHASE};
-use super::settings::{self, OUTPUT, SOLVER};
+use super::settings::{self, OUTPUT, SOLVER, STATICS};
 use super::surroundings::{self, CHAMBER, OBSTACLE, SPRING};
 use super::table::Table;
 use super::value::Value;
@@ -29,6 +29,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
         Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
         Key::new("solver", Holds::Table(&SOLVER), "how it is integrated"),
+        Key::new("statics", Holds::Table(&STATICS), "how its equilibrium is sought"),
         Key::new("output", Holds::Table(&OUTPUT), "what is written"),
     ],
     "title = \"A beam sinks\"\ndimension = 2\ngravity = [0.0, -9.8]",
@@ -63,7 +64,9 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
     }
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
+    let statics = top.optional("statics", |value| settings::statics(value, &scene))?;
+    let statics = statics.unwrap_or_default();
     let output = top.optional("output", |value| settings::output(value, scene.body().mesh()))?;
     let output = output.unwrap_or_else(OutputRequest::default);
-    Ok(SceneFile { title: title.into(), scene, settings, output, notes: Vec::new() })
+    Ok(SceneFile { title: title.into(), scene, settings, statics, output, notes: Vec::new() })
 }

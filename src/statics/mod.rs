@@ -177,10 +177,10 @@ impl Scene {
 
     /// The natural shape and the equilibria that were found, as samples.
     fn load_curve(&self, phase: usize, search: &mut Search) -> Trajectory {
-        let natural = Point::new(0.0, self.body().dofs(), search.mu.len());
+        let natural = Point::natural(self.body().dofs(), search.mu.len());
         let unloaded = search.rest.energy(0.0, &natural.u);
         let points = std::mem::take(&mut search.curve);
-        let is_curve = search.is_recorded();
+        let is_curve = search.statics.is_curve();
         let sample = |(number, point): (usize, &Point)| {
             let mut energy = search.rest.energy(point.fraction, &point.u);
             energy.supplied = energy.balance() - unloaded.balance();

@@ -25,8 +25,8 @@ pub(super) struct Point {
 
 impl Point {
     /// The natural shape.
-    pub(super) fn new(fraction: f64, dofs: usize, rows: usize) -> Self {
-        Self { fraction, u: vec![0.0; dofs], mu: vec![0.0; rows], drift: 0.0 }
+    pub(super) fn natural(dofs: usize, rows: usize) -> Self {
+        Self { fraction: 0.0, u: vec![0.0; dofs], mu: vec![0.0; rows], drift: 0.0 }
     }
 }
 
@@ -56,7 +56,7 @@ pub(super) struct Search<'a> {
     pub(super) iterations: usize,
     pub(super) load_steps: usize,
     pub(super) failed_steps: usize,
-    /// The equilibria found: all if they are [recorded](Self::is_recorded), or else the last one.
+    /// The equilibria found: those of a load curve, or else the last one.
     pub(super) curve: Vec<Point>,
     pub(super) trial: ForceBalance,
     pub(super) x: Vec<f64>,
@@ -134,17 +134,12 @@ impl<'a> Search<'a> {
     pub(super) fn arrive(&mut self) {
         self.fraction = self.tried;
         self.load_steps += 1;
-        if !self.is_recorded() {
+        if !self.statics.is_curve() {
             self.curve.clear();
         }
         let drift = self.drift();
         let (u, mu) = (self.u.clone(), self.mu.clone());
         self.curve.push(Point { fraction: self.fraction, u, mu, drift });
-    }
-
-    /// Whether a load curve is asked for.
-    pub(super) fn is_recorded(&self) -> bool {
-        self.statics.load_steps > 1 || self.statics.arc_steps > 0
     }
 
     /// Time (s) of the equilibrium of that `number`, of `count`, for a part of the load.

@@ -41,8 +41,16 @@ impl Default for Statics {
 /// in balance.
 const RTOL: RangeInclusive<f64> = 1e-14..=1e-2;
 
+/// Most steps of a load curve: so that no slip of the keyboard fills the memory.
+const MOST_STEPS: usize = 100_000;
+
 impl Statics {
-    pub(super) fn validate(&self) -> Result<(), InputError> {
+    /// Whether the trajectory is a load curve: the equilibria of all steps, with a sensor `load factor`.
+    pub fn is_curve(&self) -> bool {
+        self.load_steps > 1 || self.arc_steps > 0
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
         if !RTOL.contains(&self.rtol) {
             let [least, most] = [RTOL.start(), RTOL.end()];
             let mend = format!("it must lie between {least:e}, near round-off, and {most:e}");
@@ -58,6 +66,14 @@ impl Statics {
         ] {
             if number == 0 {
                 return Err(InputError::new(input, number, "it must be 1 at least"));
+            }
+        }
+        for (input, number) in
+            [("statics.load_steps", self.load_steps), ("statics.arc_steps", self.arc_steps)]
+        {
+            if number > MOST_STEPS {
+                let mend = format!("{MOST_STEPS} are the most, for all of them are kept");
+                return Err(InputError::new(input, number, mend));
             }
         }
         Ok(())

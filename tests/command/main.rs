@@ -333,6 +333,59 @@ fn static_finds_the_equilibrium() {
     }
 }
 
+/// A bar in two phases: the load of the second comes on in steps, by arc length or at once.
+#[test]
+fn static_writes_load_curves() {
+    let place = Place::new();
+    let two = bar(1.0).replace("area", "strain = \"green\"\narea")
+        + "[[phase]]\nname = \"push\"\nuntil = 2.0\nhold = [{ nodes = \"left\" }]\n\
+           load = [{ nodes = \"right\", force = [-0.2] }]\n\
+           [statics]\nphase = \"push\"\nload_steps = 4\n";
+    let output =
+        place.run(&["static", place.scene(&two), "--formats", "vtk,html", "--out", "curve"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let (header, rows) = place.table("curve");
+    assert_eq!((rows.len(), header.last().unwrap().as_str()), (5, "load factor"));
+    let factors: Vec<f64> = rows.iter().map(|row| *row.last().unwrap()).collect();
+    assert_eq!(factors, [0.0, 0.25, 0.5, 0.75, 1.0]);
+    let frames =
+        |directory| place.files(directory).iter().filter(|name| name.ends_with(".vtu")).count();
+    assert_eq!(frames("curve"), 5);
+
+    let arc = ["--arc-steps", "50", "--out", "arc", "--quiet"];
+    let output = place.run(&[&["static", "scene.toml"][..], &arc].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let end = place.table("arc").1;
+    // steps of equal length along a path that bends a little
+    assert!((4..=6).contains(&(end.len() - 1)), "{}", end.len());
+    let pulled = |rows: &[Vec<f64>]| rows.last().unwrap().last().copied();
+    assert_eq!((pulled(&end), pulled(&rows)), (Some(1.0), Some(1.0)));
+
+    // the first phase pulls by as much as none of the second; one equilibrium is one file
+    let plain = ["--phase", "pull", "--load-steps", "1", "--formats", "vtk", "--out", "plain"];
+    let output = place.run(&[&["static", "scene.toml"][..], &plain].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let (header, rows) = place.table("plain");
+    assert_eq!((rows.len(), rows[0][0], frames("plain")), (1, 1.0, 1));
+    assert!(!header.contains(&"load factor".to_owned()));
+    let output = place.run(&["static", "scene.toml", "--phase", "pul"]);
+    assert_eq!(output.status.code(), Some(2));
+    says(&stderr(&output), &["phase of statics = \"pul\"", "\"pull\""]);
+    for (bad, told) in [
+        ("phase = \"puhs\"", "\"push\""),
+        ("load_steps = 0", "statics.load_steps"),
+        ("rtol = 1.0", "statics.rtol"),
+    ] {
+        let (key, _) = bad.split_once(' ').unwrap();
+        let kept = two.lines().filter(|line| key == "phase" || !line.starts_with(key));
+        let kept = kept.filter(|line| key != "phase" || *line != "phase = \"push\"");
+        let text = kept.collect::<Vec<_>>().join("\n") + "\n" + bad + "\n";
+        let output = place.run(&["static", place.scene(&text)]);
+        assert_eq!(output.status.code(), Some(2), "{bad}");
+        says(&stderr(&output), &["scene.toml:", told]);
+    }
+}
+
 #[test]
 fn static_tells_what_it_cannot_hold() {
     let place = Place::new();

@@ -202,7 +202,8 @@ fn cells_too_coarse_for_bending() {
     ] {
         let mesh = Mesh::cuboid([0.1, 0.02, 0.02], nodes, cells).unwrap();
         let pull = Phase::until(1.0).hold("left").load_total("right", [0.0, -0.005, 0.0]);
-        let rest = Scene::new(Body::new(mesh, SOFT).build().unwrap()).phase(pull);
+        let body = Body::new(mesh, SOFT).strain(Strain::Cauchy).build().unwrap();
+        let rest = Scene::new(body).phase(pull);
         let rest = rest.equilibrium(&Statics::default()).unwrap();
         let warnings = rest.trajectory().report().warnings();
         match warns {
@@ -249,7 +250,8 @@ fn cells_fine_enough_for_anything() {
 #[test]
 fn cells_turned_inside_out_under_cauchy_strain() {
     let pushed = |force: f64| {
-        let body = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4).build().unwrap();
+        let bar = Body::new(Mesh::bar(0.1, 6).unwrap(), SOFT).area(2e-4);
+        let body = bar.strain(Strain::Cauchy).build().unwrap();
         let push = Phase::until(0.5).hold("left").load("right", [-force]);
         let rest = Scene::new(body).phase(push).equilibrium(&Statics::default()).unwrap();
         rest.trajectory().report().warnings()
@@ -259,7 +261,8 @@ fn cells_turned_inside_out_under_cauchy_strain() {
     // a corner thrown across its square passes the diagonal after 0.5 s: one cell, at the sample after that
     let body = Body::new(Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Triangles).unwrap(), SOFT);
     let crossing = Phase::until(1.0).hold([1, 2, 3]).move_nodes([4], [-0.1, -0.1]);
-    let crossing = Scene::new(body.thickness(0.01).build().unwrap()).phase(crossing);
+    let crossing =
+        Scene::new(body.strain(Strain::Cauchy).thickness(0.01).build().unwrap()).phase(crossing);
     let mut warnings = run(&crossing, &Sampling::every(0.2));
     warnings.retain(|warning| warning.contains("inside out"));
     only(&warnings, &["1 cell(s)", "at t = 0.6 s", "cell 2"]);

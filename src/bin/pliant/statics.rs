@@ -2,33 +2,48 @@
 
 use clap::Args;
 use pliant::output::write_static_report;
-use pliant::{Error, SceneFile, Statics};
+use pliant::scene_file::Format;
+use pliant::{Error, OutputRequest, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::OutputArguments;
 use crate::scene::SceneArguments;
 
-/// Find the equilibrium of the first phase of a scene
+/// Find the equilibrium of a phase of a scene
 ///
 /// Its constraints, gravity, loads, obstacles and springs are taken as they are at its end; there is
 /// no motion. Writes trajectory.csv with one row, report.json, and what --formats asks for, to
-/// out/NAME-static for the scene file NAME.toml if --out does not say otherwise.
+/// out/NAME-static for the scene file NAME.toml if --out does not say otherwise. With several steps these are
+/// the load curve: one row and one frame for each equilibrium, with its load factor.
 #[derive(Args)]
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+    /// Name of the phase [default: the first one]
+    #[arg(long, value_name = "NAME")]
+    phase: Option<String>,
+    /// Steps in which constraints and loads are brought on
+    #[arg(long, value_name = "STEPS")]
+    load_steps: Option<usize>,
+    /// Most steps by arc length, through snap-through and snap-back; the first is one of the load steps
+    #[arg(long, value_name = "STEPS")]
+    arc_steps: Option<usize>,
     #[command(flatten)]
     output: OutputArguments,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, output } = arguments;
+    let Arguments { scene, phase, load_steps, arc_steps, output } = arguments;
     let mut file = scene.read()?;
     output.apply(&mut file)?;
-    let SceneFile { title, scene, output: request, .. } = &file;
-    let mut directory = output.directory(&arguments.scene.path, "-static")?;
+    let options = &mut file.statics.options;
+    options.load_steps = load_steps.unwrap_or(options.load_steps);
+    options.arc_steps = arc_steps.unwrap_or(options.arc_steps);
+    file.statics.phase = phase.clone().or(file.statics.phase);
+    let mut directory = output.directory(&scene.path, "-static")?;
+    let SceneFile { title, statics, output: request, .. } = &file;
 
-    let result = scene.equilibrium(&Statics::default());
+    let result = file.equilibrium();
     let outcome = match &result {
         Ok(equilibrium) => Ok(equilibrium),
         Err(Error::Statics(failure)) => Err(&**failure),
@@ -40,8 +55,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     directory.claim()?;
     directory.write("report.json", |path| write_static_report(outcome, path))?;
-    directory.write_table(&trajectory.at_end(), request)?;
-    directory.write_formats(trajectory, title, request)?;
+    // the way from the natural shape to a single equilibrium is none that the body takes: pictures alone show both
+    let found = if statics.options.is_curve() { trajectory.clone() } else { trajectory.at_end() };
+    directory.write_table(&found, request)?;
+    let (files, pictures) = request.formats.iter().partition(|&&format| format == Format::Vtk);
+    for (shown, formats) in [(&found, files), (trajectory, pictures)] {
+        directory.write_formats(shown, title, &OutputRequest { formats, ..request.clone() })?;
+    }
 
     if !output.quiet && !title.is_empty() {
         print(title)?;

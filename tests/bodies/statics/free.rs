@@ -8,12 +8,12 @@ use super::{RUBBER, solve};
 
 fn square() -> Body {
     let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
-    Body::new(mesh, RUBBER).thickness(0.01).build().unwrap()
+    Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01).build().unwrap()
 }
 
 fn block() -> Body {
     let mesh = Mesh::cuboid([0.1, 0.2, 0.3], [2, 3, 3], SolidCells::Hexahedra).unwrap();
-    Body::new(mesh, RUBBER).build().unwrap()
+    Body::new(mesh, RUBBER).strain(Strain::Cauchy).build().unwrap()
 }
 
 /// Products (x_i - x_j) . (u_i - u_j) over all pairs of nodes: how distances change, which no small rigid motion does.

@@ -305,6 +305,8 @@ fn what_is_not_held_is_told() {
     for (bad, name) in [
         (Statics { rtol: 0.0, ..Statics::default() }, "statics.rtol = 0"),
         (Statics { load_steps: 0, ..Statics::default() }, "statics.load_steps = 0"),
+        (Statics { load_steps: 100_001, ..Statics::default() }, "statics.load_steps = 100001"),
+        (Statics { arc_steps: 100_001, ..Statics::default() }, "statics.arc_steps = 100001"),
         (Statics { max_iterations: 0, ..Statics::default() }, "statics.max_iterations = 0"),
         (Statics { min_load_step: f64::NAN, ..Statics::default() }, "statics.min_load_step = NaN"),
     ] {
