@@ -69,7 +69,7 @@ mod tensor;
 pub mod trajectory;
 mod vector;
 
-pub use body::{Body, CellField, CellSelection, Inertia, Strain, Viscosity};
+pub use body::{Body, CellField, CellSelection, Inertia, NodalField, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use equations::Equations;
 pub use equilibrium::{Equilibrium, NoEquilibrium, Stability};

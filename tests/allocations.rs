@@ -6,9 +6,10 @@ use pliant::force::{Force, NodalForces, Reservoir};
 use pliant::ode::Failure;
 use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
+use pliant::simulate::{Component, Reading};
 use pliant::{
-    Body, Cells, Chamber, ContactEvents, Mesh, Method, Phase, Sampling, Scene, Settings, Spring,
-    Strain,
+    Body, Cells, Chamber, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
+    Spring, Strain,
 };
 
 #[test]
@@ -34,6 +35,41 @@ fn steps_do_not_allocate() {
         let slack = if method == Method::Auto { (many - few) as u64 / 20 } else { 5 };
         assert!(allocations_of_many <= allocations_of_few + slack, "{method}");
     }
+}
+
+/// Named sensors cost each sample the room for their numbers, and nothing else.
+#[test]
+fn sensors_allocate_nothing_but_their_numbers() {
+    let floor = Obstacle::half_plane([0.0, -0.1], [0.0, 1.0]).named("floor").stiffness(100.0);
+    let scene = beam().gravity([0.0, -9.8]).obstacle(floor);
+    let sampling = |step: f64| {
+        Sampling::every(step)
+            .read("tip", Reading::position("right"))
+            .read("speed", Reading::velocity("right").component(Component::Norm))
+            .read("held", Reading::constraint_force("left"))
+            .read("floor", Reading::contact_force("floor"))
+            .read("pull", Reading::spring_pull("tendon"))
+            .read("pressure", Reading::pressure("inside"))
+            .read("volume", Reading::chamber_volume("inside"))
+            .read("stress", Reading::stress([1]))
+            .read("mises", Reading::stress_at([0.01, 0.01]).component(Component::VonMises))
+            .read("bend", Reading::angle([[1], [2]], [[1], [21]]))
+    };
+    let run = |sampling: &Sampling| {
+        let settings = Settings { method: Method::Arkode, rtol: 1e-4, ..Settings::default() };
+        let mut samples = 0;
+        let allocated = measure(|| {
+            samples = scene.simulate(&settings, sampling).unwrap().samples().len() as u64;
+        });
+        (samples, allocated.count_total)
+    };
+    let per_sample =
+        |few: (u64, u64), many: (u64, u64)| (many.1 - few.1) as f64 / (many.0 - few.0) as f64;
+    let without = per_sample(run(&Sampling::every(0.1)), run(&Sampling::every(0.001)));
+    let with = per_sample(run(&sampling(0.1)), run(&sampling(0.001)));
+    println!("{without} allocations per sample, {with} with sensors");
+    // the list of samples grows now and then
+    assert!((with - without - 1.0).abs() < 0.05, "{without}, {with}");
 }
 
 #[test]

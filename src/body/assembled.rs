@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use super::assembly::Elements;
 use super::elastic::Elastic;
-use super::fields::CellField;
+use super::fields::{CellField, NodalField, Probe, nodal_fields};
 use super::forces::NonlinearTerms;
 use super::regions::Regions;
+use crate::element::shares_at;
 use crate::force::NodalForces;
+use crate::input::{InputError, finite};
 use crate::material::{Hooke, Lame, Material, Plane, Strain, Viscosity};
 use crate::mesh::Mesh;
 use crate::ode::Failure;
@@ -175,6 +177,56 @@ impl Body {
     /// Cells (counted from 0) that the displacements `u` (m) turn inside out.
     pub(crate) fn inverted_cells(&self, u: &[f64]) -> Vec<usize> {
         self.elements.inverted(u)
+    }
+
+    /// Strain and stress at each node under the displacements `u` (m): those of the cells around it, extrapolated from
+    /// where they are computed, in the mean over the volumes of the cells. What is linear in space comes out exact
+    /// with quadratic cells.
+    ///
+    /// Where materials meet, it is a mean over both: look at [`cell_fields`](Self::cell_fields) there.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Strain};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Triangles6)?;
+    /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 0.0 };
+    /// let body = Body::new(mesh, soft).thickness(0.01).strain(Strain::Cauchy).build()?;
+    /// // a strain of x / (1 m) along x
+    /// let positions = body.mesh().positions().chunks(2);
+    /// let u: Vec<f64> = positions.flat_map(|x| [x[0] * x[0] / 2.0, 0.0]).collect();
+    /// for (field, x) in body.nodal_fields(&u).iter().zip(body.mesh().positions().chunks(2)) {
+    ///     assert!((field.stress[0][0] - 5e4 * x[0]).abs() < 1e-9);
+    /// }
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn nodal_fields(&self, u: &[f64]) -> Vec<NodalField> {
+        nodal_fields(&*self.elements, &self.regions, self.mesh.node_count(), u)
+    }
+
+    /// The nodes of the cell in which the natural position `x` (m) lies, with their shape functions there.
+    ///
+    /// # Errors
+    /// A point outside the body.
+    pub(crate) fn shares_at(&self, x: &[f64]) -> Result<Vec<(usize, f64)>, InputError> {
+        if x.len() != self.dimension() {
+            let mend = format!("it needs {} component(s) (m)", self.dimension());
+            return Err(InputError::new("point", format!("{x:?}"), mend));
+        }
+        finite("point", x)?;
+        shares_at(&self.mesh, x).ok_or_else(|| {
+            let mend = "it lies outside the body: give the natural position of one of its points";
+            InputError::new("point", format!("{x:?}"), mend)
+        })
+    }
+
+    /// What reads the sum of the fields at nodes (counted from 0), each times its weight.
+    pub(crate) fn probe(&self, weights: &[(usize, f64)]) -> Probe {
+        Probe::new(&self.mesh, &self.cell_volumes(), weights)
+    }
+
+    /// What `probe` reads under the displacements `u` (m).
+    pub(crate) fn probed(&self, probe: &Probe, u: &[f64]) -> NodalField {
+        probe.read(&*self.elements, &self.regions, u)
     }
 
     /// Natural volume of each cell (m^3).

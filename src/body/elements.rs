@@ -7,7 +7,9 @@
 //! What elements are good for is in chapters: their inertia, forces, tangents and fields.
 
 use super::shares::Shares;
-use crate::element::{MassPoint, ReferenceCell, StrainPoint, mass_points, strain_points};
+use crate::element::{
+    MassPoint, ReferenceCell, StrainPoint, extrapolation, mass_points, strain_points,
+};
 use crate::input::InputError;
 use crate::mesh::Mesh;
 use crate::tensor::Matrix;
@@ -19,6 +21,8 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     points: Vec<StrainPoint<N, M, D>>,
     /// Shape functions at the strain points of a cell.
     pub(super) values: [[f64; N]; Q],
+    /// What values at the strain points of a cell count for at each of its nodes.
+    pub(super) extrapolation: [[f64; Q]; N],
     /// For each cell, sum w N_a N_b (m^3).
     pub(super) products: Vec<[[f64; N]; N]>,
     pub(super) quadratic: bool,
@@ -55,7 +59,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let values = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
         let quadratic = mesh.kind().is_quadratic();
         let shares = Shares::new(&nodes, mesh.node_count());
-        Ok(Self { nodes, points, values, products, quadratic, shares })
+        let extrapolation = extrapolation::<C, N, M, Q>();
+        Ok(Self { nodes, points, values, extrapolation, products, quadratic, shares })
     }
 
     /// The strain points of each cell.

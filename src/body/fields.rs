@@ -11,10 +11,13 @@
 //! Across a cell there is either no strain (plane strain: e = 0, s = lambda tr E) or no stress (plane
 //! stress and segments: s = 0, e = -lambda tr E / (2 mu) with their reduced lambda).
 
+mod nodal;
 #[cfg(test)]
 mod tests;
 
 use nalgebra::{Matrix3, SMatrix, SVD, Vector3};
+pub use nodal::NodalField;
+pub(super) use nodal::{Probe, nodal_fields};
 
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
@@ -38,10 +41,15 @@ pub struct CellField {
 impl CellField {
     /// The stress of von Mises (Pa): sqrt(3/2) times the norm of the stress without its mean pressure.
     pub fn von_mises(&self) -> f64 {
-        let stress = Matrix3::from(self.stress);
-        let deviator = stress - Matrix3::identity() * (stress.trace() / 3.0);
-        1.5_f64.sqrt() * deviator.norm()
+        von_mises(&self.stress)
     }
+}
+
+/// The stress of von Mises (Pa) that a stress comes to.
+pub(crate) fn von_mises(stress: &[[f64; 3]; 3]) -> f64 {
+    let stress = Matrix3::from(*stress);
+    let deviator = stress - Matrix3::identity() * (stress.trace() / 3.0);
+    1.5_f64.sqrt() * deviator.norm()
 }
 
 /// Elements as carriers of strain and stress.
@@ -51,6 +59,15 @@ pub(super) trait Fields {
 
     /// Strain, stress and energy density of each cell.
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField>;
+
+    /// Shows `see` the number of each node of a cell, its number among the nodes of the cell, and the tensors there.
+    fn each_node(
+        &self,
+        regions: &Regions,
+        u: &[f64],
+        cell: usize,
+        see: &mut dyn FnMut(usize, usize, &Tensors),
+    );
 
     /// Angle (rad) by which each cell has turned.
     fn rotations(&self, u: &[f64]) -> Vec<f64>;
@@ -84,6 +101,27 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
             })
         };
         (0..self.nodes.len()).map(of_cell).collect()
+    }
+
+    fn each_node(
+        &self,
+        regions: &Regions,
+        u: &[f64],
+        cell: usize,
+        see: &mut dyn FnMut(usize, usize, &Tensors),
+    ) {
+        let mut at_nodes = [Tensors::default(); N];
+        with_law!(regions.of(cell).elastic, law => {
+            for (q, (_, at)) in self.deformed(cell, u).enumerate() {
+                let PointField { tensors, .. } = PointField::new(&law, &at);
+                for (sum, factors) in at_nodes.iter_mut().zip(&self.extrapolation) {
+                    sum.add(&tensors, factors[q]);
+                }
+            }
+        });
+        for (a, tensors) in at_nodes.iter().enumerate() {
+            see(self.nodes[cell][a], a, tensors);
+        }
     }
 
     fn rotations(&self, u: &[f64]) -> Vec<f64> {
@@ -137,10 +175,29 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
-/// The fields at one strain point.
-struct PointField {
+/// Strain and stress at a point, or a sum of them.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Tensors {
     strain: Matrix3<f64>,
     stress: Matrix3<f64>,
+}
+
+impl Tensors {
+    fn add(&mut self, other: &Self, share: f64) {
+        self.strain += other.strain * share;
+        self.stress += other.stress * share;
+    }
+
+    /// Strain and stress, of which this is `weight` times as much.
+    fn over(&self, weight: f64) -> [[[f64; 3]; 3]; 2] {
+        let tensor = |sum: Matrix3<f64>| ((sum + sum.transpose()) / (2.0 * weight)).into();
+        [tensor(self.strain), tensor(self.stress)]
+    }
+}
+
+/// The fields at one strain point.
+struct PointField {
+    tensors: Tensors,
     energy_density: f64,
 }
 
@@ -159,26 +216,24 @@ impl PointField {
         let (frame, shape) =
             (in_space(&SMatrix::from(*at.frame())), in_space(&SMatrix::from(shape)));
         let piola = in_space(&SMatrix::from(law.stress(at, 1.0)));
-        Self {
+        let tensors = Tensors {
             strain: frame * strain * frame.transpose() + normal_part(&frame) * strain_across,
             stress: (piola * shape.transpose() + normal_part(&shape) * stress_across) / swelling,
-            energy_density: law.energy(at),
-        }
+        };
+        Self { tensors, energy_density: law.energy(at) }
     }
 }
 
 /// The mean of `points`, each with the volume that it stands for.
 fn mean(points: impl Iterator<Item = (f64, PointField)>) -> CellField {
-    let (mut volume, mut strain, mut stress) = (0.0, Matrix3::zeros(), Matrix3::zeros());
-    let mut energy = 0.0;
+    let (mut volume, mut energy, mut sum) = (0.0, 0.0, Tensors::default());
     for (share, point) in points {
         volume += share;
-        strain += point.strain * share;
-        stress += point.stress * share;
+        sum.add(&point.tensors, share);
         energy += point.energy_density * share;
     }
-    let tensor = |sum: Matrix3<f64>| ((sum + sum.transpose()) / (2.0 * volume)).into();
-    CellField { strain: tensor(strain), stress: tensor(stress), energy_density: energy / volume }
+    let [strain, stress] = sum.over(volume);
+    CellField { strain, stress, energy_density: energy / volume }
 }
 
 /// `frame` with a row for each axis of three-dimensional space.

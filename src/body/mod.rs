@@ -18,7 +18,8 @@ mod tests;
 
 pub use assembled::Body;
 pub use builder::BodyBuilder;
-pub use fields::CellField;
+pub(crate) use fields::von_mises;
+pub use fields::{CellField, NodalField};
 pub use inertia::Inertia;
 pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;

@@ -8,7 +8,9 @@
 //! then described in coordinates of its own, along an orthonormal frame in its tangent space.
 
 mod hexahedron;
+mod place;
 mod quadrilateral;
+mod recovery;
 mod reference;
 mod segment;
 #[cfg(test)]
@@ -21,7 +23,9 @@ mod triangle6;
 use nalgebra::{SMatrix, SVector};
 
 pub(crate) use hexahedron::Hexahedron;
+pub(crate) use place::shares_at;
 pub(crate) use quadrilateral::Quadrilateral;
+pub(crate) use recovery::extrapolation;
 pub(crate) use reference::ReferenceCell;
 pub(crate) use segment::Segment;
 pub(crate) use tetrahedron::Tetrahedron;

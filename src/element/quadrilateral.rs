@@ -17,6 +17,7 @@ const RULE: &[([f64; 2], f64)] = &[
 ];
 
 impl ReferenceCell<4, 2> for Quadrilateral {
+    const NODES: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     const STIFFNESS_RULE: &'static [([f64; 2], f64)] = RULE;
     const MASS_RULE: &'static [([f64; 2], f64)] = RULE;
 

@@ -2,6 +2,8 @@
 
 /// A reference cell of `N` nodes in dimension `M`.
 pub(crate) trait ReferenceCell<const N: usize, const M: usize> {
+    /// Positions of the nodes.
+    const NODES: [[f64; M]; N];
     /// Points and weights that integrate the stiffness.
     const STIFFNESS_RULE: &'static [([f64; M], f64)];
     /// Points and weights that integrate products of two shape functions.

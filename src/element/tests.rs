@@ -88,7 +88,7 @@ fn functions_are_one_at_their_node<C: ReferenceCell<N, M>, const N: usize, const
     shape: Exact,
 ) {
     let nodes = reference_nodes::<M>(kind, shape);
-    assert_eq!(nodes.len(), N);
+    assert_eq!(nodes, C::NODES);
     for (a, &node) in nodes.iter().enumerate() {
         for (b, value) in C::values(node).into_iter().enumerate() {
             assert_eq!(value, if a == b { 1.0 } else { 0.0 }, "N_{b} at node {a}");

@@ -17,6 +17,8 @@ pub(super) const FOUR_POINTS: &[([f64; 3], f64)] = &[
 pub(crate) struct Tetrahedron;
 
 impl ReferenceCell<4, 3> for Tetrahedron {
+    const NODES: [[f64; 3]; 4] =
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     const STIFFNESS_RULE: &'static [([f64; 3], f64)] = &[([0.25, 0.25, 0.25], 1.0 / 6.0)];
     /// Exact for quadratics: M = (rho V/20) (2 on the diagonal, 1 elsewhere).
     const MASS_RULE: &'static [([f64; 3], f64)] = FOUR_POINTS;

@@ -17,6 +17,18 @@ const WEIGHT_C: f64 = 0.007_091_003_462_846_911;
 pub(crate) struct Tetrahedron10;
 
 impl ReferenceCell<10, 3> for Tetrahedron10 {
+    const NODES: [[f64; 3]; 10] = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0],
+        [0.0, 0.0, 1.0],
+        [0.5, 0.0, 0.0],
+        [0.5, 0.5, 0.0],
+        [0.0, 0.5, 0.0],
+        [0.0, 0.0, 0.5],
+        [0.5, 0.0, 0.5],
+        [0.0, 0.5, 0.5],
+    ];
     /// Exact for quadratics, so for the stiffness of a tetrahedron with straight sides and mid
     /// nodes in their middles.
     const STIFFNESS_RULE: &'static [([f64; 3], f64)] = FOUR_POINTS;

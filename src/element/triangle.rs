@@ -5,6 +5,7 @@ use super::ReferenceCell;
 pub(crate) struct Triangle;
 
 impl ReferenceCell<3, 2> for Triangle {
+    const NODES: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
     const STIFFNESS_RULE: &'static [([f64; 2], f64)] = &[([1.0 / 3.0, 1.0 / 3.0], 0.5)];
     /// Midpoints of the edges: exact for quadratics.
     const MASS_RULE: &'static [([f64; 2], f64)] =

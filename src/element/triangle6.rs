@@ -12,6 +12,8 @@ const WEIGHT_B: f64 = 0.054_975_871_827_660_93;
 pub(crate) struct Triangle6;
 
 impl ReferenceCell<6, 2> for Triangle6 {
+    const NODES: [[f64; 2]; 6] =
+        [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.5, 0.0], [0.5, 0.5], [0.0, 0.5]];
     /// Exact for quadratics, so for the stiffness of a triangle with straight sides and mid nodes
     /// in their middles.
     const STIFFNESS_RULE: &'static [([f64; 2], f64)] = &[

@@ -106,6 +106,17 @@ impl Touch<'_> {
         let friction = |slip: &Slip| slip.pressing * slip.drag.per_speed;
         self.point.law.tangential_damping + self.slip.as_ref().map_or(0.0, friction)
     }
+
+    /// The force along an axis (N), with the `drag` of sliding: that of the spring, and that of what brakes.
+    #[inline]
+    fn force(&self, drag: f64, axis: usize) -> [f64; 2] {
+        let Self { point, ref nearest, velocity, rate, is_cut_off, .. } = *self;
+        let spring = -point.law.stiffness * nearest.distance;
+        let damper = if is_cut_off { -spring } else { -point.law.damping * rate };
+        let n = nearest.normal[axis];
+        let sliding = velocity[axis] - rate * n;
+        [spring * n, damper * n - drag * sliding]
+    }
 }
 
 impl Contact {
@@ -195,6 +206,23 @@ impl Contact {
         })
     }
 
+    /// Force on the body as a whole (N); 0 beyond the dimension.
+    ///
+    /// # Errors
+    /// A distance function of the user's own that has no meaning.
+    pub(crate) fn force(&self, t: f64, u: &[f64], v: &[f64]) -> Result<[f64; 3], Failure> {
+        let mut total = [0.0; 3];
+        for touch in self.touches(t, u, v) {
+            self.check(t, &touch)?;
+            let drag = touch.drag();
+            for (i, total) in total.iter_mut().enumerate().take(self.dimension) {
+                let [elastic, braking] = touch.force(drag, i);
+                *total += elastic + braking;
+            }
+        }
+        Ok(total)
+    }
+
     /// Checks what a user's function has given.
     fn check(&self, t: f64, touch: &Touch) -> Result<(), Failure> {
         let Nearest { distance, normal, .. } = &touch.nearest;
@@ -225,14 +253,9 @@ impl Force for Contact {
         for touch in self.touches(t, u, v) {
             self.check(t, &touch)?;
             let drag = touch.drag();
-            let Touch { point, ref nearest, velocity, rate, is_cut_off, .. } = touch;
-            let spring = -point.law.stiffness * nearest.distance;
-            let damper = if is_cut_off { -spring } else { -point.law.damping * rate };
-            for (i, speed) in velocity.into_iter().take(self.dimension).enumerate() {
-                let (n, w) = (nearest.normal[i], self.drift[i]);
-                let sliding = speed - rate * n;
-                let (elastic, braking) = (spring * n, damper * n - drag * sliding);
-                for (node, share) in point.on.nodes() {
+            for (i, w) in self.drift.into_iter().take(self.dimension).enumerate() {
+                let [elastic, braking] = touch.force(drag, i);
+                for (node, share) in touch.point.on.nodes() {
                     forces.conservative[node * self.dimension + i] += share * elastic;
                     forces.dissipative[node * self.dimension + i] += share * braking;
                 }

@@ -9,7 +9,7 @@ use vtkio::model::{
 };
 
 use super::write_file;
-use crate::body::CellField;
+use crate::body::{CellField, NodalField};
 use crate::error::Error;
 use crate::input::InputError;
 use crate::mesh::CellKind;
@@ -26,6 +26,7 @@ use crate::trajectory::{Sample, Trajectory};
 /// | points | `displacement`, `velocity` | m, m/s |
 /// | points | `contact_force` | of all obstacles together on the node, N |
 /// | points | `constraint_force` | of what holds or moves the node, N |
+/// | points | `stress`, `von_mises` | Pa, means of the cells around: [`Body::nodal_fields`](crate::Body::nodal_fields) |
 /// | cells | `strain` | Cauchy's or Green's, as the body's |
 /// | cells | `stress`, `von_mises` | Pa |
 /// | cells | `strain_energy_density` | J/m^3 of natural volume |
@@ -88,14 +89,13 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
     let vectors = |name: &str, components: &[f64]| {
         Attribute::DataArray(DataArray::vectors(name).with_vec(spatial(components)))
     };
+    let nodal = trajectory.body().nodal_fields(&sample.u);
     let fields = trajectory.body().cell_fields(&sample.u);
     let scalars = |name: &str, value: fn(&CellField) -> f64| {
-        let values: Vec<f64> = fields.iter().map(value).collect();
-        Attribute::DataArray(DataArray::scalars(name, 1).with_vec(values))
+        scalars(name, fields.iter().map(value).collect())
     };
     let tensors = |name: &str, tensor: fn(&CellField) -> [[f64; 3]; 3]| {
-        let values: Vec<f64> = fields.iter().flat_map(|field| six(tensor(field))).collect();
-        Attribute::generic(name, 6).with_data(values)
+        tensors(name, fields.iter().map(tensor))
     };
     let kind = match mesh.kind() {
         CellKind::Segment => CellType::Line,
@@ -126,6 +126,8 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
                     vectors("velocity", &sample.v),
                     vectors("contact_force", &trajectory.contact_forces(sample)?),
                     vectors("constraint_force", &trajectory.constraint_forces(sample)?),
+                    self::tensors("stress", nodal.iter().map(|field| field.stress)),
+                    self::scalars("von_mises", nodal.iter().map(NodalField::von_mises).collect()),
                 ],
                 cell: vec![
                     tensors("strain", |field| field.strain),
@@ -137,6 +139,14 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
         }),
         file_path: None,
     })
+}
+
+fn scalars(name: &str, values: Vec<f64>) -> Attribute {
+    Attribute::DataArray(DataArray::scalars(name, 1).with_vec(values))
+}
+
+fn tensors(name: &str, tensors: impl Iterator<Item = [[f64; 3]; 3]>) -> Attribute {
+    Attribute::generic(name, 6).with_data(tensors.flat_map(six).collect::<Vec<_>>())
 }
 
 /// The components of a symmetric tensor in the order of VTK.

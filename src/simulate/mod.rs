@@ -7,8 +7,10 @@ mod checkpoint;
 mod commands;
 mod events;
 mod failure;
+mod gauge;
 mod leg;
 mod progress;
+mod reading;
 mod records;
 mod renewal;
 mod run;
@@ -30,6 +32,7 @@ pub use checkpoint::Checkpoint;
 #[cfg(feature = "checkpoint")]
 pub(crate) use checkpoint::Kept;
 pub use progress::Progress;
+pub use reading::{Component, Reading};
 use run::Run;
 pub use sampling::Sampling;
 pub use simulation::Simulation;
@@ -103,11 +106,11 @@ impl Scene {
         let clock = Instant::now();
         settings.validate()?;
         let forces = self.forces_from_start()?;
-        sampling.validate(self.end(), self.body().dofs())?;
+        let sensors = sampling.sensors(self)?;
         let model = self.model(&forces);
         let first = forces.into_iter().next().unwrap_or_default();
         let gauges = Gauges::new(self)?;
-        let mut run = Run::new(self, settings, sampling, clock, (model, gauges), first)?;
+        let mut run = Run::new(self, settings, (sampling, sensors), clock, (model, gauges), first)?;
         while run.advance(&mut observer)? {}
         Ok(run.into_trajectory())
     }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::sensor::Sensor;
+use super::sensor::Sensors;
 use super::view::{Gauges, View};
 use crate::ode::Failure;
 use crate::scene::{Phase, Scene};
@@ -38,7 +38,7 @@ pub(super) fn sample(
 /// Adds to a sample what `sensors` read, and the phase in force if commands have changed it.
 pub(super) fn complete(
     sample: &mut Sample,
-    sensors: &[Sensor],
+    sensors: &Sensors,
     (scene, gauges): (&Scene, &Gauges),
     phase: &Arc<Phase>,
     is_commanded: bool,
@@ -51,7 +51,7 @@ pub(super) fn complete(
     let Energy { dissipated, supplied, .. } = energy;
     let state = State { u, v, dissipated, supplied, multipliers: &sample.multipliers };
     let view = View { scene, phase, gauges, time, state };
-    let readings = sensors.iter().map(|sensor| sensor.read(&view, sample)).collect();
+    let readings = sensors.read(&view, sample);
     sample.sensors = readings;
 }
 

@@ -9,6 +9,7 @@ use super::leg::Ending;
 use super::records::{self, energy, project};
 use super::run::Run;
 use super::sampling::Sampling;
+use super::sensor::Sensors;
 use super::stage::{At, Stage};
 use crate::constraint::Row;
 use crate::error::Error;
@@ -344,10 +345,9 @@ impl Run {
     }
 
     /// Takes samples at other times from the end of the last step on.
-    pub(super) fn record(&mut self, sampling: &Sampling) {
-        self.sampling = sampling.clone();
-        let sensors = sampling.quantities();
-        self.trajectory.unread(sensors);
+    pub(super) fn record(&mut self, sampling: &Sampling, sensors: Sensors) {
+        self.trajectory.unread(sensors.quantities.clone());
+        (self.sampling, self.sensors) = (sampling.clone(), sensors);
         if self.trajectory.last().time == self.time {
             let mut now = self.trajectory.last().clone();
             self.complete(&mut now);

@@ -11,6 +11,7 @@ use super::leg::{Ending, Good, Outcome};
 use super::progress::{Observer, Progress};
 use super::records::{self, energy, project};
 use super::sampling::Sampling;
+use super::sensor::Sensors;
 use super::stage::{At, Stage, Work};
 use super::stepper::{self, Failed, Stepper};
 use super::view::Gauges;
@@ -35,6 +36,7 @@ pub(super) struct Run {
     pub(super) model: Arc<Model>,
     pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
+    pub(super) sensors: Sensors,
     atol: AbsoluteTolerances,
     /// Started with the run.
     clock: Instant,
@@ -74,7 +76,7 @@ impl Run {
     pub(super) fn new(
         scene: &Scene,
         settings: &Settings,
-        sampling: &Sampling,
+        (sampling, sensors): (&Sampling, Sensors),
         clock: Instant,
         (model, gauges): (Arc<Model>, Gauges),
         forces: Forces,
@@ -99,10 +101,9 @@ impl Run {
         let plan = Plan::new(settings, &mut system, 0.0, &state);
         let times = sampling.within(0.0, phase.until);
         let (phase, balance) = (Arc::new(phase.clone()), first.energy.balance());
-        let sensors = &sampling.sensors;
-        records::complete(&mut first, sensors, (scene, &gauges), &phase, false);
+        records::complete(&mut first, &sensors, (scene, &gauges), &phase, false);
         let mut trajectory = Trajectory::new(scene, report, first);
-        trajectory.sensors = sampling.quantities();
+        trajectory.sensors = sensors.quantities.clone();
         let mut run = Self {
             stage: Stage::new(plan, times, scene.stops(0), settings.max_steps),
             phase,
@@ -114,6 +115,7 @@ impl Run {
             model,
             gauges: Arc::new(gauges),
             sampling: sampling.clone(),
+            sensors,
             atol: settings.tolerances(scene.body()),
             clock,
             time: 0.0,
@@ -395,6 +397,7 @@ impl Run {
             model: self.model.clone(),
             gauges: self.gauges.clone(),
             sampling: self.sampling.clone(),
+            sensors: self.sensors.clone(),
             atol: self.atol,
             clock: Instant::now(),
             phase: self.phase.clone(),
@@ -451,8 +454,8 @@ impl Run {
 
     /// Adds to a sample what is not of the equations.
     pub(super) fn complete(&self, sample: &mut Sample) {
-        let (sensors, own) = (&self.sampling.sensors, (&*self.scene, &*self.gauges));
-        records::complete(sample, sensors, own, &self.phase, self.is_commanded);
+        let own = (&*self.scene, &*self.gauges);
+        records::complete(sample, &self.sensors, own, &self.phase, self.is_commanded);
     }
 
     /// Size (s) and order of the last step of the integrator at work.

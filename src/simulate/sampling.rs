@@ -1,9 +1,13 @@
 //! When the motion is sampled, and what is read then.
 
-use super::sensor::Sensor;
+use std::sync::Arc;
+
+use super::reading::Reading;
+use super::sensor::{Sensor, Sensors, Source};
 use super::view::View;
 use crate::input::{InputError, check_memory, positive};
-use crate::trajectory::{Quantity, Sample};
+use crate::scene::Scene;
+use crate::trajectory::Sample;
 
 /// When the motion is sampled. The start and the end of each phase always are.
 ///
@@ -11,7 +15,7 @@ use crate::trajectory::{Quantity, Sample};
 #[derive(Debug, Clone, Default)]
 pub struct Sampling {
     times: Times,
-    pub(super) sensors: Vec<Sensor>,
+    sensors: Vec<Sensor>,
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -61,26 +65,43 @@ impl Sampling {
         unit: impl Into<String>,
         reading: impl Fn(&View, &Sample) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        let quantity = Quantity { name: name.into(), unit: unit.into() };
-        self.sensors.push(Sensor::new(quantity, reading));
+        let source = Source::Own(unit.into(), Arc::new(reading));
+        self.sensors.push(Sensor { name: name.into(), source });
         self
     }
 
-    /// Names and units of the sensors.
-    pub(super) fn quantities(&self) -> Vec<Quantity> {
-        self.sensors.iter().map(|sensor| sensor.quantity.clone()).collect()
+    /// Adds a sensor for a quantity that scenes have. One with several components gets a column for each: `tip.x`,
+    /// `tip.y`, ...
+    ///
+    /// ```
+    /// use pliant::simulate::{Component, Reading};
+    /// use pliant::{Sampling, Settings, samples};
+    ///
+    /// let sampling = Sampling::every(0.1)
+    ///     .read("top", Reading::position("top"))
+    ///     .read("probe", Reading::constraint_force([14, 15]).component(Component::Y))
+    ///     .read("corner stress", Reading::stress([1]).component(Component::VonMises));
+    /// let trajectory = samples::square_jump(4)?.simulate(&Settings::default(), &sampling)?;
+    /// let names: Vec<&str> = trajectory.sensors().iter().map(|sensor| &sensor.name[..]).collect();
+    /// assert_eq!(names, ["top.x", "top.y", "probe", "corner stress"]);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn read(mut self, name: impl Into<String>, reading: Reading) -> Self {
+        self.sensors.push(Sensor { name: name.into(), source: Source::Named(reading) });
+        self
     }
 
-    /// Checks the times and names for a scene that ends at time `end` (s), with `dofs` displacement components.
-    pub(super) fn validate(&self, end: f64, dofs: usize) -> Result<(), InputError> {
-        for (number, Sensor { quantity: Quantity { name, .. }, .. }) in
-            self.sensors.iter().enumerate()
-        {
-            if self.sensors[..number].iter().any(|other| other.quantity.name == *name) {
-                let mend = "two sensors have it: name one of them otherwise";
-                return Err(InputError::new("name of a sensor", format!("\"{name}\""), mend));
-            }
-        }
+    /// Checks the times for `scene`, and finds what its sensors read.
+    ///
+    /// # Errors
+    /// Times outside the scene or too close; a quantity that the scene does not have; two columns with one name.
+    pub(super) fn sensors(&self, scene: &Scene) -> Result<Sensors, InputError> {
+        self.check_times(scene.end(), scene.body().dofs())?;
+        Sensors::new(&self.sensors, scene)
+    }
+
+    /// Checks the times for a scene that ends at time `end` (s), with `dofs` displacement components.
+    fn check_times(&self, end: f64, dofs: usize) -> Result<(), InputError> {
         match &self.times {
             Times::PhaseEnds => Ok(()),
             Times::Every(step) => {

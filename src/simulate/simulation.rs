@@ -6,6 +6,7 @@ use std::time::Instant;
 use super::checkpoint::Checkpoint;
 use super::run::Run;
 use super::sampling::Sampling;
+use super::sensor::Sensors;
 use super::stage::At;
 use super::view::{Gauges, View};
 use super::watch::{Arrival, Watch};
@@ -67,7 +68,8 @@ impl Scene {
         let gauges = Gauges::new(self)?;
         all.push(gauges.chambers());
         let own = (self.model(&all), gauges);
-        let run = Run::new(self, settings, &Sampling::phase_ends(), clock, own, first)?;
+        let sampling = (&Sampling::phase_ends(), Sensors::default());
+        let run = Run::new(self, settings, sampling, clock, own, first)?;
         let (time, now) = (run.time, run.state.clone());
         Ok(Simulation { run, time, now, commanded: false, watches: Vec::new() })
     }
@@ -122,11 +124,11 @@ impl Simulation {
     /// Takes samples of the motion from the end of the present step on, which are kept in the [`trajectory`](Self::trajectory).
     ///
     /// # Errors
-    /// Sampling times that cannot be used.
+    /// Sampling times that cannot be used; sensors for what the scene does not have.
     pub fn record(&mut self, sampling: &Sampling) -> Result<(), InputError> {
         let scene = &self.run.scene;
-        sampling.validate(scene.end(), scene.body().dofs())?;
-        self.run.record(sampling);
+        let sensors = sampling.sensors(scene)?;
+        self.run.record(sampling, sensors);
         Ok(())
     }
 

@@ -122,8 +122,12 @@ impl<'a> View<'a> {
     /// # Errors
     /// A name that no spring has.
     pub fn actuation(&self, spring: &str) -> Result<f64, InputError> {
-        let number = self.scene.spring_number(spring, "spring")?;
-        Ok(self.scene.actuations(self.phase, self.time)?[number])
+        self.scene.spring_number(spring, "spring")?;
+        let actuations = self.phase.actuations.iter();
+        let of_spring = actuations.flat_map(|(names, force)| {
+            names.iter().filter(|name| *name == spring).map(|_| force.at(self.time))
+        });
+        Ok(of_spring.sum())
     }
 
     /// Force (N) on each of the nodes of `selection`, one component per dimension, by the loads given for this
@@ -193,7 +197,15 @@ impl<'a> View<'a> {
     fn mean(&self, selection: &Selection, x: &[f64]) -> Result<Vec<f64>, InputError> {
         let nodes = self.body().mesh().select(selection)?;
         let dimension = self.body().dimension();
-        let sum = |axis| nodes.iter().map(|node| x[node * dimension + axis]).sum::<f64>();
-        Ok((0..dimension).map(|axis| sum(axis) / nodes.len() as f64).collect())
+        Ok(mean(&nodes, x, dimension)[..dimension].to_vec())
     }
+}
+
+/// Mean of `x`, `dimension` components per node, over `nodes` (counted from 0); 0 beyond the dimension.
+pub(super) fn mean(nodes: &[usize], x: &[f64], dimension: usize) -> [f64; 3] {
+    let sum = |axis| nodes.iter().map(|node| x[node * dimension + axis]).sum::<f64>();
+    std::array::from_fn(|axis| match axis < dimension {
+        true => sum(axis) / nodes.len() as f64,
+        false => 0.0,
+    })
 }

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use pliant::output::{Chart, Snapshots, write_csv, write_energies, write_vtk};
 use pliant::{
-    Body, CellField, Cells, Material, Mesh, Obstacle, Phase, Sampling, Scene, Settings, Shape,
-    SolidCells, Strain, Trajectory,
+    Body, CellField, Cells, Material, Mesh, NodalField, Obstacle, Phase, Sampling, Scene, Settings,
+    Shape, SolidCells, Strain, Trajectory,
 };
 use vtkio::model::{
     Attribute, CellType, DataSet, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
@@ -317,10 +317,16 @@ fn vtk_files_hold_mesh_motion_and_forces() -> Outcome {
                 ("contact_force", spatial(&contact)),
                 ("constraint_force", spatial(&constraint)),
             ];
-            check_arrays(piece.data.point, 3, &expected)?;
+            let six = |t: [[f64; 3]; 3]| [t[0][0], t[1][1], t[2][2], t[0][1], t[1][2], t[0][2]];
+            let nodal = trajectory.body().nodal_fields(&sample.u);
+            let mut of_points = piece.data.point;
+            let von_mises = nodal.iter().map(NodalField::von_mises).collect();
+            check_arrays(of_points.split_off(5), 1, &[("von_mises", von_mises)])?;
+            let stress = nodal.iter().flat_map(|field| six(field.stress)).collect();
+            check_arrays(of_points.split_off(4), 6, &[("stress", stress)])?;
+            check_arrays(of_points, 3, &expected)?;
             let cells = trajectory.body().cell_fields(&sample.u);
             let tensors = |tensor: fn(&CellField) -> [[f64; 3]; 3]| {
-                let six = |t: [[f64; 3]; 3]| [t[0][0], t[1][1], t[2][2], t[0][1], t[1][2], t[0][2]];
                 cells.iter().flat_map(|cell| six(tensor(cell))).collect()
             };
             let (strain, stress) = (tensors(|cell| cell.strain), tensors(|cell| cell.stress));

@@ -18,6 +18,7 @@ mod index_two;
 mod observer;
 mod readings;
 mod ring;
+mod sensors;
 mod simulation;
 mod square_jump;
 mod square_press;

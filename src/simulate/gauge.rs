@@ -1,0 +1,222 @@
+//! How the quantities of a scene are read: what a [`Reading`] names is looked up once, before the run.
+
+use super::reading::{Component, Place, Reading, What};
+use super::view::{View, mean};
+use crate::body::{NodalField, von_mises};
+use crate::constraint::{PhaseStart, Row};
+use crate::external::Contact;
+use crate::input::InputError;
+use crate::mesh::Selection;
+use crate::scene::{Phase, Scene};
+use crate::trajectory::Sample;
+use crate::vector::{cross, dot, norm};
+
+/// What a quantity is at one time; components beyond the dimension are 0.
+pub(super) enum Value {
+    Number(f64),
+    Vector([f64; 3]),
+    Tensor([[f64; 3]; 3]),
+}
+
+/// Reads a quantity, or NaN where it has no meaning.
+pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
+
+impl Value {
+    /// A component, which the quantity has.
+    pub(super) fn part(&self, component: Component) -> f64 {
+        match (self, component) {
+            (Self::Number(number), _) => *number,
+            (Self::Vector(x), Component::X) => x[0],
+            (Self::Vector(x), Component::Y) => x[1],
+            (Self::Vector(x), Component::Z) => x[2],
+            (Self::Vector(x), _) => norm(x),
+            (Self::Tensor(a), Component::XX) => a[0][0],
+            (Self::Tensor(a), Component::YY) => a[1][1],
+            (Self::Tensor(a), Component::ZZ) => a[2][2],
+            (Self::Tensor(a), Component::XY) => a[0][1],
+            (Self::Tensor(a), Component::YZ) => a[1][2],
+            (Self::Tensor(a), Component::XZ) => a[0][2],
+            (Self::Tensor(a), _) => von_mises(a),
+        }
+    }
+}
+
+impl Reading {
+    /// What reads it in `scene`.
+    ///
+    /// # Errors
+    /// Nodes, obstacles, springs or chambers that the scene does not have; a point outside the body; lines without
+    /// a length.
+    pub(super) fn gauge(&self, scene: &Scene) -> Result<Gauge, InputError> {
+        let select = |nodes: &Selection| scene.body().mesh().select(nodes);
+        let d = scene.body().dimension();
+        Ok(match &self.what {
+            What::Position(nodes) => {
+                let nodes = select(nodes)?;
+                Box::new(move |view, _| Value::Vector(position(view, &nodes)))
+            }
+            What::Displacement(nodes) => {
+                let nodes = select(nodes)?;
+                Box::new(move |view, _| Value::Vector(mean(&nodes, view.displacements(), d)))
+            }
+            What::Velocity(nodes) => {
+                let nodes = select(nodes)?;
+                Box::new(move |view, _| Value::Vector(mean(&nodes, view.velocities(), d)))
+            }
+            What::ConstraintForce(nodes) => constraint_force(scene, select(nodes)?)?,
+            What::ContactForce(obstacle) => contact_force(scene, obstacle.clone())?,
+            What::SpringPull(spring) => {
+                scene.spring_number(spring, "spring")?;
+                number(spring, |view, spring| view.spring_pull(spring))
+            }
+            What::SpringLength(spring) => {
+                scene.spring_number(spring, "spring")?;
+                number(spring, |view, spring| view.spring_length(spring))
+            }
+            What::Pressure(chamber) => {
+                scene.chamber_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.pressure(chamber))
+            }
+            What::ChamberVolume(chamber) => {
+                scene.chamber_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.chamber_volume(chamber))
+            }
+            What::Stress(place) => field(scene, place, |field| field.stress)?,
+            What::Strain(place) => field(scene, place, |field| field.strain)?,
+            What::Distance([from, to]) => {
+                let (from, to) = (select(from)?, select(to)?);
+                Box::new(move |view, _| Value::Number(norm(&between(view, [&from, &to]))))
+            }
+            What::Angle([from, to]) => {
+                let lines = [line(scene, from)?, line(scene, to)?];
+                Box::new(move |view, _| {
+                    let [a, b] = lines.each_ref().map(|[from, to]| between(view, [from, to]));
+                    let normal = cross(&a, &b);
+                    let across = if d == 2 { normal[2] } else { norm(&normal) };
+                    Value::Number(across.atan2(dot(&a, &b)))
+                })
+            }
+        })
+    }
+}
+
+/// A number of the spring or chamber with a `name`.
+fn number(name: &str, read: fn(&View, &str) -> Result<f64, InputError>) -> Gauge {
+    let name = name.to_owned();
+    Box::new(move |view, _| Value::Number(read(view, &name).unwrap_or(f64::NAN)))
+}
+
+fn position(view: &View, nodes: &[usize]) -> [f64; 3] {
+    let d = view.body().dimension();
+    let natural = mean(nodes, view.body().mesh().positions(), d);
+    let moved = mean(nodes, view.displacements(), d);
+    std::array::from_fn(|i| natural[i] + moved[i])
+}
+
+/// From the middle of some nodes to that of others.
+fn between(view: &View, [from, to]: [&[usize]; 2]) -> [f64; 3] {
+    let (from, to) = (position(view, from), position(view, to));
+    std::array::from_fn(|i| to[i] - from[i])
+}
+
+/// The ends of a line that has a direction in the natural shape.
+fn line(scene: &Scene, ends: &[Selection; 2]) -> Result<[Vec<usize>; 2], InputError> {
+    let mesh = scene.body().mesh();
+    let [from, to] = [mesh.select(&ends[0])?, mesh.select(&ends[1])?];
+    let [a, b] = [&from, &to].map(|nodes| mean(nodes, mesh.positions(), mesh.dimension()));
+    let along: [f64; 3] = std::array::from_fn(|i| b[i] - a[i]);
+    if norm(&along) <= 1e-9 * mesh.size() {
+        let value = format!("{} to {}", ends[0], ends[1]);
+        let mend = "its ends are in the same place, so that it has no direction";
+        return Err(InputError::new("line of an angle", value, mend));
+    }
+    Ok([from, to])
+}
+
+/// Strain or stress at a place.
+fn field(
+    scene: &Scene,
+    place: &Place,
+    tensor: fn(&NodalField) -> [[f64; 3]; 3],
+) -> Result<Gauge, InputError> {
+    let body = scene.body();
+    let weights = match place {
+        Place::Nodes(nodes) => {
+            let nodes = body.mesh().select(nodes)?;
+            nodes.iter().map(|&node| (node, 1.0 / nodes.len() as f64)).collect()
+        }
+        Place::Point(x) => body.shares_at(x)?,
+    };
+    let probe = body.probe(&weights);
+    Ok(Box::new(move |view, _| {
+        Value::Tensor(tensor(&view.body().probed(&probe, view.displacements())))
+    }))
+}
+
+/// Force of an obstacle, whose contact is that of the scene unless commands have changed the phase.
+fn contact_force(scene: &Scene, obstacle: String) -> Result<Gauge, InputError> {
+    let number = scene.obstacle_number(&obstacle, "obstacle")?;
+    let contact = Contact::new(scene.body(), &scene.obstacles()[number])?;
+    let acts = |phase: &Phase| {
+        let acting = phase.contacts(scene.obstacles())?;
+        Ok(acting.iter().filter(|acting| acting.name() == obstacle).count() as f64)
+    };
+    let times: Vec<f64> = scene.phases().iter().map(acts).collect::<Result<_, InputError>>()?;
+    let d = scene.body().dimension();
+    Ok(Box::new(move |view, sample| {
+        let force = match (&sample.commanded.0, times.get(sample.phase)) {
+            (None, Some(0.0)) => Some([0.0; 3]),
+            (None, Some(times)) => {
+                let force = contact.force(sample.time, view.displacements(), view.velocities());
+                force.ok().map(|force| force.map(|force| times * force))
+            }
+            _ => view
+                .contact_force(&obstacle)
+                .ok()
+                .map(|force| std::array::from_fn(|i| if i < d { force[i] } else { 0.0 })),
+        };
+        Value::Vector(force.unwrap_or([f64::NAN; 3]))
+    }))
+}
+
+/// A constraint's row, the axis along which it acts, and its coefficient.
+type Term = (usize, usize, f64);
+
+/// Force of the constraints on `nodes` (counted from 0).
+fn constraint_force(scene: &Scene, nodes: Vec<usize>) -> Result<Gauge, InputError> {
+    let d = scene.body().dimension();
+    let mut is_read = vec![false; scene.body().mesh().node_count()];
+    nodes.into_iter().for_each(|node| is_read[node] = true);
+    let terms = move |rows: &[Row]| -> Vec<Term> {
+        let of_row = |(number, row): (usize, &Row)| -> Vec<Term> {
+            let read = row.terms.iter().filter(|(dof, _)| is_read[dof / d]);
+            read.map(|&(dof, coefficient)| (number, dof % d, coefficient)).collect()
+        };
+        rows.iter().enumerate().flat_map(of_row).collect()
+    };
+    // where rows start from tells what they prescribe, not which components they tie
+    let rest = vec![0.0; scene.body().dofs()];
+    let mut time = 0.0;
+    let mut of_phases = Vec::new();
+    for phase in scene.phases() {
+        of_phases.push(terms(&scene.rows(phase, &PhaseStart { time, u: &rest })?));
+        time = phase.end();
+    }
+    Ok(Box::new(move |view, sample| {
+        let of_commanded;
+        let acting = match &sample.commanded.0 {
+            None => of_phases.get(sample.phase),
+            Some(phase) => {
+                let start = PhaseStart { time: 0.0, u: &rest };
+                of_commanded = view.scene.rows(phase, &start).map(|rows| terms(&rows)).ok();
+                of_commanded.as_ref()
+            }
+        };
+        let Some(acting) = acting else { return Value::Vector([f64::NAN; 3]) };
+        let mut force = [0.0; 3];
+        for &(row, axis, coefficient) in acting {
+            force[axis] += coefficient * sample.multipliers.get(row).copied().unwrap_or(f64::NAN);
+        }
+        Value::Vector(force)
+    }))
+}

@@ -1,0 +1,237 @@
+//! What can be read from a motion, by name.
+
+use crate::input::{InputError, unknown_among};
+use crate::mesh::Selection;
+
+/// A quantity that a sensor reads: see [`Sampling::read`](crate::Sampling::read).
+///
+/// Positions and the like of several nodes are means over them; forces are sums.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    pub(super) what: What,
+    pub(super) component: Option<Component>,
+}
+
+/// What is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum What {
+    Position(Selection),
+    Displacement(Selection),
+    Velocity(Selection),
+    ConstraintForce(Selection),
+    ContactForce(String),
+    SpringPull(String),
+    SpringLength(String),
+    Pressure(String),
+    ChamberVolume(String),
+    Stress(Place),
+    Strain(Place),
+    Distance([Selection; 2]),
+    Angle([[Selection; 2]; 2]),
+}
+
+/// Where a field is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Place {
+    Nodes(Selection),
+    Point(Vec<f64>),
+}
+
+/// A part of a vector or tensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Component {
+    /// Along the first axis.
+    X,
+    /// Along the second axis.
+    Y,
+    /// Along the third axis.
+    Z,
+    /// The length of a vector.
+    Norm,
+    /// First diagonal entry of a tensor.
+    XX,
+    /// Second diagonal entry.
+    YY,
+    /// Third diagonal entry: across the plane, of a body in two dimensions.
+    ZZ,
+    /// Entry of the first and second axis; of strain the tensor's, half the change of the right angle.
+    XY,
+    /// Entry of the second and third axis.
+    YZ,
+    /// Entry of the first and third axis.
+    XZ,
+    /// The stress of von Mises.
+    VonMises,
+}
+
+impl Component {
+    /// All of them with their words.
+    const WORDS: [(&'static str, Self); 11] = [
+        ("x", Self::X),
+        ("y", Self::Y),
+        ("z", Self::Z),
+        ("norm", Self::Norm),
+        ("xx", Self::XX),
+        ("yy", Self::YY),
+        ("zz", Self::ZZ),
+        ("xy", Self::XY),
+        ("yz", Self::YZ),
+        ("xz", Self::XZ),
+        ("von_mises", Self::VonMises),
+    ];
+
+    /// Its word: `x`, `norm`, `xy`, `von_mises`, ...
+    pub fn word(self) -> &'static str {
+        let of_this = Self::WORDS.iter().find(|(_, component)| *component == self);
+        of_this.map_or("", |(word, _)| word)
+    }
+
+    /// The component with a word.
+    ///
+    /// # Errors
+    /// A word that none has; the message names the nearest one.
+    pub fn from_word(word: &str) -> Result<Self, InputError> {
+        Self::among(word, &Self::WORDS.map(|(_, component)| component), "library")
+    }
+
+    /// The component with a word among `known` ones, which are all that `owner` has.
+    fn among(word: &str, known: &[Self], owner: &str) -> Result<Self, InputError> {
+        let found = known.iter().find(|component| component.word() == word);
+        found.copied().ok_or_else(|| {
+            let known: Vec<&str> = known.iter().map(|component| component.word()).collect();
+            let mend = unknown_among(word, &known, owner, "components");
+            InputError::new("component", format!("\"{word}\""), mend)
+        })
+    }
+}
+
+impl Reading {
+    /// Where nodes are (m).
+    pub fn position(nodes: impl Into<Selection>) -> Self {
+        What::Position(nodes.into()).into()
+    }
+
+    /// How far they are from their natural positions (m).
+    pub fn displacement(nodes: impl Into<Selection>) -> Self {
+        What::Displacement(nodes.into()).into()
+    }
+
+    /// How fast they move (m/s).
+    pub fn velocity(nodes: impl Into<Selection>) -> Self {
+        What::Velocity(nodes.into()).into()
+    }
+
+    /// Force of the constraints on nodes together (N), their reaction:
+    /// see [`Trajectory::constraint_force`](crate::Trajectory::constraint_force).
+    pub fn constraint_force(nodes: impl Into<Selection>) -> Self {
+        What::ConstraintForce(nodes.into()).into()
+    }
+
+    /// Force of an obstacle on the body (N).
+    pub fn contact_force(obstacle: impl Into<String>) -> Self {
+        What::ContactForce(obstacle.into()).into()
+    }
+
+    /// Force with which a spring pulls its ends together (N): see [`View::spring_pull`](crate::View::spring_pull).
+    pub fn spring_pull(spring: impl Into<String>) -> Self {
+        What::SpringPull(spring.into()).into()
+    }
+
+    /// Length of a spring (m).
+    pub fn spring_length(spring: impl Into<String>) -> Self {
+        What::SpringLength(spring.into()).into()
+    }
+
+    /// Pressure in a chamber (Pa).
+    pub fn pressure(chamber: impl Into<String>) -> Self {
+        What::Pressure(chamber.into()).into()
+    }
+
+    /// Volume that the walls of a chamber enclose (m^3).
+    pub fn chamber_volume(chamber: impl Into<String>) -> Self {
+        What::ChamberVolume(chamber.into()).into()
+    }
+
+    /// Stress at nodes (Pa): see [`Body::nodal_fields`](crate::Body::nodal_fields).
+    pub fn stress(nodes: impl Into<Selection>) -> Self {
+        What::Stress(Place::Nodes(nodes.into())).into()
+    }
+
+    /// Stress (Pa) at the point of the body whose natural position is `x` (m): that at the nodes around it, by their
+    /// shape functions.
+    pub fn stress_at(x: impl Into<Vec<f64>>) -> Self {
+        What::Stress(Place::Point(x.into())).into()
+    }
+
+    /// Strain at nodes, as [`stress`](Self::stress).
+    pub fn strain(nodes: impl Into<Selection>) -> Self {
+        What::Strain(Place::Nodes(nodes.into())).into()
+    }
+
+    /// Strain at a point, as [`stress_at`](Self::stress_at).
+    pub fn strain_at(x: impl Into<Vec<f64>>) -> Self {
+        What::Strain(Place::Point(x.into())).into()
+    }
+
+    /// Distance (m) between nodes, or the middles of sets.
+    pub fn distance(from: impl Into<Selection>, to: impl Into<Selection>) -> Self {
+        What::Distance([from.into(), to.into()]).into()
+    }
+
+    /// Angle (rad) from one line to another, each from its first node (or middle of a set) to its second:
+    /// counter-clockwise between -pi and pi in the plane, between 0 and pi in space.
+    pub fn angle<S: Into<Selection>>(from: [S; 2], to: [S; 2]) -> Self {
+        What::Angle([from, to].map(|line| line.map(Into::into))).into()
+    }
+
+    /// One component alone. Default: all of them, each a column.
+    pub fn component(mut self, component: Component) -> Self {
+        self.component = Some(component);
+        self
+    }
+
+    /// Unit of the numbers.
+    pub(super) fn unit(&self) -> &'static str {
+        match self.what {
+            What::Position(_) | What::Displacement(_) => "m",
+            What::SpringLength(_) | What::Distance(_) => "m",
+            What::Velocity(_) => "m/s",
+            What::ConstraintForce(_) | What::ContactForce(_) | What::SpringPull(_) => "N",
+            What::Pressure(_) | What::Stress(_) => "Pa",
+            What::ChamberVolume(_) => "m^3",
+            What::Strain(_) => "1",
+            What::Angle(_) => "rad",
+        }
+    }
+
+    /// The components that are read of a body in `dimension` dimensions; none of a number.
+    ///
+    /// # Errors
+    /// A component that the quantity does not have.
+    pub(super) fn components(&self, dimension: usize) -> Result<Vec<Component>, InputError> {
+        use Component::*;
+        // those of all columns, and one more that has to be asked for
+        let (all, more): (&[Component], _) = match (&self.what, dimension) {
+            (What::Stress(_), 1) => (&[XX], Some(VonMises)),
+            (What::Stress(_), 2) => (&[XX, YY, ZZ, XY], Some(VonMises)),
+            (What::Stress(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], Some(VonMises)),
+            (What::Strain(_), 1) => (&[XX], None),
+            (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
+            (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
+            (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
+            | (What::ConstraintForce(_) | What::ContactForce(_), _) => {
+                (&[X, Y, Z][..dimension], Some(Norm))
+            }
+            _ => (&[], None),
+        };
+        let Some(one) = self.component else { return Ok(all.to_vec()) };
+        let known: Vec<Component> = all.iter().copied().chain(more).collect();
+        Component::among(one.word(), &known, "quantity").map(|one| vec![one])
+    }
+}
+
+impl From<What> for Reading {
+    fn from(what: What) -> Self {
+        Self { what, component: None }
+    }
+}

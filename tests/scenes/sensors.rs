@@ -1,0 +1,250 @@
+//! Named sensors against closed forms, and against what trajectories say of the same samples.
+
+use pliant::simulate::{Component, Reading};
+use pliant::{
+    Body, Cells, Chamber, Error, Material, Mesh, Obstacle, Phase, Plane, Sampling, Scene, Settings,
+    SolidCells, Spring, Strain, Trajectory,
+};
+
+type Outcome = Result<(), Error>;
+
+const SOFT: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
+
+/// What a sensor read with each sample.
+fn read(trajectory: &Trajectory, name: &str) -> Vec<f64> {
+    let names: Vec<&str> = trajectory.sensors().iter().map(|sensor| &sensor.name[..]).collect();
+    let number = names.iter().position(|other| *other == name);
+    let number = number.unwrap_or_else(|| panic!("no {name} among {names:?}"));
+    trajectory.samples().iter().map(|sample| sample.sensors[number]).collect()
+}
+
+fn assert_close(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} is not {expected}");
+}
+
+/// What is read at t = 0, in the shape that `u` gives.
+fn at_start(
+    body: Body,
+    u: impl Fn(&[f64]) -> Vec<f64>,
+    sampling: Sampling,
+    of: impl Fn(Scene) -> Scene,
+) -> Result<Trajectory, Error> {
+    let scene = Scene::new(body).initial_displacement(u);
+    let scene = of(scene).phase(Phase::until(1e-7));
+    scene.simulate(&Settings::default(), &sampling)
+}
+
+/// A bar of rectangles, pulled by 1 %: stress E e along it, none across, strain -nu e across.
+#[test]
+fn a_stretched_bar_has_the_stress_of_hooke() -> Outcome {
+    let (e, nu) = (0.01, SOFT.poisson);
+    for cells in [Cells::Triangles, Cells::Triangles6, Cells::Rectangles] {
+        let mesh = Mesh::rectangle([0.3, 0.1], [7, 3], cells)?;
+        let body = Body::new(mesh, SOFT).thickness(0.01).plane(Plane::Stress).build()?;
+        let sampling = Sampling::phase_ends()
+            .read("stress", Reading::stress("right"))
+            .read("mises", Reading::stress_at([0.123, 0.045]).component(Component::VonMises))
+            .read("strain", Reading::strain([1]))
+            .read("thinner", Reading::strain_at([0.3, 0.1]).component(Component::YY))
+            .read("pulled", Reading::displacement("right").component(Component::X));
+        let stretched = |x: &[f64]| vec![e * x[0], -nu * e * x[1]];
+        let trajectory = at_start(body, stretched, sampling, |scene| scene)?;
+        // round-off of differences of displacements: 2.5e-12 Pa and 4e-18 were found
+        let (stress, strain) = (2e-11, 2e-17);
+        let expected = [
+            ("stress.xx", SOFT.young * e, stress),
+            ("stress.yy", 0.0, stress),
+            ("stress.zz", 0.0, stress),
+            ("stress.xy", 0.0, stress),
+            ("mises", SOFT.young * e, stress),
+            ("strain.xx", e, strain),
+            ("strain.yy", -nu * e, strain),
+            ("strain.zz", -nu * e, strain),
+            ("thinner", -nu * e, strain),
+            ("pulled", 0.003, 1e-16),
+        ];
+        for (name, expected, tolerance) in expected {
+            assert_close(read(&trajectory, name)[0], expected, tolerance);
+        }
+        let units: Vec<&str> = trajectory.sensors().iter().map(|sensor| &sensor.unit[..]).collect();
+        assert_eq!(units, ["Pa", "Pa", "Pa", "Pa", "Pa", "1", "1", "1", "1", "1", "m"]);
+    }
+    Ok(())
+}
+
+/// A square of 10 cm that is blown up by a tenth: 1.1^2 of its area; its sides, diagonals and angles.
+#[test]
+fn lengths_angles_and_volumes_of_a_square() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles)?;
+    let body = Body::new(mesh, SOFT).thickness(0.02).strain(Strain::Green).build()?;
+    let sampling = Sampling::phase_ends()
+        .read("volume", Reading::chamber_volume("inside"))
+        .read("pressure", Reading::pressure("inside"))
+        .read("diagonal", Reading::distance([1], [9]))
+        .read("half", Reading::distance("left", [5]))
+        .read("angle", Reading::angle([[1], [3]], [[1], [7]]))
+        .read("back", Reading::angle([[1], [7]], [[1], [3]]))
+        .read("length", Reading::spring_length("tendon"))
+        .read("pull", Reading::spring_pull("tendon"))
+        .read("corner", Reading::position([9]))
+        .read("far", Reading::position([9]).component(Component::Norm));
+    let (s, k) = (1.1, 0.25);
+    let scene = |scene: Scene| {
+        scene
+            .chamber(Chamber::within("inside", [1, 3, 9, 7]))
+            .spring(Spring::between([1], [9]).named("tendon").stiffness(50.0))
+    };
+    // larger by s, then sheared: the volume stays
+    let larger = |x: &[f64]| vec![(s - 1.0) * x[0] + s * k * x[1], (s - 1.0) * x[1]];
+    let trajectory = at_start(body, larger, sampling, scene)?;
+    let diagonal = 0.11 * (1.25_f64.powi(2) + 1.0).sqrt();
+    let expected = [
+        ("volume", 0.11 * 0.11 * 0.02, 1e-18),
+        ("pressure", 0.0, 0.0),
+        ("diagonal", diagonal, 1e-16),
+        ("half", 0.055, 1e-16),
+        ("angle", (1.0 / k).atan(), 1e-15),
+        ("back", -(1.0 / k).atan(), 1e-15),
+        ("length", diagonal, 1e-16),
+        ("pull", 50.0 * (diagonal - 0.1 * 2.0_f64.sqrt()), 1e-14),
+        ("corner.x", 0.11 * 1.25, 1e-16),
+        ("corner.y", 0.11, 1e-16),
+        ("far", diagonal, 1e-16),
+    ];
+    for (name, expected, tolerance) in expected {
+        assert_close(read(&trajectory, name)[0], expected, tolerance);
+    }
+    Ok(())
+}
+
+#[test]
+fn angles_in_space_have_no_sign() -> Outcome {
+    let mesh = Mesh::cuboid([0.1, 0.2, 0.3], [2, 2, 2], SolidCells::Hexahedra)?;
+    let sampling = Sampling::phase_ends()
+        .read("angle", Reading::angle([[1], [3]], [[1], [8]]))
+        .read("back", Reading::angle([[1], [8]], [[1], [3]]));
+    let body = Body::new(mesh, SOFT).build()?;
+    let trajectory = at_start(body, |_| vec![0.0; 3], sampling, |scene| scene)?;
+    // between an edge and the diagonal of the block
+    let expected = (0.2 / (0.14_f64).sqrt()).acos();
+    assert_close(read(&trajectory, "angle")[0], expected, 1e-14);
+    assert_close(read(&trajectory, "back")[0], expected, 1e-14);
+    Ok(())
+}
+
+/// A square hangs, then lies on a floor: both carry its weight once it rests.
+#[test]
+fn at_rest_reactions_are_the_weight() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Triangles)?;
+    let damped = Material { viscosity: 500.0, ..SOFT };
+    let body = Body::new(mesh, damped).thickness(0.1).build()?;
+    let weight = body.mass() * 9.8;
+    let floor = Obstacle::half_plane([0.0, -0.01], [0.0, 1.0]).named("floor");
+    let sampling = Sampling::every(0.05)
+        .read("hung", Reading::constraint_force("top"))
+        .read("corner", Reading::constraint_force([1]))
+        .read("floor", Reading::contact_force("floor"))
+        .read("pressed", Reading::contact_force("floor").component(Component::Norm))
+        .read("falling", Reading::velocity("all").component(Component::Y));
+    let trajectory = Scene::new(body)
+        .gravity([0.0, -9.8])
+        .obstacle(floor.stiffness(2e3).damping(100.0))
+        .phase(Phase::until(1.0).hold("top").without_contact())
+        .phase(Phase::until(3.0))
+        .simulate(&Settings { rtol: 1e-8, ..Settings::default() }, &sampling)?;
+    let end_of_phase = trajectory.samples().iter().rposition(|sample| sample.phase == 0).unwrap();
+    let last = trajectory.samples().len() - 1;
+    // what is left of the motion then: 2.3e-8 N was found
+    let close = |name: &str, at: usize, expected: f64| {
+        assert_close(read(&trajectory, name)[at], expected, 1e-8 * weight);
+    };
+    close("hung.y", end_of_phase, weight);
+    close("hung.x", end_of_phase, 0.0);
+    close("floor.y", last, weight);
+    close("pressed", last, weight);
+    for (k, sample) in trajectory.samples().iter().enumerate() {
+        let held = trajectory.constraint_force(sample, "top")?;
+        assert_eq!([read(&trajectory, "hung.x")[k], read(&trajectory, "hung.y")[k]], held[..]);
+        let touched: f64 = trajectory.contact_forces(sample)?.iter().skip(1).step_by(2).sum();
+        assert_close(read(&trajectory, "floor.y")[k], touched, 1e-14);
+    }
+    assert!(read(&trajectory, "falling").iter().any(|v| *v < -0.1));
+    assert!(read(&trajectory, "corner.y").iter().all(|force| *force == 0.0));
+    Ok(())
+}
+
+/// Commands change what holds and touches: sensors follow.
+#[test]
+fn sensors_follow_commands() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Triangles)?;
+    let body = Body::new(mesh, SOFT).thickness(0.1).build()?;
+    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).named("floor").stiffness(1e3);
+    let scene = Scene::new(body).gravity([0.0, -9.8]).obstacle(floor).phase(Phase::until(0.3));
+    let mut run = scene.start(&Settings::default())?;
+    run.record(
+        &Sampling::every(0.01)
+            .read("top", Reading::constraint_force("top"))
+            .read("floor", Reading::contact_force("floor")),
+    )?;
+    run.advance_to(0.1)?;
+    run.hold("top")?;
+    run.advance_to(0.2)?;
+    run.contact("floor", false)?;
+    run.advance_to(0.3)?;
+    let trajectory = run.into_trajectory();
+    let (mut held, mut touched) = (0, 0);
+    for (k, sample) in trajectory.samples().iter().enumerate().skip(1) {
+        let top = trajectory.constraint_force(sample, "top")?;
+        let floor: f64 = trajectory.contact_forces(sample)?.iter().skip(1).step_by(2).sum();
+        assert_eq!(read(&trajectory, "top.y")[k], top[1]);
+        assert_close(read(&trajectory, "floor.y")[k], floor, 1e-14);
+        held += usize::from(top[1] != 0.0);
+        touched += usize::from(floor != 0.0);
+    }
+    assert!((5..25).contains(&held) && (5..25).contains(&touched), "{held}, {touched}");
+    Ok(())
+}
+
+#[test]
+fn what_the_scene_lacks_is_named_before_the_run() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles)?;
+    let scene = Scene::new(Body::new(mesh, SOFT).thickness(0.1).build()?)
+        .chamber(Chamber::within("inside", [1, 3, 9, 7]))
+        .spring(Spring::between([1], [9]).named("tendon"))
+        .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).named("floor").stiffness(1.0))
+        .phase(Phase::until(1.0));
+    for (reading, part) in [
+        (
+            Reading::position("rigth"),
+            "node set of sensor \"it\" = \"rigth\" cannot be used: did you mean \"right\"?",
+        ),
+        (Reading::constraint_force([10]), "the nodes 1 to 9"),
+        (Reading::contact_force("flor"), "did you mean \"floor\"?"),
+        (Reading::spring_pull("tendom"), "did you mean \"tendon\"?"),
+        (Reading::spring_length("inside"), "the springs \"tendon\""),
+        (Reading::pressure("insid"), "did you mean \"inside\"?"),
+        (Reading::chamber_volume("tendon"), "the chambers \"inside\""),
+        (Reading::stress_at([0.2, 0.0]), "outside the body"),
+        (Reading::strain_at([0.2]), "it needs 2 component(s)"),
+        (Reading::angle(["left", "left"], ["left", "right"]), "it has no direction"),
+        (Reading::position([1]).component(Component::Z), "component of sensor \"it\" = \"z\""),
+        (
+            Reading::position([1]).component(Component::XX),
+            "the quantity has the components \"x\", \"y\", \"norm\"",
+        ),
+        (Reading::strain([1]).component(Component::VonMises), "\"von_mises\" cannot be used"),
+        (Reading::pressure("inside").component(Component::X), "the quantity has no components"),
+    ] {
+        let sampling = Sampling::phase_ends().read("it", reading);
+        let refused = scene.simulate(&Settings::default(), &sampling).unwrap_err().to_string();
+        assert!(refused.contains(part), "{refused}");
+        assert!(refused.contains("sensor \"it\""), "{refused}");
+    }
+    let twice =
+        Sampling::phase_ends().sensor("tip.x", "m", |_, _| 0.0).read("tip", Reading::position([1]));
+    let refused = scene.simulate(&Settings::default(), &twice).unwrap_err().to_string();
+    assert!(refused.contains("name of a sensor = \"tip.x\""), "{refused}");
+    let unknown = Component::from_word("von-mises").unwrap_err().to_string();
+    assert!(unknown.contains("did you mean \"von_mises\"?"), "{unknown}");
+    Ok(())
+}
