@@ -4,15 +4,13 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use super::columns::{Columns, EXCHANGED, STORED, stored};
 use super::write_file;
 use crate::error::Error;
 use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::scene::Scene;
-use crate::system::Energy;
 use crate::trajectory::{Sample, Trajectory};
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Writes one row per sample, after a row with the names of the columns:
 ///
@@ -26,6 +24,8 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 /// | `constraint_drift` | largest error of a constraint (m) |
 /// | `u<N>_x`, ... | displacement of each tracked node N (m), numbers counted from 1 |
 /// | names of [sensors](crate::Sampling::sensor) | what they read, each in its unit |
+/// | `dissipated`, `supplied` | energies turned into heat and supplied from outside since t = 0 (J) |
+/// | `reaction_<nodes>_x`, ... | force of the constraints on the nodes that a phase holds or moves together (N), by the name of their set or their numbers; 0 in phases in which nothing holds them |
 ///
 /// Numbers have 17 significant digits: read back, they are the very same.
 ///
@@ -51,20 +51,16 @@ pub fn write_csv(
     path: impl AsRef<Path>,
     track: Option<&Selection>,
 ) -> Result<(), Error> {
-    let nodes = match track {
-        Some(selection) => trajectory.body().mesh().select(selection)?,
-        None => Vec::new(),
-    };
-    let header = header_of(trajectory, &nodes);
-    let rows = trajectory.samples().iter().map(|sample| row(trajectory, &nodes, sample));
-    write(path.as_ref(), header, rows)
+    let columns = Columns::new(trajectory.scene(), track)?;
+    let rows = trajectory.samples().iter().map(|sample| columns.row(trajectory, sample));
+    write(path.as_ref(), header(&columns, trajectory), rows)
 }
 
 /// The table of [`write_csv`] while a scene runs: rows are added as samples come, so that a kill loses the last
 /// of them alone. What is complete in the end `write_csv` should write once more, all at once.
 pub struct GrowingTable {
     path: PathBuf,
-    nodes: Vec<usize>,
+    columns: Columns,
     /// Rows written, and the time (s) of the last.
     rows: usize,
     last: f64,
@@ -82,14 +78,8 @@ impl GrowingTable {
         path: impl Into<PathBuf>,
         track: Option<&Selection>,
     ) -> Result<Self, Error> {
-        let nodes = track.map(|selection| scene.body().mesh().select(selection)).transpose()?;
-        Ok(Self {
-            path: path.into(),
-            nodes: nodes.unwrap_or_default(),
-            rows: 0,
-            last: 0.0,
-            began: None,
-        })
+        let columns = Columns::new(scene, track)?;
+        Ok(Self { path: path.into(), columns, rows: 0, last: 0.0, began: None })
     }
 
     /// For a run that goes on from a state at time `began` (s), with `trajectory` so far: the rows until then, which
@@ -98,7 +88,7 @@ impl GrowingTable {
     /// # Errors
     /// [`Error::Read`] if there is no table; one with other columns.
     pub fn going_on(self, trajectory: &Trajectory, began: f64) -> Result<Self, Error> {
-        let header = header_of(trajectory, &self.nodes).join(",");
+        let header = header(&self.columns, trajectory).join(",");
         if self.text()?.lines().next() != Some(&*header) {
             let mend =
                 "its columns are others: resume with the same nodes and sensors, or run anew";
@@ -139,15 +129,19 @@ impl GrowingTable {
         let fits = |last: usize| samples.get(last).is_some_and(|sample| sample.time == self.last);
         let written =
             self.rows.checked_sub(1).filter(|&last| fits(last)).map_or(0, |last| last + 1);
-        let row = |sample: &Sample| row(trajectory, &self.nodes, sample);
+        let row = |sample: &Sample| self.columns.row(trajectory, sample);
         let done = match written {
-            0 => write(&self.path, header_of(trajectory, &self.nodes), samples.iter().map(row)),
+            0 => write(&self.path, header(&self.columns, trajectory), samples.iter().map(row)),
             _ => append(&self.path, samples[written..].iter().map(row))
                 .map_err(|source| Error::Output { path: self.path.clone(), source }),
         };
         (self.rows, self.last) = (samples.len(), trajectory.last().time);
         done
     }
+}
+
+fn header(columns: &Columns, trajectory: &Trajectory) -> Vec<String> {
+    columns.quantities(trajectory).into_iter().map(|quantity| quantity.name).collect()
 }
 
 fn append(path: &Path, rows: impl Iterator<Item = Vec<f64>>) -> io::Result<()> {
@@ -164,7 +158,7 @@ fn append(path: &Path, rows: impl Iterator<Item = Vec<f64>>) -> io::Result<()> {
 /// # Errors
 /// [`Error::Output`] if the file cannot be written.
 pub fn write_energies(trajectory: &Trajectory, path: impl AsRef<Path>) -> Result<(), Error> {
-    let names = ["t"].into_iter().chain(STORED).chain(["dissipated", "supplied", "balance"]);
+    let names = ["t"].into_iter().chain(STORED).chain(EXCHANGED).chain(["balance"]);
     let header = names.map(str::to_owned).collect();
     let row = |sample: &Sample| {
         let energy = &sample.energy;
@@ -194,46 +188,4 @@ fn write_rows(
     mut rows: impl Iterator<Item = Vec<f64>>,
 ) -> io::Result<()> {
     rows.try_for_each(|row| Ok(table.write_record(row.iter().map(|x| format!("{x:.16e}")))?))
-}
-
-/// Energies that are stored.
-const STORED: [&str; 5] = ["kinetic", "strain", "gravity", "contact", "springs"];
-
-fn stored(energy: &Energy) -> [f64; 5] {
-    [energy.kinetic, energy.strain, energy.gravity, energy.contact, energy.springs]
-}
-
-fn header_of(trajectory: &Trajectory, nodes: &[usize]) -> Vec<String> {
-    let mut header = header(trajectory.body().dimension(), nodes);
-    header.extend(trajectory.sensors().iter().map(|sensor| sensor.name.clone()));
-    header
-}
-
-fn header(dimension: usize, nodes: &[usize]) -> Vec<String> {
-    let vector = |name: String| AXES[..dimension].iter().map(move |axis| format!("{name}_{axis}"));
-    let mut names = vec!["t".to_owned()];
-    names.extend(vector("com".into()));
-    names.extend(vector("momentum".into()));
-    match dimension {
-        1 => {}
-        2 => names.push("angular_momentum".into()),
-        _ => names.extend(vector("angular_momentum".into())),
-    }
-    names.extend(STORED.map(str::to_owned));
-    names.push("constraint_drift".into());
-    names.extend(nodes.iter().flat_map(|node| vector(format!("u{}", node + 1))));
-    names
-}
-
-fn row(trajectory: &Trajectory, nodes: &[usize], sample: &Sample) -> Vec<f64> {
-    let dimension = trajectory.body().dimension();
-    let mut row = vec![sample.time];
-    row.extend(trajectory.centre_of_mass(sample));
-    row.extend(trajectory.momentum(sample));
-    row.extend(trajectory.angular_momentum(sample));
-    row.extend(stored(&sample.energy));
-    row.push(sample.constraint_drift);
-    row.extend(nodes.iter().flat_map(|node| &sample.u[node * dimension..][..dimension]));
-    row.extend(&sample.sensors);
-    row
 }

@@ -2,11 +2,12 @@
 //!
 //! | file | for | written by |
 //! | --- | --- | --- |
-//! | CSV | tables of centre of mass, momentum, energies, tracked nodes | [`write_csv`] |
+//! | CSV | tables of centre of mass, momentum, energies, tracked nodes, sensors, reactions | [`write_csv`] |
 //! | CSV | tables of all energies and their balance | [`write_energies`] |
 //! | JSON | how a result was obtained: method, steps, errors, versions | [`write_report`] |
 //! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
-//! | SVG | quantities over time | [`Chart`] |
+//! | SVG, PNG | sensors and energies over time, of a motion or of a table that a run has left | [`Plot`] |
+//! | SVG | any series over each other | [`Chart`] |
 //! | HTML | the motion, to be played by a web browser | [`write_animation`] |
 //! | VTK | ParaView and other viewers of meshes: motion, forces, strain and stress | [`write_vtk`] |
 //!
@@ -15,9 +16,11 @@
 
 mod animation;
 mod chart;
+mod columns;
 mod csv;
 mod decades;
-#[cfg(feature = "study")]
+mod plot;
+#[cfg(feature = "png")]
 mod png;
 mod report;
 mod role;
@@ -29,8 +32,10 @@ pub(crate) use self::animation::Picture;
 pub use self::animation::write_animation;
 pub use self::chart::Chart;
 pub use self::csv::{GrowingTable, write_csv, write_energies};
+pub(crate) use self::decades::power_text;
 #[cfg(feature = "study")]
-pub(crate) use self::decades::{power_text, ticks};
+pub(crate) use self::decades::ticks;
+pub use self::plot::{Plot, Table};
 #[cfg(feature = "study")]
 pub(crate) use self::png::png;
 pub use self::report::{write_report, write_static_report};
@@ -42,3 +47,8 @@ pub(crate) use crate::file::write_file;
 pub(crate) const FONT: &str = "Helvetica Neue, Helvetica, Arial, sans-serif";
 /// Colour of titles and labels.
 pub(crate) const INK: &str = "#222222";
+/// Colours that stay apart for colour-blind eyes (Okabe and Ito).
+pub(crate) const COLOURS: [&str; 8] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222", "#999999"];
+/// Strokes that tell lines of one colour apart.
+pub(crate) const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];

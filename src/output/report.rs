@@ -9,8 +9,7 @@ use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
 use crate::report::{PhaseReport, Report};
 use crate::sundials;
-use crate::trajectory::IntegrationFailure;
-use crate::trajectory::Trajectory;
+use crate::trajectory::{IntegrationFailure, Quantity, Trajectory};
 
 /// Writes how a run was computed, whether it was finished, gave up or was interrupted, as JSON:
 ///
@@ -29,6 +28,7 @@ use crate::trajectory::Trajectory;
 /// | `phases` | for each phase `name`, `end` (time reached, s), `reason` (why that method, or `null` if it was asked for), all of the above from `method` on, `contact_events` (located), `last_step` (s) and `last_order` |
 /// | `energy_balance_error`, `energy_created`, `energy_scale` | largest change and largest rise of the energy balance, largest sum of the energies (J) |
 /// | `max_constraint_drift` | largest error of a constraint at the end of a step (m) |
+/// | `sensors` | `name` and `unit` of each sensor, in the order of the columns of [`write_csv`](super::write_csv) |
 /// | `warnings` | what makes the result doubtful, in words |
 /// | `versions` | `pliant`, and the linked `sundials` and `suitesparse` (KLU) |
 ///
@@ -55,16 +55,19 @@ pub fn write_report(
     run: Result<&Trajectory, &IntegrationFailure>,
     path: impl AsRef<Path>,
 ) -> Result<(), Error> {
-    let (report, status, failure) = match run {
-        Ok(trajectory) => (trajectory.report(), "finished", Value::Null),
+    let (trajectory, status, failure) = match run {
+        Ok(trajectory) => (trajectory, "finished", Value::Null),
         Err(end) => {
             let status = if end.is_interruption() { "interrupted" } else { "failed" };
             let IntegrationFailure { phase, time, step, .. } = end;
             let failure =
                 json!({ "phase": phase, "time": time, "step": step, "cause": end.cause() });
-            (end.trajectory.report(), status, failure)
+            (&end.trajectory, status, failure)
         }
     };
+    let report = trajectory.report();
+    let sensor = |sensor: &Quantity| json!({ "name": sensor.name, "unit": sensor.unit });
+    let sensors: Vec<Value> = trajectory.sensors().iter().map(sensor).collect();
     let phases: Vec<Value> = report.phases.iter().map(|phase| of_phase(report, phase)).collect();
     write_json(
         path.as_ref(),
@@ -88,6 +91,7 @@ pub fn write_report(
             "energy_created": report.energy_created,
             "energy_scale": report.energy_scale,
             "max_constraint_drift": report.constraint_drift,
+            "sensors": sensors,
             "warnings": report.warnings(),
             "versions": versions(),
         }),

@@ -11,20 +11,15 @@ use super::fastest::time_text;
 use super::{Findings, LineFindings};
 use crate::error::Error;
 use crate::input::InputError;
-use crate::output::{FONT, INK, png, power_text, ticks, write_file};
+use crate::output::{COLOURS, DASHES, FONT, INK, png, power_text, ticks, write_file};
 
 /// Left, top, right and bottom of the field in which lines are drawn (px).
 const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
 /// Width and height of the page (px).
 const PAGE: [f64; 2] = [980.0, 560.0];
-/// Colours that stay apart for colour-blind eyes (Okabe and Ito).
-const COLOURS: [&str; 8] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222", "#999999"];
 /// Families that have the colour of the same place in all charts; others have them as they come.
 const FAMILIES: [&str; 7] =
     ["cvode-bdf", "cvode-adams", "rk", "ida", "arkode", "central-difference", "auto"];
-/// Strokes of the lines of a family.
-const DASHES: [&str; 4] = ["none", "7 4", "2 3", "9 3 2 3"];
 const GRID: &str = "#dddddd";
 const FAINT_GRID: &str = "#f1f1f1";
 /// Larger relative errors are drawn as large as this: wrong is wrong.

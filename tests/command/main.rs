@@ -114,7 +114,8 @@ fn run_writes_the_motion_and_how_it_was_computed() {
 
     let (header, rows) = place.table("out/square-jump");
     let names = "t com_x com_y momentum_x momentum_y angular_momentum kinetic strain gravity contact \
-                 springs constraint_drift u14_x u14_y u15_x u15_y";
+                 springs constraint_drift u14_x u14_y u15_x u15_y dissipated supplied \
+                 reaction_bottom_x reaction_bottom_y reaction_14_15_x reaction_14_15_y";
     assert_eq!(header, names.split_whitespace().collect::<Vec<_>>());
     assert_eq!(rows.len(), 151);
     // the very numbers of the same run in Rust
@@ -157,7 +158,7 @@ fn flags_override_the_file() {
     assert_eq!(ends, [(&json!("push"), &json!(0.5)), (&json!("hold"), &json!(0.72))]);
 
     let (header, rows) = place.table("some/where");
-    let tracked: Vec<&str> = header[12..].iter().map(String::as_str).collect();
+    let tracked: Vec<&str> = header[12..20].iter().map(String::as_str).collect();
     assert_eq!(tracked, ["u1_x", "u1_y", "u2_x", "u2_y", "u3_x", "u3_y", "u4_x", "u4_y"]);
     // every 0.05 s to 0.7 s, and the end at 0.72 s
     assert_eq!((rows.len(), rows[15][0]), (16, 0.72));

@@ -61,7 +61,8 @@ fn a_table_holds_the_samples_to_the_last_bit() -> Outcome {
     write_csv(&square, &path, Some(&[14, 2].into()))?;
     let (names, rows) = table(&path)?;
     let expected = "t com_x com_y momentum_x momentum_y angular_momentum kinetic strain gravity \
-                    contact springs constraint_drift u14_x u14_y u2_x u2_y";
+                    contact springs constraint_drift u14_x u14_y u2_x u2_y dissipated supplied \
+                    reaction_bottom_x reaction_bottom_y reaction_14_15_x reaction_14_15_y";
     assert_eq!(names.join(" "), expected);
     assert_eq!(rows.len(), 4);
     for (row, sample) in rows.iter().zip(square.samples()) {
@@ -73,9 +74,13 @@ fn a_table_holds_the_samples_to_the_last_bit() -> Outcome {
         values.extend([energy.kinetic, energy.strain, energy.gravity, energy.contact, 0.0]);
         values.push(sample.constraint_drift);
         values.extend([sample.u[26], sample.u[27], sample.u[2], sample.u[3]]);
+        values.extend([energy.dissipated, energy.supplied]);
+        values.extend(square.constraint_force(sample, "bottom")?);
+        values.extend(square.constraint_force(sample, [14, 15])?);
         assert_eq!(*row, values);
     }
     assert!(rows[2][7] > 0.0 && rows[2][13] < -0.003, "the square was pressed: {:?}", rows[2]);
+    assert!(rows[2][21] < -0.1 && rows[3][21] == 0.0, "the probe presses, then lets go");
     // while it is pressed, and while it is free
     let drift: Vec<f64> = square.samples().iter().map(|sample| sample.constraint_drift).collect();
     assert!(drift[1] > 0.0 && drift[1] <= square.report().constraint_drift && drift[3] == 0.0);
@@ -106,14 +111,17 @@ fn tables_in_one_and_three_dimensions() -> Outcome {
     let path = directory.path().join("bar.csv");
     write_csv(&bar()?, &path, None)?;
     let (names, rows) = table(&path)?;
-    let expected = "t com_x momentum_x kinetic strain gravity contact springs constraint_drift";
+    let expected = "t com_x momentum_x kinetic strain gravity contact springs constraint_drift \
+                    dissipated supplied reaction_left_x";
     assert_eq!(names.join(" "), expected);
     assert_eq!(rows.len(), 3);
 
     write_csv(&block()?, &path, Some(&[8].into()))?;
     let expected = "t com_x com_y com_z momentum_x momentum_y momentum_z angular_momentum_x \
                     angular_momentum_y angular_momentum_z kinetic strain gravity contact springs \
-                    constraint_drift u8_x u8_y u8_z";
+                    constraint_drift u8_x u8_y u8_z dissipated supplied reaction_bottom_x \
+                    reaction_bottom_y reaction_bottom_z reaction_top_x reaction_top_y \
+                    reaction_top_z";
     let (names, rows) = table(&path)?;
     assert_eq!(names.join(" "), expected);
     assert_eq!(rows[0].len(), names.len());

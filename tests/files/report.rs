@@ -47,7 +47,13 @@ fn a_finished_run() {
     let run = square_jump(4).unwrap().simulate(&settings, &Sampling::every(0.01)).unwrap();
     let report = written(Ok(&run));
     let rest = ["energy_balance_error", "energy_created", "energy_scale", "max_constraint_drift"];
-    let all = [&["status", "failure"][..], &COSTS, &["phases"], &rest, &["warnings", "versions"]];
+    let all = [
+        &["status", "failure"][..],
+        &COSTS,
+        &["phases"],
+        &rest,
+        &["sensors", "warnings", "versions"],
+    ];
     assert_eq!(keys(&report), all.concat());
     let phases = report["phases"].as_array().unwrap();
     for (phase, (name, end)) in phases.iter().zip([("push", 0.5), ("hold", 1.0), ("free", 1.5)]) {

@@ -177,7 +177,8 @@ fn sensors_read_what_the_samples_say() {
     let path = directory.path().join("motion.csv");
     pliant::output::write_csv(&trajectory, &path, None).unwrap();
     let table = std::fs::read_to_string(path).unwrap();
-    assert!(table.lines().next().unwrap().ends_with(",tip,floor,pressure,pull,kinetic energy"));
+    let header = table.lines().next().unwrap();
+    assert!(header.contains(",tip,floor,pressure,pull,kinetic energy,dissipated,"), "{header}");
     let twice = Sampling::phase_ends().sensor("a", "m", |_, _| 0.0).sensor("a", "m", |_, _| 0.0);
     let message = self::strip().simulate(&Settings::default(), &twice).unwrap_err().to_string();
     assert!(message.contains("\"a\"") && message.contains("sensor"), "{message}");
