@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::mesh::Selection;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::simulate::Sampling;
+use crate::simulate::{Reading, Sampling};
 use crate::statics::Statics;
 
 /// The contents of a scene file.
@@ -55,6 +55,8 @@ pub struct OutputRequest {
     pub step: Option<f64>,
     /// Nodes whose displacements the table lists.
     pub track: Option<Selection>,
+    /// Sensors: their names, and what they read.
+    pub sensors: Vec<(String, Reading)>,
     /// Kinds of files. Default: CSV.
     pub formats: Vec<Format>,
 }
@@ -71,32 +73,40 @@ pub enum Format {
     Svg,
     /// An animation.
     Html,
+    /// Sensors and energies over time.
+    Plot,
+    /// The same as pixels.
+    Png,
 }
 
 impl Format {
     /// All formats.
-    pub const ALL: [Self; 4] = [Self::Csv, Self::Vtk, Self::Svg, Self::Html];
+    pub const ALL: [Self; 6] = [Self::Csv, Self::Vtk, Self::Svg, Self::Html, Self::Plot, Self::Png];
 
-    /// Name: `csv`, `vtk`, `svg`, `html`.
+    /// Name: `csv`, `vtk`, `svg`, `html`, `plot`, `png`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Csv => "csv",
             Self::Vtk => "vtk",
             Self::Svg => "svg",
             Self::Html => "html",
+            Self::Plot => "plot",
+            Self::Png => "png",
         }
     }
 }
 
 impl Default for OutputRequest {
     fn default() -> Self {
-        Self { step: None, track: None, formats: vec![Format::Csv] }
+        Self { step: None, track: None, sensors: Vec::new(), formats: vec![Format::Csv] }
     }
 }
 
 impl OutputRequest {
-    /// When the motion is sampled.
+    /// When the motion is sampled, and what is read then.
     pub fn sampling(&self) -> Sampling {
-        self.step.map_or_else(Sampling::phase_ends, Sampling::every)
+        let times = self.step.map_or_else(Sampling::phase_ends, Sampling::every);
+        let sensors = self.sensors.iter();
+        sensors.fold(times, |sampling, (name, reading)| sampling.read(name, reading.clone()))
     }
 }

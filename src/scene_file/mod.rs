@@ -47,6 +47,7 @@ mod reference;
 mod rewrite;
 mod schema;
 mod selection;
+mod sensor;
 mod settings;
 mod source;
 mod surroundings;

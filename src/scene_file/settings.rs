@@ -72,7 +72,8 @@ pub(super) const OUTPUT: TableKeys = TableKeys::new(
         Key::new(
             "formats",
             Holds::OneOrMore(&Holds::Word(|| Format::ALL.map(Format::name).into())),
-            "what is written: a table, files for ParaView, snapshots, an animation",
+            "what is written: a table, files for ParaView, snapshots, an animation, a plot of sensors and energies \
+             as a drawing or as pixels",
         )
         .default("csv, which is always written"),
     ],
@@ -130,5 +131,6 @@ pub(super) fn output(value: &Value, mesh: &Mesh) -> Result<OutputRequest, Error>
         let known = Format::ALL.map(|format| (format.name(), format));
         value.one_or_more()?.iter().map(|format| format.word(&known)).collect()
     })?;
-    Ok(OutputRequest { step, track, formats: formats.unwrap_or_else(|| vec![Format::Csv]) })
+    let formats = formats.unwrap_or_else(|| vec![Format::Csv]);
+    Ok(OutputRequest { step, track, sensors: Vec::new(), formats })
 }

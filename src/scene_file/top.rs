@@ -4,6 +4,7 @@ use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
 use super::keys::{Holds, Key, TableKeys};
 use super::phase::{self, PHASE};
+use super::sensor::{SENSOR, sensor};
 use super::settings::{self, OUTPUT, SOLVER, STATICS};
 use super::surroundings::{self, CHAMBER, OBSTACLE, SPRING};
 use super::table::Table;
@@ -28,6 +29,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
         Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
+        Key::new("sensor", Holds::Tables(&SENSOR), "what is read with each sample"),
         Key::new("solver", Holds::Table(&SOLVER), "how it is integrated"),
         Key::new("statics", Holds::Table(&STATICS), "how its equilibrium is sought"),
         Key::new("output", Holds::Table(&OUTPUT), "what is written"),
@@ -67,6 +69,11 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     let statics = top.optional("statics", |value| settings::statics(value, &scene))?;
     let statics = statics.unwrap_or_default();
     let output = top.optional("output", |value| settings::output(value, scene.body().mesh()))?;
-    let output = output.unwrap_or_else(OutputRequest::default);
+    let mut output = output.unwrap_or_else(OutputRequest::default);
+    if let Some(values) = top.get("sensor") {
+        let sensors = values.one_or_more()?.into_iter().map(|value| sensor(&value, &scene));
+        output.sensors = sensors.collect::<Result<_, _>>()?;
+        output.sampling().check_sensors(&scene).map_err(|error| values.error(error))?;
+    }
     Ok(SceneFile { title: title.into(), scene, settings, statics, output, notes: Vec::new() })
 }

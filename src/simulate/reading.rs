@@ -66,7 +66,7 @@ pub enum Component {
 
 impl Component {
     /// All of them with their words.
-    const WORDS: [(&'static str, Self); 11] = [
+    pub(crate) const WORDS: [(&'static str, Self); 11] = [
         ("x", Self::X),
         ("y", Self::Y),
         ("z", Self::Z),
@@ -77,31 +77,24 @@ impl Component {
         ("xy", Self::XY),
         ("yz", Self::YZ),
         ("xz", Self::XZ),
-        ("von_mises", Self::VonMises),
+        ("von-mises", Self::VonMises),
     ];
 
-    /// Its word: `x`, `norm`, `xy`, `von_mises`, ...
+    /// Its word: `x`, `norm`, `xy`, `von-mises`, ...
     pub fn word(self) -> &'static str {
         let of_this = Self::WORDS.iter().find(|(_, component)| *component == self);
         of_this.map_or("", |(word, _)| word)
     }
 
-    /// The component with a word.
-    ///
     /// # Errors
-    /// A word that none has; the message names the nearest one.
-    pub fn from_word(word: &str) -> Result<Self, InputError> {
-        Self::among(word, &Self::WORDS.map(|(_, component)| component), "library")
-    }
-
-    /// The component with a word among `known` ones, which are all that `owner` has.
-    fn among(word: &str, known: &[Self], owner: &str) -> Result<Self, InputError> {
-        let found = known.iter().find(|component| component.word() == word);
-        found.copied().ok_or_else(|| {
-            let known: Vec<&str> = known.iter().map(|component| component.word()).collect();
-            let mend = unknown_among(word, &known, owner, "components");
-            InputError::new("component", format!("\"{word}\""), mend)
-        })
+    /// If it is none of the `known` ones, which are all that a quantity has.
+    fn check(self, known: &[Self]) -> Result<(), InputError> {
+        if known.contains(&self) {
+            return Ok(());
+        }
+        let known: Vec<&str> = known.iter().map(|component| component.word()).collect();
+        let mend = unknown_among(self.word(), &known, "quantity", "components");
+        Err(InputError::new("component", format!("\"{}\"", self.word()), mend))
     }
 }
 
@@ -226,7 +219,8 @@ impl Reading {
         };
         let Some(one) = self.component else { return Ok(all.to_vec()) };
         let known: Vec<Component> = all.iter().copied().chain(more).collect();
-        Component::among(one.word(), &known, "quantity").map(|one| vec![one])
+        one.check(&known)?;
+        Ok(vec![one])
     }
 }
 

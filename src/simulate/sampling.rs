@@ -91,6 +91,15 @@ impl Sampling {
         self
     }
 
+    /// Checks that `scene` has what the sensors read.
+    ///
+    /// # Errors
+    /// A quantity that it does not have; two columns with one name.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn check_sensors(&self, scene: &Scene) -> Result<(), InputError> {
+        Sensors::new(&self.sensors, scene).map(|_| ())
+    }
+
     /// Checks the times for `scene`, and finds what its sensors read.
     ///
     /// # Errors

@@ -559,3 +559,41 @@ fn the_schema_is_json() {
     let schema: Value = serde_json::from_str(&printed).unwrap();
     assert_eq!(schema["properties"]["phase"]["anyOf"][0]["$ref"], "#/definitions/[[phase]]");
 }
+
+/// Sensors of a scene file become columns and plots, and `plot` draws them once more from the results.
+#[test]
+fn sensors_are_plotted() {
+    let place = Place::new();
+    let scene = std::fs::read_to_string(shipped("square-jump.toml")).unwrap();
+    let sensor = "[[sensor]]\nname = \"top\"\nkind = \"position\"\nnodes = \"top\"\n";
+    fs::write(place.path("scene.toml"), format!("{scene}\n{sensor}")).unwrap();
+    let run = ["run", "scene.toml", "--formats", "plot,png", "--until", "0.1", "--quiet"];
+    let output = place.run(&run);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    let files = ["plot.png", "plot.svg", "report.json", "trajectory.csv"];
+    assert_eq!(place.files("out/scene"), files);
+    let (header, rows) = place.table("out/scene");
+    let top = header.iter().position(|name| name == "top.y").unwrap();
+    // the press has come down by 1.6 cm, with two of the four nodes on top
+    assert!((0.28..0.295).contains(&rows.last().unwrap()[top]), "{:?}", rows.last());
+    assert_eq!(place.report("out/scene")["sensors"][1], json!({ "name": "top.y", "unit": "m" }));
+
+    let drawn = fs::read_to_string(place.path("out/scene/plot.svg")).unwrap();
+    let title = drawn.lines().find(|line| line.contains("bold")).is_some();
+    assert!(title && drawn.contains("top.y"), "{drawn}");
+    fs::remove_file(place.path("out/scene/plot.svg")).unwrap();
+    let output = place.run(&["plot", "out/scene", "--columns", "com_y,top.y"]);
+    assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+    says(&stdout(&output), &["out/scene/plot.svg"]);
+    let drawn = fs::read_to_string(place.path("out/scene/plot.svg")).unwrap();
+    assert!(drawn.contains("com_y") && !drawn.contains("kinetic"));
+
+    for (arguments, part) in [
+        (&["plot", "out/scene", "--columns", "com_z"][..], "did you mean"),
+        (&["plot", "nowhere"], "trajectory.csv"),
+    ] {
+        let output = place.run(arguments);
+        assert_eq!(output.status.code(), Some(2));
+        says(&stderr(&output), &[part]);
+    }
+}

@@ -10,3 +10,4 @@ mod report;
 mod scene_file_errors;
 mod scene_file_words;
 mod scene_files;
+mod sensors;

@@ -57,6 +57,7 @@ fn in_the_plane() {
     let output = OutputRequest {
         step: Some(0.01),
         track: Some(corners([0.0, 0.2], [0.3, 0.3])),
+        sensors: Vec::new(),
         formats: vec![Format::Csv, Format::Vtk],
     };
     assert_eq!(file.output, output);

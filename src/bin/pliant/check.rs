@@ -83,6 +83,10 @@ fn solver(file: &SceneFile) -> Result<(), Failure> {
         Some(step) => format!("every {step} s"),
         None => "at the ends of the phases".into(),
     };
+    if !output.sensors.is_empty() {
+        let names: Vec<&str> = output.sensors.iter().map(|(name, _)| &name[..]).collect();
+        line("sensors", &names.join(", "))?;
+    }
     let formats: Vec<&str> = output.formats.iter().map(|format| Format::name(*format)).collect();
     line("output", &format!("{step}; {}", formats.join(", ")))
 }

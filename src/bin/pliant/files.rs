@@ -4,7 +4,7 @@ use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use pliant::output::{GrowingTable, Snapshots, write_animation, write_csv, write_vtk};
+use pliant::output::{GrowingTable, Plot, Snapshots, Table, write_animation, write_csv, write_vtk};
 use pliant::scene_file::Format;
 use pliant::simulate::{Checkpoint, Simulation};
 use pliant::{Error, OutputRequest, SceneFile, Selection, Trajectory};
@@ -20,7 +20,7 @@ pub struct OutputArguments {
     /// Nodes whose displacements trajectory.csv lists: a set such as "top", or numbers such as 14,15
     #[arg(long, value_name = "NODES", value_parser = selection)]
     track: Option<Selection>,
-    /// What to write besides trajectory.csv and report.json: svg, html, vtk
+    /// What to write besides trajectory.csv and report.json: svg, html, vtk, plot, png
     #[arg(long, value_delimiter = ',', value_parser = format)]
     formats: Option<Vec<Format>>,
     /// Show no progress, and print nothing but the results
@@ -76,13 +76,23 @@ pub struct Directory {
 /// From which a run that was ended can go on.
 const CHECKPOINT: &str = "checkpoint.json";
 const TABLE: &str = "trajectory.csv";
+/// Names of results, beside the frames of VTK.
+const RESULTS: [&str; 8] = [
+    TABLE,
+    CHECKPOINT,
+    "report.json",
+    "snapshots.svg",
+    "animation.html",
+    "body.pvd",
+    "plot.svg",
+    "plot.png",
+];
 
 /// Whether a file of this name is what `run` or `static` writes.
 fn is_result(name: &str) -> bool {
     let frame = name.strip_prefix("body_").and_then(|rest| rest.strip_suffix(".vtu"));
     frame.is_some_and(|number| number.bytes().all(|digit| digit.is_ascii_digit()))
-        || [TABLE, CHECKPOINT, "report.json", "snapshots.svg", "animation.html", "body.pvd"]
-            .contains(&name)
+        || RESULTS.contains(&name)
 }
 
 impl Directory {
@@ -190,6 +200,9 @@ impl Directory {
         title: &str,
         output: &OutputRequest,
     ) -> Result<(), Failure> {
+        // the table has what an earlier run has left, too
+        let here = self.path.clone();
+        let draw = |path: &Path| Plot::new().title(title).write_table(&Table::read(&here)?, path);
         for format in &output.formats {
             match format {
                 Format::Svg => self.write("snapshots.svg", |path| {
@@ -202,6 +215,8 @@ impl Directory {
                     write_vtk(trajectory, &self.path, "body")?;
                     self.written.push("body.pvd");
                 }
+                Format::Plot => self.write("plot.svg", draw)?,
+                Format::Png => self.write("plot.png", draw)?,
                 // the table is written in any case
                 _ => {}
             }

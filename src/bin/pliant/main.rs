@@ -8,6 +8,7 @@ mod methods;
 mod new;
 #[cfg(feature = "play")]
 mod play;
+mod plot;
 mod progress;
 mod reference;
 mod run;
@@ -40,6 +41,7 @@ enum Command {
     #[cfg(feature = "play")]
     Play(play::Arguments),
     Static(statics::Arguments),
+    Plot(plot::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
     Methods(methods::Arguments),
@@ -54,6 +56,7 @@ fn main() -> ExitCode {
         #[cfg(feature = "play")]
         Command::Play(arguments) => play::run(&arguments),
         Command::Static(arguments) => statics::run(&arguments),
+        Command::Plot(arguments) => plot::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),

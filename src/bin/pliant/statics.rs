@@ -42,6 +42,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     file.statics.phase = phase.clone().or(file.statics.phase);
     let mut directory = output.directory(&scene.path, "-static")?;
     let SceneFile { title, statics, output: request, .. } = &file;
+    let mut request = request.clone();
+    // one state has nothing over time
+    request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
+    let request = &request;
 
     let result = file.equilibrium();
     let outcome = match &result {

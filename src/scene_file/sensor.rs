@@ -1,0 +1,149 @@
+//! `[[sensor]]`.
+
+use super::keys::{Holds, Key, Kind, TableKeys};
+use super::selection::selection;
+use super::table::Table;
+use super::value::{Value, number_of};
+use crate::error::Error;
+use crate::mesh::{Mesh, Selection};
+use crate::scene::Scene;
+use crate::simulate::{Component, Reading, Sampling};
+
+pub(super) const SENSOR: TableKeys = TableKeys::new(
+    "[[sensor]]",
+    "A quantity that is read with each sample: a column of `trajectory.csv`, a line of plots. One with several \
+     components has a column for each: `tip.x`, `tip.y`. Of several nodes, positions and the like are means, forces \
+     are sums.",
+    &[
+        Key::new("name", Holds::Text, "the name of the sensor").required(),
+        Key::new("component", Holds::Word(|| Component::WORDS.map(|(word, _)| word).into()), "one component alone")
+            .law("Vectors have `x`, `y`, `z` and their length `norm`; tensors `xx` and so on; stress has `von-mises` besides.")
+            .default("all, each a column"),
+    ],
+    "[[sensor]]\nname = \"bottom\"\nkind = \"constraint-force\"\nnodes = \"all\"\ncomponent = \"y\"",
+)
+.kinds(&[
+    Kind { word: "position", about: "where nodes are (m)", keys: &[NODES] },
+    Kind {
+        word: "displacement",
+        about: "how far nodes are from their natural positions (m)",
+        keys: &[NODES],
+    },
+    Kind { word: "velocity", about: "how fast nodes move (m/s)", keys: &[NODES] },
+    Kind {
+        word: "constraint-force",
+        about: "the force of what holds or moves nodes, their reaction (N)",
+        keys: &[NODES],
+    },
+    Kind {
+        word: "contact-force",
+        about: "the force of an obstacle on the body (N)",
+        keys: &[Key::new("obstacle", Holds::Text, "the name of the obstacle").required()],
+    },
+    Kind {
+        word: "spring-pull",
+        about: "the force with which a spring and its actuator pull its ends together (N)",
+        keys: &[SPRING],
+    },
+    Kind { word: "spring-length", about: "the length of a spring (m)", keys: &[SPRING] },
+    Kind { word: "pressure", about: "the pressure in a chamber (Pa)", keys: &[CHAMBER] },
+    Kind {
+        word: "volume",
+        about: "the volume that the walls of a chamber enclose (m^3)",
+        keys: &[CHAMBER],
+    },
+    Kind {
+        word: "stress",
+        about: "the stress at nodes or at a point, extrapolated from the cells around (Pa)",
+        keys: &[PLACES, POINT],
+    },
+    Kind {
+        word: "strain",
+        about: "the strain at nodes or at a point, extrapolated from the cells around (no unit)",
+        keys: &[PLACES, POINT],
+    },
+    Kind {
+        word: "distance",
+        about: "the distance between two nodes, or the middles of sets (m)",
+        keys: &[
+            Key::new("from", Holds::Nodes, "where it is measured from").required(),
+            Key::new("to", Holds::Nodes, "where it is measured to").required(),
+        ],
+    },
+    Kind {
+        word: "angle",
+        about: "the angle from one line to another (rad), counter-clockwise in the plane, without sign in space",
+        keys: &[
+            Key::new("from", LINE, "the two ends of the one line").required(),
+            Key::new("to", LINE, "the two ends of the other").required(),
+        ],
+    },
+]);
+
+const NODES: Key = Key::new("nodes", Holds::Nodes, "the nodes").required();
+const PLACES: Key = Key::new("nodes", Holds::Nodes, "the nodes").default("`point`");
+const POINT: Key = Key::new("point", Holds::Vector, "the natural position of a point of the body")
+    .in_unit("m")
+    .default("`nodes`");
+const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring").required();
+const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
+const LINE: Holds = Holds::Array(&Holds::Nodes, 2);
+
+/// A sensor's name, and what it reads in `scene`.
+pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), Error> {
+    let table = value.table(&SENSOR)?;
+    let name = table.required("name", Value::string)?;
+    let mesh = scene.body().mesh();
+    let nodes = || table.required("nodes", |value| selection(value, mesh));
+    let named = |key: &str| table.required(key, Value::string);
+    let ends = |key: &str| table.required(key, |value| line(value, mesh));
+    let reading = match table.kind() {
+        "position" => Reading::position(nodes()?),
+        "displacement" => Reading::displacement(nodes()?),
+        "velocity" => Reading::velocity(nodes()?),
+        "constraint-force" => Reading::constraint_force(nodes()?),
+        "contact-force" => Reading::contact_force(named("obstacle")?),
+        "spring-pull" => Reading::spring_pull(named("spring")?),
+        "spring-length" => Reading::spring_length(named("spring")?),
+        "pressure" => Reading::pressure(named("chamber")?),
+        "volume" => Reading::chamber_volume(named("chamber")?),
+        "stress" => field(&table, mesh, Reading::stress, Reading::stress_at)?,
+        "strain" => field(&table, mesh, Reading::strain, Reading::strain_at)?,
+        "distance" => {
+            let end = |key: &str| table.required(key, |value| selection(value, mesh));
+            Reading::distance(end("from")?, end("to")?)
+        }
+        _ => Reading::angle(ends("from")?, ends("to")?),
+    };
+    let component = table.optional("component", |value| value.word(&Component::WORDS))?;
+    let reading = match component {
+        Some(component) => reading.component(component),
+        None => reading,
+    };
+    let alone = Sampling::phase_ends().read(name, reading.clone());
+    alone.check_sensors(scene).map_err(|error| table.blame(error))?;
+    Ok((name.into(), reading))
+}
+
+/// The ends of a line.
+fn line(value: &Value, mesh: &Mesh) -> Result<[Selection; 2], Error> {
+    let ends = value.list_of("two ends", |end| selection(end, mesh))?;
+    ends.try_into().map_err(|_| value.unexpected(number_of(2, "end")))
+}
+
+/// Strain or stress at nodes or a point.
+fn field(
+    table: &Table,
+    mesh: &Mesh,
+    at_nodes: fn(Selection) -> Reading,
+    at_point: fn(Vec<f64>) -> Reading,
+) -> Result<Reading, Error> {
+    let nodes = table.optional("nodes", |value| selection(value, mesh))?;
+    let point = table.optional("point", |value| value.vector(mesh.dimension()))?;
+    match (nodes, point) {
+        (Some(nodes), None) => Ok(at_nodes(nodes)),
+        (None, Some(point)) => Ok(at_point(point)),
+        (None, None) => Err(table.missing("nodes", "expected either nodes or point")),
+        (Some(_), Some(_)) => Err(table.error("expected either nodes or point; found both")),
+    }
+}
