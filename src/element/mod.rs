@@ -13,6 +13,7 @@ mod quadrilateral;
 mod recovery;
 mod reference;
 mod segment;
+mod segment3;
 #[cfg(test)]
 mod tests;
 mod tetrahedron;
@@ -28,6 +29,7 @@ pub(crate) use quadrilateral::Quadrilateral;
 pub(crate) use recovery::extrapolation;
 pub(crate) use reference::ReferenceCell;
 pub(crate) use segment::Segment;
+pub(crate) use segment3::Segment3;
 pub(crate) use tetrahedron::Tetrahedron;
 pub(crate) use tetrahedron10::Tetrahedron10;
 pub(crate) use triangle::Triangle;

@@ -17,6 +17,18 @@ fn segment() {
     check::<Segment, 2, 1>(CellKind::Segment, [Exact::Cube(1), Exact::Cube(3)]);
 }
 
+/// A face only, which is no kind of cell.
+#[test]
+fn segment3() {
+    for (a, x) in [0.0, 1.0, 0.5].into_iter().enumerate() {
+        let one_at_its_node = std::array::from_fn(|b| if a == b { 1.0 } else { 0.0 });
+        assert_eq!(Segment3::values([x]), one_at_its_node);
+    }
+    [0.2, 0.5, 0.31].into_iter().for_each(|x| shapes_at::<Segment3, 3, 1>([x]));
+    rule_is_exact(Segment3::STIFFNESS_RULE, Exact::Cube(3));
+    rule_is_exact(Segment3::MASS_RULE, Exact::Cube(5));
+}
+
 #[test]
 fn triangle() {
     check::<Triangle, 3, 2>(CellKind::Triangle, [Exact::Simplex(1), Exact::Simplex(2)]);

@@ -43,12 +43,7 @@ pub(super) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
 /// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
 /// touch.
 pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
-    let (mesh, cell) = (body.mesh(), body.mesh().kind().dimension());
-    let section = match (cell, body.dimension()) {
-        (cell, space) if cell == space => body.section(),
-        (2, 3) => 1.0,
-        _ => return None,
-    };
+    let (mesh, section) = (body.mesh(), section(body)?);
     let (parts, weight) = pieces(mesh.face_kind());
     let mut points = Vec::new();
     for face in mesh.boundary_faces() {
@@ -65,6 +60,16 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
         }
     }
     Some(points)
+}
+
+/// What lengths of the boundary are to be multiplied by for areas (m^2): the thickness of a body in the plane, the
+/// cross-section of a bar; 1 in space. A string has no surface: `None`.
+pub(super) fn section(body: &Body) -> Option<f64> {
+    match (body.mesh().kind().dimension(), body.dimension()) {
+        (cell, space) if cell == space => Some(body.section()),
+        (2, 3) => Some(1.0),
+        _ => None,
+    }
 }
 
 /// (1 +- 1/sqrt 3)/2

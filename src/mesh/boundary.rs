@@ -23,14 +23,26 @@ impl Mesh {
         if self.dimension > self.kind.dimension() {
             return self.cells().map(<[usize]>::to_vec).enumerate().collect();
         }
+        let cell = |face| face / self.kind.faces().len();
+        let once = self.faces_of_one_cell().into_iter();
+        once.map(|face| (cell(face), self.face(face).collect())).collect()
+    }
+
+    /// The faces of cells that belong to one cell only, whatever the dimension of space: those on the rim of a
+    /// membrane, the ends of a string.
+    pub(crate) fn outer_faces(&self) -> Vec<Face> {
+        self.faces_of_one_cell().into_iter().map(|face| self.face(face).collect()).collect()
+    }
+
+    /// Their numbers, ascending.
+    fn faces_of_one_cell(&self) -> Vec<usize> {
         let mut once: Vec<usize> = Vec::new();
         let (offsets, faces) = self.faces_by_smallest_node();
         for range in offsets.windows(2) {
             once.extend(without_match(&faces[range[0]..range[1]], |face| self.face(face)));
         }
         once.sort_unstable();
-        let cell = |face| face / self.kind.faces().len();
-        once.into_iter().map(|face| (cell(face), self.face(face).collect())).collect()
+        once
     }
 
     /// The shape of these faces.

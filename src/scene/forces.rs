@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::phase::{Load as PhaseLoad, check_vector};
 use super::{Phase, Scene};
-use crate::external::{Contact, Gravity, Load, Signal, VaryingLoad};
+use crate::external::{Contact, Gravity, Load, Signal, VaryingLoad, shares};
 use crate::force::Forces;
 use crate::input::{InputError, finite};
 use crate::mesh::Selection;
@@ -43,9 +43,9 @@ impl Scene {
         let mut constant = Vec::new();
         for (selection, load) in &phase.loads {
             let nodes = self.body.mesh().select(selection)?;
-            let (force, share) = match load {
-                PhaseLoad::Each(force) => (force, 1.0),
-                PhaseLoad::Total(force) => (force, 1.0 / nodes.len() as f64),
+            let (force, shares) = match load {
+                PhaseLoad::Each(force) => (force, vec![1.0; nodes.len()]),
+                PhaseLoad::Total(force) => (force, shares(&self.body, &nodes)),
                 PhaseLoad::Varying(force) => {
                     force.validate("a load", dimension)?;
                     let force = force.clone();
@@ -55,7 +55,7 @@ impl Scene {
             };
             check_vector("load", force, dimension, "N")?;
             finite("load", force)?;
-            for node in nodes {
+            for (node, share) in nodes.into_iter().zip(shares) {
                 constant.extend((0..dimension).map(|i| (node * dimension + i, share * force[i])));
             }
         }
@@ -65,7 +65,8 @@ impl Scene {
         Ok(())
     }
 
-    /// The force (N) on each of the nodes of `selection` at time `t` (s), by the loads that `phase` has for it.
+    /// The force (N) on each of the nodes of `selection`, in the mean over them, at time `t` (s), by the loads that
+    /// `phase` has for it.
     pub(crate) fn load_on(
         &self,
         phase: &Phase,

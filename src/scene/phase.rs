@@ -131,7 +131,11 @@ impl Phase {
         self
     }
 
-    /// A constant force (N) on the nodes together, shared equally.
+    /// A constant force (N) on the nodes together.
+    ///
+    /// Where they make up whole faces of the boundary (edges in the plane) it is spread over these evenly: each
+    /// node has as much of it as the integral of its shape function is of the area, half as much at the corner
+    /// of a side of linear cells as within. Nodes that make up no faces share it equally.
     pub fn load_total(mut self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
         self.loads.push((nodes.into(), Load::Total(force.into())));
         self

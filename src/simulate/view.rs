@@ -130,8 +130,8 @@ impl<'a> View<'a> {
         Ok(of_spring.sum())
     }
 
-    /// Force (N) on each of the nodes of `selection`, one component per dimension, by the loads given for this
-    /// very selection; 0 without one.
+    /// Force (N) on each of the nodes of `selection`, in the mean over them, one component per dimension, by the
+    /// loads given for this very selection; 0 without one.
     ///
     /// # Errors
     /// Nodes that do not exist.

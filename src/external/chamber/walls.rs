@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::Chamber;
+use crate::external::faces::{between, list};
 use crate::external::surface::pieces;
 use crate::input::InputError;
 use crate::mesh::{Mesh, Selection};
@@ -26,7 +27,7 @@ impl Chamber {
             }
             Selection::Set(_) | Selection::Box { .. } => {
                 let nodes = nodes.into_iter().collect();
-                let edges = between(boundary_edges(mesh), &nodes).and_then(closed);
+                let edges = walls(boundary_edges(mesh), &nodes).and_then(closed);
                 edges.map_err(|problem| self.bad_walls(selection, &problem))
             }
         }
@@ -43,8 +44,7 @@ impl Chamber {
         let mut faces = mesh.boundary_faces();
         // the cells of a string are no walls
         faces.retain(|face| face.len() > 2);
-        let faces =
-            between(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
+        let faces = walls(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
         let corners = faces.iter().map(|face| match mesh.kind().is_quadratic() {
             true => &face[..face.len() / 2],
             false => &face[..],
@@ -100,18 +100,11 @@ pub(super) fn against_boundary(mesh: &Mesh, polygon: &[[usize; 2]]) -> Option<f6
 }
 
 /// The faces between `nodes`, if they touch all of them.
-fn between<F: AsRef<[usize]>>(
-    mut faces: Vec<F>,
-    nodes: &BTreeSet<usize>,
-) -> Result<Vec<F>, String> {
-    faces.retain(|face| face.as_ref().iter().all(|node| nodes.contains(node)));
-    let touched: BTreeSet<usize> = faces.iter().flat_map(|face| face.as_ref()).copied().collect();
-    let loose: Vec<usize> = nodes.difference(&touched).copied().collect();
-    if loose.is_empty() {
-        return Ok(faces);
-    }
-    let walls = "walls are faces of the boundary of the body with all their nodes given";
-    Err(format!("{walls}, and {} are on none", list(&loose)))
+fn walls<F: AsRef<[usize]>>(faces: Vec<F>, nodes: &BTreeSet<usize>) -> Result<Vec<F>, String> {
+    between(faces, nodes).map_err(|loose| {
+        let walls = "walls are faces of the boundary of the body with all their nodes given";
+        format!("{walls}, and {} are on none", list(&loose))
+    })
 }
 
 /// Loops of edges as they are; one open chain with the edge that closes it.
@@ -160,12 +153,4 @@ fn check_closed<'a>(faces: impl Iterator<Item = &'a [usize]>) -> Result<(), Stri
     }
     let rim: Vec<usize> = rim.into_iter().collect();
     Err(format!("the surface must be closed, but has a rim at {}", list(&rim)))
-}
-
-/// Some node numbers in words.
-fn list(nodes: &[usize]) -> String {
-    let numbers: Vec<String> = nodes.iter().take(8).map(|node| (node + 1).to_string()).collect();
-    let more =
-        if nodes.len() > 8 { format!(" and {} more", nodes.len() - 8) } else { String::new() };
-    format!("node(s) {}{more}", numbers.join(", "))
 }

@@ -3,6 +3,7 @@
 mod free;
 mod load_curve;
 mod phases;
+mod spread;
 mod stability;
 
 use std::f64::consts::{PI, TAU};

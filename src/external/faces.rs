@@ -1,0 +1,151 @@
+//! Faces of the boundary between some nodes, which loads are spread over by the shape functions.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::surface::section;
+use crate::body::Body;
+use crate::element::{Quadrilateral, ReferenceCell, Segment, Segment3, Triangle, Triangle6};
+use crate::mesh::{Face, FaceKind, Mesh};
+use crate::vector::{cross, norm};
+
+/// Nodes of a face at most.
+pub(super) const MOST_NODES: usize = 6;
+
+/// A quadrature point of a reference face; what a face has not is 0.
+pub(super) struct FacePoint {
+    /// The shape functions N_a.
+    pub(super) values: [f64; MOST_NODES],
+    /// Their derivatives by the reference coordinates.
+    pub(super) derivatives: [[f64; 2]; MOST_NODES],
+    pub(super) weight: f64,
+}
+
+/// The quadrature points of all faces of a kind. They integrate the normal times a shape function exactly.
+pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
+    match kind {
+        FaceKind::Point => {
+            let values = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            vec![FacePoint { values, derivatives: [[0.0; 2]; MOST_NODES], weight: 1.0 }]
+        }
+        FaceKind::Segment => points_of::<Segment, 2, 1>(),
+        FaceKind::Segment3 => points_of::<Segment3, 3, 1>(),
+        FaceKind::Triangle => points_of::<Triangle, 3, 2>(),
+        FaceKind::Triangle6 => points_of::<Triangle6, 6, 2>(),
+        FaceKind::Quadrilateral => points_of::<Quadrilateral, 4, 2>(),
+    }
+}
+
+fn points_of<C: ReferenceCell<N, M>, const N: usize, const M: usize>() -> Vec<FacePoint> {
+    let point = |&(xi, weight): &([f64; M], f64)| {
+        let (mut values, mut derivatives) = ([0.0; MOST_NODES], [[0.0; 2]; MOST_NODES]);
+        values[..N].copy_from_slice(&C::values(xi));
+        for (to, from) in derivatives.iter_mut().zip(C::derivatives(xi)) {
+            to[..M].copy_from_slice(&from);
+        }
+        FacePoint { values, derivatives, weight }
+    };
+    C::MASS_RULE.iter().map(point).collect()
+}
+
+impl FacePoint {
+    /// Derivatives of the position by the reference coordinates, for a face with its nodes at `x`.
+    pub(super) fn tangents(&self, x: &[[f64; 3]]) -> [[f64; 3]; 2] {
+        let mut tangents = [[0.0; 3]; 2];
+        for (x, derivatives) in x.iter().zip(&self.derivatives) {
+            for (tangent, derivative) in tangents.iter_mut().zip(derivatives) {
+                tangent.iter_mut().zip(x).for_each(|(sum, x)| *sum += derivative * x);
+            }
+        }
+        tangents
+    }
+}
+
+/// Natural position of a node; components beyond the dimension are 0.
+pub(super) fn natural(mesh: &Mesh, node: usize) -> [f64; 3] {
+    let x = mesh.position(node);
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}
+
+/// Those of `faces` all of whose nodes are among `nodes`.
+///
+/// # Errors
+/// The nodes that are on none of these faces.
+pub(super) fn between<F: AsRef<[usize]>>(
+    mut faces: Vec<F>,
+    nodes: &BTreeSet<usize>,
+) -> Result<Vec<F>, Vec<usize>> {
+    faces.retain(|face| face.as_ref().iter().all(|node| nodes.contains(node)));
+    let touched: BTreeSet<usize> = faces.iter().flat_map(|face| face.as_ref()).copied().collect();
+    let loose: Vec<usize> = nodes.difference(&touched).copied().collect();
+    if loose.is_empty() { Ok(faces) } else { Err(loose) }
+}
+
+/// Some node numbers in words.
+pub(super) fn list(nodes: &[usize]) -> String {
+    let numbers: Vec<String> = nodes.iter().take(8).map(|node| (node + 1).to_string()).collect();
+    let more =
+        if nodes.len() > 8 { format!(" and {} more", nodes.len() - 8) } else { String::new() };
+    format!("node(s) {}{more}", numbers.join(", "))
+}
+
+/// Faces that a load acts on.
+pub(super) struct Loaded {
+    pub(super) faces: Vec<Face>,
+    pub(super) kind: FaceKind,
+    /// What their lengths are to be multiplied by for areas (m^2); none of a string along its length.
+    pub(super) section: Option<f64>,
+}
+
+impl Loaded {
+    /// The faces of the boundary between `nodes`; of a body thinner than space its cells or, where they are none
+    /// of them, the faces of its cells on its rim.
+    ///
+    /// # Errors
+    /// The nodes that are on none.
+    pub(super) fn between(body: &Body, nodes: &[usize]) -> Result<Self, Vec<usize>> {
+        let (mesh, nodes) = (body.mesh(), nodes.iter().copied().collect());
+        let skin = between(mesh.boundary_faces(), &nodes);
+        let skin = skin.map(|faces| Self { faces, kind: mesh.face_kind(), section: section(body) });
+        if mesh.dimension() == mesh.kind().dimension() {
+            return skin;
+        }
+        let (kind, section) = (mesh.kind().face(), Some(body.section()));
+        skin.or_else(|loose| {
+            let rim = between(mesh.outer_faces(), &nodes);
+            rim.map(|faces| Self { faces, kind, section }).map_err(|_| loose)
+        })
+    }
+
+    /// The integral of the shape function of each node in the natural shape: the length (m) or area (m^2) that the
+    /// node stands for, 1 for a point.
+    fn integrals(&self, mesh: &Mesh) -> BTreeMap<usize, f64> {
+        let points = face_points(self.kind);
+        let mut integrals = BTreeMap::new();
+        for face in &self.faces {
+            let x: Vec<[f64; 3]> = face.iter().map(|&node| natural(mesh, node)).collect();
+            for point in &points {
+                let [along, across] = point.tangents(&x);
+                let measure = match self.kind {
+                    FaceKind::Point => 1.0,
+                    FaceKind::Segment | FaceKind::Segment3 => norm(&along),
+                    _ => norm(&cross(&along, &across)),
+                };
+                for (&node, value) in face.iter().zip(point.values) {
+                    *integrals.entry(node).or_default() += point.weight * value * measure;
+                }
+            }
+        }
+        integrals
+    }
+}
+
+/// The parts of each of `nodes` in a force on all of them together, which add up to 1: as the shape functions of
+/// the faces between them have it, or equal ones where they make up no whole faces.
+pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
+    let Ok(loaded) = Loaded::between(body, nodes) else {
+        return vec![1.0 / nodes.len() as f64; nodes.len()];
+    };
+    let integrals = loaded.integrals(body.mesh());
+    let whole: f64 = integrals.values().sum();
+    nodes.iter().map(|node| integrals[node] / whole).collect()
+}
