@@ -10,14 +10,15 @@ use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline};
 use crate::external::{Course, Signal, TimeTable, VectorSignal};
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::scene::{ContactWith, Load, Phase, Scene};
+use crate::scene::{ContactWith, Load, LoadKind, Phase, Scene};
 
 /// What is in force.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InForce {
     constraints: Vec<(What, How)>,
-    loads: Vec<(Nodes, Loaded)>,
+    /// Nodes, word of the kind of load, value.
+    loads: Vec<(Nodes, String, Vector)>,
     /// Names of springs, force.
     actuations: Vec<(Vec<String>, Number)>,
     /// Name of a chamber, pressure.
@@ -60,12 +61,11 @@ enum How {
     OfScene(usize),
 }
 
-/// A [`Load`].
+/// A [`VectorSignal`].
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Loaded {
-    Each(Vec<f64>),
-    Total(Vec<f64>),
+enum Vector {
+    Constant(Vec<f64>),
     Table {
         times: Vec<f64>,
         values: Vec<Vec<f64>>,
@@ -98,8 +98,9 @@ impl InForce {
             Ok((What::of(what), how))
         });
         let loads = phase.loads.iter().map(|(nodes, load)| {
-            let loaded = Loaded::of(load, own);
-            Ok((Nodes::of(nodes), loaded.ok_or_else(|| is_function(format!("load on {nodes}")))?))
+            let value = Vector::of(&load.value, own);
+            let value = value.ok_or_else(|| is_function(format!("load on {nodes}")))?;
+            Ok((Nodes::of(nodes), load.kind.word().into(), value))
         });
         let actuations = phase.actuations.iter().map(|(springs, force)| {
             let force = Number::of(force, own.actuations.iter().map(|(_, force)| force));
@@ -142,7 +143,11 @@ impl InForce {
         let constraints = constraints
             .map(|(what, how)| Ok(Constraint { what: what.read()?, how: how.read(own)? }));
         let loads = self.loads.into_iter();
-        let loads = loads.map(|(nodes, load)| Ok((nodes.read(), load.read(own)?)));
+        let loads = loads.map(|(nodes, word, value)| {
+            let kind = LoadKind::ALL.into_iter().find(|kind| kind.word() == word);
+            let kind = kind.ok_or_else(|| format!("no load is a \"{word}\": write it anew"))?;
+            Ok((nodes.read(), Load { kind, value: value.read(own)? }))
+        });
         let actuations = self.actuations.into_iter().map(|(springs, force)| {
             let own = own.actuations.iter().map(|(_, force)| force);
             Ok((springs, force.read("actuation", own)?))
@@ -285,35 +290,29 @@ impl How {
     }
 }
 
-impl Loaded {
-    fn of(load: &Load, own: &Phase) -> Option<Self> {
-        Some(match load {
-            Load::Each(force) => Self::Each(force.clone()),
-            Load::Total(force) => Self::Total(force.clone()),
-            Load::Varying(VectorSignal::Live(live)) => Self::Each(live.get()),
-            Load::Varying(VectorSignal::TimeTable(TimeTable { times, values })) => {
+impl Vector {
+    fn of(value: &VectorSignal, own: &Phase) -> Option<Self> {
+        Some(match value {
+            VectorSignal::Constant(vector) => Self::Constant(vector.clone()),
+            VectorSignal::Live(live) => Self::Constant(live.get()),
+            VectorSignal::TimeTable(TimeTable { times, values }) => {
                 Self::Table { times: times.clone(), values: values.clone() }
             }
-            Load::Varying(VectorSignal::Function { write, .. }) => {
-                Self::OfScene(own.loads.iter().position(|(_, own)| match own {
-                    Load::Varying(VectorSignal::Function { write: own, .. }) => {
-                        Arc::ptr_eq(own, write)
-                    }
+            VectorSignal::Function { write, .. } => {
+                Self::OfScene(own.loads.iter().position(|(_, own)| match &own.value {
+                    VectorSignal::Function { write: own, .. } => Arc::ptr_eq(own, write),
                     _ => false,
                 })?)
             }
         })
     }
 
-    fn read(self, phase: &Phase) -> Result<Load, String> {
+    fn read(self, phase: &Phase) -> Result<VectorSignal, String> {
         Ok(match self {
-            Self::Each(force) => Load::Each(force),
-            Self::Total(force) => Load::Total(force),
-            Self::Table { times, values } => {
-                Load::Varying(VectorSignal::TimeTable(TimeTable::new(times, values)))
-            }
+            Self::Constant(vector) => VectorSignal::Constant(vector),
+            Self::Table { times, values } => VectorSignal::TimeTable(TimeTable::new(times, values)),
             Self::OfScene(place) => {
-                own("load", place, phase.loads.iter().map(|(_, load)| load.clone()))?
+                own("load", place, phase.loads.iter().map(|(_, load)| load.value.clone()))?
             }
         })
     }

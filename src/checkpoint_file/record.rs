@@ -11,7 +11,7 @@ use crate::simulate::{Checkpoint, Choice, Kept};
 use crate::state::State;
 
 /// Format of the files that this version writes and reads.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// What a file says that it is.
 pub(super) const WHAT: &str = "pliant checkpoint";

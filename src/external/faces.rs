@@ -149,3 +149,25 @@ pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
     let whole: f64 = integrals.values().sum();
     nodes.iter().map(|node| integrals[node] / whole).collect()
 }
+
+/// The natural area (m^2) of the boundary that each of `nodes` stands for.
+///
+/// # Errors
+/// What is wrong with them: nodes on no whole face, a body without a surface.
+pub(crate) fn areas(body: &Body, nodes: &[usize]) -> Result<Vec<f64>, String> {
+    let loaded = Loaded::between(body, nodes).map_err(|loose| on_no_face(&loose))?;
+    let Some(section) = loaded.section else {
+        return Err("a string has no surface but its ends: give the force on each node".into());
+    };
+    let integrals = loaded.integrals(body.mesh());
+    Ok(nodes.iter().map(|node| section * integrals[node]).collect())
+}
+
+/// What is said of nodes that are on no face.
+pub(super) fn on_no_face(loose: &[usize]) -> String {
+    format!(
+        "it acts on faces of the boundary with all their nodes given, and {} are on none: name a whole side, or \
+         give forces on nodes",
+        list(loose)
+    )
+}

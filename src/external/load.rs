@@ -46,11 +46,11 @@ impl VectorSignal {
     }
 }
 
-/// The same force, which changes with time, on each of some nodes.
+/// A force which changes with time, on some nodes.
 pub(crate) struct VaryingLoad {
-    /// Nodes, counted from 0.
-    pub(crate) nodes: Vec<usize>,
-    /// Force (N) on each of them.
+    /// Nodes, counted from 0, and how many times the force each of them gets.
+    pub(crate) nodes: Vec<(usize, f64)>,
+    /// Force (N), or force per area (N/m^2) if nodes get areas of it.
     pub(crate) force: VectorSignal,
     /// Components of the force.
     pub(crate) dimension: usize,
@@ -70,8 +70,8 @@ impl Force for VaryingLoad {
         for (i, &component) in force.iter().enumerate() {
             let what = format_args!("component {} of a load", i + 1);
             finite_at(t, what, component)?;
-            for node in &self.nodes {
-                forces.applied[node * self.dimension + i] += component;
+            for (node, times) in &self.nodes {
+                forces.applied[node * self.dimension + i] += times * component;
             }
         }
         Ok(())

@@ -18,7 +18,7 @@ mod tests;
 pub use chamber::Chamber;
 pub(crate) use chamber::ChamberForce;
 pub(crate) use contact::Contact;
-pub(crate) use faces::shares;
+pub(crate) use faces::{areas, shares};
 pub(crate) use gravity::Gravity;
 pub(crate) use load::{Load, VaryingLoad};
 pub use obstacle::Obstacle;

@@ -229,6 +229,7 @@ type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
 /// A vector that changes with time (s), with one component per dimension.
 #[derive(Clone)]
 pub(crate) enum VectorSignal {
+    Constant(Vec<f64>),
     Function { dimension: usize, write: Arc<WriteVector> },
     TimeTable(TimeTable),
     Live(Live),
@@ -245,6 +246,9 @@ impl VectorSignal {
     /// Writes it at time `t`.
     pub(super) fn at(&self, t: f64, vector: &mut [f64]) {
         match self {
+            Self::Constant(constant) => {
+                vector.iter_mut().zip(constant).for_each(|(x, constant)| *x = *constant);
+            }
             Self::Function { write, .. } => write(t, vector),
             Self::TimeTable(table) => {
                 vector.iter_mut().enumerate().for_each(|(i, x)| *x = table.at(t, i));
@@ -253,32 +257,51 @@ impl VectorSignal {
         }
     }
 
+    /// The numbers that a command can set, if it consists of such.
+    pub(crate) fn live(&self) -> Option<&Live> {
+        match self {
+            Self::Live(live) => Some(live),
+            _ => None,
+        }
+    }
+
+    /// The same vector, as a constant if it consists of numbers that a command can set.
+    pub(crate) fn frozen(&self) -> Self {
+        self.live().map_or_else(|| self.clone(), |live| Self::Constant(live.get()))
+    }
+
     /// Times (s) at which the vector changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {
-            Self::Function { .. } | Self::Live(_) => &[],
+            Self::Constant(_) | Self::Function { .. } | Self::Live(_) => &[],
             Self::TimeTable(table) => &table.times,
         }
     }
 
     /// Checks what can be known beforehand.
-    pub(crate) fn validate(&self, input: &str, needed: usize) -> Result<(), InputError> {
+    pub(crate) fn validate(
+        &self,
+        input: &str,
+        needed: usize,
+        unit: &str,
+    ) -> Result<(), InputError> {
+        let numbers = |values: &[f64]| {
+            if values.len() != needed {
+                let mend = format!("it needs {needed} component(s) ({unit})");
+                return Err(InputError::new(input, format!("{values:?}"), mend));
+            }
+            finite(input, values)
+        };
         match self {
+            Self::Constant(values) => numbers(values),
             Self::Function { dimension, .. } if *dimension != needed => Err(InputError::new(
                 format!("number of components of {input}"),
                 dimension,
-                format!("it must give {needed} component(s) (N)"),
+                format!("it must give {needed} component(s) ({unit})"),
             )),
             Self::Function { .. } => Ok(()),
             Self::TimeTable(table) => table.validate(input, needed),
-            Self::Live(live) => {
-                let values = live.get();
-                if values.len() != needed {
-                    let mend = format!("it needs {needed} component(s) (N)");
-                    return Err(InputError::new(input, format!("{values:?}"), mend));
-                }
-                finite(input, &values)
-            }
+            Self::Live(live) => numbers(&live.get()),
         }
     }
 }
@@ -286,6 +309,7 @@ impl VectorSignal {
 impl fmt::Debug for VectorSignal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Constant(values) => write!(f, "{values:?}"),
             Self::Function { .. } => f.write_str("function of time"),
             Self::TimeTable(table) => table.fmt(f),
             Self::Live(live) => write!(f, "{:?}", live.get()),

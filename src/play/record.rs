@@ -82,7 +82,7 @@ impl Course {
             }
             Self::Load(nodes, times, forces) => {
                 let force = VectorSignal::TimeTable(TimeTable::new(times, forces));
-                phase.set_load(nodes, Load::Varying(force));
+                phase.set_load(nodes, Load::each(force));
                 "load"
             }
         }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::error::Error;
 use crate::external::Signal;
 use crate::mesh::Selection;
-use crate::scene::{Load, Phase, Scene};
+use crate::scene::{Load, LoadKind, Phase, Scene};
 use crate::simulate::Simulation;
 
 /// What a slider sets.
@@ -68,7 +68,7 @@ impl Slider {
         // loads on no nodes are no part of a scene
         let count = scene.body().mesh().select(nodes).map_or(1, |nodes| nodes.len());
         let mut loads = scene.phases().iter().flat_map(|phase| loads_in(phase, nodes));
-        let (share, together) = match loads.all(|load| matches!(load, Load::Total(_))) {
+        let (share, together) = match loads.all(|load| load.kind == LoadKind::Total) {
             _ if count == 1 => (1.0, ""),
             true => (count as f64, ", in total"),
             false => (1.0, ", each node"),
@@ -114,7 +114,7 @@ impl Target {
     pub(super) fn value_in(&self, scene: &Scene, phase: &Phase, t: f64) -> f64 {
         match self {
             Self::Load(nodes, axis) => {
-                scene.load_on(phase, nodes, t).map_or(0.0, |force| force[*axis])
+                scene.load_on(phase, nodes, LoadKind::Each, t).map_or(0.0, |force| force[*axis])
             }
             _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
         }
@@ -159,10 +159,7 @@ fn loads_in<'a>(phase: &'a Phase, nodes: &'a Selection) -> impl Iterator<Item = 
 }
 
 fn breaks(load: &Load) -> &[f64] {
-    match load {
-        Load::Each(_) | Load::Total(_) => &[],
-        Load::Varying(force) => force.breaks(),
-    }
+    load.value.breaks()
 }
 
 /// Times (s) in their order, each of them once.

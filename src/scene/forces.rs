@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::phase::{Load as PhaseLoad, check_vector};
-use super::{Phase, Scene};
-use crate::external::{Contact, Gravity, Load, Signal, VaryingLoad, shares};
+use super::phase::check_vector;
+use super::{LoadKind, Phase, Scene};
+use crate::external::{Contact, Gravity, Load, Signal, VaryingLoad, VectorSignal, areas, shares};
 use crate::force::Forces;
 use crate::input::{InputError, finite};
 use crate::mesh::Selection;
@@ -43,20 +43,20 @@ impl Scene {
         let mut constant = Vec::new();
         for (selection, load) in &phase.loads {
             let nodes = self.body.mesh().select(selection)?;
-            let (force, shares) = match load {
-                PhaseLoad::Each(force) => (force, vec![1.0; nodes.len()]),
-                PhaseLoad::Total(force) => (force, shares(&self.body, &nodes)),
-                PhaseLoad::Varying(force) => {
-                    force.validate("a load", dimension)?;
-                    let force = force.clone();
-                    forces.push(Arc::new(VaryingLoad { nodes, force, dimension }));
-                    continue;
+            load.validate(dimension)?;
+            let parts = self.parts(load.kind, selection, &nodes)?;
+            let nodes = nodes.into_iter().zip(parts);
+            match &load.value {
+                VectorSignal::Constant(force) => {
+                    for (node, part) in nodes {
+                        let along = |i| (node * dimension + i, part * force[i]);
+                        constant.extend((0..dimension).map(along));
+                    }
                 }
-            };
-            check_vector("load", force, dimension, "N")?;
-            finite("load", force)?;
-            for (node, share) in nodes.into_iter().zip(shares) {
-                constant.extend((0..dimension).map(|i| (node * dimension + i, share * force[i])));
+                varying => {
+                    let (nodes, force) = (nodes.collect(), varying.clone());
+                    forces.push(Arc::new(VaryingLoad { nodes, force, dimension }));
+                }
             }
         }
         if !constant.is_empty() {
@@ -65,23 +65,49 @@ impl Scene {
         Ok(())
     }
 
-    /// The force (N) on each of the nodes of `selection`, in the mean over them, at time `t` (s), by the loads that
-    /// `phase` has for it.
+    /// How many times the value of a load of this `kind` each of the `nodes` gets, which `selection` has named.
+    fn parts(
+        &self,
+        kind: LoadKind,
+        selection: &Selection,
+        nodes: &[usize],
+    ) -> Result<Vec<f64>, InputError> {
+        match kind {
+            LoadKind::Each => Ok(vec![1.0; nodes.len()]),
+            LoadKind::Total => Ok(shares(&self.body, nodes)),
+            LoadKind::Traction => areas(&self.body, nodes)
+                .map_err(|problem| InputError::new("traction nodes", selection, problem)),
+        }
+    }
+
+    /// The loads that `phase` has for `selection` at time `t` (s), added up as one of this `kind`. Those of other
+    /// kinds count by the mean of their forces on the nodes.
     pub(crate) fn load_on(
         &self,
         phase: &Phase,
         selection: &Selection,
+        kind: LoadKind,
         t: f64,
     ) -> Result<Vec<f64>, InputError> {
-        let count = self.body.mesh().select(selection)?.len();
+        let nodes = self.body.mesh().select(selection)?;
+        let count = nodes.len() as f64;
+        // how many times the mean force on a node is a load of a kind
+        let times = |kind: LoadKind| match kind {
+            LoadKind::Each => Ok(1.0),
+            LoadKind::Total => Ok(count),
+            LoadKind::Traction => {
+                let parts = self.parts(kind, selection, &nodes)?;
+                Ok::<f64, InputError>(count / parts.iter().sum::<f64>())
+            }
+        };
         let mut sum = vec![0.0; self.body.dimension()];
         for (_, load) in phase.loads.iter().filter(|(other, _)| other == selection) {
-            let force = match load {
-                PhaseLoad::Each(force) => force.clone(),
-                PhaseLoad::Total(force) => force.iter().map(|force| force / count as f64).collect(),
-                PhaseLoad::Varying(force) => force.components(t, sum.len()),
+            let value = load.value.components(t, sum.len());
+            let [own, wanted] = match load.kind == kind {
+                true => [1.0; 2],
+                false => [times(load.kind)?, times(kind)?],
             };
-            sum.iter_mut().zip(force).for_each(|(sum, force)| *sum += force);
+            sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value / own * wanted);
         }
         Ok(sum)
     }

@@ -1,14 +1,15 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
 mod forces;
+mod load;
 mod phase;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+pub(crate) use load::{Load, LoadKind};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;
-pub(crate) use phase::Load;
 pub use phase::Phase;
 
 use crate::body::Body;

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::load::Load;
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
-use crate::external::{Live, Obstacle, Signal, TimeTable, VectorSignal};
+use crate::external::{Live, Obstacle, Signal};
 use crate::input::{InputError, find};
 use crate::mesh::{Mesh, Selection};
 
@@ -23,17 +24,6 @@ pub struct Phase {
     pub(crate) contact: ContactWith,
     /// Obstacles that do not move as the scene has it.
     pub(crate) turned: Vec<Obstacle>,
-}
-
-/// A load on some nodes (N).
-#[derive(Debug, Clone)]
-pub(crate) enum Load {
-    /// On each of them.
-    Each(Vec<f64>),
-    /// On all of them together.
-    Total(Vec<f64>),
-    /// On each of them, changing with time.
-    Varying(VectorSignal),
 }
 
 /// The obstacles that act.
@@ -122,47 +112,6 @@ impl Phase {
     pub fn hold_combination(mut self, terms: impl IntoIterator<Item = (usize, Axis, f64)>) -> Self {
         let what = Constrained::Row(terms.into_iter().collect());
         self.constraints.push(Constraint { what, how: Motion::Hold });
-        self
-    }
-
-    /// A constant force (N) on each of the nodes.
-    pub fn load(mut self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
-        self.loads.push((nodes.into(), Load::Each(force.into())));
-        self
-    }
-
-    /// A constant force (N) on the nodes together.
-    ///
-    /// Where they make up whole faces of the boundary (edges in the plane) it is spread over these evenly: each
-    /// node has as much of it as the integral of its shape function is of the area, half as much at the corner
-    /// of a side of linear cells as within. Nodes that make up no faces share it equally.
-    pub fn load_total(mut self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
-        self.loads.push((nodes.into(), Load::Total(force.into())));
-        self
-    }
-
-    /// A force (N) on each of the nodes that changes with time (s): `force` gives one component
-    /// per dimension.
-    pub fn load_with<const D: usize>(
-        mut self,
-        nodes: impl Into<Selection>,
-        force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
-    ) -> Self {
-        self.loads.push((nodes.into(), Load::Varying(VectorSignal::function(force))));
-        self
-    }
-
-    /// A force (N) on each of the nodes that has the values `forces`, one component per dimension, at
-    /// the `times` (s, ascending). In between it changes along straight lines; before and after it is
-    /// constant.
-    pub fn load_table(
-        mut self,
-        nodes: impl Into<Selection>,
-        times: impl Into<Vec<f64>>,
-        forces: impl IntoIterator<Item: Into<Vec<f64>>>,
-    ) -> Self {
-        let table = TimeTable::new(times.into(), forces.into_iter().map(Into::into).collect());
-        self.loads.push((nodes.into(), Load::Varying(VectorSignal::TimeTable(table))));
         self
     }
 
@@ -255,10 +204,7 @@ impl Phase {
     /// within it.
     pub(crate) fn breaks(&self) -> Vec<f64> {
         let paths = self.constraints.iter().map(|constraint| constraint.how.breaks());
-        let loads = self.loads.iter().map(|(_, load)| match load {
-            Load::Each(_) | Load::Total(_) => &[],
-            Load::Varying(force) => force.breaks(),
-        });
+        let loads = self.loads.iter().map(|(_, load)| load.value.breaks());
         let actuations = self.actuations.iter().map(|(_, force)| force.breaks());
         let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
         let all = paths.chain(loads).chain(actuations).chain(pressures);
@@ -333,10 +279,7 @@ impl Phase {
     /// The load on a selection, likewise.
     pub(crate) fn live_load(&self, nodes: &Selection) -> Option<&Live> {
         let mut all = self.loads.iter().filter(|(other, _)| other == nodes);
-        match all.next().filter(|_| all.next().is_none())? {
-            (_, Load::Varying(VectorSignal::Live(live))) => Some(live),
-            _ => None,
-        }
+        all.next().filter(|_| all.next().is_none())?.1.value.live()
     }
 
     /// The phase with constants in place of numbers that commands can set: those to come do not change it.
@@ -346,9 +289,7 @@ impl Phase {
         }
         let mut frozen = Self::clone(self);
         for (_, load) in &mut frozen.loads {
-            if let Load::Varying(VectorSignal::Live(live)) = load {
-                *load = Load::Each(live.get());
-            }
+            load.value = load.value.frozen();
         }
         let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
         for signal in actuations.chain(frozen.pressures.iter_mut().map(|(_, pressure)| pressure)) {
@@ -359,8 +300,7 @@ impl Phase {
 
     /// Whether there are any.
     fn is_live(&self) -> bool {
-        let mut loads = self.loads.iter();
-        loads.any(|(_, load)| matches!(load, Load::Varying(VectorSignal::Live(_))))
+        self.loads.iter().any(|(_, load)| load.value.live().is_some())
             || self.actuations.iter().any(|(_, force)| force.live().is_some())
             || self.pressures.iter().any(|(_, pressure)| pressure.live().is_some())
     }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde_json::Value;
 use toml::de::{DeTable, DeValue};
 
-use crate::external::Signal;
+use crate::external::{Signal, VectorSignal};
 use crate::mesh::Selection;
 use crate::scene::{Load, Phase};
 
@@ -119,13 +119,13 @@ fn loads(phase: &Phase, dimension: usize) -> String {
             Selection::Numbers(numbers) => format!("{numbers:?}"),
             Selection::Box { min, max } => format!("{{ box = [{min:?}, {max:?}] }}"),
         };
-        let load = match load {
-            Load::Each(force) => format!("force = {force:?}"),
-            Load::Total(force) => format!("total = {force:?}"),
-            Load::Varying(force) => {
+        let word = load.kind.word();
+        let load = match &load.value {
+            VectorSignal::Constant(force) => format!("{word} = {force:?}"),
+            force => {
                 let times = force.breaks();
                 let forces = times.iter().map(|t| force.components(*t, dimension));
-                format!("times = {times:?}, forces = {:?}", forces.collect::<Vec<_>>())
+                format!("times = {times:?}, {word}s = {:?}", forces.collect::<Vec<_>>())
             }
         };
         format!("{{ nodes = {nodes}, {load} }}")

@@ -178,7 +178,7 @@ impl Simulation {
 
     fn set_load(&mut self, nodes: Selection, force: VectorSignal) -> Result<(), Error> {
         self.command(Change::Loads, |phase, _| {
-            phase.set_load(nodes, Load::Varying(force));
+            phase.set_load(nodes, Load::each(force));
             Ok(())
         })
     }

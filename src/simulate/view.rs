@@ -7,7 +7,7 @@ use crate::external::{ChamberForce, Contact, SpringForce};
 use crate::force::{Force, Forces, NodalForces};
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::scene::{Phase, Scene};
+use crate::scene::{LoadKind, Phase, Scene};
 use crate::state::State;
 
 /// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
@@ -136,7 +136,7 @@ impl<'a> View<'a> {
     /// # Errors
     /// Nodes that do not exist.
     pub fn load(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
-        self.scene.load_on(self.phase, &selection.into(), self.time)
+        self.scene.load_on(self.phase, &selection.into(), LoadKind::Each, self.time)
     }
 
     /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping, less that of its

@@ -131,8 +131,8 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         (&|file| file["what"] = json!("poem"), &["does not say \"pliant checkpoint\""]),
         (&|file| *file = json!([1, 2]), &["does not say \"pliant checkpoint\""]),
         (
-            &|file| (file["format"], file["version"]) = (json!(2), json!("0.3.0")),
-            &["format 2 of pliant 0.3.0: this version", "reads format 1"],
+            &|file| (file["format"], file["version"]) = (json!(3), json!("0.3.0")),
+            &["format 3 of pliant 0.3.0: this version", "reads format 2"],
         ),
         (&|file| file["more"] = json!(1), &["damaged", "more"]),
         (&|file| _ = file.as_object_mut().unwrap().remove("steps"), &["damaged", "steps"]),
@@ -155,7 +155,7 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         (&|file| file["in_force"]["contact"] = json!(["wall"]), &["\"wall\"", "floor"]),
         (&|file| file["in_force"]["pressures"][0][0] = json!("tank"), &["\"tank\"", "inside"]),
         (
-            &|file| file["in_force"]["loads"][0][1] = json!({ "of_scene": 9 }),
+            &|file| file["in_force"]["loads"][0][2] = json!({ "of_scene": 9 }),
             &["load 9", "none of the phase"],
         ),
         (&|file| file["in_force"]["loads"][0][0] = json!({ "set": "tip" }), &["\"tip\"", "right"]),

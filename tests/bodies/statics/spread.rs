@@ -115,3 +115,67 @@ fn a_total_along_a_string_is_spread_over_its_length() {
         assert!(error < 1e-9, "{node}: {error:e}");
     }
 }
+
+/// Tractions count per area: no area is given here. Tables and functions of time are spread as constants are.
+#[test]
+fn a_traction_is_the_stress_below_it() {
+    let along = |dimension: usize| vec![1000.0, 0.0, 0.0][..dimension].to_vec();
+    patch_test(|phase, dimension, _| phase.traction("right", along(dimension)));
+    patch_test(|phase, dimension, _| {
+        let [none, twice] =
+            [0.0, 2.0].map(|times| along(dimension).iter().map(|x| times * x).collect());
+        phase.traction_table("right", [0.0, 2.0], [none, twice] as [Vec<f64>; 2])
+    });
+    patch_test(|phase, dimension, _| match dimension {
+        2 => phase.traction_with("right", |t| [1000.0 * t, 0.0]),
+        _ => phase.traction_with("right", |t| [1000.0 * t, 0.0, 0.0]),
+    });
+}
+
+/// A bar of 2 cm^2 under a pull of 1 kPa at its end, and a string in space likewise.
+#[test]
+fn ends_have_the_area_of_the_cross_section() {
+    let bar = Mesh::bar(0.1, 6).unwrap();
+    for (mesh, traction) in [
+        (bar.clone(), vec![1000.0]),
+        (bar.mapped(|x| [0.0, x[0], 0.0]).unwrap(), vec![0.0, 1000.0, 0.0]),
+    ] {
+        let axis = traction.len() / 2;
+        let body = Body::new(mesh, SQUARE_MATERIAL).area(2e-4).build().unwrap();
+        let mut phase = Phase::until(1.0).hold("left").traction("right", traction);
+        if axis > 0 {
+            phase = phase.hold_axes([2, 3, 4, 5, 6], [Axis::X, Axis::Z]);
+        }
+        let found = solve(&Scene::new(body.clone()).phase(phase));
+        for field in body.cell_fields(found.displacements()) {
+            assert!((field.stress[axis][axis] - 1000.0).abs() < 1e-8, "{:?}", field.stress);
+        }
+    }
+}
+
+#[test]
+fn tractions_need_faces() {
+    let plate = Mesh::rectangle([2.0, 1.0], [4, 3], Cells::Rectangles).unwrap();
+    let string = Mesh::bar(0.1, 6).unwrap().mapped(|x| [x[0], 0.0]).unwrap();
+    for (mesh, nodes, traction, parts) in [
+        (
+            &plate,
+            vec![4, 8, 7],
+            vec![1.0, 0.0],
+            ["traction nodes = [4, 8, 7]", "node(s) 7 are on none"],
+        ),
+        (&plate, vec![4], vec![1.0, 0.0], ["traction nodes = [4]", "node(s) 4 are on none"]),
+        (&plate, vec![4, 8], vec![1.0], ["traction = [1.0]", "2 component(s) (N/m^2)"]),
+        (&plate, vec![4, 8], vec![1.0, f64::NAN], ["traction", "finite"]),
+        (&string, vec![1, 2, 3], vec![1.0, 0.0], ["traction nodes", "a string has no surface"]),
+    ] {
+        let body = match mesh.kind() {
+            CellKind::Segment => Body::new(mesh.clone(), SQUARE_MATERIAL).area(1e-4),
+            _ => Body::new(mesh.clone(), SQUARE_MATERIAL).thickness(0.01),
+        };
+        let scene = Scene::new(body.build().unwrap());
+        let phase = Phase::until(1.0).hold([1]).traction(nodes, traction);
+        let error = scene.phase(phase).validate().unwrap_err().to_string();
+        parts.iter().for_each(|part| assert!(error.contains(part), "{error}"));
+    }
+}
