@@ -125,9 +125,9 @@ impl Loaded {
             let x: Vec<[f64; 3]> = face.iter().map(|&node| natural(mesh, node)).collect();
             for point in &points {
                 let [along, across] = point.tangents(&x);
-                let measure = match self.kind {
-                    FaceKind::Point => 1.0,
-                    FaceKind::Segment | FaceKind::Segment3 => norm(&along),
+                let measure = match self.kind.dimension() {
+                    0 => 1.0,
+                    1 => norm(&along),
                     _ => norm(&cross(&along, &across)),
                 };
                 for (&node, value) in face.iter().zip(point.values) {

@@ -8,6 +8,7 @@ mod gravity;
 mod load;
 mod obstacle;
 mod passage;
+mod pressure;
 mod shape;
 mod signal;
 mod spring;
@@ -22,6 +23,7 @@ pub(crate) use faces::{areas, shares};
 pub(crate) use gravity::Gravity;
 pub(crate) use load::{Load, VaryingLoad};
 pub use obstacle::Obstacle;
+pub(crate) use pressure::FacePressure;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::*;
 use crate::body::{Body, Strain};
 use crate::force::{Force, NodalForces, Tangents};
-use crate::mesh::{CellKind, Cells, Mesh};
+use crate::mesh::{CellKind, Cells, Mesh, SolidCells};
 use crate::samples::SQUARE_MATERIAL;
 use crate::sparse::{BlockMatrix, NodePattern};
 use crate::vector::dot;
@@ -156,6 +156,77 @@ fn chambers() {
                 let sum: f64 = forces.applied.iter().skip(i).step_by(dimension).sum();
                 assert!(sum.abs() < 1e-12 * 2.7e3, "{sum}");
             }
+        }
+    }
+}
+
+/// Pressure on part of the boundary, of all kinds of faces, curved ones too.
+#[test]
+fn pressures_on_faces() {
+    let bent = |x: &[f64]| [x[0] + 0.1 * x[1] * x[1], x[1] + 0.2 * x[0] * x[0] + 0.1 * x[0] * x[1]];
+    let mut bodies = Vec::new();
+    for cells in Cells::ALL {
+        let mesh = Mesh::rectangle([1.0, 1.0], [3, 3], cells).unwrap().mapped(bent).unwrap();
+        let flat = mesh.clone().mapped(|x| [x[0], x[1], 0.3 * x[0] - 0.2 * x[1] * x[0]]).unwrap();
+        bodies.extend([(mesh, "right"), (flat, "all")].map(|(mesh, nodes)| {
+            (Body::new(mesh, SQUARE_MATERIAL).thickness(0.2).build().unwrap(), nodes)
+        }));
+    }
+    for cells in [SolidCells::Tetrahedra, SolidCells::Hexahedra, SolidCells::Tetrahedra10] {
+        let mesh = Mesh::cuboid([1.0; 3], [2, 3, 2], cells).unwrap();
+        let mesh = mesh.mapped(|x| [bent(x)[0], bent(x)[1], x[2] + 0.1 * x[1] * x[0]]).unwrap();
+        bodies.push((Body::new(mesh, SQUARE_MATERIAL).build().unwrap(), "right"));
+    }
+    for (body, nodes) in bodies {
+        let pressure = Signal::function(|t| 1e3 * t);
+        let force = FacePressure::new(&body, &nodes.into(), pressure).unwrap();
+        let cells: Vec<&[usize]> = body.mesh().cells().collect();
+        let (n, dimension) = (body.dofs(), body.dimension());
+        let (u, v) = (noise(n, 0.1, 1.0), noise(n, 2.0, 10.0));
+        // forces are quadratic in u at most: differences are off by round-off alone, 1e-16 f/h
+        assert!(check(&force, (dimension, &cells), 0.7, &u, &v, 1e-9) > 0.0);
+    }
+}
+
+/// Pressure all over the boundary presses with -p dV/du (the work by a small change of volume), and so pushes itself
+/// neither away nor around: with the same forces as a chamber around linear cells.
+#[test]
+fn pressure_all_around_is_that_of_a_chamber() {
+    let plate = Mesh::rectangle([1.0, 0.7], [4, 3], Cells::Rectangles).unwrap();
+    let block = Mesh::cuboid([1.0, 0.7, 0.5], [3, 3, 2], SolidCells::Tetrahedra).unwrap();
+    for mesh in [plate, block] {
+        let is_flat = mesh.dimension() == 2;
+        let body = Body::new(mesh, SQUARE_MATERIAL);
+        let body = if is_flat { body.thickness(0.2) } else { body }.build().unwrap();
+        let pressure = Signal::constant(2e3);
+        let faces = FacePressure::new(&body, &"boundary".into(), pressure.clone()).unwrap();
+        let world = Chamber::within("world", "boundary").force(&body, vec![pressure]).unwrap();
+        let (u, v) = (noise(body.dofs(), 0.05, 3.0), vec![0.0; body.dofs()]);
+        let [found, expected] =
+            [&faces as &dyn Force, &world].map(|force| nodal_forces(force, 0.0, &u, &v).applied);
+        for (found, expected) in found.iter().zip(expected.iter()) {
+            assert!((found - expected).abs() < 1e-12 * 2e3, "{found} {expected}");
+        }
+    }
+}
+
+/// A quarter of a cylinder of inner radius r, pressed from within: the resultant is p r times the length along
+/// either axis, whatever the faces, if their ends are on the circle; and round-off is all that is lost.
+#[test]
+fn pressure_on_an_arc_has_the_resultant_of_its_chord() {
+    for cells in Cells::ALL {
+        let mesh = Mesh::rectangle([1.0, 1.0], [4, 3], cells).unwrap();
+        let angle = |s: f64| std::f64::consts::FRAC_PI_2 * (1.0 - s);
+        let mesh = mesh.mapped(|x| {
+            [(1.0 + 0.2 * x[1]) * angle(x[0]).cos(), (1.0 + 0.2 * x[1]) * angle(x[0]).sin()]
+        });
+        let body = Body::new(mesh.unwrap(), SQUARE_MATERIAL).thickness(0.3).build().unwrap();
+        let force = FacePressure::new(&body, &"bottom".into(), Signal::constant(1e3)).unwrap();
+        let rest = vec![0.0; body.dofs()];
+        let applied = nodal_forces(&force, 0.0, &rest, &rest).applied;
+        for axis in 0..2 {
+            let sum: f64 = applied.iter().skip(axis).step_by(2).sum();
+            assert!((sum - 300.0).abs() < 1e-10, "{cells}: {sum}");
         }
     }
 }

@@ -38,6 +38,17 @@ pub(crate) enum FaceKind {
     Quadrilateral,
 }
 
+impl FaceKind {
+    /// Dimension of the face itself.
+    pub(crate) fn dimension(self) -> usize {
+        match self {
+            Self::Point => 0,
+            Self::Segment | Self::Segment3 => 1,
+            Self::Triangle | Self::Triangle6 | Self::Quadrilateral => 2,
+        }
+    }
+}
+
 /// Makes the enum of the kinds from their documentation and their shapes.
 macro_rules! cell_kinds {
     ($($(#[$doc:meta])* $kind:ident => $shape:expr,)*) => {

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use super::phase::check_vector;
 use super::{LoadKind, Phase, Scene};
-use crate::external::{Contact, Gravity, Load, Signal, VaryingLoad, VectorSignal, areas, shares};
+use crate::external::{
+    Contact, FacePressure, Gravity, Load, Signal, VaryingLoad, VectorSignal, areas, shares,
+};
 use crate::force::Forces;
 use crate::input::{InputError, finite};
 use crate::mesh::Selection;
@@ -25,6 +27,9 @@ impl Scene {
         self.add_loads(phase, &mut forces)?;
         self.add_springs(phase, &mut forces)?;
         self.add_chambers(phase, &mut forces)?;
+        for (nodes, pressure) in &phase.face_pressures {
+            forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
+        }
         for contact in self.contacts(phase)? {
             forces.push(Arc::new(contact));
         }

@@ -20,6 +20,8 @@ pub struct Phase {
     pub(crate) actuations: Vec<(Vec<String>, Signal)>,
     /// Name of a chamber, pressure (Pa).
     pub(crate) pressures: Vec<(String, Signal)>,
+    /// Nodes, pressure (Pa) on the faces between them.
+    pub(crate) face_pressures: Vec<(Selection, Signal)>,
     pub(crate) projects_velocity: bool,
     pub(crate) contact: ContactWith,
     /// Obstacles that do not move as the scene has it.
@@ -44,6 +46,7 @@ impl Phase {
             loads: Vec::new(),
             actuations: Vec::new(),
             pressures: Vec::new(),
+            face_pressures: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
             turned: Vec::new(),
@@ -171,6 +174,16 @@ impl Phase {
         self.pressurized(chamber, Signal::table(times, values))
     }
 
+    /// A pressure (Pa) on the faces of the boundary (edges in the plane) between the nodes, which all have to belong to
+    /// such faces; a positive one presses onto the body. It follows the body: it acts on the deformed area, along
+    /// its normal. (A constant direction has [`traction`](Self::traction).) Pressures on the same faces add up.
+    ///
+    /// Cells of a membrane in space are pressed on the side from which they run counter-clockwise.
+    pub fn pressure_on(mut self, nodes: impl Into<Selection>, pressure: impl Into<Signal>) -> Self {
+        self.face_pressures.push((nodes.into(), pressure.into()));
+        self
+    }
+
     /// No obstacle acts in this phase.
     pub fn without_contact(self) -> Self {
         self.contact_with::<String>([])
@@ -207,7 +220,8 @@ impl Phase {
         let loads = self.loads.iter().map(|(_, load)| load.value.breaks());
         let actuations = self.actuations.iter().map(|(_, force)| force.breaks());
         let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
-        let all = paths.chain(loads).chain(actuations).chain(pressures);
+        let on_faces = self.face_pressures.iter().map(|(_, pressure)| pressure.breaks());
+        let all = paths.chain(loads).chain(actuations).chain(pressures).chain(on_faces);
         let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
