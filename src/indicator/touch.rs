@@ -146,7 +146,8 @@ impl Reach {
         let pause = pauses.fold(0.0, f64::max);
         let velocities =
             samples.iter().flat_map(|sample| sample.v.chunks_exact(scene.body().dimension()));
-        let gravity = scene.acceleration().map_or(0.0, norm);
+        let gravities = scene.phases().iter().filter_map(|phase| scene.gravity_in(phase));
+        let gravity = gravities.map(norm).fold(0.0, f64::max);
         Self { pause, speed: velocities.map(norm).fold(0.0, f64::max) + gravity * pause }
     }
 

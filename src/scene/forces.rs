@@ -19,7 +19,7 @@ impl Scene {
         if let Some(elastic) = self.body.elastic() {
             forces.push(Arc::new(elastic));
         }
-        if let Some(gravity) = &self.gravity {
+        if let Some(gravity) = self.gravity_in(phase) {
             check_vector("gravity", gravity, dimension, "m/s^2")?;
             finite("gravity", gravity)?;
             forces.push(Arc::new(Gravity::new(&self.body, gravity)));
@@ -35,6 +35,11 @@ impl Scene {
         }
         forces.extend_from_slice(&self.forces);
         Ok(forces)
+    }
+
+    /// Acceleration of gravity (m/s^2) in one phase, if there is any.
+    pub(crate) fn gravity_in<'a>(&'a self, phase: &'a Phase) -> Option<&'a [f64]> {
+        phase.gravity.as_deref().or(self.acceleration())
     }
 
     /// The contact forces among them.

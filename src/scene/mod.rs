@@ -78,7 +78,8 @@ impl Scene {
         self
     }
 
-    /// Acceleration of gravity (m/s^2), one component per dimension. Default: none.
+    /// Acceleration of gravity (m/s^2), one component per dimension, in all phases that have none of
+    /// [their own](Phase::gravity). Default: none.
     pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
         self.gravity = Some(acceleration.into());
         self
@@ -144,7 +145,7 @@ impl Scene {
         &self.body
     }
 
-    /// Acceleration of gravity (m/s^2), if there is any.
+    /// Acceleration of gravity (m/s^2), if there is any, but for phases that have one of their own.
     pub fn acceleration(&self) -> Option<&[f64]> {
         self.gravity.as_deref()
     }

@@ -14,6 +14,8 @@ use crate::mesh::{Mesh, Selection};
 pub struct Phase {
     pub(crate) name: String,
     pub(crate) until: f64,
+    /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
+    pub(crate) gravity: Option<Vec<f64>>,
     pub(crate) constraints: Vec<Constraint>,
     pub(crate) loads: Vec<(Selection, Load)>,
     /// Names of springs, force (N).
@@ -42,6 +44,7 @@ impl Phase {
         Self {
             name: String::new(),
             until,
+            gravity: None,
             constraints: Vec::new(),
             loads: Vec::new(),
             actuations: Vec::new(),
@@ -56,6 +59,13 @@ impl Phase {
     /// Name of the phase, for messages and tables (default: "phase 1", "phase 2", ...).
     pub fn named(mut self, name: impl Into<String>) -> Self {
         self.name = name.into();
+        self
+    }
+
+    /// Acceleration of gravity (m/s^2) in this phase, one component per dimension, in place of the
+    /// [scene's](crate::Scene::gravity). What its change adds to the energy of the body counts as supplied from outside.
+    pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
+        self.gravity = Some(acceleration.into());
         self
     }
 

@@ -17,7 +17,7 @@ pub struct PhaseSummary {
     pub end: f64,
     /// Number of rows of its constraints: one for each component of a node that is held or moved.
     pub constraints: usize,
-    /// Number of nodes under loads, counted once for each load.
+    /// Number of nodes under loads and pressures on faces, counted once for each of them.
     pub loaded_nodes: usize,
     /// Names of the springs that are actuated.
     pub actuated: Vec<String>,
@@ -50,7 +50,8 @@ impl Scene {
     ) -> Result<PhaseSummary, InputError> {
         let rows = self.rows(phase, &PhaseStart { time: start, u: self.initial_state()[0] })?;
         let mut loaded_nodes = 0;
-        for (selection, _) in &phase.loads {
+        let loads = phase.loads.iter().map(|(selection, _)| selection);
+        for selection in loads.chain(phase.face_pressures.iter().map(|(selection, _)| selection)) {
             loaded_nodes += self.body().mesh().select(selection)?.len();
         }
         let actuated = phase.actuations.iter().flat_map(|(springs, _)| springs);
