@@ -31,5 +31,7 @@ pub use shape::Shape;
 pub(crate) use signal::Course;
 pub use signal::Signal;
 pub(crate) use signal::{Live, TimeTable, VectorSignal};
+#[cfg(feature = "output")]
+pub(crate) use spring::Joint;
 pub use spring::Spring;
 pub(crate) use spring::SpringForce;

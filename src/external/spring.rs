@@ -1,8 +1,9 @@
-//! Springs between two nodes, with damping and an actuator.
+//! Springs between two nodes, or a node and a point of space, with damping and an actuator.
 
+use super::faces::natural;
 use super::signal::{self, Signal, finite_at};
 use crate::force::{Force, NodalForces, Reservoir, Tangents};
-use crate::input::{InputError, not_negative, positive};
+use crate::input::{InputError, finite, not_negative, positive};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -17,8 +18,8 @@ const COLLAPSED: f64 = 0.01;
 const NO_DIRECTION: f64 = 1e-9;
 
 /// A spring between two nodes, its length l along the unit vector e from the first node to the
-/// second. With the natural length L, stiffness k, damping c and actuation force f, the second node
-/// feels
+/// second. One of its ends may be a fixed point of space instead. With the natural length L, stiffness k, damping c and
+/// actuation force f, the second node feels
 ///
 /// (f - k (l - L) - c l') e
 ///
@@ -45,22 +46,41 @@ const NO_DIRECTION: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub struct Spring {
     name: String,
-    ends: [Selection; 2],
+    ends: [End; 2],
     stiffness: f64,
     length: Option<f64>,
     damping: f64,
 }
 
+/// What a spring is joined to, as it is given.
+#[derive(Debug, Clone)]
+enum End {
+    Node(Selection),
+    Point(Vec<f64>),
+}
+
+/// What a spring is joined to in a mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Joint {
+    /// A node, counted from 0.
+    Node(usize),
+    /// A point of space (m); components beyond the dimension are 0.
+    Point([f64; 3]),
+}
+
 impl Spring {
     /// A spring from the node that `first` selects to the one that `second` selects.
     pub fn between(first: impl Into<Selection>, second: impl Into<Selection>) -> Self {
-        Self {
-            name: String::new(),
-            ends: [first.into(), second.into()],
-            stiffness: 0.0,
-            length: None,
-            damping: 0.0,
-        }
+        Self::new([End::Node(first.into()), End::Node(second.into())])
+    }
+
+    /// A spring from the node that `node` selects to a `point` of space (m), which stays where it is.
+    pub fn anchored(node: impl Into<Selection>, point: impl Into<Vec<f64>>) -> Self {
+        Self::new([End::Node(node.into()), End::Point(point.into())])
+    }
+
+    fn new(ends: [End; 2]) -> Self {
+        Self { name: String::new(), ends, stiffness: 0.0, length: None, damping: 0.0 }
     }
 
     /// Name of the spring (default: "spring 1", "spring 2", ... in the order of the scene).
@@ -92,11 +112,6 @@ impl Spring {
         &self.name
     }
 
-    #[cfg(feature = "output")]
-    pub(crate) fn ends(&self) -> &[Selection; 2] {
-        &self.ends
-    }
-
     pub(crate) fn or_named(self, name: String) -> Self {
         if self.name.is_empty() { self.named(name) } else { self }
     }
@@ -106,22 +121,12 @@ impl Spring {
     /// # Errors
     /// Ends that are not one node each, or the same; numbers out of range.
     fn line(&self, mesh: &Mesh) -> Result<Line, InputError> {
-        let input = |key: &str| format!("spring \"{}\" {key}", self.name);
-        let end = |which: &str, selection: &Selection| match mesh.select(selection)?[..] {
-            [node] => Ok(node),
-            ref nodes => Err(InputError::new(
-                input(which),
-                selection,
-                format!("it selects {} nodes: an end is one node", nodes.len()),
-            )),
-        };
-        let nodes = [end("first end", &self.ends[0])?, end("second end", &self.ends[1])?];
+        let input = |key: &str| self.input(key);
+        let joints = self.joints(mesh)?;
         not_negative(&input("stiffness"), self.stiffness, "N/m")?;
         not_negative(&input("damping"), self.damping, "N s/m")?;
-        let mut natural = [0.0; 3];
-        for (i, x) in natural.iter_mut().take(mesh.dimension()).enumerate() {
-            *x = mesh.position(nodes[1])[i] - mesh.position(nodes[0])[i];
-        }
+        let [first, second] = joints.map(|joint| joint.place(mesh));
+        let natural: [f64; 3] = std::array::from_fn(|i| second[i] - first[i]);
         let distance = norm(&natural);
         let length = match self.length {
             Some(length) => positive(&input("length"), length, "m")?,
@@ -136,7 +141,39 @@ impl Spring {
                 mend,
             ));
         }
-        Ok(Line { name: self.name.clone(), dimension: mesh.dimension(), nodes, natural, length })
+        let (name, dimension, nodes) =
+            (self.name.clone(), mesh.dimension(), joints.map(Joint::node));
+        Ok(Line { name, dimension, nodes, natural, length })
+    }
+
+    /// What the spring is joined to.
+    ///
+    /// # Errors
+    /// Ends that are not one node each; a point with a wrong number of coordinates.
+    pub(crate) fn joints(&self, mesh: &Mesh) -> Result<[Joint; 2], InputError> {
+        let joint = |which: &str, end: &End| match end {
+            End::Node(selection) => match mesh.select(selection)?[..] {
+                [node] => Ok(Joint::Node(node)),
+                ref nodes => Err(InputError::new(
+                    self.input(which),
+                    selection,
+                    format!("it selects {} nodes: an end is one node", nodes.len()),
+                )),
+            },
+            End::Point(point) if point.len() == mesh.dimension() => {
+                finite(&self.input(which), point)?;
+                Ok(Joint::Point(std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0))))
+            }
+            End::Point(point) => {
+                let mend = format!("it needs {} coordinates (m)", mesh.dimension());
+                Err(InputError::new(self.input(which), format!("{point:?}"), mend))
+            }
+        };
+        Ok([joint("first end", &self.ends[0])?, joint("second end", &self.ends[1])?])
+    }
+
+    fn input(&self, key: &str) -> String {
+        format!("spring \"{}\" {key}", self.name)
     }
 
     /// The force of the spring, without that of its actuator.
@@ -158,12 +195,30 @@ impl Spring {
     }
 }
 
+impl Joint {
+    fn node(self) -> Option<usize> {
+        match self {
+            Self::Node(node) => Some(node),
+            Self::Point(_) => None,
+        }
+    }
+
+    /// Its natural position (m); components beyond the dimension are 0.
+    fn place(self, mesh: &Mesh) -> [f64; 3] {
+        match self {
+            Self::Node(node) => natural(mesh, node),
+            Self::Point(point) => point,
+        }
+    }
+}
+
 /// The straight line between the ends of a spring.
 struct Line {
     name: String,
     dimension: usize,
-    nodes: [usize; 2],
-    /// From the first node to the second in the natural shape.
+    /// Its ends; none where that is a point of space.
+    nodes: [Option<usize>; 2],
+    /// From the first end to the second in the natural shape.
     natural: [f64; 3],
     /// L
     length: f64,
@@ -199,7 +254,7 @@ pub(crate) struct Actuator {
 #[derive(Clone, Copy)]
 struct Stretch {
     length: f64,
-    /// Unit vector e from the first node to the second.
+    /// Unit vector e from the first end to the second.
     direction: [f64; 3],
     /// l'
     rate: f64,
@@ -208,10 +263,20 @@ struct Stretch {
 }
 
 impl Line {
-    /// Difference of `x` between the two nodes.
+    /// Difference of `x` between the two ends; it is 0 at a point of space.
     fn difference(&self, x: &[f64]) -> [f64; 3] {
-        let [first, second] = self.nodes.map(|node| &x[node * self.dimension..]);
-        std::array::from_fn(|i| if i < self.dimension { second[i] - first[i] } else { 0.0 })
+        let d = self.dimension;
+        let [first, second] =
+            self.nodes.map(|node| node.map_or(&[0.0; 3][..d], |node| &x[node * d..][..d]));
+        std::array::from_fn(|i| if i < d { second[i] - first[i] } else { 0.0 })
+    }
+
+    /// The nodes that the line joins, if it joins two.
+    fn couplings(&self) -> Vec<[usize; 2]> {
+        match self.nodes {
+            [Some(first), Some(second)] => vec![[first, second]],
+            _ => Vec::new(),
+        }
     }
 
     fn length(&self, u: &[f64]) -> (f64, [f64; 3]) {
@@ -249,6 +314,7 @@ impl Line {
     /// Adds a force `along` the line (N), which pushes its ends apart.
     fn add(&self, along: f64, direction: &[f64; 3], nodal: &mut [f64]) {
         for (node, sign) in self.nodes.into_iter().zip([-1.0, 1.0]) {
+            let Some(node) = node else { continue };
             for i in 0..self.dimension {
                 nodal[node * self.dimension + i] += sign * along * direction[i];
             }
@@ -258,8 +324,8 @@ impl Line {
     /// Adds the tangent `entry` of the second node by its own displacement.
     fn add_tangent(&self, matrix: &mut BlockMatrix, entry: impl Fn(usize, usize) -> f64) {
         let d = self.dimension;
-        for row in self.nodes {
-            for column in self.nodes {
+        for row in self.nodes.into_iter().flatten() {
+            for column in self.nodes.into_iter().flatten() {
                 let sign = if row == column { 1.0 } else { -1.0 };
                 let Some(block) = matrix.block_mut(row, column) else { continue };
                 for (k, x) in block.iter_mut().enumerate() {
@@ -339,7 +405,7 @@ impl Force for SpringForce {
     }
 
     fn couplings(&self) -> Vec<[usize; 2]> {
-        vec![self.line.nodes]
+        self.line.couplings()
     }
 }
 
@@ -385,6 +451,6 @@ impl Force for Actuator {
     }
 
     fn couplings(&self) -> Vec<[usize; 2]> {
-        vec![self.line.nodes]
+        self.line.couplings()
     }
 }

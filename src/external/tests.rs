@@ -87,9 +87,14 @@ fn springs() {
         let force = spring.force(&mesh).unwrap();
         let actuation = vec![Signal::constant(-2.0), Signal::function(|t| 5.0 * t)];
         let actuator = spring.actuator(&mesh, actuation).unwrap();
+        let point = [-0.3, 0.1, 0.4][..dimension].to_vec();
+        let anchored = Spring::anchored([3], point).stiffness(20.0).length(1.2).damping(3.0);
+        let anchored = anchored.force(&mesh).unwrap();
+        assert_eq!(anchored.couplings(), Vec::<[usize; 2]>::new());
         for seed in [1.0, 2.0, 3.0] {
             let n = 3 * dimension;
             let (u, v) = (noise(n, 0.3, seed), noise(n, 2.0, 10.0 * seed));
+            assert!(check(&anchored, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
             assert!(check(&force, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
             check(&actuator, (dimension, &[]), 0.7, &u, &v, 1e-8);
             // what the spring does not touch feels nothing, and action is reaction

@@ -26,6 +26,37 @@ fn decoded(base64: &Value) -> Result<Vec<u8>, Box<dyn Error>> {
     Ok(STANDARD.decode(base64.as_str().ok_or("no text")?)?)
 }
 
+/// A spring to a point of space ends at a place after those of the nodes, which stays where the point is, in the view.
+#[test]
+fn an_anchored_spring_ends_at_its_point() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Triangles)?;
+    let body = Body::new(mesh, pliant::samples::SQUARE_MATERIAL).thickness(0.01).build()?;
+    let scene = Scene::new(body)
+        .spring(Spring::anchored([9], [0.3, 0.2]).stiffness(20.0))
+        .spring(Spring::between([1], [9]).stiffness(1.0))
+        .phase(Phase::until(0.02).hold("left").actuate(["spring 1"], -0.5));
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
+    let data = data(&page(&trajectory, "")?)?;
+    assert_eq!(data["body"]["nodes"], 9);
+    assert_eq!(data["springs"][0]["ends"][1], 9);
+    assert!(data["springs"][1]["ends"][1].as_u64() < Some(9));
+    let ranges: [[f64; 2]; 2] = serde_json::from_value(data["motion"]["ranges"].clone())?;
+    let numbers = decoded(&data["motion"]["numbers"])?;
+    let numbers = numbers.as_chunks::<2>().0.iter().map(|&bytes| u16::from_le_bytes(bytes));
+    let numbers: Vec<u16> = numbers.collect();
+    assert_eq!(numbers.len(), 3 * 10 * 2);
+    for frame in numbers.chunks(20) {
+        for (axis, expected) in [0.3, 0.2].into_iter().enumerate() {
+            let step = (ranges[axis][1] - ranges[axis][0]) / 65535.0;
+            let found = ranges[axis][0] + step * f64::from(frame[18 + axis]);
+            assert!((found - expected).abs() <= 0.5001 * step, "{found} {expected}");
+        }
+    }
+    let [low, high]: [[f64; 2]; 2] = serde_json::from_value(data["view"].clone())?;
+    assert!((0..2).all(|i| low[i] < [0.3, 0.2][i] && [0.3, 0.2][i] < high[i]), "{low:?} {high:?}");
+    Ok(())
+}
+
 /// Positions are those of the samples to half a step of 1/65535 of their range, values of cells to
 /// half a step of 1/255 of their scale, below which are 99 of 100 of them.
 #[test]

@@ -191,6 +191,71 @@ fn loads_push_the_centre_of_mass() {
     assert_balanced(&trajectory, 1e-6);
 }
 
+/// A square in free flight, first down and then, by the gravity of another phase, upward and to the right: its centre
+/// moves on parabolas, and what a change of gravity adds to its potential energy is supplied.
+#[test]
+fn gravity_of_a_phase() {
+    let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+    let (mass, [x, y]) = (body.mass(), [0.15, 0.15]);
+    let scene = Scene::new(body)
+        .gravity([0.0, -9.8])
+        .phase(Phase::until(0.5))
+        .phase(Phase::until(0.8).gravity([2.0, 1.0]))
+        .phase(Phase::until(1.0));
+    let found = scene.simulate(&fine(Method::CvodeBdf), &Sampling::phase_ends()).unwrap();
+    let velocities = [[0.0, -4.9], [0.6, -4.6], [0.6, -6.56]];
+    let fallen = [-0.5 * 9.8 * 0.25, -0.5 * 9.8 * 0.25 - 4.9 * 0.3 + 0.5 * 0.09];
+    for (sample, expected) in found.samples()[1..].iter().zip(velocities) {
+        let v = found.mean_velocity(sample);
+        assert!((0..2).all(|i| (v[i] - expected[i]).abs() < 1e-8), "{v:?} {expected:?}");
+    }
+    let height = |number: usize| found.centre_of_mass(&found.samples()[number])[1] - y;
+    assert!((0..2).all(|k| (height(k + 1) - fallen[k]).abs() < 1e-8));
+    // potential energies -m g . x of the centre, before and after the jump at 0.5 s
+    let before = mass * 9.8 * (y + fallen[0]);
+    let after = -mass * (2.0 * x + y + fallen[0]);
+    let supplied = found.samples()[2].energy.supplied - found.samples()[0].energy.supplied;
+    assert!((supplied - (after - before)).abs() < 1e-8 * before.abs(), "{supplied}");
+    assert_balanced(&found, 1e-6);
+}
+
+/// A mass on a spring whose other end is a point of space: as one whose other end is a node that is held
+/// ([above](a_mass_on_a_spring_swings)), and turned round.
+#[test]
+fn a_mass_on_an_anchored_spring_swings() {
+    let (k, m, f) = (20.0_f64, 0.03, -0.1);
+    let mesh = Mesh::rectangle([0.03, 0.03], [2, 2], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).point_mass("bob", [0.14, 0.0], m);
+    let spring = Spring::anchored("bob", [0.10, 0.0]).named("A1").stiffness(k);
+    let phase = Phase::until(1.0).hold([1, 2, 3, 4]).actuate(["A1"], f);
+    let scene = Scene::new(body.build().unwrap()).spring(spring).phase(phase);
+    let omega = (k / m).sqrt();
+    for method in Method::ALL {
+        let sampling = Sampling::every(0.01)
+            .sensor("pull", "N", |view, _| view.spring_pull("A1").unwrap_or(f64::NAN));
+        let trajectory = scene.simulate(&fine(method), &sampling).unwrap();
+        for sample in trajectory.samples() {
+            let expected = f / k * (1.0 - (omega * sample.time).cos());
+            let apart = (sample.u[8] - expected).abs();
+            assert!(apart < 1e-5 * (f / k).abs(), "{method}: {apart:e} at {} s", sample.time);
+            assert_eq!(sample.u[9], 0.0);
+            let pull = k * sample.u[8] - f;
+            assert!((sample.sensors[0] - pull).abs() < 1e-12, "{} {pull}", sample.sensors[0]);
+        }
+        assert_balanced(&trajectory, if method == Method::CentralDifference { 1e-5 } else { 1e-6 });
+    }
+    for (point, part) in [
+        (vec![0.14, 0.0], "same place"),
+        (vec![0.1], "2 coordinates"),
+        (vec![0.1, f64::NAN], "finite"),
+    ] {
+        let spring = Spring::anchored("bob", point).named("A2");
+        let error = scene.clone().spring(spring).validate().unwrap_err().to_string();
+        assert!(error.contains("spring \"A2\"") && error.contains(part), "{error}");
+    }
+}
+
 /// A spring that pulls a corner of a square through its diagonal turns cells inside out, which
 /// Green strain does not survive. The run ends there and says so, instead of taking steps that are
 /// too small to move time ahead.

@@ -8,7 +8,7 @@ use super::geometry::Geometry;
 use super::pack;
 use crate::body::{Body, CellField};
 use crate::error::Error;
-use crate::external::{Obstacle, Shape, ShapeKind, Spring};
+use crate::external::{Joint, Obstacle, Shape, ShapeKind};
 use crate::input::InputError;
 use crate::mesh::Mesh;
 use crate::output::role::Role;
@@ -39,7 +39,7 @@ pub(super) fn gather(trajectory: &Trajectory, title: &str) -> Result<Value, Erro
     let (body, mesh) = (scene.body(), scene.body().mesh());
     let points = point_masses(mesh);
     let ends = spring_ends(scene)?;
-    let geometry = Geometry::new(mesh, ends.iter().flatten().chain(&points).copied());
+    let geometry = Geometry::new(mesh, ends.iter().flatten().copied(), &points);
     let frames = thinned(trajectory.samples(), bytes_per_frame(&geometry, mesh.dimension()));
     let view = (mesh.dimension() < 3).then(|| View::of(trajectory, &frames).corners());
     Ok(json!({
@@ -69,19 +69,20 @@ fn thinned(samples: &[Sample], bytes_per_frame: usize) -> Vec<&Sample> {
 }
 
 fn bytes_per_frame(geometry: &Geometry, dimension: usize) -> usize {
-    2 * dimension.max(2) * geometry.nodes.len() + QUANTITIES.len() * geometry.cells.len()
+    2 * dimension.max(2) * geometry.count() + QUANTITIES.len() * geometry.cells.len()
 }
 
-/// Positions of the drawn nodes, sample by sample.
+/// Positions of the drawn nodes and anchors, sample by sample.
 fn motion(trajectory: &Trajectory, frames: &[&Sample], geometry: &Geometry) -> Value {
     let axes = trajectory.body().dimension().max(2);
-    let mut points = Vec::with_capacity(frames.len() * geometry.nodes.len() * axes);
+    let mut points = Vec::with_capacity(frames.len() * geometry.count() * axes);
     for sample in frames {
         let all = match axes {
             2 => positions(trajectory, sample).concat(),
             _ => displaced(trajectory, sample),
         };
         points.extend(geometry.nodes.iter().flat_map(|node| &all[node * axes..][..axes]));
+        points.extend(geometry.anchors(trajectory.body().dimension()));
     }
     pack::points(&points, axes)
 }
@@ -270,14 +271,10 @@ fn in_view(x: &[f64]) -> Vec<f64> {
     if x.len() < 3 { drawn(x).to_vec() } else { x.to_vec() }
 }
 
-/// The nodes that each spring joins.
-pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<[usize; 2]>, Error> {
+/// What each spring joins.
+pub(super) fn spring_ends(scene: &Scene) -> Result<Vec<[Joint; 2]>, Error> {
     let mesh = scene.body().mesh();
-    let ends = |spring: &Spring| {
-        let [first, second] = spring.ends();
-        Ok([mesh.select(first)?[0], mesh.select(second)?[0]])
-    };
-    scene.springs().iter().map(ends).collect()
+    scene.springs().iter().map(|spring| Ok(spring.joints(mesh)?)).collect()
 }
 
 /// Names and ends of the springs, and the forces of their actuators at each sample.
@@ -285,7 +282,7 @@ fn springs(
     trajectory: &Trajectory,
     frames: &[&Sample],
     geometry: &Geometry,
-    ends: &[[usize; 2]],
+    ends: &[[Joint; 2]],
 ) -> Result<Value, Error> {
     let scene = trajectory.scene();
     let forces =
@@ -294,7 +291,7 @@ fn springs(
     let packed = scene.springs().iter().zip(ends).enumerate().map(|(number, (spring, ends))| {
         json!({
             "name": spring.name(),
-            "ends": geometry.places(ends),
+            "ends": geometry.ends(ends),
             "forces": pack::singles(forces.iter().map(|forces| forces[number])),
         })
     });

@@ -2,8 +2,9 @@
 
 use serde_json::{Value, json};
 
+use crate::external::Joint;
 use crate::mesh::Mesh;
-use crate::output::svg::{BAR_WIDTH, around, through_middle};
+use crate::output::svg::{BAR_WIDTH, around, drawn, through_middle};
 
 /// The drawn part of a mesh.
 pub(super) struct Geometry {
@@ -11,6 +12,8 @@ pub(super) struct Geometry {
     look: &'static str,
     /// The drawn nodes.
     pub(super) nodes: Vec<usize>,
+    /// The points of space that springs are joined to, drawn after the nodes.
+    anchors: Vec<[f64; 3]>,
     /// The cell of each face.
     pub(super) cells: Vec<usize>,
     /// The nodes of each face in their order around it, as places among the drawn nodes.
@@ -25,9 +28,25 @@ pub(super) struct Geometry {
 }
 
 impl Geometry {
-    /// What is drawn of `mesh`: of a solid its surface, of other bodies all cells, and the nodes
-    /// `besides` (springs end there, say).
-    pub(super) fn new(mesh: &Mesh, besides: impl IntoIterator<Item = usize>) -> Self {
+    /// What is drawn of `mesh`: of a solid its surface, of other bodies all cells, and besides what springs are
+    /// joined to and the nodes `points`.
+    pub(super) fn new(
+        mesh: &Mesh,
+        joints: impl Iterator<Item = Joint> + Clone,
+        points: &[usize],
+    ) -> Self {
+        let joined = joints.clone().filter_map(|joint| match joint {
+            Joint::Node(node) => Some(node),
+            Joint::Point(_) => None,
+        });
+        let besides = joined.chain(points.iter().copied());
+        let mut anchors = Vec::new();
+        for joint in joints {
+            match joint {
+                Joint::Point(x) if !anchors.contains(&x) => anchors.push(x),
+                _ => {}
+            }
+        }
         let kind = mesh.kind();
         let (look, faces) = match (kind.dimension(), mesh.dimension()) {
             (1, 1) => ("bar", segments(mesh)),
@@ -48,6 +67,7 @@ impl Geometry {
         let mut geometry = Self {
             look,
             nodes,
+            anchors,
             cells: faces.iter().map(|&(cell, _)| cell).collect(),
             faces: Vec::new(),
             outline: Vec::new(),
@@ -69,10 +89,37 @@ impl Geometry {
         nodes.iter().filter_map(|&node| self.places[node]).collect()
     }
 
+    /// The places of what a spring joins.
+    pub(super) fn ends(&self, joints: &[Joint; 2]) -> Vec<usize> {
+        let place = |joint: &Joint| match joint {
+            Joint::Node(node) => self.places[*node],
+            Joint::Point(x) => {
+                let among = self.anchors.iter().position(|anchor| anchor == x);
+                among.map(|number| self.nodes.len() + number)
+            }
+        };
+        joints.iter().filter_map(place).collect()
+    }
+
+    /// Positions of the anchors in a space of `dimension`, as they are drawn.
+    pub(super) fn anchors(&self, dimension: usize) -> impl Iterator<Item = f64> {
+        let drawn = move |x: &[f64; 3]| match dimension {
+            1 | 2 => drawn(&x[..dimension]).to_vec(),
+            _ => x.to_vec(),
+        };
+        self.anchors.iter().flat_map(drawn)
+    }
+
+    /// Number of drawn nodes and anchors.
+    pub(super) fn count(&self) -> usize {
+        self.nodes.len() + self.anchors.len()
+    }
+
     pub(super) fn to_json(&self) -> Value {
-        let Self { look, faces, outline, width, quadratic, .. } = self;
+        let Self { look, nodes, faces, outline, width, quadratic, .. } = self;
         json!({
             "look": look,
+            "nodes": nodes.len(),
             "faces": faces,
             "outline": outline,
             "width": width,

@@ -36,11 +36,11 @@ impl Picture {
         let mesh = scene.body().mesh();
         let points = data::point_masses(mesh);
         let ends = data::spring_ends(scene)?;
-        let geometry = Geometry::new(mesh, ends.iter().flatten().chain(&points).copied());
+        let geometry = Geometry::new(mesh, ends.iter().flatten().copied(), &points);
         let names = data::QUANTITIES.map(|(name, unit, _)| json!({ "name": name, "unit": unit }));
         let springs = scene.springs().iter().zip(&ends);
         let springs = springs
-            .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.places(ends) }));
+            .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends) }));
         let fixed = json!({
             "axes": axes(mesh),
             "phases": data::phases(scene, &geometry)?,
@@ -71,10 +71,10 @@ impl Picture {
         self.geometry.nodes.get(place).copied()
     }
 
-    /// Positions of the drawn nodes for displacements `u` (m).
+    /// Positions of the drawn nodes and anchors for displacements `u` (m).
     pub(crate) fn places(&self, mesh: &Mesh, u: &[f64]) -> Value {
         let d = mesh.dimension();
-        let mut numbers = Vec::with_capacity(self.geometry.nodes.len() * axes(mesh));
+        let mut numbers = Vec::with_capacity(self.geometry.count() * axes(mesh));
         for &node in &self.geometry.nodes {
             let moved = mesh.position(node).iter().zip(&u[node * d..]).map(|(x, u)| x + u);
             let moved: Vec<f64> = moved.collect();
@@ -83,6 +83,7 @@ impl Picture {
                 _ => numbers.extend(moved),
             }
         }
+        numbers.extend(self.geometry.anchors(d));
         pack::singles(numbers)
     }
 
@@ -107,7 +108,7 @@ impl Picture {
 /// The energies that a scene has not, by name.
 fn absent(scene: &Scene) -> Vec<&'static str> {
     let has = [
-        ("gravity", scene.acceleration().is_some()),
+        ("gravity", scene.phases().iter().any(|phase| scene.gravity_in(phase).is_some())),
         ("contact", !scene.obstacles().is_empty()),
         ("springs", !scene.springs().is_empty()),
     ];

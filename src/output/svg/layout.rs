@@ -1,7 +1,9 @@
 //! Where panels stand on the page, and which part of space they show.
 
 use super::obstacle::{Outline, outlines};
-use super::projection::{Point, positions};
+use super::projection::{Point, drawn, positions};
+use crate::external::Joint;
+use crate::scene::Scene;
 use crate::trajectory::{Sample, Trajectory};
 
 /// Width that a page aims at, its least width, and the limits of a panel (px).
@@ -42,6 +44,7 @@ impl View {
             view.tops.push(points.iter().map(|point| point[1]).fold(f64::NEG_INFINITY, f64::max));
             points.into_iter().for_each(|point| view.include(point));
         }
+        anchors(trajectory.scene()).into_iter().for_each(|x| view.include(drawn(&x)));
         if trajectory.body().dimension() == 1 {
             let half = 2.0 * BAR_WIDTH * trajectory.body().mesh().size();
             view.include([-half, view.low[1]]);
@@ -99,6 +102,17 @@ impl View {
         let inside = clip(&corners, |x| -distance(x));
         clip(&inside, |x| distance(x) + depth)
     }
+}
+
+/// The points of space (m) that springs are joined to, dimension coordinates each.
+fn anchors(scene: &Scene) -> Vec<Vec<f64>> {
+    let mesh = scene.body().mesh();
+    let joints = scene.springs().iter().filter_map(|spring| spring.joints(mesh).ok());
+    let point = |joint| match joint {
+        Joint::Node(_) => None,
+        Joint::Point(x) => Some(x[..mesh.dimension()].to_vec()),
+    };
+    joints.flatten().filter_map(point).collect()
 }
 
 /// The part of a convex polygon where `level`, a linear function, is not negative.

@@ -8,7 +8,8 @@ use svg::node::element::{Group, Path};
 use super::layout::{BAR_WIDTH, Layout, View};
 use super::mark::{Mark, text};
 use super::obstacle::Outline;
-use super::projection::{Point, depths, positions};
+use super::projection::{Point, depths, drawn, positions};
+use crate::external::Joint;
 use crate::mesh::{CellKind, Mesh};
 use crate::output::INK;
 use crate::trajectory::{Sample, Trajectory};
@@ -106,10 +107,12 @@ impl Panel<'_> {
         let mesh = self.trajectory.body().mesh();
         let mut data = Data::default();
         for spring in self.trajectory.scene().springs() {
-            let [first, second] = spring.ends();
-            if let (Ok(first), Ok(second)) = (mesh.select(first), mesh.select(second)) {
-                data.polyline(&[points[first[0]], points[second[0]]], false);
-            }
+            let Ok(joints) = spring.joints(mesh) else { continue };
+            let ends = joints.map(|joint| match joint {
+                Joint::Node(node) => points[node],
+                Joint::Point(x) => self.layout.place(self.number, drawn(&x[..mesh.dimension()])),
+            });
+            data.polyline(&ends, false);
         }
         let path = Path::new().set("class", "springs").set("d", data.0).set("fill", "none");
         path.set("stroke", "#8a5a2b").set("stroke-width", 1.2)

@@ -174,7 +174,8 @@ function spot(event) {
 function nodeAt([x, y]) {
   const { place, depth } = eyeOf();
   let nearest = null;
-  for (let node = 0; node < nodeCount; node++) {
+  // anchors of springs come after the nodes: they are not to be pulled
+  for (let node = 0; node < body.nodes; node++) {
     const position = positionOf(node);
     const [px, py] = place(position);
     const distance = Math.hypot(px - x, py - y);

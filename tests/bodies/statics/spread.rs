@@ -2,7 +2,7 @@
 
 use pliant::mesh::CellKind;
 use pliant::samples::SQUARE_MATERIAL;
-use pliant::{Axis, Body, Cells, Mesh, Phase, Scene, SolidCells};
+use pliant::{Axis, Body, Cells, Mesh, Phase, Scene, SolidCells, Strain};
 
 use super::solve;
 
@@ -177,5 +177,46 @@ fn tractions_need_faces() {
         let phase = Phase::until(1.0).hold([1]).traction(nodes, traction);
         let error = scene.phase(phase).validate().unwrap_err().to_string();
         parts.iter().for_each(|part| assert!(error.contains(part), "{error}"));
+    }
+}
+
+/// A body that is pressed from all sides, symmetric about planes through three of them, has the true stress -p all
+/// over, however much smaller it becomes: the pressure follows its faces.
+#[test]
+fn pressure_follows_the_faces() {
+    let pressure = 2e5;
+    let mut scenes = Vec::new();
+    let plane = || Phase::until(1.0).hold_axes("left", [Axis::X]).hold_axes("bottom", [Axis::Y]);
+    for cells in Cells::ALL {
+        let mesh = Mesh::rectangle([2.0, 1.0], [4, 5], cells).unwrap().mapped(uneven::<2>);
+        let body = Body::new(mesh.unwrap(), SQUARE_MATERIAL).thickness(0.01);
+        scenes.push((body, plane().pressure_on("right", pressure).pressure_on("top", pressure)));
+    }
+    for cells in [SolidCells::Tetrahedra, SolidCells::Hexahedra, SolidCells::Tetrahedra10] {
+        let body =
+            Body::new(Mesh::cuboid([2.0, 1.0, 1.0], [3, 4, 3], cells).unwrap(), SQUARE_MATERIAL);
+        let held = Phase::until(1.0).hold_axes("left", [Axis::X]).hold_axes("front", [Axis::Y]);
+        let held = held.hold_axes("bottom", [Axis::Z]);
+        let sides = ["right", "back", "top"];
+        let pressed = sides.into_iter().fold(held, |phase, side| {
+            phase.pressure_on(side, pliant::Signal::ramp(0.0, pressure, 0.0, 1.0))
+        });
+        scenes.push((body, pressed));
+    }
+    for (body, phase) in scenes {
+        let body = body.strain(Strain::Green).build().unwrap();
+        let found = solve(&Scene::new(body.clone()).phase(phase));
+        let axes = body.dimension();
+        let mut rough = 0.0_f64;
+        for field in body.cell_fields(found.displacements()) {
+            for (i, row) in field.stress[..axes].iter().enumerate() {
+                for (j, stress) in row[..axes].iter().enumerate() {
+                    let expected = if i == j { -pressure } else { 0.0 };
+                    rough = rough.max((stress - expected).abs() / pressure);
+                }
+            }
+        }
+        println!("{:?}: {rough:e}, {} factorizations", body.mesh().kind(), found.factorizations);
+        assert!(rough < 1e-9, "{:?}: {rough:e}", body.mesh().kind());
     }
 }
