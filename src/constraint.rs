@@ -13,6 +13,7 @@ use std::sync::Arc;
 pub use prescribed::{Path, Prescribed};
 pub(crate) use spline::Spline;
 
+use crate::formula::Formula;
 use crate::input::InputError;
 use crate::mesh::{Mesh, Selection};
 
@@ -70,6 +71,9 @@ pub(crate) enum Motion {
     Path(Path),
     /// Follow a smooth path through points (all axes alike).
     Spline(Arc<Spline>),
+    /// Follow a formula of time without kinks (m; all axes alike).
+    #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
+    Formula(Arc<Formula>),
 }
 
 impl fmt::Debug for Motion {
@@ -79,6 +83,7 @@ impl fmt::Debug for Motion {
             Self::Velocity(velocity) => f.debug_tuple("Velocity").field(velocity).finish(),
             Self::Path(_) => f.write_str("Path"),
             Self::Spline(spline) => spline.fmt(f),
+            Self::Formula(formula) => formula.fmt(f),
         }
     }
 }
@@ -88,7 +93,7 @@ impl Motion {
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {
             Self::Spline(spline) => spline.times(),
-            Self::Hold | Self::Velocity(_) | Self::Path(_) => &[],
+            Self::Hold | Self::Velocity(_) | Self::Path(_) | Self::Formula(_) => &[],
         }
     }
 }
@@ -106,6 +111,7 @@ enum RowMotion {
     Linear { start: f64, since: f64, velocity: f64 },
     Path(Path),
     Spline(Arc<Spline>),
+    Formula(Arc<Formula>),
 }
 
 impl Row {
@@ -120,6 +126,10 @@ impl Row {
             },
             RowMotion::Path(path) => path(t),
             RowMotion::Spline(spline) => spline.at(t),
+            RowMotion::Formula(formula) => {
+                let [displacement, velocity, acceleration] = formula.at(t).0;
+                Prescribed { displacement, velocity, acceleration }
+            }
         }
     }
 
@@ -127,7 +137,7 @@ impl Row {
     pub(crate) fn constant_velocity(&self) -> Option<f64> {
         match self.motion {
             RowMotion::Linear { velocity, .. } => Some(velocity),
-            RowMotion::Path(_) | RowMotion::Spline(_) => None,
+            RowMotion::Path(_) | RowMotion::Spline(_) | RowMotion::Formula(_) => None,
         }
     }
 
@@ -135,7 +145,7 @@ impl Row {
     pub(crate) fn origin(&self) -> [f64; 2] {
         match self.motion {
             RowMotion::Linear { start, since, .. } => [start, since],
-            RowMotion::Path(_) | RowMotion::Spline(_) => [0.0; 2],
+            RowMotion::Path(_) | RowMotion::Spline(_) | RowMotion::Formula(_) => [0.0; 2],
         }
     }
 
@@ -201,8 +211,10 @@ pub(crate) fn rows(
     let dimension = mesh.dimension();
     let mut rows: Vec<Row> = Vec::new();
     for Constraint { what, how } in constraints {
-        if let Motion::Spline(spline) = how {
-            spline.validate()?;
+        match how {
+            Motion::Spline(spline) => spline.validate()?,
+            Motion::Formula(formula) => check_smooth(formula)?,
+            Motion::Hold | Motion::Velocity(_) | Motion::Path(_) => {}
         }
         match what {
             Constrained::Nodes(selection, axes) => {
@@ -233,6 +245,16 @@ pub(crate) fn rows(
     Ok(rows)
 }
 
+/// Checks that b, b' and b'' can be had of a formula.
+fn check_smooth(formula: &Formula) -> Result<(), InputError> {
+    formula.kink().map_or(Ok(()), |name| {
+        let mend = format!(
+            "{name} has no velocity at its kink: give a smooth formula, or a path through points"
+        );
+        Err(InputError::new("path", formula.text(), mend))
+    })
+}
+
 fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &PhaseStart) -> Row {
     let linear = |velocity: f64| RowMotion::Linear {
         start: terms.iter().map(|&(dof, coefficient)| coefficient * start.u[dof]).sum(),
@@ -244,6 +266,7 @@ fn row(terms: Vec<(usize, f64)>, motion: &Motion, component: usize, start: &Phas
         Motion::Velocity(velocity) => linear(velocity[component]),
         Motion::Path(path) => RowMotion::Path(path.clone()),
         Motion::Spline(spline) => RowMotion::Spline(spline.clone()),
+        Motion::Formula(formula) => RowMotion::Formula(formula.clone()),
     };
     Row { terms, motion }
 }

@@ -12,9 +12,9 @@ pub(crate) use file::read_at_most;
 #[cfg(feature = "checkpoint")]
 pub(crate) use file::read_if_at_most;
 pub(crate) use memory::check_memory;
-pub(crate) use nearest::unknown_among;
 #[cfg(feature = "scene-file")]
-pub(crate) use nearest::{list, unknown};
+pub(crate) use nearest::list;
+pub(crate) use nearest::{unknown, unknown_among};
 
 /// An input that cannot be used: which one, its value, and how to mend it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

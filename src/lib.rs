@@ -39,6 +39,7 @@ mod external;
 #[cfg(any(feature = "checkpoint", feature = "output"))]
 mod file;
 pub mod force;
+mod formula;
 mod indicator;
 mod input;
 pub mod integrate;

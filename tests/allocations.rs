@@ -8,7 +8,7 @@ use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
 use pliant::simulate::{Component, Reading};
 use pliant::{
-    Body, Cells, Chamber, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
+    Body, Cells, Chamber, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings, Signal,
     Spring, Strain,
 };
 
@@ -90,6 +90,17 @@ fn runge_kutta_allocates_nothing_after_its_start() {
         settings.solve_to(2.0).unwrap();
     });
     assert_eq!(allocated.count_total, 0);
+}
+
+/// The value of a formula of any length, with all kinds of steps.
+#[test]
+fn formulas_do_not_allocate() {
+    let long = "min(sin(t)^2, 3*t) - max(exp(-t), t/2) + ".repeat(100) + "sqrt(t)";
+    let formula = Signal::formula(&long).unwrap();
+    let mut sum = 0.0;
+    let allocated = measure(|| (0..100).for_each(|k| sum += formula.at(0.01 * f64::from(k))));
+    assert_eq!(allocated.count_total, 0);
+    assert!(sum.is_finite());
 }
 
 /// A clamped beam of rubber with a chamber and a tendon.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline};
 use crate::external::{Course, Signal, TimeTable, VectorSignal};
+use crate::formula::Formula;
 use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::scene::{ContactWith, Load, LoadKind, Phase, Scene};
@@ -57,6 +58,7 @@ enum How {
         times: Vec<f64>,
         displacements: Vec<f64>,
     },
+    Formula(String),
     /// That of a constraint of the phase as the scene has it, from 0.
     OfScene(usize),
 }
@@ -70,6 +72,7 @@ enum Vector {
         times: Vec<f64>,
         values: Vec<Vec<f64>>,
     },
+    Formulas(Vec<String>),
     /// A load of the phase as the scene has it, from 0.
     OfScene(usize),
 }
@@ -83,6 +86,7 @@ enum Number {
         times: Vec<f64>,
         values: Vec<Vec<f64>>,
     },
+    Formula(String),
     /// An actuation or pressure of the phase as the scene has it, from 0.
     OfScene(usize),
 }
@@ -270,6 +274,7 @@ impl How {
                 times: spline.times().into(),
                 displacements: spline.displacements().into(),
             },
+            Motion::Formula(formula) => Self::Formula(formula.text().into()),
             Motion::Path(path) => Self::OfScene(own.constraints.iter().position(
                 |constraint| matches!(&constraint.how, Motion::Path(own) if Arc::ptr_eq(own, path)),
             )?),
@@ -283,6 +288,7 @@ impl How {
             Self::Path { times, displacements } => {
                 Motion::Spline(Arc::new(Spline::new(times, displacements)))
             }
+            Self::Formula(text) => Motion::Formula(Arc::new(Formula::parse(&text)?)),
             Self::OfScene(place) => {
                 own("constraint", place, phase.constraints.iter().map(|own| own.how.clone()))?
             }
@@ -298,6 +304,9 @@ impl Vector {
             VectorSignal::TimeTable(TimeTable { times, values }) => {
                 Self::Table { times: times.clone(), values: values.clone() }
             }
+            VectorSignal::Formulas(formulas) => {
+                Self::Formulas(formulas.iter().map(|formula| formula.text().into()).collect())
+            }
             VectorSignal::Function { write, .. } => {
                 Self::OfScene(own.loads.iter().position(|(_, own)| match &own.value {
                     VectorSignal::Function { write: own, .. } => Arc::ptr_eq(own, write),
@@ -311,6 +320,10 @@ impl Vector {
         Ok(match self {
             Self::Constant(vector) => VectorSignal::Constant(vector),
             Self::Table { times, values } => VectorSignal::TimeTable(TimeTable::new(times, values)),
+            Self::Formulas(texts) => {
+                let formulas = texts.iter().map(|text| Formula::parse(text));
+                VectorSignal::Formulas(formulas.collect::<Result<_, _>>()?)
+            }
             Self::OfScene(place) => {
                 own("load", place, phase.loads.iter().map(|(_, load)| load.value.clone()))?
             }
@@ -325,6 +338,7 @@ impl Number {
             Course::TimeTable(TimeTable { times, values }) => {
                 Self::Table { times: times.clone(), values: values.clone() }
             }
+            Course::Formula(formula) => Self::Formula(formula.text().into()),
             Course::Function { function, breaks } => {
                 Self::OfScene(own.position(|own| match &own.0 {
                     Course::Function { function: own, breaks: theirs } => {
@@ -346,6 +360,7 @@ impl Number {
             Self::Table { times, values } => {
                 Signal(Course::TimeTable(TimeTable::new(times, values)))
             }
+            Self::Formula(text) => Signal(Course::Formula(Arc::new(Formula::parse(&text)?))),
             Self::OfScene(place) => own(what, place, signals.cloned())?,
         })
     }

@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::formula::Formula;
 use crate::input::{InputError, finite};
 use crate::ode::Failure;
 
@@ -74,6 +75,7 @@ pub(crate) enum Course {
     Constant(f64),
     Function { function: Arc<dyn Fn(f64) -> f64 + Send + Sync>, breaks: Vec<f64> },
     TimeTable(TimeTable),
+    Formula(Arc<Formula>),
     Live(Live),
 }
 
@@ -114,6 +116,21 @@ impl Signal {
         Self(Course::Function { function: Arc::new(f), breaks: Vec::new() })
     }
 
+    /// A formula of time `t` (s): `"2000 * sin(2*pi*3*t)"`.
+    ///
+    /// It consists of numbers, `t`, `pi`, `e`, `+ - * / ^`, parentheses and the functions `sin`, `cos`, `tan`, `asin`,
+    /// `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `log10`, `sqrt`, `abs`, `min`, `max` (of two numbers) and `step` (0
+    /// below 0, else 1). Signs count after powers: `-t^2` is -(t^2). Steps do not end at its kinks and jumps: for those
+    /// there are [tables](Self::table).
+    ///
+    /// # Errors
+    /// A text that is no formula, with the place.
+    pub fn formula(text: &str) -> Result<Self, InputError> {
+        let formula = Formula::parse(text);
+        let formula = formula.map_err(|problem| InputError::new("formula", text, problem))?;
+        Ok(Self(Course::Formula(Arc::new(formula))))
+    }
+
     /// The `values` at the `times` (s, ascending). In between it changes along straight lines; before and
     /// after it is constant.
     pub fn table(times: impl Into<Vec<f64>>, values: impl Into<Vec<f64>>) -> Self {
@@ -141,6 +158,7 @@ impl Signal {
             Course::Constant(value) => *value,
             Course::Function { function, .. } => function(t),
             Course::TimeTable(table) => table.at(t, 0),
+            Course::Formula(formula) => formula.at(t).0[0],
             Course::Live(live) => live.at(0),
         }
     }
@@ -174,7 +192,7 @@ impl Signal {
     /// Times (s) at which the signal changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match &self.0 {
-            Course::Constant(_) | Course::Live(_) => &[],
+            Course::Constant(_) | Course::Formula(_) | Course::Live(_) => &[],
             Course::Function { breaks, .. } => breaks,
             Course::TimeTable(table) => &table.times,
         }
@@ -186,6 +204,7 @@ impl Signal {
             Course::Constant(value) => finite(input, &[*value]),
             Course::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
             Course::TimeTable(table) => table.validate(input, 1),
+            Course::Formula(_) => Ok(()),
             Course::Live(live) => finite(input, &[live.at(0)]),
         }
     }
@@ -203,6 +222,7 @@ impl fmt::Debug for Signal {
             Course::Constant(value) => write!(f, "{value}"),
             Course::Function { .. } => f.write_str("function of time"),
             Course::TimeTable(table) => table.fmt(f),
+            Course::Formula(formula) => formula.fmt(f),
             Course::Live(live) => write!(f, "{}", live.at(0)),
         }
     }
@@ -230,8 +250,14 @@ type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
 #[derive(Clone)]
 pub(crate) enum VectorSignal {
     Constant(Vec<f64>),
-    Function { dimension: usize, write: Arc<WriteVector> },
+    Function {
+        dimension: usize,
+        write: Arc<WriteVector>,
+    },
     TimeTable(TimeTable),
+    /// One per component.
+    #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
+    Formulas(Arc<[Formula]>),
     Live(Live),
 }
 
@@ -253,6 +279,9 @@ impl VectorSignal {
             Self::TimeTable(table) => {
                 vector.iter_mut().enumerate().for_each(|(i, x)| *x = table.at(t, i));
             }
+            Self::Formulas(formulas) => {
+                vector.iter_mut().zip(&**formulas).for_each(|(x, formula)| *x = formula.at(t).0[0]);
+            }
             Self::Live(live) => vector.iter_mut().enumerate().for_each(|(i, x)| *x = live.at(i)),
         }
     }
@@ -273,7 +302,7 @@ impl VectorSignal {
     /// Times (s) at which the vector changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match self {
-            Self::Constant(_) | Self::Function { .. } | Self::Live(_) => &[],
+            Self::Constant(_) | Self::Function { .. } | Self::Formulas(_) | Self::Live(_) => &[],
             Self::TimeTable(table) => &table.times,
         }
     }
@@ -301,6 +330,11 @@ impl VectorSignal {
             )),
             Self::Function { .. } => Ok(()),
             Self::TimeTable(table) => table.validate(input, needed),
+            Self::Formulas(formulas) if formulas.len() == needed => Ok(()),
+            Self::Formulas(formulas) => {
+                let mend = format!("it needs {needed} component(s) ({unit})");
+                Err(InputError::new(input, format!("{formulas:?}"), mend))
+            }
             Self::Live(live) => numbers(&live.get()),
         }
     }
@@ -312,6 +346,7 @@ impl fmt::Debug for VectorSignal {
             Self::Constant(values) => write!(f, "{values:?}"),
             Self::Function { .. } => f.write_str("function of time"),
             Self::TimeTable(table) => table.fmt(f),
+            Self::Formulas(formulas) => formulas.fmt(f),
             Self::Live(live) => write!(f, "{:?}", live.get()),
         }
     }

@@ -3,7 +3,6 @@
 use strsim::damerau_levenshtein;
 
 /// Message about a `word` that is none of the `known` ones.
-#[cfg(feature = "scene-file")]
 pub(crate) fn unknown(word: &str, known: &[&str]) -> String {
     match (nearest(word, known), known) {
         (_, []) => "there are none".into(),

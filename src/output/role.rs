@@ -21,7 +21,9 @@ impl Scene {
         for Constraint { what, how } in &phase.constraints {
             let role = match how {
                 Motion::Hold => Role::Held,
-                Motion::Velocity(_) | Motion::Path(_) | Motion::Spline(_) => Role::Moved,
+                Motion::Velocity(_) | Motion::Path(_) | Motion::Spline(_) | Motion::Formula(_) => {
+                    Role::Moved
+                }
             };
             let selected = match what {
                 Constrained::Nodes(selection, _) => self.body().mesh().select(selection)?,

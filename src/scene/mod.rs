@@ -2,6 +2,7 @@
 
 mod forces;
 mod load;
+mod loading;
 mod phase;
 
 use std::collections::BTreeSet;

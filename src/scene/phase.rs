@@ -128,14 +128,14 @@ impl Phase {
         self
     }
 
-    /// A constant actuation force (N) in each of the named springs; a positive one extends it.
-    /// Forces on the same spring add up.
+    /// An actuation force (N) in each of the named springs, a number or any other [`Signal`]; a positive one
+    /// extends it. Forces on the same spring add up.
     pub fn actuate<N: Into<String>>(
         self,
         springs: impl IntoIterator<Item = N>,
-        force: f64,
+        force: impl Into<Signal>,
     ) -> Self {
-        self.actuated(springs, Signal::constant(force))
+        self.actuated(springs, force.into())
     }
 
     /// As [`actuate`](Self::actuate), with a force (N) that changes with time (s).
@@ -158,10 +158,10 @@ impl Phase {
         self.actuated(springs, Signal::table(times, forces))
     }
 
-    /// A constant pressure (Pa) in a chamber; a positive one enlarges it. Pressures in the same
-    /// chamber add up.
-    pub fn pressure(self, chamber: impl Into<String>, pressure: f64) -> Self {
-        self.pressurized(chamber, Signal::constant(pressure))
+    /// A pressure (Pa) in a chamber, a number or any other [`Signal`]; a positive one enlarges it. Pressures in the
+    /// same chamber add up.
+    pub fn pressure(self, chamber: impl Into<String>, pressure: impl Into<Signal>) -> Self {
+        self.pressurized(chamber, pressure.into())
     }
 
     /// As [`pressure`](Self::pressure), with a pressure (Pa) that changes with time (s).

@@ -6,7 +6,7 @@ use pliant::samples::SQUARE_MATERIAL;
 use pliant::sparse::BlockMatrix;
 use pliant::{
     Body, Cells, Chamber, Error, Material, Mesh, Method, Phase, Sampling, Scene, Selection,
-    Settings, Spring, Strain, Trajectory,
+    Settings, Signal, Spring, Strain, Trajectory,
 };
 
 /// A square of rubber, 3 cm wide, with point masses of 10 g and 30 g beside it, 4 cm apart.
@@ -145,7 +145,7 @@ fn a_chamber_bulges_a_strip() {
         // in any order and by name the same chamber
         let forward: Vec<usize> = (1..=11).collect();
         for nodes in [Selection::from(bottom.clone()), forward.into(), "bottom".into()] {
-            let chamber = Chamber::within("below", nodes);
+            let chamber = Chamber::within("below", nodes).closed_by_line();
             let pressed = phase(0.01).pressure("below", 500.0);
             let scene = Scene::new(body.clone()).chamber(chamber).phase(pressed);
             let trajectory = scene.simulate(&fine(Method::CvodeBdf), &Sampling::phase_ends());
@@ -189,6 +189,53 @@ fn loads_push_the_centre_of_mass() {
     assert!((v[0] * mass / 0.25 - 1.0).abs() < 5e-11, "{v:?}");
     assert!((v[1] * mass / 1.0 - 1.0).abs() < 1e-10, "{v:?}");
     assert_balanced(&trajectory, 1e-6);
+}
+
+/// Formulas are the functions that they say, to the last bit; checkpoints in files keep their text, also where a command
+/// has given them.
+#[test]
+fn formulas_are_functions_of_time() {
+    let spring = || Spring::anchored([4], [0.3, 0.2]).named("A1").stiffness(20.0).damping(0.1);
+    let body = || {
+        let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Rectangles).unwrap();
+        Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap()
+    };
+    let formula = Signal::formula("0.3*sin(20*t) - exp(-t)/10").unwrap();
+    let press = Signal::formula("-500*t^2").unwrap();
+    let held = || Phase::until(0.2).hold("left");
+    let written = held().actuate(["A1"], formula).pressure_on("right", press);
+    let function = held()
+        .actuate_with(["A1"], |t| 0.3 * (20.0 * t).sin() - (-t).exp() / 10.0)
+        .pressure_on("right", Signal::function(|t| -(500.0 * t.powf(2.0))));
+    let [written, function] =
+        [written, function].map(|phase| Scene::new(body()).spring(spring()).phase(phase));
+    let settings = Settings::default();
+    let [a, b] = [&written, &function]
+        .map(|scene| scene.simulate(&settings, &Sampling::every(0.05)).unwrap());
+    assert!(a.last().u[6].abs() > 1e-6);
+    for (a, b) in a.samples().iter().zip(b.samples()) {
+        assert_eq!(a.u, b.u, "{} s", a.time);
+    }
+
+    let mut simulation = written.start(&settings).unwrap();
+    simulation.advance_to(0.1).unwrap();
+    simulation.actuate("A1", Signal::formula("0.2*cos(30*t)").unwrap()).unwrap();
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("formula.json");
+    simulation.checkpoint().write(&path).unwrap();
+    assert!(std::fs::read_to_string(&path).unwrap().contains("0.2*cos(30*t)"));
+    let mut other = written.start(&settings).unwrap();
+    other.restore(&other.read_checkpoint(&path).unwrap()).unwrap();
+    [&mut simulation, &mut other].map(|simulation| simulation.advance_to(0.2).unwrap());
+    assert_eq!(simulation.view().displacements(), other.view().displacements());
+    // another formula is another scene
+    let phase = held().actuate(["A1"], Signal::formula("0.3*sin(21*t)").unwrap());
+    let mut others = Scene::new(body()).spring(spring()).phase(phase).start(&settings).unwrap();
+    others.advance_to(0.01).unwrap();
+    assert!(others.read_checkpoint(&path).unwrap_err().to_string().contains("phases: what"));
+
+    let error = Signal::formula("2*sinn(t)").unwrap_err().to_string();
+    assert!(error.starts_with("formula = 2*sinn(t) cannot be used: unknown word"), "{error}");
 }
 
 /// A square in free flight, first down and then, by the gravity of another phase, upward and to the right: its centre
