@@ -21,6 +21,7 @@ use crate::vector::{cross, dot};
 pub struct Chamber {
     name: String,
     walls: Walls,
+    is_closed_by_line: bool,
     thickness: Option<f64>,
 }
 
@@ -35,8 +36,8 @@ impl Chamber {
     ///
     /// A named set or a box stands for part of the boundary of the body: the faces all of whose
     /// nodes belong to it. The chamber lies on their other side than the body.
-    /// - In the plane they make closed loops, rooms with the same pressure; or one chain, which the
-    ///   straight line between its ends closes (ends that are held feel nothing of that).
+    /// - In the plane they make closed loops, rooms with the same pressure; or one of them is open and
+    ///   [closed by a line](Self::closed_by_line).
     /// - In space they make closed surfaces. Quadratic faces count as four triangles,
     ///   quadrilaterals as the mean of both their divisions into two.
     ///
@@ -46,7 +47,7 @@ impl Chamber {
     ///
     /// Edges with mid nodes count as two straight ones.
     pub fn within(name: impl Into<String>, nodes: impl Into<Selection>) -> Self {
-        Self { name: name.into(), walls: Walls::Nodes(nodes.into()), thickness: None }
+        Self::new(name.into(), Walls::Nodes(nodes.into()))
     }
 
     /// A chamber in space, enclosed by `triangles` of nodes (numbers from 1): a closed surface, all
@@ -55,8 +56,19 @@ impl Chamber {
         name: impl Into<String>,
         triangles: impl IntoIterator<Item = [usize; 3]>,
     ) -> Self {
-        let walls = Walls::Triangles(triangles.into_iter().collect());
-        Self { name: name.into(), walls, thickness: None }
+        Self::new(name.into(), Walls::Triangles(triangles.into_iter().collect()))
+    }
+
+    fn new(name: String, walls: Walls) -> Self {
+        Self { name, walls, is_closed_by_line: false, thickness: None }
+    }
+
+    /// Walls in the plane that are open at one place are closed there by the straight line between their ends, which
+    /// feel its half of the pressure on it each (ends that are held feel nothing of that). Without this a gap is an
+    /// error.
+    pub fn closed_by_line(mut self) -> Self {
+        self.is_closed_by_line = true;
+        self
     }
 
     /// Thickness h (m) of a chamber in the plane. Default: that of the body.
@@ -74,12 +86,16 @@ impl Chamber {
     ///
     /// # Errors
     /// Walls on a line, triangles outside space; nodes that do not exist, make no chain or enclose
-    /// nothing, a surface with holes, a missing thickness.
+    /// nothing, a gap that no line closes, a surface with holes, a missing thickness.
     pub(crate) fn force(
         &self,
         body: &Body,
         pressure: Vec<Signal>,
     ) -> Result<ChamberForce, InputError> {
+        if self.is_closed_by_line && body.dimension() != 2 {
+            let mend = "a line closes walls in the plane only: give a closed surface";
+            return Err(InputError::new(self.input("closed_by_line"), true, mend));
+        }
         let geometry = match (&self.walls, body.dimension()) {
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
             (Walls::Nodes(nodes), 3) => {

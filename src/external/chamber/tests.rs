@@ -100,7 +100,7 @@ fn the_world_around_a_body() {
     assert!((volume + 24.0).abs() < 1e-13, "{volume}");
 }
 
-/// Chains are closed by the line between their ends: the inner side of half a ring, with the area of
+/// Chains may be closed by the line between their ends: the inner side of half a ring, with the area of
 /// half a polygon of n corners on its circle; and a side of a rectangle, which encloses nothing yet.
 #[test]
 fn chains() {
@@ -108,10 +108,14 @@ fn chains() {
     let inner: Vec<usize> = (0..21).rev().map(|station| 3 * station + 1).collect();
     let arch = body(mesh.name_nodes("inner side", inner).unwrap());
     let area = 10.0 * 0.04_f64.powi(2) * (std::f64::consts::PI / 20.0).sin();
-    assert!((enclosed(&arch, "inner side") / area - 1.0).abs() < 1e-12);
+    let closed = |body: &Body, nodes: &str| {
+        Chamber::within("air", nodes).closed_by_line().force(body, Vec::new()).unwrap()
+    };
+    let rest = vec![0.0; arch.dofs()];
+    assert!((closed(&arch, "inner side").volume(&rest) / (0.01 * area) - 1.0).abs() < 1e-12);
     let flat = body_of_rectangle();
-    assert_eq!(enclosed(&flat, "top"), 0.0);
-    let force = Chamber::within("air", "top").force(&flat, Vec::new()).unwrap();
+    let force = closed(&flat, "top");
+    assert_eq!(force.volume(&vec![0.0; flat.dofs()]), 0.0);
     let Geometry::Polygon(polygon, factor) = &force.geometry else { panic!() };
     // lifted by 1 m with the ends at rest, that of 4 x 1 m with slopes of 1 m is lost to the chamber
     let mut u = vec![0.0; flat.dofs()];
@@ -167,8 +171,12 @@ fn walls_that_enclose_nothing() {
     says(&named(&[1, 2, 3, 7]), &["node(s) 7 are on none"]);
     says(&named(&[1, 2, 3, 18, 19, 20]), &["open chains", "ends at node(s) 1, 3, 18, 20"]);
     says(&named(&[1, 2]), &["number of nodes = 2"]);
+    // one side, open between its ends
+    says(&problem(&plate, "top"), &["open between the nodes 16 and 20: ", "closed_by_line"]);
 
     let cube = body(Mesh::cuboid([1.0; 3], [3; 3], SolidCells::Hexahedra).unwrap());
+    let by_line = Chamber::within("air", "top").closed_by_line().force(&cube, Vec::new());
+    says(&by_line.err().unwrap().to_string(), &["closed_by_line = true", "in the plane only"]);
     says(&problem(&cube, "top"), &["must be closed", "node(s) 19, 20, 21, 22, 24, 25, 26, 27"]);
     says(&problem(&cube, "all"), &["node(s) 14 are on none"]);
     let line = Mesh::bar(1.0, 4).unwrap();

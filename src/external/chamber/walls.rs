@@ -27,7 +27,8 @@ impl Chamber {
             }
             Selection::Set(_) | Selection::Box { .. } => {
                 let nodes = nodes.into_iter().collect();
-                let edges = walls(boundary_edges(mesh), &nodes).and_then(closed);
+                let edges = walls(boundary_edges(mesh), &nodes);
+                let edges = edges.and_then(|edges| closed(edges, self.is_closed_by_line));
                 edges.map_err(|problem| self.bad_walls(selection, &problem))
             }
         }
@@ -107,8 +108,8 @@ fn walls<F: AsRef<[usize]>>(faces: Vec<F>, nodes: &BTreeSet<usize>) -> Result<Ve
     })
 }
 
-/// Loops of edges as they are; one open chain with the edge that closes it.
-fn closed(mut edges: Vec<[usize; 2]>) -> Result<Vec<[usize; 2]>, String> {
+/// Loops of edges as they are; one open chain with the edge that closes it, if a line may.
+fn closed(mut edges: Vec<[usize; 2]>, by_line: bool) -> Result<Vec<[usize; 2]>, String> {
     // how many more edges begin at a node than end there
     let mut surplus: BTreeMap<usize, i32> = BTreeMap::new();
     for &[first, last] in &edges {
@@ -118,10 +119,16 @@ fn closed(mut edges: Vec<[usize; 2]>) -> Result<Vec<[usize; 2]>, String> {
     surplus.retain(|_, surplus| *surplus != 0);
     match *surplus.iter().collect::<Vec<_>>() {
         [] => Ok(edges),
-        [(&first, 1), (&last, -1)] | [(&last, -1), (&first, 1)] => {
+        [(&first, 1), (&last, -1)] | [(&last, -1), (&first, 1)] if by_line => {
             edges.push([last, first]);
             Ok(edges)
         }
+        [(first, 1 | -1), (last, 1 | -1)] => Err(format!(
+            "they are open between the nodes {} and {}: add the walls that are missing, or say closed_by_line if \
+             the straight line between them is to close the chamber",
+            first + 1,
+            last + 1
+        )),
         _ => {
             let ends: Vec<usize> = surplus.into_keys().collect();
             let mend = "they must be closed, but for one; and the cells of a string must all run \
