@@ -27,7 +27,7 @@ pub(crate) use pressure::FacePressure;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
-#[cfg(feature = "checkpoint")]
+#[cfg(any(feature = "checkpoint", feature = "play"))]
 pub(crate) use signal::Course;
 pub use signal::Signal;
 pub(crate) use signal::{Live, TimeTable, VectorSignal};

@@ -51,12 +51,11 @@ struct Track {
     values: Vec<f64>,
 }
 
-/// What acts in place of what the scene has: on a chamber, a spring, or each of some nodes.
+/// What acts in place of what the scene has: on a chamber, a spring, or some nodes.
 pub(super) enum Course {
     Pressure(String, Signal),
     Actuation(String, Signal),
-    /// Times (s) and forces (N).
-    Load(Selection, Vec<f64>, Vec<Vec<f64>>),
+    Load(Selection, Load),
 }
 
 impl Course {
@@ -65,7 +64,7 @@ impl Course {
         match self {
             Self::Pressure(chamber, signal) => simulation.pressure(&chamber, signal),
             Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
-            Self::Load(nodes, times, forces) => simulation.load_table(nodes, times, forces),
+            Self::Load(nodes, load) => simulation.set_load(nodes, load),
         }
     }
 
@@ -80,9 +79,8 @@ impl Course {
                 phase.set_actuation(&spring, signal);
                 "actuate"
             }
-            Self::Load(nodes, times, forces) => {
-                let force = VectorSignal::TimeTable(TimeTable::new(times, forces));
-                phase.set_load(nodes, Load::each(force));
+            Self::Load(nodes, load) => {
+                phase.set_load(nodes, load);
                 "load"
             }
         }
@@ -138,13 +136,13 @@ impl Record {
 
     /// What a track brings about from time `t` (s) on; for a component of a load, with the other ones.
     fn course(&self, scene: &Scene, track: &Track, t: f64) -> Course {
-        let nodes = match &track.target {
+        let (nodes, kind) = match &track.target {
             Target::Pressure(chamber) => return Course::Pressure(chamber.clone(), track.signal()),
             Target::Actuation(spring) => return Course::Actuation(spring.clone(), track.signal()),
-            Target::Load(nodes, _) => nodes,
+            Target::Load(nodes, kind, _) => (nodes, *kind),
         };
         let component = |axis| {
-            let target = Target::Load(nodes.clone(), axis);
+            let target = Target::Load(nodes.clone(), kind, axis);
             let known = |other: &&Track| (other.phase, &other.target) == (track.phase, &target);
             match self.tracks.iter().find(known) {
                 Some(moved) => moved.signal(),
@@ -155,7 +153,8 @@ impl Record {
         let times = ascending(components.iter().flat_map(Signal::breaks));
         let force = |t: &f64| components.iter().map(|signal| signal.at(*t)).collect();
         let forces = times.iter().map(force).collect();
-        Course::Load(nodes.clone(), times, forces)
+        let value = VectorSignal::TimeTable(TimeTable::new(times, forces));
+        Course::Load(nodes.clone(), Load { kind, value })
     }
 }
 

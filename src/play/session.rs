@@ -178,7 +178,7 @@ impl Session {
             InputError::new("slider", number, mend)
         })?;
         let (scene, t) = (self.simulation.scene(), self.simulation.time());
-        let course = self.record.moved(scene, &slider.target, t, value / slider.share);
+        let course = self.record.moved(scene, &slider.target, t, value);
         course.command(&mut self.simulation)
     }
 

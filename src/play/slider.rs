@@ -15,15 +15,13 @@ pub(super) enum Target {
     Pressure(String),
     /// The force of the actuator of a spring (N).
     Actuation(String),
-    /// A component, counted from 0, of the force on each of some nodes (N).
-    Load(Selection, usize),
+    /// A component, counted from 0, of the load of a kind on some nodes (N or N/m^2).
+    Load(Selection, LoadKind, usize),
 }
 
 /// A slider.
 pub(super) struct Slider {
     pub(super) target: Target,
-    /// It shows so many times the value of the target: all nodes together, where the scene gives a load in total.
-    pub(super) share: f64,
     /// It goes from -`most` to `most`.
     most: f64,
     /// What it is, for the page.
@@ -40,17 +38,18 @@ impl Slider {
     /// The sliders of a scene.
     pub(super) fn all(scene: &Scene) -> Vec<Self> {
         let young = scene.body().material().young;
+        let pressure = USUAL * young;
         // what a spring of the stiffness of the body needs for half of that strain is a usual force
         let force = USUAL * young * scene.body().volume() / scene.body().mesh().size();
         let chambers = scene.chambers().iter().map(|chamber| {
             let target = Target::Pressure(chamber.name().to_owned());
-            let range = [target.largest_in(scene), USUAL * young];
-            Self::new(target, "pressure".into(), 1.0, range)
+            let range = [target.largest_in(scene), pressure];
+            Self::new(target, "pressure".into(), range)
         });
         let springs = scene.springs().iter().map(|spring| {
             let target = Target::Actuation(spring.name().to_owned());
             let range = [target.largest_in(scene), force];
-            Self::new(target, "actuator".into(), 1.0, range)
+            Self::new(target, "actuator".into(), range)
         });
         let mut loaded: Vec<&Selection> = Vec::new();
         for (nodes, _) in scene.phases().iter().flat_map(|phase| &phase.loads) {
@@ -58,52 +57,57 @@ impl Slider {
                 loaded.push(nodes);
             }
         }
-        let loads = loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, force));
+        let loads =
+            loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, [force, pressure]));
         chambers.chain(springs).chain(loads).collect()
     }
 
-    /// One slider per component of the loads on a selection: on all of its nodes together if the scene always
-    /// gives them so.
-    fn of_load(scene: &Scene, nodes: &Selection, usual: f64) -> Vec<Self> {
+    /// One slider per component of the loads on a selection: of the kind of which the scene always gives them, or else
+    /// on each of its nodes. Usual are a force and a traction.
+    fn of_load(scene: &Scene, nodes: &Selection, [force, traction]: [f64; 2]) -> Vec<Self> {
         // loads on no nodes are no part of a scene
         let count = scene.body().mesh().select(nodes).map_or(1, |nodes| nodes.len());
-        let mut loads = scene.phases().iter().flat_map(|phase| loads_in(phase, nodes));
-        let (share, together) = match loads.all(|load| load.kind == LoadKind::Total) {
-            _ if count == 1 => (1.0, ""),
-            true => (count as f64, ", in total"),
-            false => (1.0, ", each node"),
+        let loads = || scene.phases().iter().flat_map(|phase| loads_in(phase, nodes));
+        let always = |kind: &LoadKind| loads().all(|load| load.kind == *kind);
+        let kind = LoadKind::ALL.into_iter().find(always).unwrap_or(LoadKind::Each);
+        let (name, of_what, usual) = match kind {
+            LoadKind::Traction => ("traction", "", traction),
+            _ if count == 1 => ("load", "", force),
+            LoadKind::Each => ("load", ", each node", force),
+            LoadKind::Total => ("load", ", in total", force),
         };
         // a load that the scene turns another way is as strong
-        let targets = (0..scene.body().dimension()).map(|axis| Target::Load(nodes.clone(), axis));
+        let axes = 0..scene.body().dimension();
+        let targets = axes.map(|axis| Target::Load(nodes.clone(), kind, axis));
         let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
         let slider = |(target, axis)| {
-            let what = format!("load {axis}{together}");
-            Self::new(target, what, share, [largest, usual])
+            let what = format!("{name} {axis}{of_what}");
+            Self::new(target, what, [largest, usual])
         };
         targets.zip(["x", "y", "z"]).map(slider).collect()
     }
 
     /// A slider that goes twice as far as the scene itself, or as far as is `usual`.
-    fn new(target: Target, what: String, share: f64, [largest, usual]: [f64; 2]) -> Self {
-        let most = round_up(if largest > 0.0 { 2.0 * share * largest } else { usual });
-        Self { target, share, most, what }
+    fn new(target: Target, what: String, [largest, usual]: [f64; 2]) -> Self {
+        let most = round_up(if largest > 0.0 { 2.0 * largest } else { usual });
+        Self { target, most, what }
     }
 
     /// The value in force, as it is shown.
     pub(super) fn value(&self, simulation: &Simulation) -> Result<f64, Error> {
-        let value = match &self.target {
+        Ok(match &self.target {
             Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
             Target::Actuation(spring) => simulation.view().actuation(spring)?,
-            Target::Load(nodes, axis) => simulation.view().load(nodes.clone())?[*axis],
-        };
-        Ok(self.share * value)
+            Target::Load(nodes, kind, axis) => simulation.view().load_of(nodes, *kind)?[*axis],
+        })
     }
 
     pub(super) fn to_json(&self) -> Value {
         let (name, unit) = match &self.target {
             Target::Pressure(chamber) => (chamber.clone(), "Pa"),
             Target::Actuation(spring) => (spring.clone(), "N"),
-            Target::Load(nodes, _) => (name_of(nodes), "N"),
+            Target::Load(nodes, LoadKind::Traction, _) => (name_of(nodes), "Pa"),
+            Target::Load(nodes, ..) => (name_of(nodes), "N"),
         };
         json!({ "name": name, "what": self.what, "unit": unit, "most": self.most })
     }
@@ -113,8 +117,8 @@ impl Target {
     /// What `phase` of `scene` itself says of it at time `t` (s).
     pub(super) fn value_in(&self, scene: &Scene, phase: &Phase, t: f64) -> f64 {
         match self {
-            Self::Load(nodes, axis) => {
-                scene.load_on(phase, nodes, LoadKind::Each, t).map_or(0.0, |force| force[*axis])
+            Self::Load(nodes, kind, axis) => {
+                scene.load_on(phase, nodes, *kind, t).map_or(0.0, |load| load[*axis])
             }
             _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
         }
@@ -123,7 +127,7 @@ impl Target {
     /// Times (s) at which what `phase` says of it changes its law, ascending.
     pub(super) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
         match self {
-            Self::Load(nodes, _) => ascending(loads_in(phase, nodes).flat_map(breaks)),
+            Self::Load(nodes, ..) => ascending(loads_in(phase, nodes).flat_map(breaks)),
             _ => ascending(self.signals_in(phase).flat_map(Signal::breaks)),
         }
     }

@@ -5,6 +5,8 @@ use std::sync::Arc;
 use super::load::Load;
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
 use crate::external::{Live, Obstacle, Signal};
+#[cfg(feature = "scene-file")]
+use crate::formula::Formula;
 use crate::input::{InputError, find};
 use crate::mesh::{Mesh, Selection};
 
@@ -102,6 +104,17 @@ impl Phase {
         path: impl Fn(f64) -> Prescribed + Send + Sync + 'static,
     ) -> Self {
         self.constrain(nodes, Axes::These(vec![axis]), Motion::Path(Arc::new(path)))
+    }
+
+    /// One component of nodes that follows a formula of time (m, from the natural position).
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn follow_formula(
+        self,
+        nodes: impl Into<Selection>,
+        axis: Axis,
+        formula: Formula,
+    ) -> Self {
+        self.constrain(nodes, Axes::These(vec![axis]), Motion::Formula(Arc::new(formula)))
     }
 
     /// One component of nodes that follows a smooth path through points: at the `times` (s,

@@ -76,6 +76,10 @@ pub(super) enum Holds {
     Vector,
     /// Numbers along the axes of the table.
     Along,
+    /// A number or a formula of time.
+    Changing,
+    /// One of them per dimension of space.
+    ChangingVector,
     Nodes,
     Corners,
     Axes,

@@ -8,9 +8,10 @@ use super::table::Table;
 use super::value::{Value, number_of};
 use crate::constraint::Axis;
 use crate::error::Error;
+use crate::external::{Signal, TimeTable, VectorSignal};
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::scene::{Phase, Scene};
+use crate::scene::{LoadKind, Phase, Scene};
 
 pub(super) const PHASE: TableKeys = TableKeys::new(
     "[[phase]]",
@@ -19,11 +20,15 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
     &[
         Key::new("name", Holds::Text, "the name of the phase").default("phase 1, ..."),
         Key::number("until", "the end of the phase", "s").required(),
+        Key::new("gravity", Holds::Vector, "the acceleration of gravity in this phase")
+            .in_unit("m/s^2")
+            .default("that of the file"),
         part("hold", &HOLD, "nodes that stay where they are"),
         part("move", &MOVE, "nodes that move on"),
         part("path", &PATH, "nodes that follow a path"),
-        part("load", &LOAD, "forces on nodes"),
+        part("load", &LOAD, "forces on nodes, tractions on faces"),
         part("pressure", &PRESSURE, "pressures in chambers"),
+        part("pressure_on", &PRESSURE_ON, "pressures on faces"),
         part("actuate", &ACTUATE, "forces in springs"),
         Key::new(
             "contact",
@@ -69,36 +74,65 @@ const MOVE: TableKeys = TableKeys::new(
 
 const PATH: TableKeys = TableKeys::new(
     "path",
-    "Nodes run smoothly (a cubic spline) through points, and begin and end at rest; before and after they stay.",
+    "Nodes run smoothly (a cubic spline) through points, and begin and end at rest; before and after they stay. Or they \
+     follow a formula without `abs`, `min`, `max` and `step`, which have no velocity at their kinks.",
     &[
         NODES,
         AXES,
-        TIMES.required(),
+        TIMES,
         Key::new(
             "displacements",
             Holds::List(&Holds::Along),
             "displacements from the natural position at these times",
         )
-        .in_unit("m")
-        .required(),
+        .in_unit("m"),
+        Key::new(
+            "displacement",
+            Holds::OneOrMore(&Holds::Changing),
+            "the displacement from the natural position, for each of the axes",
+        )
+        .in_unit("m"),
     ],
-    "path = [{ nodes = \"right\", axes = \"x\", times = [0.0, 0.1, 0.3], displacements = [0.0, 0.01, 0.0] }]",
-);
+    "path = [\n\
+     \x20   { nodes = \"right\", axes = \"x\", times = [0.0, 0.1, 0.3], displacements = [0.0, 0.01, 0.0] },\n\
+     \x20   { nodes = \"left\", displacement = [\"0.01*sin(20*t)\", 0.0] },\n\
+     ]",
+)
+.one_of(&[&["times", "displacements"], &["displacement"]]);
 
 const LOAD: TableKeys = TableKeys::new(
     "load",
-    "Forces on nodes. Those of tables run along straight lines, and are constant before and after.",
+    "Forces on nodes, and tractions on the faces of the boundary (edges in the plane) between them. Those of tables run \
+     along straight lines, and are constant before and after. Directions stay as the body turns.",
     &[
         NODES,
-        Key::new("force", Holds::Vector, "the force on each node").in_unit("N"),
-        Key::new("total", Holds::Vector, "the force on all nodes together").in_unit("N"),
+        Key::new("force", Holds::ChangingVector, "the force on each node").in_unit("N"),
+        Key::new("total", Holds::ChangingVector, "the force on all nodes together")
+            .in_unit("N")
+            .law("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
+        Key::new("traction", Holds::ChangingVector, "the force per natural area of the faces")
+            .in_unit("N/m^2"),
         TIMES,
         Key::new("forces", Holds::List(&Holds::Vector), "the force on each node at these times")
             .in_unit("N"),
+        Key::new("totals", Holds::List(&Holds::Vector), "the force on all nodes at these times")
+            .in_unit("N"),
+        Key::new("tractions", Holds::List(&Holds::Vector), "the traction at these times")
+            .in_unit("N/m^2"),
     ],
-    "load = [{ nodes = \"right\", times = [0.0, 0.1], forces = [[0.0, 0.0], [0.0, -0.01]] }]",
+    "load = [\n\
+     \x20   { nodes = \"right\", times = [0.0, 0.1], forces = [[0.0, 0.0], [0.0, -0.01]] },\n\
+     \x20   { nodes = \"right\", traction = [0.0, \"-100*sin(20*t)\"] },\n\
+     ]",
 )
-.one_of(&[&["force"], &["total"], &["times", "forces"]]);
+.one_of(&[
+    &["force"],
+    &["total"],
+    &["traction"],
+    &["times", "forces"],
+    &["times", "totals"],
+    &["times", "tractions"],
+]);
 
 const PRESSURE: TableKeys = TableKeys::new(
     "pressure",
@@ -106,11 +140,24 @@ const PRESSURE: TableKeys = TableKeys::new(
      constant before and after.",
     &[
         Key::new("chamber", Holds::Text, "the name of a chamber").required(),
-        Key::number("value", "the pressure", "Pa"),
+        VALUE,
         TIMES,
-        Key::new("values", Holds::List(&Holds::Number), "pressures at these times").in_unit("Pa"),
+        VALUES,
     ],
     "pressure = [{ chamber = \"inside\", times = [0.0, 0.1], values = [0.0, 500.0] }]",
+)
+.one_of(&[&["value"], &["times", "values"]]);
+
+const VALUE: Key = Key::new("value", Holds::Changing, "the pressure").in_unit("Pa");
+const VALUES: Key =
+    Key::new("values", Holds::List(&Holds::Number), "pressures at these times").in_unit("Pa");
+
+const PRESSURE_ON: TableKeys = TableKeys::new(
+    "pressure_on",
+    "A pressure on the faces of the boundary (edges in the plane) between nodes, positive if it presses onto the body. It \
+     follows the body: it acts on the deformed area, along its normal.",
+    &[NODES, VALUE, TIMES, VALUES],
+    "pressure_on = [{ nodes = \"right\", value = \"500*sin(20*t)\" }]",
 )
 .one_of(&[&["value"], &["times", "values"]]);
 
@@ -120,7 +167,7 @@ const ACTUATE: TableKeys = TableKeys::new(
      are constant before and after.",
     &[
         Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs").required(),
-        Key::number("force", "the force, positive if it extends", "N"),
+        Key::new("force", Holds::Changing, "the force, positive if it extends").in_unit("N"),
         TIMES,
         Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
     ],
@@ -132,12 +179,13 @@ const ACTUATE: TableKeys = TableKeys::new(
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 6] = [
+const PARTS: [(&TableKeys, Add); 7] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
     (&LOAD, load),
     (&PRESSURE, pressure),
+    (&PRESSURE_ON, pressure_on),
     (&ACTUATE, actuate),
 ];
 
@@ -155,6 +203,11 @@ pub(super) fn add_phase(scene: Scene, value: &Value) -> Result<Scene, Error> {
     }
     if let Some(value) = table.get("contact") {
         phase = contact(phase, &value, &scene)?;
+    }
+    let gravity = table.optional("gravity", |value| value.vector(scene.body().dimension()))?;
+    if let Some(gravity) = gravity {
+        phase = phase.gravity(gravity);
+        check(&scene, &phase).map_err(|error| table.blame(error))?;
     }
     for (keys, add) in PARTS {
         let Some(value) = table.get(keys.name) else { continue };
@@ -199,6 +252,23 @@ fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
     let axes = axes(table, scene)?.unwrap_or_else(|| all_axes(scene).into());
+    let formulas = table.optional("displacement", |value| {
+        let formulas =
+            value.one_or_more()?.iter().map(Value::formula).collect::<Result<Vec<_>, _>>()?;
+        match formulas.len() == axes.len() {
+            true => Ok(formulas),
+            false => {
+                let what = number_of(axes.len(), "component");
+                Err(value.unexpected(format!("{what}, one per axis")))
+            }
+        }
+    })?;
+    if let Some(formulas) = formulas {
+        let axes = axes.into_iter().zip(formulas);
+        return Ok(axes.fold(phase, |phase, (axis, formula)| {
+            phase.follow_formula(nodes.clone(), axis, formula)
+        }));
+    }
     let times = table.required("times", Value::numbers)?;
     let points = table.required("displacements", |value| {
         value.list_of("points, one per time", |point| along(point, &axes, scene))
@@ -211,35 +281,41 @@ fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 }
 
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
-    let vector = |value: &Value| value.vector(scene.body().dimension());
+    let dimension = scene.body().dimension();
     let nodes = nodes(table, scene)?;
-    if let Some(force) = table.optional("force", vector)? {
-        return Ok(phase.load(nodes, force));
+    for kind in LoadKind::ALL {
+        let one = table.optional(kind.word(), |value| value.vector_signal(dimension))?;
+        let many = table.optional(&format!("{}s", kind.word()), |value| {
+            value.list_of("vectors, one per time", |vector| vector.vector(dimension))
+        })?;
+        let value = match (one, many) {
+            (Some(value), _) => value,
+            (None, Some(values)) => {
+                let times = table.required("times", Value::numbers)?;
+                VectorSignal::TimeTable(TimeTable::new(times, values))
+            }
+            (None, None) => continue,
+        };
+        return Ok(phase.loaded(nodes, kind, value));
     }
-    if let Some(total) = table.optional("total", vector)? {
-        return Ok(phase.load_total(nodes, total));
-    }
-    let times = table.required("times", Value::numbers)?;
-    let forces = table.required("forces", |value| value.list_of("forces, one per time", vector))?;
-    Ok(phase.load_table(nodes, times, forces))
+    Ok(phase) // one of them is there: the table's groups say so
 }
 
 fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.chambers().iter().map(|chamber| chamber.name()).collect();
     let chamber = table.required("chamber", |v| named(v, &known))?;
-    Ok(match course(table, "value", "values")? {
-        Course::Constant(pressure) => phase.pressure(chamber, pressure),
-        Course::Table(times, values) => phase.pressure_table(chamber, times, values),
-    })
+    Ok(phase.pressure(chamber, course(table, "value", "values")?))
+}
+
+fn pressure_on(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let nodes = nodes(table, scene)?;
+    Ok(phase.pressure_on(nodes, course(table, "value", "values")?))
 }
 
 fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
     let springs = table.required("springs", |value| names(value, &known))?;
-    Ok(match course(table, "force", "forces")? {
-        Course::Constant(force) => phase.actuate(springs, force),
-        Course::Table(times, forces) => phase.actuate_table(springs, times, forces),
-    })
+    Ok(phase.actuate(springs, course(table, "force", "forces")?))
 }
 
 fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
@@ -252,17 +328,11 @@ fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
     }
 }
 
-/// A number that may change with time.
-enum Course {
-    Constant(f64),
-    Table(Vec<f64>, Vec<f64>),
-}
-
-/// `one` number, or `times` and `many` numbers.
-fn course(table: &Table, one: &str, many: &str) -> Result<Course, Error> {
-    Ok(match table.optional(one, Value::finite)? {
-        Some(constant) => Course::Constant(constant),
-        None => Course::Table(
+/// `one` number or formula, or `times` and `many` numbers.
+fn course(table: &Table, one: &str, many: &str) -> Result<Signal, Error> {
+    Ok(match table.optional(one, Value::signal)? {
+        Some(signal) => signal,
+        None => Signal::table(
             table.required("times", Value::numbers)?,
             table.required(many, Value::numbers)?,
         ),

@@ -25,6 +25,10 @@ alone will do. Types below:
 | whole number | 0 or above: `14` |
 | vector | one number per dimension of space: `[0.0, -9.8]` |
 | numbers along axes | one number per named axis (for one axis a number alone), or one per dimension, 0 along axes that are not named |
+| formula | a function of time `t` (s) as a text: `\"2000 * sin(2*pi*3*t)\"`. It consists of numbers, `t`, `pi`, `e`, `+ - * / ^`, parentheses, \
+`sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `log10`, `sqrt`, `abs`, `min(a, b)`, `max(a, b)` and `step` (0 below 0, else 1); \
+`-t^2` is -(t^2). Steps do not end at its kinks and jumps, as they do at the times of a table |
+| vector or formulas | a vector any component of which may be a formula: `[0.0, \"-2*t\"]` |
 | nodes | the name of a node set `\"left\"`, a number (from 1) `14`, a list of numbers `[14, 15]`, or `{ box = [[0.0, 0.0], [0.1, 0.02]] }` |
 | corners | the lower and the upper corner of a box: `[[0.0, 0.0], [0.1, 0.02]]` |
 | axes | `\"x\"`, or a list `[\"x\", \"y\"]` |
@@ -120,6 +124,8 @@ fn kind_of(holds: &Holds) -> String {
         Holds::Either(several) => several.iter().map(kind_of).collect::<Vec<_>>().join("; or "),
         Holds::Vector => "vector".into(),
         Holds::Along => "numbers along axes".into(),
+        Holds::Changing => "number or formula".into(),
+        Holds::ChangingVector => "vector or formulas".into(),
         Holds::Nodes => "nodes".into(),
         Holds::Corners => "corners".into(),
         Holds::Axes => "axes".into(),

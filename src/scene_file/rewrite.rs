@@ -6,7 +6,7 @@ use std::ops::Range;
 use serde_json::Value;
 use toml::de::{DeTable, DeValue};
 
-use crate::external::{Signal, VectorSignal};
+use crate::external::{Course, Signal, VectorSignal};
 use crate::mesh::Selection;
 use crate::scene::{Load, Phase};
 
@@ -122,6 +122,11 @@ fn loads(phase: &Phase, dimension: usize) -> String {
         let word = load.kind.word();
         let load = match &load.value {
             VectorSignal::Constant(force) => format!("{word} = {force:?}"),
+            VectorSignal::Formulas(formulas) => {
+                let texts: Vec<String> =
+                    formulas.iter().map(|formula| quoted(formula.text())).collect();
+                format!("{word} = [{}]", texts.join(", "))
+            }
             force => {
                 let times = force.breaks();
                 let forces = times.iter().map(|t| force.components(*t, dimension));
@@ -139,6 +144,9 @@ fn list(entries: impl Iterator<Item = String>) -> String {
 }
 
 fn course(signal: &Signal, [one, many]: [&str; 2]) -> String {
+    if let Course::Formula(formula) = &signal.0 {
+        return format!("{one} = {}", quoted(formula.text()));
+    }
     let times = signal.breaks();
     if times.is_empty() {
         return format!("{one} = {:?}", signal.at(0.0));

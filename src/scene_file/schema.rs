@@ -23,13 +23,19 @@ pub fn schema() -> Value {
 }
 
 /// Values of which many keys are.
-fn shared() -> [(&'static str, Value); 5] {
+fn shared() -> [(&'static str, Value); 7] {
     let number = json!({ "type": "number" });
     let whole = json!({ "type": "integer", "minimum": 1 });
     let numbers = |least: usize| json!({ "type": "array", "items": number, "minItems": least, "maxItems": 3 });
+    let changing = json!({ "anyOf": [number, { "type": "string" }] });
     let axis = json!({ "enum": ["x", "y", "z"] });
     [
         ("a vector", numbers(1)),
+        ("a number or a formula", changing.clone()),
+        (
+            "a vector or formulas",
+            json!({ "type": "array", "items": changing, "minItems": 1, "maxItems": 3 }),
+        ),
         ("numbers along axes", json!({ "anyOf": [number, numbers(1)] })),
         ("corners", json!({ "type": "array", "items": numbers(1), "minItems": 2, "maxItems": 2 })),
         (
@@ -127,6 +133,8 @@ fn value(holds: &Holds) -> Value {
         Holds::Either(several) => json!({ "anyOf": several.iter().map(value).collect::<Vec<_>>() }),
         Holds::Vector => reference("a vector"),
         Holds::Along => reference("numbers along axes"),
+        Holds::Changing => reference("a number or a formula"),
+        Holds::ChangingVector => reference("a vector or formulas"),
         Holds::Nodes => reference("nodes"),
         Holds::Corners => reference("corners"),
         Holds::Axes => reference("axes"),

@@ -11,16 +11,27 @@ use crate::scene::Scene;
 
 pub(super) const SPRING: TableKeys = TableKeys::new(
     "[[spring]]",
-    "A spring with damper and actuator between two nodes. It acts in all phases; `actuate` in a phase adds a force.",
+    "A spring with damper and actuator between two nodes, or a node and a fixed point. It acts in all phases; `actuate` in a phase adds a force.",
     &[
         Key::new("name", Holds::Text, "the name of the spring").default("spring 1, spring 2, ..."),
-        Key::new("ends", Holds::Array(&Holds::Nodes, 2), "one node each, by number or name")
-            .required(),
+        Key::new(
+            "ends",
+            Holds::Array(&Holds::Either(&[Holds::Nodes, Holds::Table(&END)]), 2),
+            "one node each, by number or name, or a point of space",
+        )
+        .required(),
         Key::number("stiffness", "the stiffness", "N/m").default("0"),
         Key::number("length", "the natural length", "m").default("that at the start"),
         Key::number("damping", "the damping", "N s/m").default("0"),
     ],
     "[[spring]]\nname = \"down\"\nends = [1, 3]\nstiffness = 20.0\nlength = 0.04",
+);
+
+const END: TableKeys = TableKeys::new(
+    "ends",
+    "The end of a spring that is a fixed point of space.",
+    &[vector("point", "where it is", "m")],
+    "[[spring]]\nends = [3, { point = [0.0, 0.2] }]\nstiffness = 20.0",
 );
 
 pub(super) const CHAMBER: TableKeys = TableKeys::new(
@@ -34,6 +45,13 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
             "the nodes of its walls: part of the boundary, or a closed polygon of numbers",
         )
         .required(),
+        Key::new(
+            "closed_by_line",
+            Holds::Flag,
+            "whether walls in the plane that are open are closed by the straight line between their ends",
+        )
+        .law("Without it a gap is an error.")
+        .default("false"),
         Key::number("thickness", "the thickness", "m").default("that of the body"),
     ],
     "[[chamber]]\nname = \"inside\"\nnodes = \"inner\"",
@@ -144,8 +162,14 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let mut spring = table.required("ends", |value| {
         let list = value.list()?;
         let [first, second] = &list[..] else { return Err(value.unexpected("two ends")) };
-        let ends = [selection(first, body.mesh())?, selection(second, body.mesh())?];
-        let spring = Spring::between(ends[0].clone(), ends[1].clone()).named(name);
+        let node = |end: &Value| selection(end, body.mesh());
+        let spring = match (anchor(first, body.dimension())?, anchor(second, body.dimension())?) {
+            (None, None) => Spring::between(node(first)?, node(second)?),
+            (None, Some(point)) => Spring::anchored(node(first)?, point),
+            (Some(point), None) => Spring::anchored(node(second)?, point),
+            (Some(_), Some(_)) => return Err(value.unexpected("one node at least")),
+        };
+        let spring = spring.named(name);
         spring.force(body.mesh()).map_err(|error| value.error(error))?;
         Ok(spring)
     })?;
@@ -162,6 +186,17 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
     Ok(scene.spring(spring))
 }
 
+/// The point of space that an end of a spring is, if it is none of nodes.
+fn anchor(end: &Value, dimension: usize) -> Result<Option<Vec<f64>>, Error> {
+    match end.entries() {
+        Some(entries) if entries.contains_key("point") => {
+            let point = end.table(&END)?.required("point", |value| value.vector(dimension))?;
+            Ok(Some(point))
+        }
+        _ => Ok(None),
+    }
+}
+
 /// The scene with the chamber that `value` describes.
 pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&CHAMBER)?;
@@ -169,6 +204,9 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let name = table.required("name", Value::string)?;
     let nodes = table.required("nodes", |value| selection(value, body.mesh()))?;
     let mut chamber = Chamber::within(name, nodes);
+    if table.optional("closed_by_line", Value::flag)? == Some(true) {
+        chamber = chamber.closed_by_line();
+    }
     if let Some(h) = table.optional("thickness", Value::number)? {
         chamber = chamber.thickness(h);
     }

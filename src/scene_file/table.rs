@@ -83,7 +83,12 @@ impl<'a> Table<'a> {
     fn check_groups(&self) -> Result<(), Error> {
         let groups = self.keys.one_of;
         let there = |key: &&&str| self.entries.contains_key(**key);
-        let found: Vec<&str> = groups.concat().iter().filter(there).copied().collect();
+        let mut found: Vec<&str> = Vec::new();
+        for key in groups.concat().iter().filter(there) {
+            if !found.contains(key) {
+                found.push(key);
+            }
+        }
         if groups.is_empty() || groups.iter().any(|group| *group == found) {
             return Ok(());
         }

@@ -8,6 +8,8 @@ use toml::de::{DeTable, DeValue};
 use super::keys::Meaning;
 use super::source::Source;
 use crate::error::Error;
+use crate::external::{Signal, VectorSignal};
+use crate::formula::Formula;
 use crate::input::{list, unknown};
 
 /// A value with all that an error about it needs.
@@ -154,6 +156,53 @@ impl<'a> Value<'a> {
         let expected = || format!("{}, one per dimension", number_of(dimension, "number"));
         let numbers = self.numbers()?;
         if numbers.len() == dimension { Ok(numbers) } else { Err(self.unexpected(expected())) }
+    }
+
+    /// A finite number, or a formula of time.
+    pub(super) fn signal(&self) -> Result<Signal, Error> {
+        match self.value {
+            DeValue::String(text) => {
+                Signal::formula(text).map_err(|error| self.no_formula(&error.mend))
+            }
+            _ => Ok(self.changing(Self::finite)?.into()),
+        }
+    }
+
+    /// A formula of time; a number alone is one, too.
+    pub(super) fn formula(&self) -> Result<Formula, Error> {
+        let text = match self.value {
+            DeValue::String(text) => text.to_string(),
+            _ => format!("{:?}", self.changing(Self::finite)?),
+        };
+        Formula::parse(&text).map_err(|problem| self.no_formula(&problem))
+    }
+
+    /// A vector, or formulas of its components.
+    pub(super) fn vector_signal(&self, dimension: usize) -> Result<VectorSignal, Error> {
+        let items = self.one_or_more()?;
+        if !items.iter().any(|item| matches!(item.value, DeValue::String(_))) {
+            return Ok(VectorSignal::Constant(self.vector(dimension)?));
+        }
+        let formulas = self.list_of("numbers or formulas", Self::formula)?;
+        match formulas.len() == dimension {
+            true => Ok(VectorSignal::Formulas(formulas.into())),
+            false => {
+                let what = number_of(dimension, "component");
+                Err(self.unexpected(format!("{what}, one per dimension")))
+            }
+        }
+    }
+
+    /// What `read` reads of what is no text.
+    fn changing(&self, read: impl Fn(&Self) -> Result<f64, Error>) -> Result<f64, Error> {
+        match self.value {
+            DeValue::Float(_) | DeValue::Integer(_) => read(self),
+            _ => Err(self.unexpected("a number, or a formula of time in quotes")),
+        }
+    }
+
+    fn no_formula(&self, problem: &str) -> Error {
+        self.error(format!("{} is no formula of time: {problem}", self.found()))
     }
 
     /// The entries, if the value is a table.

@@ -66,7 +66,7 @@ impl Simulation {
         if force.len() == self.scene().body().dimension() && self.set_live(live, "load", &force)? {
             return Ok(());
         }
-        self.set_load(nodes, VectorSignal::Live(Live::new(&force)))
+        self.set_load(nodes, Load::each(VectorSignal::Live(Live::new(&force))))
     }
 
     /// As [`load`](Self::load), with a force (N) that changes with time (s).
@@ -78,7 +78,7 @@ impl Simulation {
         nodes: impl Into<Selection>,
         force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
     ) -> Result<(), Error> {
-        self.set_load(nodes.into(), VectorSignal::function(force))
+        self.set_load(nodes.into(), Load::each(VectorSignal::function(force)))
     }
 
     /// As [`load`](Self::load), with a force (N) that has the values `forces`, one component per dimension, at the
@@ -93,7 +93,7 @@ impl Simulation {
         forces: impl IntoIterator<Item: Into<Vec<f64>>>,
     ) -> Result<(), Error> {
         let table = TimeTable::new(times.into(), forces.into_iter().map(Into::into).collect());
-        self.set_load(nodes.into(), VectorSignal::TimeTable(table))
+        self.set_load(nodes.into(), Load::each(VectorSignal::TimeTable(table)))
     }
 
     /// Holds nodes, in all components, where they are.
@@ -176,9 +176,10 @@ impl Simulation {
         })
     }
 
-    fn set_load(&mut self, nodes: Selection, force: VectorSignal) -> Result<(), Error> {
+    /// As [`load`](Self::load), with a load of any kind.
+    pub(crate) fn set_load(&mut self, nodes: Selection, load: Load) -> Result<(), Error> {
         self.command(Change::Loads, |phase, _| {
-            phase.set_load(nodes, Load::each(force));
+            phase.set_load(nodes, load);
             Ok(())
         })
     }

@@ -136,7 +136,16 @@ impl<'a> View<'a> {
     /// # Errors
     /// Nodes that do not exist.
     pub fn load(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
-        self.scene.load_on(self.phase, &selection.into(), LoadKind::Each, self.time)
+        self.load_of(&selection.into(), LoadKind::Each)
+    }
+
+    /// The same as a load of another `kind`.
+    pub(crate) fn load_of(
+        &self,
+        selection: &Selection,
+        kind: LoadKind,
+    ) -> Result<Vec<f64>, InputError> {
+        self.scene.load_on(self.phase, selection, kind, self.time)
     }
 
     /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping, less that of its

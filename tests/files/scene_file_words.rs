@@ -6,7 +6,8 @@ use std::path::Path;
 use pliant::scene_file::Format;
 use pliant::{
     Axis, Body, CellSelection, Cells, Chamber, ContactEvents, Material, Mesh, Method, Obstacle,
-    OutputRequest, Phase, Scene, SceneFile, Selection, Settings, Shape, SolidCells, Spring, Strain,
+    OutputRequest, Phase, Prescribed, Scene, SceneFile, Selection, Settings, Shape, Signal,
+    SolidCells, Spring, Strain,
 };
 
 fn read(name: &str) -> SceneFile {
@@ -119,6 +120,65 @@ fn in_space() {
     assert_eq!(file.settings, settings);
     assert_eq!(file.output, OutputRequest::default());
     assert_eq!(file.scene.breaks(1), [0.022]);
+}
+
+/// Formulas are the functions that they say, with their derivatives on paths.
+#[test]
+fn loads_of_all_kinds() {
+    let file = read("loads.toml");
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.4, viscosity: 100.0 };
+    let body = Body::new(Mesh::rectangle([0.1, 0.05], [5, 3], Cells::Triangles6).unwrap(), rubber)
+        .thickness(0.01)
+        .strain(Strain::Green)
+        .point_mass("tip", [0.12, 0.05], 0.01)
+        .build();
+    let omega = 2.0 * std::f64::consts::PI * 30.0;
+    let pushed = Phase::until(0.02)
+        .gravity([1.0, 0.0])
+        .hold("left")
+        .traction_with("right", move |t| [100.0, -(2000.0 * (omega * t).sin())])
+        .traction_table("top", [0.0, 0.01], [[0.0, 0.0], [0.0, -50.0]])
+        .load_total_table("right", [0.0, 0.01], [[0.0, 0.0], [0.1, 0.0]])
+        .load_with("tip", |t| [0.01 * t, 0.0])
+        .pressure_with("below", |t| 100.0 * (-t).exp())
+        .pressure_on("right", Signal::function(|t| if t < 0.01 { 0.0 } else { 200.0 }))
+        .pressure_on("top", Signal::table([0.0, 0.01], [0.0, 100.0]))
+        .actuate_with(["spring 1"], |t| t.min(0.01));
+    let rest = |_| Prescribed { displacement: 0.0, velocity: 0.0, acceleration: 0.0 };
+    let swing = |t: f64| {
+        let angle = 100.0 * (t - 0.02);
+        Prescribed {
+            displacement: 0.001 * (1.0 - angle.cos()),
+            velocity: 0.1 * angle.sin(),
+            acceleration: 10.0 * angle.cos(),
+        }
+    };
+    let fall = |t: f64| Prescribed {
+        displacement: -0.001 * t.powi(2),
+        velocity: -0.002 * t,
+        acceleration: -0.002,
+    };
+    let led = Phase::until(0.04)
+        .follow("left", Axis::X, swing)
+        .follow("left", Axis::Y, rest)
+        .follow("tip", Axis::Y, fall);
+    let scene = Scene::new(body.unwrap())
+        .gravity([0.0, -9.8])
+        .spring(Spring::anchored("tip", [0.15, 0.1]).stiffness(20.0))
+        .spring(Spring::anchored([9], [0.0, 0.1]).stiffness(10.0))
+        .chamber(Chamber::within("below", "bottom").closed_by_line())
+        .phase(pushed)
+        .phase(led);
+    let run = |scene: &Scene| scene.simulate(&file.settings, &file.output.sampling()).unwrap();
+    let [read, built] = [&file.scene, &scene].map(run);
+    for (a, b) in read.samples().iter().zip(built.samples()) {
+        let scale = b.u.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        let apart = a.u.iter().zip(&b.u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        println!("{} s: {apart:e} of {scale:e} m", a.time);
+        // derivatives of formulas are rounded otherwise; both runs choose their steps by rtol 1e-3
+        assert!(apart <= 1e-6 * scale, "{apart:e} of {scale:e}");
+    }
+    assert_eq!(file.scene.breaks(0), [0.01]);
 }
 
 #[test]

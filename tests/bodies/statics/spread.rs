@@ -39,14 +39,22 @@ fn patch_test(load: impl Fn(Phase, usize, f64) -> Phase) {
     let plane = Phase::until(1.0).hold_axes("left", [Axis::X]).hold_axes([1], [Axis::Y]);
     for cells in Cells::ALL {
         let mesh = Mesh::rectangle([2.0, 1.0], [4, 5], cells).unwrap().mapped(uneven::<2>);
-        let body = Body::new(mesh.unwrap(), SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+        let body = Body::new(mesh.unwrap(), SQUARE_MATERIAL)
+            .thickness(0.01)
+            .strain(Strain::Cauchy)
+            .build()
+            .unwrap();
         let rough = roughness(&Scene::new(body).phase(load(plane.clone(), 2, 0.01)), pull);
         println!("{cells}: {rough:e}");
         assert!(rough < 1e-11, "{cells}: {rough:e}");
         // a membrane in space is pulled at its rim
         let mesh = Mesh::rectangle([2.0, 1.0], [4, 5], cells).unwrap();
         let mesh = mesh.mapped(|x| [uneven::<2>(x)[0], uneven::<2>(x)[1], 0.0]).unwrap();
-        let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL)
+            .thickness(0.01)
+            .strain(Strain::Cauchy)
+            .build()
+            .unwrap();
         let flat = plane.clone().hold_axes("all", [Axis::Z]);
         let rough = roughness(&Scene::new(body).phase(load(flat, 3, 0.01)), pull);
         println!("membrane of {cells}: {rough:e}");
@@ -59,7 +67,7 @@ fn patch_test(load: impl Fn(Phase, usize, f64) -> Phase) {
             SolidCells::Tetrahedra10 => mesh,
             _ => mesh.mapped(uneven::<3>).unwrap(),
         };
-        let body = Body::new(mesh, SQUARE_MATERIAL).build().unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).build().unwrap();
         let held = Phase::until(1.0).hold_axes("left", [Axis::X]);
         let held = held.hold_axes("front", [Axis::Y]).hold_axes("bottom", [Axis::Z]);
         let rough = roughness(&Scene::new(body).phase(load(held, 3, 1.0)), pull);
@@ -141,7 +149,8 @@ fn ends_have_the_area_of_the_cross_section() {
         (bar.mapped(|x| [0.0, x[0], 0.0]).unwrap(), vec![0.0, 1000.0, 0.0]),
     ] {
         let axis = traction.len() / 2;
-        let body = Body::new(mesh, SQUARE_MATERIAL).area(2e-4).build().unwrap();
+        let body =
+            Body::new(mesh, SQUARE_MATERIAL).area(2e-4).strain(Strain::Cauchy).build().unwrap();
         let mut phase = Phase::until(1.0).hold("left").traction("right", traction);
         if axis > 0 {
             phase = phase.hold_axes([2, 3, 4, 5, 6], [Axis::X, Axis::Z]);
