@@ -6,12 +6,14 @@
 
 mod prescribed;
 mod spline;
+mod turn;
 
 use std::fmt;
 use std::sync::Arc;
 
 pub use prescribed::{Path, Prescribed};
 pub(crate) use spline::Spline;
+pub(crate) use turn::angular;
 
 use crate::formula::Formula;
 use crate::input::InputError;

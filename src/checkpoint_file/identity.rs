@@ -38,6 +38,8 @@ impl Identity {
         let matrices =
             [body.inertia().values(), body.stiffness().values(), body.damping().values()];
         let cells: Vec<&[usize]> = mesh.cells().collect();
+        // a simulation has begun with them: there are no errors
+        let start = scene.initial_velocities().unwrap_or_default();
         let parts = [
             ("positions of the nodes", of_numbers([mesh.positions()])),
             ("cells", of_text(&(mesh.kind(), cells))),
@@ -46,6 +48,10 @@ impl Identity {
             ("accelerations of gravity", of_text(&scene.acceleration())),
             ("springs", of_text(scene.springs())),
             ("chambers", of_text(scene.chambers())),
+            (
+                "displacements and velocities at the start",
+                of_numbers([scene.initial_displacements(), &start]),
+            ),
             ("obstacles", of_text(scene.obstacles())),
             ("other forces", of_text(scene.other_forces())),
         ];

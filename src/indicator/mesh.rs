@@ -114,7 +114,7 @@ fn joints(scene: &Scene) -> Vec<[usize; 2]> {
     let springs = scene.springs().iter().filter_map(|spring| spring.force(body.mesh()).ok());
     let mut joints: Vec<[usize; 2]> = springs.flat_map(|spring| spring.couplings()).collect();
     joints.extend(scene.other_forces().iter().flat_map(|force| force.couplings()));
-    let start = PhaseStart { time: 0.0, u: scene.initial_state()[0] };
+    let start = PhaseStart { time: 0.0, u: scene.initial_displacements() };
     let rows = scene.phases().iter().filter_map(|phase| scene.rows(phase, &start).ok());
     for row in rows.flatten() {
         let nodes: Vec<usize> = row.terms.iter().map(|(dof, _)| dof / body.dimension()).collect();

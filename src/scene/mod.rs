@@ -4,6 +4,7 @@ mod forces;
 mod load;
 mod loading;
 mod phase;
+mod start;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -12,6 +13,7 @@ pub(crate) use load::{Load, LoadKind};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;
 pub use phase::Phase;
+use start::Start;
 
 use crate::body::Body;
 use crate::constraint::{PhaseStart, Row, prescribe, rows};
@@ -47,15 +49,14 @@ pub struct Scene {
     /// Other forces.
     forces: Forces,
     phases: Vec<Phase>,
-    /// Displacements and velocities at t = 0.
-    start: [Vec<f64>; 2],
+    start: Start,
 }
 
 impl Scene {
     /// A scene with a body alone, at rest in its natural shape at t = 0.
     pub fn new(body: Body) -> Self {
-        let rest = vec![0.0; body.dofs()];
         Self {
+            start: Start::rest(&body),
             body: Arc::new(body),
             gravity: None,
             springs: Vec::new(),
@@ -63,20 +64,7 @@ impl Scene {
             obstacles: Vec::new(),
             forces: Forces::new(),
             phases: Vec::new(),
-            start: [rest.clone(), rest],
         }
-    }
-
-    /// Displacements at t = 0 (m): `field` gives one for each natural position. Default: none.
-    pub fn initial_displacement(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
-        self.start[0] = self.body.mesh().field(field);
-        self
-    }
-
-    /// Velocities at t = 0 (m/s): `field` gives one for each natural position. Default: rest.
-    pub fn initial_velocity(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
-        self.start[1] = self.body.mesh().field(field);
-        self
     }
 
     /// Acceleration of gravity (m/s^2), one component per dimension, in all phases that have none of
@@ -227,10 +215,10 @@ impl Scene {
     /// The [`forces`](Self::forces) of each phase, if those of the first one have a meaning at t = 0.
     pub(crate) fn forces_from_start(&self) -> Result<Vec<Forces>, InputError> {
         let forces = self.forces()?;
-        let [u, v] = self.initial_state();
+        let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
         let mut nodal = NodalForces::zeros(self.body.dofs());
         let mut first = forces.iter().take(1).flatten();
-        match first.try_for_each(|force| force.add_forces(0.0, u, v, &mut nodal)) {
+        match first.try_for_each(|force| force.add_forces(0.0, u, &v, &mut nodal)) {
             Ok(()) => Ok(forces),
             Err(failure) => Err(self.bad_start(failure)),
         }
@@ -240,7 +228,7 @@ impl Scene {
     pub(crate) fn bad_start(&self, failure: Failure) -> InputError {
         match failure {
             Failure::Recoverable(reason) => {
-                let displacement = format!("up to {:e} m", largest(&self.start[0]));
+                let displacement = format!("up to {:e} m", largest(self.initial_displacements()));
                 InputError::new("initial displacement", displacement, reason)
             }
             Failure::Fatal(error) => {
@@ -259,16 +247,7 @@ impl Scene {
     /// [`validate`](Self::validate), but for those of the initial state.
     pub(crate) fn forces(&self) -> Result<Vec<Forces>, InputError> {
         self.first_phase()?;
-        for (name, vector) in
-            ["initial displacement", "initial velocity"].into_iter().zip(&self.start)
-        {
-            if vector.len() != self.body.dofs() {
-                let mend = format!("it needs {} components at each node", self.body.dimension());
-                let value = format!("{} numbers in all", vector.len());
-                return Err(InputError::new(name, value, mend));
-            }
-            finite(name, vector)?;
-        }
+        self.initial_velocities()?;
         let mut start = 0.0;
         for phase in &self.phases {
             let input = format!("end of phase \"{}\"", phase.name);
@@ -288,7 +267,7 @@ impl Scene {
         for obstacle in &self.obstacles {
             Contact::new(&self.body, obstacle)?;
         }
-        let (mut time, mut u) = (0.0, self.start[0].clone());
+        let (mut time, mut u) = (0.0, self.initial_displacements().to_vec());
         let forces = self.phases.iter().map(|phase| {
             let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
             time = phase.until;
@@ -296,11 +275,6 @@ impl Scene {
             self.forces_in(phase)
         });
         forces.collect()
-    }
-
-    /// Displacements and velocities at t = 0.
-    pub(crate) fn initial_state(&self) -> [&[f64]; 2] {
-        [&self.start[0], &self.start[1]]
     }
 
     /// The rows of the constraints of a phase.

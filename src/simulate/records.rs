@@ -4,12 +4,14 @@ use std::sync::Arc;
 
 use super::sensor::Sensors;
 use super::view::{Gauges, View};
+use crate::constraint::Row;
 use crate::ode::Failure;
 use crate::scene::{Phase, Scene};
 use crate::settings::{Method, Settings};
 use crate::state::{State, StateMut};
 use crate::system::{Energy, System};
 use crate::trajectory::{Commanded, Sample};
+use crate::vector::largest;
 
 /// The sample of `state` = (u, v, energies, ...) at `time`, without readings of sensors.
 pub(super) fn sample(
@@ -71,9 +73,29 @@ pub(super) fn project(
     time: f64,
     state: &mut [f64],
 ) {
-    if !phase.projects_velocity && settings.method != Method::IdaIndexTwo {
-        return;
+    if phase.projects_velocity || settings.method == Method::IdaIndexTwo {
+        project_now(system, time, state);
     }
+}
+
+/// As [`project`] at t = 0, also if velocities were given that the constraints do not allow. (A body at rest
+/// that is suddenly moved is brought to it by the stabilization.)
+pub(super) fn begin_to_move(
+    settings: &Settings,
+    phase: &Phase,
+    system: &mut System,
+    state: &mut [f64],
+) {
+    let v = State::of(state, system.dofs()).v;
+    let violates = |row: &Row| row.apply(v) != row.prescribed(0.0).velocity;
+    if largest(v) > 0.0 && system.rows().iter().any(violates) {
+        project_now(system, 0.0, state);
+    } else {
+        project(settings, phase, system, 0.0, state);
+    }
+}
+
+fn project_now(system: &mut System, time: f64, state: &mut [f64]) {
     let StateMut { u, v, supplied, .. } = StateMut::of(state, system.dofs());
     let before = system.energy(time, u, v).kinetic;
     system.project(time, v);

@@ -9,7 +9,7 @@ use super::events::Met;
 use super::failure::{STANDING, in_mechanics, standing_still, too_many_steps};
 use super::leg::{Ending, Good, Outcome};
 use super::progress::{Observer, Progress};
-use super::records::{self, energy, project};
+use super::records::{self, begin_to_move, energy, project};
 use super::sampling::Sampling;
 use super::sensor::Sensors;
 use super::stage::{At, Stage, Work};
@@ -82,10 +82,11 @@ impl Run {
         forces: Forces,
     ) -> Result<Self, Error> {
         let phase = scene.first_phase()?;
-        let start = PhaseStart { time: 0.0, u: scene.initial_state()[0] };
+        let (u, v) = (scene.initial_displacements(), scene.initial_velocities()?);
+        let start = PhaseStart { time: 0.0, u };
         let mut system = scene.system(&model, phase, forces, &start, settings.alpha)?;
-        let mut state = [scene.initial_state().as_slice().concat(), vec![0.0; ENERGIES]].concat();
-        project(settings, phase, &mut system, 0.0, &mut state);
+        let mut state = [u, &v, &[0.0; ENERGIES]].concat();
+        begin_to_move(settings, phase, &mut system, &mut state);
         let mut first = records::sample(0, &mut system, 0.0, &state)
             .map_err(|failure| scene.bad_start(failure))?;
         if !first.energy.balance().is_finite() {

@@ -48,7 +48,8 @@ impl Scene {
         start: f64,
         spectrum: Spectrum,
     ) -> Result<PhaseSummary, InputError> {
-        let rows = self.rows(phase, &PhaseStart { time: start, u: self.initial_state()[0] })?;
+        let rows =
+            self.rows(phase, &PhaseStart { time: start, u: self.initial_displacements() })?;
         let mut loaded_nodes = 0;
         let loads = phase.loads.iter().map(|(selection, _)| selection);
         for selection in loads.chain(phase.face_pressures.iter().map(|(selection, _)| selection)) {

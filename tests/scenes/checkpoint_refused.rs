@@ -87,6 +87,8 @@ fn other_scenes_are_refused_by_what_differs() {
         (beam().spring(Spring::between([1], [2])), "springs: they differ"),
         (beam().chamber(Chamber::within("more", [1, 2, 13, 12])), "chambers: they differ"),
         (beam().obstacle(ball), "obstacles: they differ"),
+        (beam().spin([0.1]), "displacements and velocities at the start: they differ"),
+        (beam().initial_velocity_of([33], [0.0, 1.0]), "velocities at the start: they differ"),
     ];
     for (other, words) in others {
         says(read(phases(other)), &[file, words, "the scene in the file", mend]);

@@ -22,6 +22,7 @@ mod sensors;
 mod simulation;
 mod square_jump;
 mod square_press;
+mod start;
 mod threads;
 mod tunnelling;
 mod varying;

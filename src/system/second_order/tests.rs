@@ -26,8 +26,8 @@ fn form(scene: &Scene) -> SecondOrderForm {
 /// The method on the first phase of a scene, with steps of a given size: no error test, no
 /// other step sizes.
 fn fixed(scene: &Scene, h: f64) -> CentralDifference<SecondOrderForm> {
-    let [u, v] = scene.initial_state();
-    let (y, end) = ([u, v, &[0.0; 2]].concat(), scene.phases()[0].until);
+    let (u, v) = (scene.initial_displacements(), scene.initial_velocities().unwrap());
+    let (y, end) = ([u, &v, &[0.0; 2]].concat(), scene.phases()[0].until);
     let options = Options::new(0.5, 1e300);
     let mut central = CentralDifference::new(form(scene), 0.0, &y, &options).unwrap();
     central.set_stop_time(Some(end)).unwrap();
