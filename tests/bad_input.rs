@@ -103,8 +103,13 @@ fn selections() {
 fn constraints() {
     let run = |phase: Phase| simulate(&scene().phase(phase.named("press")));
     let hold = || Phase::until(0.1).hold("bottom");
-    says(run(hold().move_nodes([4], [0.0, 0.1])), &["press", "node 4", "contradict"]);
-    says(run(hold().hold([4])), &["press", "node 4", "the same motion twice"]);
+    let contradiction = &["press", "node 4 y", "held, and moved at 0.1 m/s", "contradict"];
+    says(run(hold().move_nodes([4], [0.0, 0.1])), contradiction);
+    let along = |scale: f64| {
+        move |t| Prescribed { displacement: scale * t, velocity: scale, acceleration: 0.0 }
+    };
+    let two = Phase::until(0.1).follow([4], Axis::X, along(0.0)).follow([4], Axis::X, along(1.0));
+    says(run(two), &["node 4 x", "along a function of time, and moved along a function of time"]);
     says(run(hold().move_nodes([14], [0.1])), &["velocity", "[0.1]", "2 component"]);
     says(run(hold().move_nodes([14], [0.0, f64::NAN])), &["velocity", "NaN"]);
     says(run(hold().hold_axes([14], [Axis::Z])), &["axis", "Z", "2 dimension"]);
@@ -112,11 +117,26 @@ fn constraints() {
         run(hold().hold_combination([(14, Axis::X, 0.0), (15, Axis::X, 1.0)])),
         &["coefficient of a constraint row = 0"],
     );
-    let twice = [(14, Axis::X, 1.0), (15, Axis::X, 1.0)];
+    let more = [(14, Axis::X, 1.0), (15, Axis::X, 1.0), (4, Axis::X, 1.0)];
     says(
-        run(hold().hold_combination(twice).hold_combination(twice)),
+        run(hold().hold_combination(more.into_iter().take(2)).hold_combination(more)),
         &["press", "node 14 x + node 15 x", "leave it out"],
     );
+    says(
+        run(Phase::until(0.1)
+            .move_nodes([14, 15], [1.0, 0.0])
+            .hold_combination(more.into_iter().take(2))),
+        &["press", "node 14 x + node 15 x", "moved at 2 m/s in all, one by one", "together held"],
+    );
+    says(run(hold().symmetry([14], [0.0, 0.0])), &["normal", "[0.0, 0.0]", "not all of them 0"]);
+    says(run(hold().symmetry([14], [1.0])), &["normal", "2 component(s)"]);
+    says(run(hold().rotate([14], [0.0], [1.0])), &["centre", "[0.0]", "2 component(s) (m)"]);
+    says(run(hold().rotate([14], [0.0, 0.0], [1.0, 0.0])), &["angular velocity", "1 component"]);
+    let path = |axis: f64, angles: &[f64]| {
+        run(hold().rotate_path([14], [0.0, 0.0], [axis], [0.0, 0.1], angles))
+    };
+    says(path(0.0, &[0.0, 1.0]), &["axis", "[0.0]", "direction"]);
+    says(path(1.0, &[1.0]), &["angles of a rotation", "[1.0]", "2 times (rad)"]);
 }
 
 /// NaN in b(t): at the start it is bad input; later the integration stops and keeps what it has.

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline};
+use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline, Turn};
 use crate::external::{Course, Signal, TimeTable, VectorSignal};
 use crate::formula::Formula;
 use crate::input::InputError;
@@ -46,6 +46,7 @@ enum Nodes {
 enum What {
     Nodes(Nodes, Option<Vec<char>>),
     Row(Vec<(usize, char, f64)>),
+    Along(Nodes, Vec<f64>),
 }
 
 /// A [`Motion`].
@@ -59,6 +60,13 @@ enum How {
         displacements: Vec<f64>,
     },
     Formula(String),
+    Turn {
+        centre: Vec<f64>,
+        axis: Vec<f64>,
+        /// Times and angles of its path.
+        #[serde(deserialize_with = "Option::deserialize")]
+        path: Option<[Vec<f64>; 2]>,
+    },
     /// That of a constraint of the phase as the scene has it, from 0.
     OfScene(usize),
 }
@@ -246,6 +254,7 @@ impl What {
             Constrained::Row(terms) => {
                 Self::Row(terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect())
             }
+            Constrained::Along(nodes, normal) => Self::Along(Nodes::of(nodes), normal.clone()),
         }
     }
 
@@ -261,6 +270,7 @@ impl What {
                 let terms = terms.map(|(node, letter, x)| Ok((node, axis(letter)?, x)));
                 Constrained::Row(terms.collect::<Result<_, String>>()?)
             }
+            Self::Along(nodes, normal) => Constrained::Along(nodes.read(), normal),
         })
     }
 }
@@ -275,6 +285,11 @@ impl How {
                 displacements: spline.displacements().into(),
             },
             Motion::Formula(formula) => Self::Formula(formula.text().into()),
+            Motion::Turn(turn) => {
+                let numbers = |path: &Spline| [path.times().into(), path.displacements().into()];
+                let path = turn.angles.as_ref().map(numbers);
+                Self::Turn { centre: turn.centre.clone(), axis: turn.axis.clone(), path }
+            }
             Motion::Path(path) => Self::OfScene(own.constraints.iter().position(
                 |constraint| matches!(&constraint.how, Motion::Path(own) if Arc::ptr_eq(own, path)),
             )?),
@@ -289,6 +304,10 @@ impl How {
                 Motion::Spline(Arc::new(Spline::new(times, displacements)))
             }
             Self::Formula(text) => Motion::Formula(Arc::new(Formula::parse(&text)?)),
+            Self::Turn { centre, axis, path } => {
+                let angles = path.map(|[times, angles]| Spline::new(times, angles));
+                Motion::Turn(Arc::new(Turn { centre, axis, angles }))
+            }
             Self::OfScene(place) => {
                 own("constraint", place, phase.constraints.iter().map(|own| own.how.clone()))?
             }

@@ -54,7 +54,7 @@ pub(super) struct Record {
     dissipated: f64,
     supplied: f64,
     /// Where each constraint starts: displacement and time.
-    constraint_starts: Vec<[f64; 2]>,
+    constraint_starts: Vec<[f64; 4]>,
     displacements: Vec<f64>,
     velocities: Vec<f64>,
 }

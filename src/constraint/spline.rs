@@ -6,7 +6,7 @@ use crate::input::{InputError, finite};
 /// A displacement that runs smoothly through given points: a cubic spline. It starts and ends with
 /// velocity 0, and rests before the first time and after the last. Between them b, b' and b'' are
 /// continuous; b'' starts and ends with a jump.
-#[derive(Debug)]
+#[derive(Debug, PartialEq)]
 pub(crate) struct Spline {
     /// Times (s), ascending.
     times: Vec<f64>,
@@ -34,13 +34,15 @@ impl Spline {
         &self.displacements
     }
 
+    /// `values` and `unit` are what it gives, for messages.
+    ///
     /// # Errors
     /// Fewer than 2 points, times that do not ascend, numbers that are not finite, not one
     /// displacement per time.
-    pub(super) fn validate(&self) -> Result<(), InputError> {
+    pub(crate) fn validate(&self, values: &str, unit: &str) -> Result<(), InputError> {
         let Self { times, displacements, .. } = self;
         finite("the times of a path", times)?;
-        finite("the displacements of a path", displacements)?;
+        finite(&format!("the {values}"), displacements)?;
         if times.len() < 2 {
             let mend = "a path needs two points at least (s)";
             return Err(InputError::new("times of a path", format!("{times:?}"), mend));
@@ -50,14 +52,13 @@ impl Spline {
             return Err(InputError::new("times of a path", format!("{} s", pair[1]), mend));
         }
         if displacements.len() != times.len() {
-            let mend = format!("one is needed for each of the {} times (m)", times.len());
-            let input = "displacements of a path";
-            return Err(InputError::new(input, format!("{displacements:?}"), mend));
+            let mend = format!("one is needed for each of the {} times ({unit})", times.len());
+            return Err(InputError::new(values, format!("{displacements:?}"), mend));
         }
         Ok(())
     }
 
-    pub(super) fn at(&self, t: f64) -> Prescribed {
+    pub(crate) fn at(&self, t: f64) -> Prescribed {
         let rest = |displacement| Prescribed { displacement, velocity: 0.0, acceleration: 0.0 };
         let last = self.times.len() - 1;
         if t < self.times[0] {
@@ -111,7 +112,7 @@ mod tests {
 
     fn spline(times: &[f64], displacements: &[f64]) -> Spline {
         let spline = Spline::new(times.into(), displacements.into());
-        spline.validate().unwrap();
+        spline.validate("displacements of a path", "m").unwrap();
         spline
     }
 

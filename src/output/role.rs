@@ -21,12 +21,18 @@ impl Scene {
         for Constraint { what, how } in &phase.constraints {
             let role = match how {
                 Motion::Hold => Role::Held,
-                Motion::Velocity(_) | Motion::Path(_) | Motion::Spline(_) | Motion::Formula(_) => {
+                Motion::Velocity(_)
+                | Motion::Path(_)
+                | Motion::Spline(_)
+                | Motion::Formula(_)
+                | Motion::Turn(_) => {
                     Role::Moved
                 }
             };
             let selected = match what {
-                Constrained::Nodes(selection, _) => self.body().mesh().select(selection)?,
+                Constrained::Nodes(selection, _) | Constrained::Along(selection, _) => {
+                    self.body().mesh().select(selection)?
+                }
                 Constrained::Row(terms) => terms.iter().map(|(number, ..)| number - 1).collect(),
             };
             nodes.extend(selected.into_iter().map(|node| (node, role)));

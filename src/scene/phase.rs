@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::load::Load;
-use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline};
+use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline, Turn};
 use crate::external::{Live, Obstacle, Signal};
 #[cfg(feature = "scene-file")]
 use crate::formula::Formula;
@@ -131,6 +131,49 @@ impl Phase {
     ) -> Self {
         let spline = Spline::new(times.into(), displacements.into());
         self.constrain(nodes, Axes::These(vec![axis]), Motion::Spline(Arc::new(spline)))
+    }
+
+    /// Nodes on a plane of symmetry (a line, in the plane) with this `normal`, of any length: their displacements
+    /// along it stay what they are when the phase begins, and they slide freely in the plane.
+    ///
+    /// Half of a body so moves as the whole, with half of its mass by itself. What was given node by node has to be
+    /// halved on the plane: loads, point masses, springs, contact stiffness per node (not per area).
+    pub fn symmetry(mut self, nodes: impl Into<Selection>, normal: impl Into<Vec<f64>>) -> Self {
+        let what = Constrained::Along(nodes.into(), normal.into());
+        self.constraints.push(Constraint { what, how: Motion::Hold });
+        self
+    }
+
+    /// Nodes that turn about `centre` (m) with a constant angular velocity (rad/s): one component in the plane,
+    /// counter-clockwise; in space three, and `centre` is any point of the axis. They turn from where they
+    /// are when the phase begins, as [`move_nodes`](Self::move_nodes) moves them.
+    pub fn rotate(
+        self,
+        nodes: impl Into<Selection>,
+        centre: impl Into<Vec<f64>>,
+        angular_velocity: impl Into<Vec<f64>>,
+    ) -> Self {
+        let turn = Turn { centre: centre.into(), axis: angular_velocity.into(), angles: None };
+        self.constrain(nodes, Axes::All, Motion::Turn(Arc::new(turn)))
+    }
+
+    /// As [`rotate`](Self::rotate), by an angle that runs smoothly through given ones: at the `times` (s,
+    /// ascending, two at least) the `angles` (rad), as [`path`](Self::path) does. `axis` is the direction of the angular
+    /// velocity, of any length: `[1.0]` is counter-clockwise in the plane.
+    ///
+    /// Nodes turn from where they are when the phase begins, by what the angle has changed since then: phases
+    /// that are given the same path follow it without a jump.
+    pub fn rotate_path(
+        self,
+        nodes: impl Into<Selection>,
+        centre: impl Into<Vec<f64>>,
+        axis: impl Into<Vec<f64>>,
+        times: impl Into<Vec<f64>>,
+        angles: impl Into<Vec<f64>>,
+    ) -> Self {
+        let angles = Some(Spline::new(times.into(), angles.into()));
+        let turn = Turn { centre: centre.into(), axis: axis.into(), angles };
+        self.constrain(nodes, Axes::All, Motion::Turn(Arc::new(turn)))
     }
 
     /// A linear combination of displacements that keeps the value it has when the phase begins:
@@ -368,19 +411,27 @@ impl Phase {
         let mut kept = Vec::with_capacity(self.constraints.len());
         let mut is_changed = false;
         for Constraint { what, how } in self.constraints.drain(..) {
-            let Constrained::Nodes(selection, axes) = what else {
-                kept.push(Constraint { what, how });
-                continue;
+            let selection = match &what {
+                Constrained::Nodes(selection, _) | Constrained::Along(selection, _) => selection,
+                Constrained::Row(_) => {
+                    kept.push(Constraint { what, how });
+                    continue;
+                }
             };
-            let held = mesh.select(&selection)?;
+            let held = mesh.select(selection)?;
             let rest: Vec<usize> = held.iter().filter(|n| !nodes.contains(n)).copied().collect();
             is_changed |= rest.len() < held.len();
-            let what = match rest.len() {
+            let rest = match rest.len() {
                 0 => continue,
-                count if count == held.len() => selection,
+                count if count == held.len() => selection.clone(),
                 _ => Selection::Numbers(rest.iter().map(|node| node + 1).collect()),
             };
-            kept.push(Constraint { what: Constrained::Nodes(what, axes), how });
+            let what = match what {
+                Constrained::Along(_, normal) => Constrained::Along(rest, normal),
+                Constrained::Nodes(_, axes) => Constrained::Nodes(rest, axes),
+                row @ Constrained::Row(_) => row,
+            };
+            kept.push(Constraint { what, how });
         }
         self.constraints = kept;
         Ok(is_changed)

@@ -32,7 +32,7 @@ pub(crate) struct Kept {
     /// Whether commands have changed it.
     pub(crate) is_commanded: bool,
     /// Where each row of the constraints [starts](crate::constraint::Row::origin); none if that is not known.
-    pub(crate) origins: Vec<[f64; 2]>,
+    pub(crate) origins: Vec<[f64; 4]>,
     /// Size of the next step (s), if it is known.
     pub(crate) first_step: Option<f64>,
     /// Steps since t = 0: every so many of them, the energy balance is looked at.

@@ -153,7 +153,10 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         (&|file| file["chosen"]["patience"] = json!(u64::MAX), &["patience", "above"]),
         (&|file| file["chosen"]["method"] = json!("auto"), &["chosen method"]),
         (&|file| file["chosen"]["method"] = json!("euler"), &["euler", "cvode-bdf"]),
-        (&|file| file["constraint_starts"] = json!([[0.0, 0.0]]), &["origins = 1", "rows"]),
+        (
+            &|file| file["constraint_starts"] = json!([[0.0, 0.0, 0.0, 0.0]]),
+            &["origins = 1", "rows"],
+        ),
         (&|file| file["in_force"]["contact"] = json!(["wall"]), &["\"wall\"", "floor"]),
         (&|file| file["in_force"]["pressures"][0][0] = json!("tank"), &["\"tank\"", "inside"]),
         (
