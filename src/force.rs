@@ -240,8 +240,8 @@ pub trait Force: Send + Sync {
     /// Where that energy belongs.
     fn reservoir(&self) -> Reservoir;
 
-    /// Velocity (m/s) of what the force comes from, if that moves by itself: an obstacle.
-    fn velocity(&self) -> Option<[f64; 3]> {
+    /// Velocity (m/s) at time `t` (s) of what the force comes from, if that moves by itself: an obstacle.
+    fn velocity(&self, _t: f64) -> Option<[f64; 3]> {
         None
     }
 

@@ -27,8 +27,9 @@ pub(super) struct InForce {
     /// Names of the obstacles that act; without: all.
     #[serde(deserialize_with = "Option::deserialize")]
     contact: Option<Vec<String>>,
-    /// Obstacles that commands have set in motion: name, where it would have been at t = 0, and velocity.
-    moving: Vec<(String, [f64; 3], [f64; 3])>,
+    /// Obstacles that commands have set in motion: name, how far it is from where its velocity or path would have
+    /// brought it, and velocity; without: its path in the scene.
+    moving: Vec<(String, [f64; 3], Option<[f64; 3]>)>,
 }
 
 /// A [`Selection`]; corners of boxes that lie nowhere are `null`.
@@ -140,7 +141,9 @@ impl InForce {
                 .turned
                 .iter()
                 .map(|obstacle| {
-                    (obstacle.name().into(), obstacle.displacement(0.0), obstacle.drift())
+                    let is_uniform = obstacle.splines().is_empty();
+                    let velocity = is_uniform.then(|| obstacle.velocity_at(0.0));
+                    (obstacle.name().into(), obstacle.offset(), velocity)
                 })
                 .collect(),
         })
@@ -168,12 +171,15 @@ impl InForce {
             let own = own.pressures.iter().map(|(_, pressure)| pressure);
             Ok((chamber, pressure.read("pressure", own)?))
         });
-        let moving = self.moving.into_iter().map(|(name, start, velocity)| {
+        let moving = self.moving.into_iter().map(|(name, offset, velocity)| {
             let obstacle = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
             let obstacle =
                 obstacle.ok_or_else(|| format!("the scene has no obstacle \"{name}\""))?;
-            let velocity = &velocity[..scene.body().dimension()];
-            Ok(obstacle.clone().velocity(velocity).placed(0.0, start))
+            let obstacle = obstacle.clone().with_offset(offset);
+            Ok(match velocity {
+                Some(velocity) => obstacle.velocity(&velocity[..scene.body().dimension()]),
+                None => obstacle,
+            })
         });
         Ok(Phase {
             constraints: constraints.collect::<Result<_, String>>()?,

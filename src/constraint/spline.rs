@@ -2,6 +2,7 @@
 
 use super::Prescribed;
 use crate::input::{InputError, finite};
+use crate::vector::largest;
 
 /// A displacement that runs smoothly through given points: a cubic spline. It starts and ends with
 /// velocity 0, and rests before the first time and after the last. Between them b, b' and b'' are
@@ -28,8 +29,26 @@ impl Spline {
         &self.times
     }
 
+    /// Velocities (m/s) at the points. Between two points the path is the cubic that has both.
+    #[cfg(feature = "output")]
+    pub(crate) fn velocities(&self) -> &[f64] {
+        &self.velocities
+    }
+
+    /// A bound on the speed (m/s): between two points the velocity is a quadratic Bezier curve, no larger than
+    /// its control points.
+    pub(crate) fn fastest(&self) -> f64 {
+        let piece = |k: usize| {
+            let span = self.times[k + 1] - self.times[k];
+            let mean = (self.displacements[k + 1] - self.displacements[k]) / span;
+            let (from, to) = (self.velocities[k], self.velocities[k + 1]);
+            largest(&[from, 3.0 * mean - from - to, to])
+        };
+        (1..self.times.len()).map(|next| piece(next - 1)).fold(0.0, f64::max)
+    }
+
     /// Displacements (m) of the points.
-    #[cfg(feature = "checkpoint")]
+    #[cfg(any(feature = "checkpoint", feature = "output"))]
     pub(crate) fn displacements(&self) -> &[f64] {
         &self.displacements
     }

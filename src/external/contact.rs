@@ -21,8 +21,8 @@ use crate::vector::{dot, norm};
 pub(crate) struct Contact {
     obstacle: Obstacle,
     dimension: usize,
-    /// w
-    drift: [f64; 3],
+    /// A bound on |w| (m/s).
+    fastest: f64,
     is_custom: bool,
     coulomb: Option<Coulomb>,
     points: Vec<ContactPoint>,
@@ -139,12 +139,12 @@ impl Contact {
             law: obstacle.law(on.area),
             on,
         });
-        let (points, drift): (Vec<_>, _) = (points.collect(), obstacle.drift());
+        let (points, fastest): (Vec<_>, _) = (points.collect(), obstacle.fastest());
         let is_custom = obstacle.shape().is_custom();
         let coulomb = obstacle.coulomb(body.mesh().size());
         let pressing = coulomb.is_some() || !obstacle.has_adhesion();
         let switches = Switches::new(points.len(), pressing);
-        Ok(Self { obstacle, dimension, drift, is_custom, coulomb, points, switches })
+        Ok(Self { obstacle, dimension, fastest, is_custom, coulomb, points, switches })
     }
 
     pub(crate) fn obstacle(&self) -> &Obstacle {
@@ -153,30 +153,32 @@ impl Contact {
 
     /// Shows `see` the distance (m) of each point and the first of its nodes (counted from 0).
     pub(crate) fn each_distance(&self, t: f64, u: &[f64], mut see: impl FnMut(f64, usize)) {
+        let moved = self.obstacle.displacement(t);
         for point in &self.points {
-            let distance = self.nearest(t, point, u).distance;
+            let distance = self.nearest(&moved, point, u).distance;
             point.on.nodes().take(1).for_each(|(node, _)| see(distance, node));
         }
     }
 
     #[inline]
-    fn nearest(&self, t: f64, point: &ContactPoint, u: &[f64]) -> Nearest {
+    fn nearest(&self, moved: &[f64; 3], point: &ContactPoint, u: &[f64]) -> Nearest {
         let mut x = point.on.at(u, self.dimension);
         x.iter_mut().zip(&point.natural).for_each(|(x, natural)| *x += natural);
-        self.obstacle.nearest(t, x, self.dimension)
+        self.obstacle.nearest(moved, x, self.dimension)
     }
 
     /// The path of a point within a step, as the obstacle sees it.
     fn path(&self, point: &ContactPoint, step: &Step) -> Path {
-        let (d, drift) = (self.dimension, &self.drift);
+        let d = self.dimension;
         let x = [0, 1].map(|k| {
             let u = point.on.at(step.u[k], d);
             let moved = self.obstacle.displacement(step.times[k]);
             std::array::from_fn(|i| point.natural[i] + u[i] - moved[i])
         });
-        let v = step.v.map(|v| {
-            let v = point.on.at(v, d);
-            std::array::from_fn(|i| v[i] - drift[i])
+        let v = [0, 1].map(|k| {
+            let v = point.on.at(step.v[k], d);
+            let w = self.obstacle.velocity_at(step.times[k]);
+            std::array::from_fn(|i| v[i] - w[i])
         });
         Path::new(x, v, step.times[1] - step.times[0])
     }
@@ -187,13 +189,14 @@ impl Contact {
         u: &'a [f64],
         v: &'a [f64],
     ) -> impl Iterator<Item = Touch<'a>> + 'a {
+        let (moved, w) = (self.obstacle.displacement(t), self.obstacle.velocity_at(t));
         self.points.iter().enumerate().filter_map(move |(k, point)| {
-            let nearest = self.nearest(t, point, u);
+            let nearest = self.nearest(&moved, point, u);
             if !self.switches.touches(k, nearest.distance) {
                 return None;
             }
             let mut velocity = point.on.at(v, self.dimension);
-            velocity.iter_mut().zip(&self.drift).for_each(|(x, w)| *x -= w);
+            velocity.iter_mut().zip(&w).for_each(|(x, w)| *x -= w);
             let rate = dot(&nearest.normal, &velocity);
             let pull = point.law.pull(nearest.distance, rate);
             let presses = self.switches.presses(k, pull);
@@ -250,10 +253,11 @@ impl Force for Contact {
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
+        let w = self.obstacle.velocity_at(t);
         for touch in self.touches(t, u, v) {
             self.check(t, &touch)?;
             let drag = touch.drag();
-            for (i, w) in self.drift.into_iter().take(self.dimension).enumerate() {
+            for (i, w) in w.into_iter().take(self.dimension).enumerate() {
                 let [elastic, braking] = touch.force(drag, i);
                 for (node, share) in touch.point.on.nodes() {
                     forces.conservative[node * self.dimension + i] += share * elastic;
@@ -326,7 +330,8 @@ impl Force for Contact {
         stiffness: &mut [f64],
         damping: &mut [f64],
     ) {
-        let apart = |point: &&ContactPoint| self.nearest(t, point, u).distance > 0.0;
+        let moved = self.obstacle.displacement(t);
+        let apart = |point: &&ContactPoint| self.nearest(&moved, point, u).distance > 0.0;
         for point in self.points.iter().filter(apart) {
             for (node, share) in point.on.nodes() {
                 stiffness[node] += share * point.law.stiffness;
@@ -348,16 +353,17 @@ impl Force for Contact {
     }
 
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
+        let moved = self.obstacle.displacement(t);
         let energy = |(k, point): (usize, &ContactPoint)| {
-            let distance = self.nearest(t, point, u).distance;
+            let distance = self.nearest(&moved, point, u).distance;
             let is_on = self.switches.touches(k, distance);
             if is_on { 0.5 * point.law.stiffness * distance * distance } else { 0.0 }
         };
         self.points.iter().enumerate().map(energy).sum()
     }
 
-    fn velocity(&self) -> Option<[f64; 3]> {
-        (self.drift != [0.0; 3]).then_some(self.drift)
+    fn velocity(&self, t: f64) -> Option<[f64; 3]> {
+        (self.fastest > 0.0).then(|| self.obstacle.velocity_at(t))
     }
 
     /// The distances of all points, then the pulls of all normal forces that it matters of; those of
@@ -368,8 +374,9 @@ impl Force for Contact {
 
     fn switch_values(&self, t: f64, u: &[f64], v: &[f64], values: &mut [f64]) {
         let (distances, pulls) = values.split_at_mut(self.points.len());
+        let moved = self.obstacle.displacement(t);
         for (distance, point) in distances.iter_mut().zip(&self.points) {
-            *distance = self.nearest(t, point, u).distance;
+            *distance = self.nearest(&moved, point, u).distance;
         }
         pulls.fill(f64::INFINITY);
         if !pulls.is_empty() {
@@ -389,7 +396,7 @@ impl Force for Contact {
 
     fn passage(&self, step: &Step, tolerance: f64, clearances: &mut [f64]) -> Option<f64> {
         let (d, [start, end]) = (self.dimension, step.times);
-        let reach = step.reach(d) + (end - start) * norm(&self.drift);
+        let reach = step.reach(d) + (end - start) * self.fastest;
         let mut first: Option<f64> = None;
         for (point, clearance) in self.points.iter().zip(clearances) {
             *clearance -= reach;

@@ -15,6 +15,7 @@ mod spring;
 mod surface;
 #[cfg(test)]
 mod tests;
+mod travel;
 
 pub use chamber::Chamber;
 pub(crate) use chamber::ChamberForce;

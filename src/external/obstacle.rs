@@ -1,8 +1,12 @@
 //! Obstacles: a shape, how it moves, and the law of its force.
 
+use std::sync::Arc;
+
 use super::friction::Coulomb;
 use super::shape::{Nearest, Shape};
-use crate::input::{InputError, finite, not_negative, positive};
+use super::travel::{Travel, Waypoints};
+use crate::constraint::Spline;
+use crate::input::{InputError, not_negative, positive};
 
 /// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force on each
 /// boundary node of a body with d <= 0 (or point of a face, see
@@ -51,8 +55,8 @@ pub struct Obstacle {
     friction: Option<[f64; 2]>,
     sticking_speed: Option<f64>,
     adhesion: bool,
-    velocity: Option<Vec<f64>>,
-    /// How far from where it was said to be it would have been at t = 0 (m).
+    travel: Travel,
+    /// How far it is from where its travel alone would have brought it (m).
     offset: [f64; 3],
 }
 
@@ -92,7 +96,7 @@ impl Obstacle {
             friction: None,
             sticking_speed: None,
             adhesion: false,
-            velocity: None,
+            travel: Travel::Uniform(Vec::new()),
             offset: [0.0; 3],
         }
     }
@@ -202,7 +206,22 @@ impl Obstacle {
     /// Constant velocity w of the obstacle (m/s), which is where it was said to be at t = 0.
     /// Default: at rest. The power f . w that keeps it moving is supplied to the body.
     pub fn velocity(mut self, velocity: impl Into<Vec<f64>>) -> Self {
-        self.velocity = Some(velocity.into());
+        self.travel = Travel::Uniform(velocity.into());
+        self
+    }
+
+    /// A smooth path instead: at the `times` (s, ascending, two at least) the obstacle has the `displacements`
+    /// (m, one component per dimension) from where it was said to be. It may stop and come back.
+    ///
+    /// The path is a cubic spline, as that of [`Phase::path`](crate::Phase::path): it starts and ends with
+    /// velocity 0, and the obstacle rests before the first time and after the last.
+    pub fn path(
+        mut self,
+        times: impl Into<Vec<f64>>,
+        displacements: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Self {
+        let displacements = displacements.into_iter().map(Into::into).collect();
+        self.travel = Travel::Path(Arc::new(Waypoints::new(&times.into(), displacements)));
         self
     }
 
@@ -229,13 +248,7 @@ impl Obstacle {
         let tangential = input(&format!("tangential_damping{area}"));
         not_negative(&tangential, self.tangential_damping, rate)?;
         self.validate_friction(&input)?;
-        if let Some(velocity) = &self.velocity {
-            if velocity.len() != dimension {
-                let mend = format!("it needs {dimension} component(s) (m/s)");
-                return Err(InputError::new(input("velocity"), format!("{velocity:?}"), mend));
-            }
-            finite(&input("velocity"), velocity)?;
-        }
+        self.travel.validate(dimension, &input)?;
         Ok(Self { shape, ..self.clone() })
     }
 
@@ -266,21 +279,48 @@ impl Obstacle {
 
     /// The same obstacle, but with this [`displacement`](Self::displacement) (m) at time `t` (s).
     pub(crate) fn placed(mut self, t: f64, displacement: [f64; 3]) -> Self {
-        let drift = self.drift();
-        self.offset = std::array::from_fn(|i| displacement[i] - drift[i] * t);
+        let travelled = self.travel.displacement(t);
+        self.offset = std::array::from_fn(|i| displacement[i] - travelled[i]);
         self
     }
 
     /// Where it is at time `t` (s), from where it was said to be (m); 0 beyond the dimension.
     pub(crate) fn displacement(&self, t: f64) -> [f64; 3] {
-        let drift = self.drift();
-        std::array::from_fn(|i| self.offset[i] + drift[i] * t)
+        let travelled = self.travel.displacement(t);
+        std::array::from_fn(|i| self.offset[i] + travelled[i])
     }
 
-    /// w; 0 beyond the dimension.
-    pub(crate) fn drift(&self) -> [f64; 3] {
-        let velocity = self.velocity.as_deref().unwrap_or_default();
-        std::array::from_fn(|i| velocity.get(i).copied().unwrap_or(0.0))
+    /// w at time `t` (s); 0 beyond the dimension.
+    pub(crate) fn velocity_at(&self, t: f64) -> [f64; 3] {
+        self.travel.velocity(t)
+    }
+
+    /// A bound on its speed (m/s); 0 if it rests.
+    pub(crate) fn fastest(&self) -> f64 {
+        self.travel.fastest()
+    }
+
+    /// The smooth path that it moves along, by components; none if its velocity is constant.
+    pub(crate) fn splines(&self) -> &[Spline] {
+        self.travel.splines()
+    }
+
+    /// How far it is from where its velocity or path alone would have brought it (m).
+    #[cfg(any(feature = "checkpoint", feature = "output"))]
+    pub(crate) fn offset(&self) -> [f64; 3] {
+        self.offset
+    }
+
+    /// Times (s) between which it moves by one law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        self.splines().first().map_or(&[], Spline::times)
+    }
+
+    /// The same obstacle with this [`offset`](Self::offset).
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn with_offset(mut self, offset: [f64; 3]) -> Self {
+        self.offset = offset;
+        self
     }
 
     /// Whether what slides on it is held back by Coulomb's friction.
@@ -312,9 +352,9 @@ impl Obstacle {
         self.friction.map(|coefficients| Coulomb::new(coefficients, self.sticking_speed, size))
     }
 
-    /// d and its derivatives at time `t`.
-    pub(super) fn nearest(&self, t: f64, mut x: [f64; 3], dimension: usize) -> Nearest {
-        x.iter_mut().zip(self.displacement(t)).for_each(|(x, moved)| *x -= moved);
+    /// d and its derivatives, with this [`displacement`](Self::displacement).
+    pub(super) fn nearest(&self, moved: &[f64; 3], mut x: [f64; 3], dimension: usize) -> Nearest {
+        x.iter_mut().zip(moved).for_each(|(x, moved)| *x -= moved);
         self.shape.nearest(&x[..dimension])
     }
 }

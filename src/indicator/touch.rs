@@ -49,7 +49,7 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
             let number = known.unwrap_or_else(|| {
                 meetings.push(Meeting {
                     obstacle: name.to_owned(),
-                    speed: norm(&contact.obstacle().drift()),
+                    speed: contact.obstacle().fastest(),
                     nearest: f64::INFINITY,
                     deepest: Deepest { depth: 0.0, limit: 1.0, node: 0 },
                 });

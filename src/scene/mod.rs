@@ -185,7 +185,7 @@ impl Scene {
         let start = phase.checked_sub(1).and_then(|before| self.phases.get(before));
         let start = start.map_or(0.0, |before| before.until);
         let Some(phase) = self.phases.get(phase) else { return Vec::new() };
-        let mut breaks = phase.breaks();
+        let mut breaks = phase.breaks(&self.obstacles);
         breaks.retain(|&time| start < time && time < phase.until);
         breaks
     }

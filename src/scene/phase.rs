@@ -280,14 +280,17 @@ impl Phase {
     }
 
     /// Times (s) at which what the phase prescribes changes its law, ascending; not only those
-    /// within it.
-    pub(crate) fn breaks(&self) -> Vec<f64> {
+    /// within it. `obstacles` are those of the scene.
+    pub(crate) fn breaks(&self, obstacles: &[Obstacle]) -> Vec<f64> {
         let paths = self.constraints.iter().map(|constraint| constraint.how.breaks());
         let loads = self.loads.iter().map(|(_, load)| load.value.breaks());
         let actuations = self.actuations.iter().map(|(_, force)| force.breaks());
         let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
         let on_faces = self.face_pressures.iter().map(|(_, pressure)| pressure.breaks());
+        let acting = self.contacts(obstacles).unwrap_or_default();
+        let obstacles = acting.into_iter().map(Obstacle::breaks);
         let all = paths.chain(loads).chain(actuations).chain(pressures).chain(on_faces);
+        let all = all.chain(obstacles);
         let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();

@@ -12,8 +12,6 @@
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
-
 use super::System;
 use super::newton_matrix::NewtonMatrix;
 use super::reduced::Source;
@@ -30,10 +28,10 @@ use crate::vector::{dot, largest};
 pub(crate) struct AtRest {
     system: System,
     time: f64,
-    still: Arc<[f64]>,
+    still: Vec<f64>,
     /// Velocities of the nodes for each of the forces: those of an obstacle in motion, so that it drags
-    /// nothing along and no damper acts, as if it stood where it is.
-    velocities: Vec<Arc<[f64]>>,
+    /// nothing along and no damper acts, as if it stood where it is. Empty for others.
+    velocities: Vec<Vec<f64>>,
     nodal: NodalForces,
     factorizations: usize,
 }
@@ -108,13 +106,9 @@ impl AtRest {
                 "it must give finite numbers",
             ));
         }
-        let (dofs, dimension) = (system.dofs(), system.model.dimension);
-        let still: Arc<[f64]> = vec![0.0; dofs].into();
-        let with = |force: &Arc<dyn Force>| match force.velocity() {
-            None => still.clone(),
-            Some(w) => (0..dofs).map(|dof| w[dof % dimension]).collect(),
-        };
-        let velocities = system.forces.iter().map(with).collect();
+        let dofs = system.dofs();
+        let still = vec![0.0; dofs];
+        let velocities = vec![Vec::new(); system.forces.len()];
         let nodal = NodalForces::zeros(dofs);
         Ok(Self { system, time, still, velocities, nodal, factorizations: 0 })
     }
@@ -178,6 +172,7 @@ impl AtRest {
         at: &mut ForceBalance,
     ) -> Result<(), Failure> {
         at.clear();
+        self.stand_still(fraction);
         if let Some(stiffness) = &self.system.model.stiffness {
             self.nodal.clear();
             stiffness.add_product(-1.0, u, &mut self.nodal.conservative);
@@ -185,6 +180,7 @@ impl AtRest {
             at.add_potential(-0.5 * dot(u, &self.nodal.conservative));
         }
         for (force, v) in self.system.forces.iter().zip(&self.velocities) {
+            let v = if v.is_empty() { &self.still } else { v };
             self.nodal.clear();
             let time = when(&**force, fraction, self.time);
             let share = if is_load(&**force) { fraction } else { 1.0 };
@@ -198,15 +194,29 @@ impl AtRest {
         Ok(())
     }
 
+    /// Lets the nodes move along with each obstacle, where that is at a fraction of its way.
+    fn stand_still(&mut self, fraction: f64) {
+        let dimension = self.system.model.dimension;
+        for (force, v) in self.system.forces.iter().zip(&mut self.velocities) {
+            if let Some(w) = force.velocity(when(&**force, fraction, self.time)) {
+                v.resize(self.still.len(), 0.0);
+                v.iter_mut().enumerate().for_each(|(dof, v)| *v = w[dof % dimension]);
+            }
+        }
+    }
+
     /// Brings K to `u`. A linear phase has it at once.
     pub(crate) fn update_tangent(&mut self, fraction: f64, u: &[f64]) {
+        self.stand_still(fraction);
         let NewtonMatrix { stiffness, damping, differences, .. } = &mut self.system.newton;
+        let still = &self.still;
         let own = (stiffness.begin(&None), damping.begin(&None));
         let (Some(stiffness), Some(damping)) = own else { return };
         let mut add = |loads: bool, stiffness: &mut BlockMatrix| {
             for (force, v) in self.system.forces.iter().zip(&self.velocities) {
                 if is_load(&**force) == loads {
                     let time = when(&**force, fraction, self.time);
+                    let v = if v.is_empty() { still } else { v };
                     differences.add_tangents(force, time, [u, v], [stiffness, damping]);
                 }
             }

@@ -49,6 +49,29 @@ fn assert_balanced(trajectory: &Trajectory, tolerance: f64) {
     assert!(part < tolerance, "{}: {part:e}", report.method);
 }
 
+/// A block on a plate that starts and stops along a path is carried along: at the plate's acceleration a it
+/// lags by the creep speed of its law, 2 v0 sin(asin(a/(mu g))/3), and rocks on the springs below it, by the angle
+/// m a h/(k b w^3/12), as a changes.
+#[test]
+fn a_block_rides_on_a_plate() {
+    let (way, mu) = (0.1, 0.5);
+    let plate = plane(0.0).friction_coefficient(mu).path([0.0, 1.0], [[0.0, 0.0], [way, 0.0]]);
+    let scene = Scene::new(block(0.0)).gravity([0.0, -G]).obstacle(plate).phase(Phase::until(1.0));
+    let rocking = 2.0 * 0.05_f64.powi(2) / (STIFFNESS * 0.1 * 0.2_f64.powi(3) / 12.0);
+    for method in [Method::CvodeBdf, Method::Ida] {
+        let motion = run(&scene, method, &[0.25, 0.75]);
+        for sample in &motion.samples()[1..3] {
+            let t = sample.time;
+            let (speed, a) = (6.0 * way * t * (1.0 - t), 6.0 * way * (1.0 - 2.0 * t));
+            let lag = 2.0 * V0 * ((a / (mu * G)).asin() / 3.0).sin() - rocking * 12.0 * way;
+            let found = speed - motion.momentum(sample)[0] / scene.body().mass();
+            println!("{method}: lags by {found:.3e} m/s, {lag:.3e} expected");
+            assert!((found - lag).abs() < 2e-3 * V0, "{method}: {found} {lag}");
+        }
+        assert_balanced(&motion, 1e-4);
+    }
+}
+
 /// Where tan(a) is below the static coefficient, friction carries m g sin(a) at the creep speed that the
 /// law needs for it, by every method: 2 v0 sin(asin(tan(a)/mu_s)/3).
 #[test]

@@ -83,6 +83,15 @@ fn a_moving_rod_is_met() {
     assert_seen(&scene.phase(Phase::until(0.05)), 1e-4, 2e-4);
 }
 
+/// A thin rod is shot at a square at rest and drawn back before a long step would have ended.
+#[test]
+fn a_rod_that_comes_and_goes_is_met() {
+    let rod = Obstacle::capsule([-1.0, -0.5], [1.0, -0.5], 0.005).stiffness(1e5).damping(1.0);
+    let rod = rod.path([0.02, 0.06, 0.1], [[0.0, 0.0], [0.0, 0.52], [0.0, 0.0]]);
+    let scene = square(0.05, 3, [0.0, 0.0]).obstacle(rod);
+    assert_seen(&scene.phase(Phase::until(0.12)), 1e-4, 2e-4);
+}
+
 /// In space: a cube falls on a ball, and on a plate of 4 mm.
 #[test]
 fn a_cube_bounces_off_a_ball_and_a_plate() {

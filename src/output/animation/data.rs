@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use super::geometry::Geometry;
 use super::pack;
 use crate::body::{Body, CellField};
+use crate::constraint::Spline;
 use crate::error::Error;
 use crate::external::{Joint, Obstacle, Shape, ShapeKind};
 use crate::input::InputError;
@@ -217,7 +218,7 @@ fn obstacles_in(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Er
             let moving = trajectory.phase_of(sample)?.moving(obstacle);
             let next = course(scene, moving, sample.time);
             if courses.last().is_none_or(|last| {
-                last["start"] != next["start"] || last["velocity"] != next["velocity"]
+                ["start", "velocity", "path"].iter().any(|key| last[key] != next[key])
             }) {
                 courses.push(next);
             }
@@ -228,12 +229,28 @@ fn obstacles_in(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Er
 }
 
 /// How an obstacle moves from time `since` (s) on: where it would have been at t = 0, from where it was said to
-/// be, and its velocity.
+/// be, and its velocity; or its path, on top of `start`: cubics between the points that have these velocities.
 fn course(scene: &Scene, obstacle: &Obstacle, since: f64) -> Value {
     let dimension = scene.body().dimension();
     let [start, velocity] =
-        [obstacle.displacement(0.0), obstacle.drift()].map(|x| in_view(&x[..dimension]));
-    json!({ "since": since, "start": start, "velocity": velocity })
+        [obstacle.offset(), obstacle.velocity_at(0.0)].map(|x| in_view(&x[..dimension]));
+    let mut course = json!({ "since": since, "start": start, "velocity": velocity });
+    let splines = obstacle.splines();
+    if !splines.is_empty() {
+        let points = |part: fn(&Spline) -> &[f64]| -> Vec<_> {
+            let point = |k: usize| {
+                let x: Vec<f64> = splines.iter().map(|spline| part(spline)[k]).collect();
+                in_view(&x)
+            };
+            (0..obstacle.breaks().len()).map(point).collect()
+        };
+        let (displacements, velocities) =
+            (points(Spline::displacements), points(Spline::velocities));
+        course["path"] = json!({
+            "times": obstacle.breaks(), "displacements": displacements, "velocities": velocities,
+        });
+    }
+    course
 }
 
 fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {

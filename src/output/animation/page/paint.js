@@ -62,6 +62,22 @@ function hatching(context) {
 
 /** Where a point of an obstacle is at `time`. */
 function moved({ courses }, point, time) {
-  const { start, velocity } = courses.findLast(({ since }) => since <= time) ?? courses[0];
-  return point.map((x, axis) => x + start[axis] + velocity[axis] * time);
+  const { start, velocity, path } = courses.findLast(({ since }) => since <= time) ?? courses[0];
+  const way = path ? along(path, time) : velocity.map((speed) => speed * time);
+  return point.map((x, axis) => x + start[axis] + way[axis]);
+}
+
+/** The displacement on a path at `time`: a cubic between two points, given by the velocities there. */
+function along({ times, displacements, velocities }, time) {
+  const next = times.findIndex((t) => time < t);
+  if (next <= 0) {
+    return displacements.at(next);
+  }
+  const last = next - 1;
+  const span = times[next] - times[last];
+  const [s, r] = [(time - times[last]) / span, (times[next] - time) / span];
+  return displacements[last].map((from, axis) => {
+    const turn = r * velocities[last][axis] - s * velocities[next][axis];
+    return r * r * (1 + 2 * s) * from + s * s * (1 + 2 * r) * displacements[next][axis] + span * s * r * turn;
+  });
 }
