@@ -38,6 +38,7 @@
 
 mod body;
 mod contents;
+mod initial;
 mod keys;
 mod mesh;
 mod overrides;

@@ -12,6 +12,7 @@ use crate::external::{Signal, TimeTable, VectorSignal};
 use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::scene::{LoadKind, Phase, Scene};
+use crate::vector::norm;
 
 pub(super) const PHASE: TableKeys = TableKeys::new(
     "[[phase]]",
@@ -26,6 +27,8 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part("hold", &HOLD, "nodes that stay where they are"),
         part("move", &MOVE, "nodes that move on"),
         part("path", &PATH, "nodes that follow a path"),
+        part("rotate", &ROTATE, "nodes that turn"),
+        part("symmetry", &SYMMETRY, "nodes on planes of symmetry"),
         part("load", &LOAD, "forces on nodes, tractions on faces"),
         part("pressure", &PRESSURE, "pressures in chambers"),
         part("pressure_on", &PRESSURE_ON, "pressures on faces"),
@@ -99,6 +102,37 @@ const PATH: TableKeys = TableKeys::new(
      ]",
 )
 .one_of(&[&["times", "displacements"], &["displacement"]]);
+
+const ROTATE: TableKeys = TableKeys::new(
+    "rotate",
+    "Nodes turn about a point (in space, an axis) from where they are when the phase begins: at a constant rate, or \
+     smoothly (a cubic spline that begins and ends at rest) by what the angle has changed since then.",
+    &[
+        NODES,
+        Key::new("centre", Holds::Vector, "the point, or one of the axis").in_unit("m").required(),
+        Key::new("axis", Holds::Array(&Holds::Number, 3), "the direction of the axis")
+            .in_unit("1")
+            .law("In space only; in the plane nodes turn counter-clockwise."),
+        Key::number("rate", "the angular velocity", "rad/s"),
+        TIMES,
+        Key::new("angles", Holds::List(&Holds::Number), "angles at these times").in_unit("rad"),
+    ],
+    "rotate = [{ nodes = \"left\", centre = [0.0, 0.01], times = [0.0, 0.5], angles = [0.0, 1.5708] }]",
+)
+.one_of(&[&["rate"], &["times", "angles"]]);
+
+const SYMMETRY: TableKeys = TableKeys::new(
+    "symmetry",
+    "Nodes on a plane of symmetry keep their displacement along its normal, and slide freely in it. What is given \
+     node by node there has to be halved: loads, point masses, springs, `stiffness` of obstacles.",
+    &[
+        NODES,
+        Key::new("normal", Holds::Vector, "the normal of the plane, of any length")
+            .in_unit("1")
+            .required(),
+    ],
+    "symmetry = [{ nodes = \"left\", normal = [1.0, 0.0] }]",
+);
 
 const LOAD: TableKeys = TableKeys::new(
     "load",
@@ -179,10 +213,12 @@ const ACTUATE: TableKeys = TableKeys::new(
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 7] = [
+const PARTS: [(&TableKeys, Add); 9] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
+    (&ROTATE, rotate),
+    (&SYMMETRY, symmetry),
     (&LOAD, load),
     (&PRESSURE, pressure),
     (&PRESSURE_ON, pressure_on),
@@ -278,6 +314,37 @@ fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
         let displacements: Vec<f64> = points.iter().map(|point| point[k]).collect();
         phase.path(nodes.clone(), axis, times.clone(), displacements)
     }))
+}
+
+fn rotate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let (nodes, dimension) = (nodes(table, scene)?, scene.body().dimension());
+    let centre = table.required("centre", |value| value.vector(dimension))?;
+    let direction = |value: &Value| {
+        let axis = value.vector(3)?;
+        match norm(&axis) {
+            0.0 => Err(value.unexpected("a direction, not all of it 0")),
+            length => Ok(axis.into_iter().map(|x| x / length).collect()),
+        }
+    };
+    let axis = match (dimension, table.get("axis")) {
+        (3, _) => table.required("axis", direction)?,
+        (_, None) => vec![1.0],
+        (_, Some(axis)) => {
+            return Err(axis.unexpected("no axis in the plane, where nodes turn counter-clockwise"));
+        }
+    };
+    if let Some(rate) = table.optional("rate", Value::finite)? {
+        let velocity: Vec<f64> = axis.iter().map(|x| rate * x).collect();
+        return Ok(phase.rotate(nodes, centre, velocity));
+    }
+    let times = table.required("times", Value::numbers)?;
+    let angles = table.required("angles", Value::numbers)?;
+    Ok(phase.rotate_path(nodes, centre, axis, times, angles))
+}
+
+fn symmetry(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let normal = table.required("normal", |value| value.vector(scene.body().dimension()))?;
+    Ok(phase.symmetry(nodes(table, scene)?, normal))
 }
 
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {

@@ -83,6 +83,7 @@ pub(super) const OBSTACLE: TableKeys = TableKeys::new(
         Key::new("adhesion", Holds::Flag, "whether damping may pull at a body that leaves")
             .default("false"),
         Key::new("velocity", Holds::Vector, "the velocity of the obstacle").in_unit("m/s").default("0"),
+        Key::new("path", Holds::Table(&WAY), "the path of the obstacle, in place of a velocity"),
         Key::number(
             "friction",
             "a force against sliding in proportion to its speed",
@@ -141,6 +142,29 @@ const RADIUS: Key = Key::number("radius", "the radius", "m").required();
 const fn vector(name: &'static str, meaning: &'static str, unit: &'static str) -> Key {
     Key::new(name, Holds::Vector, meaning).in_unit(unit).required()
 }
+
+const WAY: TableKeys = TableKeys::new(
+    "obstacle.path",
+    "The obstacle runs smoothly (a cubic spline) through points, and begins and ends at rest; before and after it stays.",
+    &[
+        Key::new("times", Holds::List(&Holds::Number), "times in ascending order")
+            .in_unit("s")
+            .required(),
+        Key::new(
+            "displacements",
+            Holds::List(&Holds::Vector),
+            "displacements, at these times, from where it was said to be",
+        )
+        .in_unit("m")
+        .required(),
+    ],
+    "[[obstacle]]\n\
+     kind = \"disc\"\n\
+     centre = [0.05, 0.15]\n\
+     radius = 0.02\n\
+     stiffness = 1.0e3\n\
+     path = { times = [0.0, 0.5, 1.0], displacements = [[0.0, 0.0], [0.0, -0.02], [0.0, 0.0]] }",
+);
 
 const COEFFICIENTS: TableKeys = TableKeys::new(
     "friction_coefficient",
@@ -236,6 +260,17 @@ pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> 
     }
     if let Some(velocity) = table.optional("velocity", |v| v.vector(body.dimension()))? {
         obstacle = obstacle.velocity(velocity);
+    }
+    if let Some(value) = table.get("path") {
+        if table.get("velocity").is_some() {
+            return Err(value.error("a path has its own velocity: give one of path and velocity"));
+        }
+        let path = value.table(&WAY)?;
+        let times = path.required("times", Value::numbers)?;
+        let displacements = path.required("displacements", |value| {
+            value.list_of("displacements, one per time", |x| x.vector(body.dimension()))
+        })?;
+        obstacle = obstacle.path(times, displacements);
     }
     unique(table, obstacle.name(), scene.obstacles().iter().map(Obstacle::name))?;
     Contact::new(body, &obstacle).map_err(|error| table.blame(error))?;

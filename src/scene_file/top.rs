@@ -2,6 +2,7 @@
 
 use super::body::{self, BODY, POINT};
 use super::contents::{OutputRequest, SceneFile};
+use super::initial::{self, INITIAL};
 use super::keys::{Holds, Key, TableKeys};
 use super::phase::{self, PHASE};
 use super::sensor::{SENSOR, sensor};
@@ -25,6 +26,7 @@ pub(super) const TOP: TableKeys = TableKeys::new(
             .default("0"),
         Key::new("body", Holds::Table(&BODY), "what moves").required(),
         Key::new("point", Holds::Tables(&POINT), "point masses"),
+        Key::new("initial", Holds::Table(&INITIAL), "how the body moves at first").default("at rest"),
         Key::new("spring", Holds::Tables(&SPRING), "springs"),
         Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
         Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
@@ -50,6 +52,9 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     if let Some(gravity) = top.get("gravity") {
         let gravity = gravity.vector(scene.body().dimension())?;
         scene = scene.gravity(gravity);
+    }
+    if let Some(initial) = top.get("initial") {
+        scene = initial::add_initial(scene, &initial)?;
     }
     let parts: [(&str, Add); 4] = [
         ("spring", surroundings::add_spring),

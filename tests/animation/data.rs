@@ -149,6 +149,29 @@ fn a_driven_motion_is_drawn_as_it_was() -> Outcome {
     Ok(())
 }
 
+/// The cubics of an obstacle's path, by the points and velocities that the page is given: with velocity 0 at all
+/// three points each half is s^2 (3 - 2 s) of the way.
+#[test]
+fn an_obstacle_on_a_path_is_drawn_on_it() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles)?;
+    let body = Body::new(mesh, RUBBER).thickness(0.01).build()?;
+    let disc = Obstacle::disc([0.3, 0.0], 0.01).stiffness(1e3);
+    let disc = disc.path([0.1, 0.2, 0.3], [[0.0, 0.0], [0.0, 0.5], [0.0, 0.0]]);
+    let scene = Scene::new(body).obstacle(disc).phase(Phase::until(0.4));
+    let motion = scene.simulate(&Settings::default(), &Sampling::every(0.1))?;
+    let data = data(&page(&motion, "")?)?;
+    let course = &data["obstacles"][0]["courses"][0];
+    assert_eq!(course["start"], serde_json::json!([0.0, 0.0]));
+    let path = &course["path"];
+    assert_eq!(path["times"], serde_json::json!([0.1, 0.2, 0.3]));
+    assert_eq!(path["displacements"], serde_json::json!([[0.0, 0.0], [0.0, 0.5], [0.0, 0.0]]));
+    for velocity in path["velocities"].as_array().ok_or("no velocities")? {
+        let velocity = velocity[1].as_f64().ok_or("no number")?;
+        assert!(velocity.abs() < 1e-12, "{velocity}");
+    }
+    Ok(())
+}
+
 #[test]
 fn files_stay_small() -> Outcome {
     let scene = square_jump(10)?;

@@ -204,3 +204,56 @@ fn a_string_in_the_plane() {
     agree(&file, &scene);
     assert_eq!(file.scene.breaks(0), [0.02, 0.05, 0.08]);
 }
+
+/// What moves by itself: in the plane and in space.
+#[test]
+fn of_motion() {
+    let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 100.0 };
+    let common = "material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 100.0 }
+        [output]
+        step = 0.01\n";
+    let parse =
+        |text: &str| SceneFile::parse(&[text, common].concat(), Path::new("motion.toml")).unwrap();
+    let file = parse(
+        r#"
+        gravity = [0.0, -9.8]
+        initial = { velocity = [0.1, 0.5], spin = 2.0, nodes = [{ nodes = 9, velocity = [0.0, 0.6] }] }
+        obstacle = { kind = "half-plane", point = [0.0, 0.0], normal = [0.0, 1.0], stiffness = 100.0, path = { times = [0.0, 0.05], displacements = [[0.0, 0.0], [0.0, 0.01]] } }
+        phase = [
+            { until = 0.05 },
+            { until = 0.1, symmetry = [{ nodes = "left", normal = [1.0, 1.0] }], rotate = [{ nodes = 3, centre = [0.1, 0.1], rate = -3.0 }, { nodes = 6, centre = [0.0, 0.0], times = [0.05, 0.1], angles = [0.0, 0.2] }] },
+        ]
+        [body]
+        mesh = { kind = "rectangle", size = [0.1, 0.1], nodes = [3, 3], cells = "rectangles" }
+        thickness = 0.01
+        "#,
+    );
+    let body = Body::new(Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles).unwrap(), rubber);
+    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0);
+    let turn = Phase::until(0.1)
+        .rotate([3], [0.1, 0.1], [-3.0])
+        .rotate_path([6], [0.0, 0.0], [1.0], [0.05, 0.1], [0.0, 0.2])
+        .symmetry("left", [1.0, 1.0]);
+    let scene = Scene::new(body.thickness(0.01).build().unwrap())
+        .gravity([0.0, -9.8])
+        .initial_velocity(|_| vec![0.1, 0.5])
+        .spin([2.0])
+        .initial_velocity_of([9], [0.0, 0.6])
+        .obstacle(floor.path([0.0, 0.05], [[0.0, 0.0], [0.0, 0.01]]))
+        .phase(Phase::until(0.05))
+        .phase(turn);
+    agree(&file, &scene);
+    let file = parse(
+        r#"
+        initial = { spin = [1.0, 0.0, -2.0] }
+        phase = { until = 0.02, rotate = { nodes = 1, centre = [0.1, 0.0, 0.0], axis = [0.0, 3.0, 4.0], rate = 5.0 } }
+        [body]
+        mesh = { kind = "cuboid", size = [0.1, 0.1, 0.1], nodes = [2, 2, 2], cells = "hexahedra" }
+        "#,
+    );
+    let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], SolidCells::Hexahedra).unwrap();
+    let scene = Scene::new(Body::new(mesh, rubber).build().unwrap())
+        .spin([1.0, 0.0, -2.0])
+        .phase(Phase::until(0.02).rotate([1], [0.1, 0.0, 0.0], [0.0, 3.0, 4.0]));
+    agree(&file, &scene);
+}

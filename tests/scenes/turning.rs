@@ -51,7 +51,7 @@ fn a_turning_rod_is_stretched_by_its_inertia() {
             "{method}: stretch off by {:.1e}, clamp by {drift:.1e} m",
             stretch / expected - 1.0
         );
-        assert!((stretch / expected - 1.0).abs() < 1e-2, "{method}: {stretch} {expected}");
+        assert!((stretch / expected - 1.0).abs() < 3e-3, "{method}: {stretch} {expected}");
         assert!(drift < 1e-8, "{method}: {drift:e}");
         let report = motion.report();
         assert!(report.energy_error < 1e-4 * report.energy_scale, "{:e}", report.energy_error);
@@ -78,13 +78,13 @@ fn a_clamp_that_was_turned_holds_the_beam_turned() {
     let still = Scene::new(beam(0.0)).gravity(gravity).phase(turn(0.5));
     let found = off(still.equilibrium(&Statics::default()).unwrap().displacements());
     println!("statics: off by {found:.1e} m");
-    assert!(found < 1e-12, "{found:e}");
+    assert!(found < 1e-14, "{found:e}");
     let scene = Scene::new(beam(0.0)).gravity(gravity).phase(turn(0.3)).phase(turn(2.0));
     let settings = Settings { rtol: 1e-7, ..Settings::default() };
     let motion = scene.simulate(&settings, &Sampling::phase_ends()).unwrap();
     let found = off(&motion.last().u);
     println!("motion: off by {found:.1e} m");
-    assert!(found < 1e-5, "{found:e}");
+    assert!(found < 5e-8, "{found:e}");
 }
 
 /// All nodes of a cuboid turned about an axis askew: no strain, and what turns it has to exert
@@ -114,8 +114,8 @@ fn a_cuboid_is_turned_about_an_axis_in_space() {
         let force = motion.constraint_force(sample, "all").unwrap();
         for i in 0..3 {
             let expected = mass * (change * spin[i] + rate * rate * inward[i]);
-            println!("force off by {:.1e}", (force[i] - expected).abs() / (mass * size));
-            assert!((force[i] - expected).abs() < 1e-5 * mass * size, "{force:?} {expected}");
+            // measured: 2e-8 at rtol 1e-9
+            assert!((force[i] - expected).abs() < 1e-7 * mass * size, "{force:?} {expected}");
         }
         let kinetic = sample.energy.kinetic;
         assert!(sample.energy.strain < 1e-8 * kinetic, "{:?}", sample.energy);

@@ -1,5 +1,7 @@
 //! Statics against the energies and forces of dynamics.
 
+use std::sync::Arc;
+
 use super::*;
 use crate::body::{Body, Strain};
 use crate::constraint::PhaseStart;

@@ -1,0 +1,61 @@
+//! `[initial]`.
+
+use super::keys::{Holds, Key, TableKeys};
+use super::selection::selection;
+use super::value::Value;
+use crate::error::Error;
+use crate::scene::Scene;
+
+pub(super) const INITIAL: TableKeys = TableKeys::new(
+    "[initial]",
+    "How the body moves at first. What the first phase holds or moves takes its part of that, as by an impact. In \
+     statics nothing moves.",
+    &[
+        Key::new("velocity", Holds::Vector, "the velocity of all nodes")
+            .in_unit("m/s")
+            .default("0"),
+        Key::new(
+            "spin",
+            Holds::OneOrMore(&Holds::Number),
+            "the angular velocity about the centre of mass, on top of that",
+        )
+        .in_unit("rad/s")
+        .law("One number in the plane, counter-clockwise; three in space.")
+        .default("0"),
+        Key::new("nodes", Holds::Tables(&OF_NODES), "nodes with velocities of their own instead"),
+    ],
+    "[initial]\nvelocity = [1.0, 5.0]\nspin = 6.3",
+);
+
+const OF_NODES: TableKeys = TableKeys::new(
+    "initial.nodes",
+    "Nodes with a velocity of their own at first.",
+    &[
+        Key::new("nodes", Holds::Nodes, "nodes").required(),
+        Key::new("velocity", Holds::Vector, "their velocity").in_unit("m/s").required(),
+    ],
+    "[initial]\nnodes = [{ nodes = \"top\", velocity = [1.0, 0.0] }]",
+);
+
+/// The scene that starts as `value` says.
+pub(super) fn add_initial(mut scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = value.table(&INITIAL)?;
+    let dimension = scene.body().dimension();
+    if let Some(velocity) = table.optional("velocity", |v| v.vector(dimension))? {
+        scene = scene.initial_velocity(move |_| velocity.clone());
+    }
+    if let Some(spin) = table.optional("spin", |value| {
+        value.one_or_more()?.iter().map(Value::finite).collect::<Result<Vec<f64>, Error>>()
+    })? {
+        scene = scene.spin(spin);
+    }
+    if let Some(value) = table.get("nodes") {
+        for part in value.tables(&OF_NODES)? {
+            let nodes = part.required("nodes", |v| selection(v, scene.body().mesh()))?;
+            let velocity = part.required("velocity", |v| v.vector(dimension))?;
+            scene = scene.initial_velocity_of(nodes, velocity);
+        }
+    }
+    scene.initial_velocities().map_err(|error| table.blame(error))?;
+    Ok(scene)
+}
