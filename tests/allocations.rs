@@ -8,8 +8,8 @@ use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
 use pliant::simulate::{Component, Reading};
 use pliant::{
-    Body, Cells, Chamber, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings, Signal,
-    Spring, Strain,
+    Body, Cells, Chamber, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
+    Signal, Spring, Strain,
 };
 
 #[test]

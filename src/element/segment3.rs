@@ -10,6 +10,7 @@ const OUTER: f64 = 0.387_298_334_620_741_7;
 pub(crate) struct Segment3;
 
 impl ReferenceCell<3, 1> for Segment3 {
+    const NODES: [[f64; 1]; 3] = [[0.0], [1.0], [0.5]];
     /// Gauss's rule with two points: exact for cubics.
     const STIFFNESS_RULE: &'static [([f64; 1], f64)] = &[([GAUSS[0]], 0.5), ([GAUSS[1]], 0.5)];
     /// Gauss's rule with three points: exact for degree 5.

@@ -20,9 +20,9 @@ fn segment() {
 /// A face only, which is no kind of cell.
 #[test]
 fn segment3() {
-    for (a, x) in [0.0, 1.0, 0.5].into_iter().enumerate() {
+    for (a, x) in Segment3::NODES.into_iter().enumerate() {
         let one_at_its_node = std::array::from_fn(|b| if a == b { 1.0 } else { 0.0 });
-        assert_eq!(Segment3::values([x]), one_at_its_node);
+        assert_eq!(Segment3::values(x), one_at_its_node);
     }
     [0.2, 0.5, 0.31].into_iter().for_each(|x| shapes_at::<Segment3, 3, 1>([x]));
     rule_is_exact(Segment3::STIFFNESS_RULE, Exact::Cube(3));

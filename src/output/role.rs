@@ -25,9 +25,7 @@ impl Scene {
                 | Motion::Path(_)
                 | Motion::Spline(_)
                 | Motion::Formula(_)
-                | Motion::Turn(_) => {
-                    Role::Moved
-                }
+                | Motion::Turn(_) => Role::Moved,
             };
             let selected = match what {
                 Constrained::Nodes(selection, _) | Constrained::Along(selection, _) => {

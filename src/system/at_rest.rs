@@ -122,10 +122,9 @@ impl AtRest {
         self.time
     }
 
-    /// Whether obstacles move, as far as the load has come on.
+    /// Whether obstacles move.
     pub(crate) fn is_driven(&self) -> bool {
-        let moves = |force: &Arc<dyn Force>| force.velocity().is_some_and(|w| w != [0.0; 3]);
-        self.system.forces.iter().any(moves)
+        self.system.forces.iter().any(|force| force.velocity(self.time).is_some())
     }
 
     /// M x

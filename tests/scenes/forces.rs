@@ -232,7 +232,7 @@ fn formulas_are_functions_of_time() {
     let phase = held().actuate(["A1"], Signal::formula("0.3*sin(21*t)").unwrap());
     let mut others = Scene::new(body()).spring(spring()).phase(phase).start(&settings).unwrap();
     others.advance_to(0.01).unwrap();
-    assert!(others.read_checkpoint(&path).unwrap_err().to_string().contains("phases: what"));
+    assert!(others.read_checkpoint(&path).err().unwrap().to_string().contains("phases: what"));
 
     let error = Signal::formula("2*sinn(t)").unwrap_err().to_string();
     assert!(error.starts_with("formula = 2*sinn(t) cannot be used: unknown word"), "{error}");
