@@ -221,6 +221,6 @@ fn without_repetitions(
         }
         *is_kept = false;
     }
-    let kept = rows.iter().zip(is_kept).filter_map(|(row, is_kept)| is_kept.then(|| row.clone()));
-    Ok(kept.collect())
+    let kept = rows.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
+    Ok(kept.map(|(row, _)| row.clone()).collect())
 }

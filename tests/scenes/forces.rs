@@ -226,7 +226,9 @@ fn formulas_are_functions_of_time() {
     assert!(std::fs::read_to_string(&path).unwrap().contains("0.2*cos(30*t)"));
     let mut other = written.start(&settings).unwrap();
     other.restore(&other.read_checkpoint(&path).unwrap()).unwrap();
-    [&mut simulation, &mut other].map(|simulation| simulation.advance_to(0.2).unwrap());
+    for simulation in [&mut simulation, &mut other] {
+        simulation.advance_to(0.2).unwrap();
+    }
     assert_eq!(simulation.view().displacements(), other.view().displacements());
     // another formula is another scene
     let phase = held().actuate(["A1"], Signal::formula("0.3*sin(21*t)").unwrap());
