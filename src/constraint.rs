@@ -4,46 +4,27 @@
 //! general linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0
 //! (Hirai (4.1.3)); the equations are those of `system`.
 
+mod axis;
 mod prescribed;
 mod resolve;
 mod row;
 mod spline;
+mod start;
 mod turn;
 
 use std::fmt;
 use std::sync::Arc;
 
+pub use axis::Axis;
 pub use prescribed::{Path, Prescribed};
 pub(crate) use resolve::rows;
-pub(crate) use row::{PhaseStart, Row, prescribe};
+pub(crate) use row::{Row, prescribe};
 pub(crate) use spline::Spline;
+pub(crate) use start::PhaseStart;
 pub(crate) use turn::{Turn, angular};
 
 use crate::formula::Formula;
 use crate::mesh::Selection;
-
-/// An axis of space.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Axis {
-    /// First coordinate.
-    X,
-    /// Second coordinate.
-    Y,
-    /// Third coordinate.
-    Z,
-}
-
-impl Axis {
-    /// Position of the axis among the components of a node: 0, 1 or 2.
-    pub fn index(self) -> usize {
-        self as usize
-    }
-
-    /// All axes of a space.
-    pub(crate) fn all(dimension: usize) -> &'static [Axis] {
-        &[Self::X, Self::Y, Self::Z][..dimension]
-    }
-}
 
 /// A constraint as the user of a phase gives it.
 #[derive(Clone, Debug)]

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::ptr;
 
 use super::prescribed::Prescribed;
-use super::row::{PhaseStart, Row, RowMotion};
+use super::row::{Row, RowMotion};
+use super::start::PhaseStart;
 use super::turn::Turning;
 use super::{Axes, Axis, Constrained, Constraint, Motion};
 use crate::formula::Formula;

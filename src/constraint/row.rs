@@ -1,8 +1,8 @@
-//! One row of the constraints, and where it starts.
+//! One row of the constraints.
 
 use std::sync::Arc;
 
-use super::Axis;
+use super::axis::Axis;
 use super::prescribed::{Path, Prescribed};
 use super::spline::Spline;
 use super::turn::Turning;
@@ -124,14 +124,6 @@ impl Row {
         };
         self.terms.iter().map(name).collect::<Vec<_>>().join(" + ")
     }
-}
-
-/// Where the rows of a phase start from.
-pub(crate) struct PhaseStart<'a> {
-    /// Time (s).
-    pub(crate) time: f64,
-    /// Displacements (m), with what the phase before prescribed put [where it should be](prescribe).
-    pub(crate) u: &'a [f64],
 }
 
 /// Puts the nodes that `rows` prescribe where they should be at time `t`: a constraint that is

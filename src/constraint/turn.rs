@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use super::prescribed::Prescribed;
-use super::row::PhaseStart;
 use super::spline::Spline;
+use super::start::PhaseStart;
 use crate::input::{InputError, finite};
 use crate::mesh::Mesh;
 use crate::vector::{cross, dot, norm};

@@ -3,7 +3,6 @@
 use crate::constraint::Constrained;
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::scene::Scene;
 use crate::system::Energy;
 use crate::trajectory::{Quantity, Sample, Trajectory};
 
@@ -28,8 +27,12 @@ pub(super) struct Columns {
 
 impl Columns {
     /// # Errors
-    /// Nodes or sets that do not exist.
-    pub(super) fn new(scene: &Scene, track: Option<&Selection>) -> Result<Self, InputError> {
+    /// Nodes or sets that do not exist; a sensor with the name of another column.
+    pub(super) fn new(
+        trajectory: &Trajectory,
+        track: Option<&Selection>,
+    ) -> Result<Self, InputError> {
+        let scene = trajectory.scene();
         let mesh = scene.body().mesh();
         let tracked = track.map(|selection| mesh.select(selection)).transpose()?;
         let mut seen: Vec<&Selection> = Vec::new();
@@ -49,7 +52,17 @@ impl Columns {
             };
             constrained.push((name, mesh.select(selection)?));
         }
-        Ok(Self { tracked: tracked.unwrap_or_default(), constrained })
+        let columns = Self { tracked: tracked.unwrap_or_default(), constrained };
+        let all = columns.quantities(trajectory);
+        let is_double =
+            |sensor: &&Quantity| all.iter().filter(|column| column.name == sensor.name).count() > 1;
+        match trajectory.sensors().iter().find(is_double) {
+            None => Ok(columns),
+            Some(Quantity { name, .. }) => {
+                let mend = "a column of tables has it: name the sensor otherwise";
+                Err(InputError::new("name of a sensor", format!("\"{name}\""), mend))
+            }
+        }
     }
 
     /// Their names and units.

@@ -9,7 +9,6 @@ use super::write_file;
 use crate::error::Error;
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::scene::Scene;
 use crate::trajectory::{Sample, Trajectory};
 
 /// Writes one row per sample, after a row with the names of the columns:
@@ -51,7 +50,7 @@ pub fn write_csv(
     path: impl AsRef<Path>,
     track: Option<&Selection>,
 ) -> Result<(), Error> {
-    let columns = Columns::new(trajectory.scene(), track)?;
+    let columns = Columns::new(trajectory, track)?;
     let rows = trajectory.samples().iter().map(|sample| columns.row(trajectory, sample));
     write(path.as_ref(), header(&columns, trajectory), rows)
 }
@@ -69,16 +68,16 @@ pub struct GrowingTable {
 }
 
 impl GrowingTable {
-    /// A table at `path` without rows; nothing is written yet.
+    /// A table at `path` for a run whose motion so far is `trajectory`; nothing is written yet.
     ///
     /// # Errors
-    /// [`Error::Input`] if `track` names a node or set that does not exist.
+    /// [`Error::Input`] if `track` names a node or set that does not exist, or a sensor has the name of another column.
     pub fn new(
-        scene: &Scene,
+        trajectory: &Trajectory,
         path: impl Into<PathBuf>,
         track: Option<&Selection>,
     ) -> Result<Self, Error> {
-        let columns = Columns::new(scene, track)?;
+        let columns = Columns::new(trajectory, track)?;
         Ok(Self { path: path.into(), columns, rows: 0, last: 0.0, began: None })
     }
 
@@ -88,8 +87,9 @@ impl GrowingTable {
     /// # Errors
     /// [`Error::Read`] if there is no table; one with other columns.
     pub fn going_on(self, trajectory: &Trajectory, began: f64) -> Result<Self, Error> {
-        let header = header(&self.columns, trajectory).join(",");
-        if self.text()?.lines().next() != Some(&*header) {
+        let text = self.text()?;
+        let first = csv::Reader::from_reader(text.as_bytes()).headers().cloned();
+        if !first.is_ok_and(|first| first == header(&self.columns, trajectory)) {
             let mend =
                 "its columns are others: resume with the same nodes and sensors, or run anew";
             return Err(InputError::new("table to go on with", self.path.display(), mend).into());
@@ -121,18 +121,19 @@ impl GrowingTable {
     /// [`Error::Output`] if the file cannot be written.
     pub fn catch_up(&mut self, trajectory: &Trajectory) -> Result<(), Error> {
         let samples = trajectory.samples();
-        if let Some(began) = self.began.take() {
-            self.cut(began)?;
-            self.rows = samples.partition_point(|sample| sample.time <= began);
-            self.last = samples.get(self.rows.wrapping_sub(1)).map_or(0.0, |sample| sample.time);
-        }
-        let fits = |last: usize| samples.get(last).is_some_and(|sample| sample.time == self.last);
-        let written =
-            self.rows.checked_sub(1).filter(|&last| fits(last)).map_or(0, |last| last + 1);
-        let row = |sample: &Sample| self.columns.row(trajectory, sample);
-        let done = match written {
-            0 => write(&self.path, header(&self.columns, trajectory), samples.iter().map(row)),
-            _ => append(&self.path, samples[written..].iter().map(row))
+        let fits = |last: &usize| samples.get(*last).is_some_and(|sample| sample.time == self.last);
+        let written = match (self.rows.checked_sub(1).filter(fits), self.began) {
+            (Some(last), _) => last + 1,
+            (None, Some(began)) => {
+                self.cut(began)?;
+                samples.partition_point(|sample| sample.time <= began)
+            }
+            (None, None) => 0,
+        };
+        let rows = samples[written..].iter().map(|sample| self.columns.row(trajectory, sample));
+        let done = match (written, self.began) {
+            (0, None) => write(&self.path, header(&self.columns, trajectory), rows),
+            _ => append(&self.path, rows)
                 .map_err(|source| Error::Output { path: self.path.clone(), source }),
         };
         (self.rows, self.last) = (samples.len(), trajectory.last().time);

@@ -1,6 +1,7 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
 mod forces;
+mod initial;
 mod load;
 mod loading;
 mod phase;

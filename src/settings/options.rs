@@ -199,7 +199,7 @@ mod tests {
         for option in SettingsOption::ALL {
             if let SettingsValue::Word(words, set) = option.value {
                 let error = set(&mut Settings::default(), "nothing").unwrap_err().to_string();
-                assert!(error.contains(&option.key), "{error}");
+                assert!(error.contains(option.key), "{error}");
                 assert!(words().iter().all(|word| error.contains(word)), "{error}");
             }
         }

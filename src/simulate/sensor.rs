@@ -17,11 +17,14 @@ pub(super) struct Sensor {
     pub(super) source: Source,
 }
 
+/// Reads a number of the user's own.
+pub(super) type Own = dyn Fn(&View, &Sample) -> f64 + Send + Sync;
+
 /// What a sensor reads.
 #[derive(Clone)]
 pub(super) enum Source {
     /// A number of the user's own: its unit, and what reads it.
-    Own(String, Arc<dyn Fn(&View, &Sample) -> f64 + Send + Sync>),
+    Own(String, Arc<Own>),
     /// A quantity that scenes have.
     Named(Reading),
 }

@@ -142,7 +142,7 @@ impl Directory {
         output: &OutputRequest,
     ) -> Result<GrowingTable, Failure> {
         let (path, track) = (self.path.join(TABLE), output.track.as_ref());
-        let table = GrowingTable::new(simulation.scene(), path, track)?;
+        let table = GrowingTable::new(simulation.trajectory(), path, track)?;
         Ok(match self.resumes {
             true => table.going_on(simulation.trajectory(), simulation.time())?,
             false => table,

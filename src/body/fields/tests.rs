@@ -353,9 +353,9 @@ fn points_are_found_in_their_cells_or_not_at_all() {
             })
             .collect();
         let shares = body.shares_at(&x).unwrap();
-        for i in 0..d {
+        for (i, x) in x.iter().enumerate() {
             let there: f64 = shares.iter().map(|(node, n)| n * mesh.position(*node)[i]).sum();
-            assert!((there - x[i]).abs() < 1e-12, "{name}: {there} is not {}", x[i]);
+            assert!((there - x).abs() < 1e-12, "{name}: {there} is not {x}");
         }
         let outside = body.shares_at(&vec![1e3; d]).unwrap_err().to_string();
         assert!(outside.contains("outside the body"), "{outside}");

@@ -35,7 +35,7 @@ impl Table {
     /// # Errors
     /// A node or set in `track` that does not exist.
     pub fn of(trajectory: &Trajectory, track: Option<&Selection>) -> Result<Self, InputError> {
-        let columns = Columns::new(trajectory.scene(), track)?;
+        let columns = Columns::new(trajectory, track)?;
         let phases = trajectory.report().phases.iter();
         let mut table = Self::empty(columns.quantities(trajectory).into_iter().skip(1));
         table.phases = phases.map(|phase| (phase.name.clone(), phase.end)).collect();

@@ -1,0 +1,24 @@
+//! Axes of space.
+
+/// An axis of space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Axis {
+    /// First coordinate.
+    X,
+    /// Second coordinate.
+    Y,
+    /// Third coordinate.
+    Z,
+}
+
+impl Axis {
+    /// Position of the axis among the components of a node: 0, 1 or 2.
+    pub fn index(self) -> usize {
+        self as usize
+    }
+
+    /// All axes of a space.
+    pub(crate) fn all(dimension: usize) -> &'static [Axis] {
+        &[Self::X, Self::Y, Self::Z][..dimension]
+    }
+}
