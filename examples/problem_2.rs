@@ -28,7 +28,7 @@ fn main() {
 fn run(common: &Common) -> Result<(), Error> {
     let directory = common.out.join("problem_2");
     let mut rotations = Chart::new("Rotation of the ring").axes("time (s)", "angle (degrees)");
-    let mut areas = Chart::new("Area of the ring").axes("time (s)", "area / natural area");
+    let mut areas = Chart::new("Area of the ring").axes("time (s)", "area / undeformed area");
     for strain in [Strain::Green, Strain::Cauchy] {
         let scene = RingRoll { strain, ..RingRoll::default() }.scene()?;
         let trajectory = scene.simulate(&common.settings(), &Sampling::every(0.01))?;
@@ -58,7 +58,7 @@ fn run(common: &Common) -> Result<(), Error> {
     Ok(())
 }
 
-/// Present over natural area. (All cells of the ring are about equally large.)
+/// Present over undeformed area. (All cells of the ring are about equally large.)
 fn area_ratio(trajectory: &Trajectory, sample: &Sample) -> f64 {
     let ratios = trajectory.body().volume_ratios(&sample.u);
     ratios.iter().sum::<f64>() / ratios.len() as f64

@@ -3,7 +3,7 @@
 //!
 //! `cargo run --release --example square_press -- --nodes 10`
 //!
-//! What to look for: after the release the square swings about its natural shape and calms down.
+//! What to look for: after the release the square swings about its undeformed shape and calms down.
 //! The constraint forces (`forces.svg`) are what a probe that presses it would read. They begin
 //! and end with a jump: the square has to move at once.
 

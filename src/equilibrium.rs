@@ -62,7 +62,7 @@ pub struct Equilibrium {
 
 impl Equilibrium {
     /// The state: displacements, constraint forces lambda (on the body) and potential energies;
-    /// what is stored beyond the natural shape counts as supplied.
+    /// what is stored beyond the undeformed shape counts as supplied.
     pub fn sample(&self) -> &Sample {
         self.trajectory.last()
     }
@@ -72,7 +72,7 @@ impl Equilibrium {
         &self.sample().u
     }
 
-    /// The same as a trajectory, for [`output`](crate::output): the natural shape at t = 0, and
+    /// The same as a trajectory, for [`output`](crate::output): the undeformed shape at t = 0, and
     /// the equilibrium at the end of the phase; between them those for parts of the load, if
     /// [`Statics`](crate::Statics) asks for several steps.
     pub fn trajectory(&self) -> &Trajectory {
@@ -122,7 +122,7 @@ pub struct NoEquilibrium {
     pub iterations: usize,
     /// The likely cause, and what to try.
     pub cause: String,
-    /// The natural shape and, at that part of the end of the phase, the last equilibrium found, if any; those
+    /// The undeformed shape and, at that part of the end of the phase, the last equilibrium found, if any; those
     /// before it as in [`Equilibrium::trajectory`].
     pub trajectory: Trajectory,
 }

@@ -313,7 +313,8 @@ fn chambers() {
     // a row inside the body has no side
     says(polygon([5, 6, 7, 8].into()), &["chamber \"cell\" area (m^2)", "enclose nothing"]);
     let corners = Selection::Box { min: vec![0.0, 0.0], max: vec![0.31, 0.0] };
-    assert!(polygon(corners).is_ok());
+    assert!(with(Chamber::within("cell", corners.clone()).closed_by_line()).is_ok());
+    says(polygon(corners), &["chamber \"cell\" nodes", "nodes 1 and 4", "closed_by_line"]);
     says(
         polygon("all".into()),
         &["chamber \"cell\" nodes", "boundary of the body", "node(s) 6, 7, 10, 11 are on none"],

@@ -18,7 +18,7 @@ pub struct Magnet {
     strength: f64,
     /// m
     size: f64,
-    /// Where the nodes are in the natural shape (m).
+    /// Where the nodes are in the undeformed shape (m).
     natural: Vec<f64>,
     /// Mass of each node (kg).
     masses: Vec<f64>,

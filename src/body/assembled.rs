@@ -56,7 +56,7 @@ impl fmt::Debug for Body {
 }
 
 impl Body {
-    /// The mesh in its natural shape.
+    /// The mesh in its undeformed shape.
     pub fn mesh(&self) -> &Mesh {
         &self.mesh
     }
@@ -154,10 +154,10 @@ impl Body {
     /// dimension components per node).
     ///
     /// ```
-    /// use pliant::{Body, Material, Mesh};
+    /// use pliant::{Body, Material, Mesh, Strain};
     ///
     /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
-    /// let bar = Body::new(Mesh::bar(0.1, 2)?, soft).area(2e-4).build()?;
+    /// let bar = Body::new(Mesh::bar(0.1, 2)?, soft).area(2e-4).strain(Strain::Cauchy).build()?;
     /// let [field] = bar.cell_fields(&[0.0, 0.001])[..] else { panic!("one cell") };
     /// assert!((field.strain[0][0] - 0.01).abs() < 1e-12);
     /// assert!((field.stress[0][0] - 500.0).abs() < 1e-9 && (field.von_mises() - 500.0).abs() < 1e-9);
@@ -203,7 +203,7 @@ impl Body {
         nodal_fields(&*self.elements, &self.regions, self.mesh.node_count(), u)
     }
 
-    /// The nodes of the cell in which the natural position `x` (m) lies, with their shape functions there.
+    /// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there.
     ///
     /// # Errors
     /// A point outside the body.
@@ -214,7 +214,8 @@ impl Body {
         }
         finite("point", x)?;
         shares_at(&self.mesh, x).ok_or_else(|| {
-            let mend = "it lies outside the body: give the natural position of one of its points";
+            let mend =
+                "it lies outside the body: give the undeformed position of one of its points";
             InputError::new("point", format!("{x:?}"), mend)
         })
     }
@@ -300,7 +301,7 @@ impl Body {
     }
 
     /// Angle (rad, counter-clockwise) by which a body of the plane has turned as a whole under the displacements
-    /// `u` (m): that of the rotation which, in the mean over its mass, brings the natural shape nearest to the
+    /// `u` (m): that of the rotation which, in the mean over its mass, brings the undeformed shape nearest to the
     /// present one. `None` in other dimensions.
     pub(crate) fn rotation(&self, u: &[f64]) -> Option<f64> {
         if self.dimension() != 2 {

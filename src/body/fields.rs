@@ -5,7 +5,7 @@
 //!
 //! | | strain | stress |
 //! | --- | --- | --- |
-//! | Cauchy | F_0 E F_0^T + e sum n n^T, n of the natural shape | F_0 S F_0^T + s sum n n^T, the same n |
+//! | Cauchy | F_0 E F_0^T + e sum n n^T, n of the undeformed shape | F_0 S F_0^T + s sum n n^T, the same n |
 //! | Green | the same | (F S F^T + s sum n n^T) / det F, n of the present shape |
 //!
 //! Across a cell there is either no strain (plane strain: e = 0, s = lambda tr E) or no stress (plane
@@ -32,7 +32,7 @@ pub struct CellField {
     /// cells in plane stress and across strings are those that leave them without stress.
     pub strain: [[f64; 3]; 3],
     /// Stress (Pa), a tensor along the axes of space. With Green strain it is the true stress, force
-    /// per present area, but that thickness and cross-section count as those of the natural shape.
+    /// per present area, but that thickness and cross-section count as those of the undeformed shape.
     pub stress: [[f64; 3]; 3],
     /// Strain energy per natural volume (J/m^3).
     pub energy_density: f64,

@@ -167,7 +167,7 @@ pub(super) fn rigid_motions_cost_green_bodies_nothing() {
     }
 }
 
-/// In the natural shape Green's tangents are the constant matrices of Cauchy's strain.
+/// In the undeformed shape Green's tangents are the constant matrices of Cauchy's strain.
 #[test]
 fn at_rest_the_tangents_are_k_and_b() {
     for (name, body) in bodies(Strain::Green) {

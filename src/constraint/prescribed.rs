@@ -5,7 +5,7 @@ use std::sync::Arc;
 /// A prescribed displacement at one instant: b, b' and b''.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prescribed {
-    /// Displacement from the natural position (m).
+    /// Displacement from the undeformed position (m).
     pub displacement: f64,
     /// Its first derivative (m/s).
     pub velocity: f64,

@@ -1,7 +1,7 @@
 //! Elements: shape functions and quadrature, one small file per cell.
 //!
 //! A cell is known to the rest of the crate by its quadrature points only: the gradients g_a of
-//! its shape functions and a weight each. The map from the reference cell to the natural shape is
+//! its shape functions and a weight each. The map from the reference cell to the undeformed shape is
 //! isoparametric for all cells.
 //!
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
@@ -66,7 +66,7 @@ pub(crate) use with_element;
 pub(crate) struct StrainPoint<const N: usize, const M: usize, const D: usize> {
     /// Gradients g_a of the shape functions (1/m), in the coordinates of the cell.
     pub gradients: [[f64; M]; N],
-    /// Derivative F_0 of the natural position by the coordinates of the cell: the identity where the
+    /// Derivative F_0 of the undeformed position by the coordinates of the cell: the identity where the
     /// cell fills space, else its tangent frame.
     pub frame: Matrix<f64, D, M>,
     /// Length, area or volume that the point stands for (m, m^2, m^3).

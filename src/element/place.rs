@@ -11,7 +11,7 @@ const TOLERANCE: f64 = 1e-6;
 /// Newton's method ends after so many rounds: it takes one in cells with straight edges, few in others.
 const ROUNDS: usize = 20;
 
-/// The nodes of the cell in which the natural position `x` (m) lies, with their shape functions there; `None` outside
+/// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there; `None` outside
 /// the body.
 pub(crate) fn shares_at(mesh: &Mesh, x: &[f64]) -> Option<Vec<(usize, f64)>> {
     mesh.cells().find_map(|cell| {
@@ -20,7 +20,7 @@ pub(crate) fn shares_at(mesh: &Mesh, x: &[f64]) -> Option<Vec<(usize, f64)>> {
     })
 }
 
-/// The shape functions of a cell at the natural position `x`; `None` outside it.
+/// The shape functions of a cell at the undeformed position `x`; `None` outside it.
 fn values_at<
     C: ReferenceCell<N, M>,
     const N: usize,

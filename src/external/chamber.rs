@@ -197,7 +197,7 @@ fn position<const D: usize>(mesh: &Mesh, node: usize) -> [f64; D] {
     std::array::from_fn(|i| mesh.position(node)[i])
 }
 
-/// Where `nodes` with the natural positions `from` are under the displacements `u`.
+/// Where `nodes` with the undeformed positions `from` are under the displacements `u`.
 fn present<const N: usize, const D: usize>(
     nodes: &[usize; N],
     from: &[[f64; D]; N],

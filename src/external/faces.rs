@@ -116,7 +116,7 @@ impl Loaded {
         })
     }
 
-    /// The integral of the shape function of each node in the natural shape: the length (m) or area (m^2) that the
+    /// The integral of the shape function of each node in the undeformed shape: the length (m) or area (m^2) that the
     /// node stands for, 1 for a point.
     fn integrals(&self, mesh: &Mesh) -> BTreeMap<usize, f64> {
         let points = face_points(self.kind);
@@ -150,7 +150,7 @@ pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
     nodes.iter().map(|node| integrals[node] / whole).collect()
 }
 
-/// The natural area (m^2) of the boundary that each of `nodes` stands for.
+/// The undeformed area (m^2) of the boundary that each of `nodes` stands for.
 ///
 /// # Errors
 /// What is wrong with them: nodes on no whole face, a body without a surface.

@@ -8,7 +8,7 @@ use crate::vector::dot;
 /// Weight of a body.
 pub(crate) struct Gravity {
     weight: Vec<f64>,
-    /// Potential in the natural shape: heights count from the origin.
+    /// Potential in the undeformed shape: heights count from the origin.
     natural_potential: f64,
 }
 

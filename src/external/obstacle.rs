@@ -152,7 +152,7 @@ impl Obstacle {
 
     /// Contact stiffness per area of the boundary of the body (N/m^3), above 0: pressure over
     /// depth, the same for all meshes. Damping, tangential too, is per area then (N s/m^3). The
-    /// area is that of the faces in the natural shape: edge length times thickness in the plane,
+    /// area is that of the faces in the undeformed shape: edge length times thickness in the plane,
     /// the cross section in one dimension.
     ///
     /// Contact is felt at Gauss points of the faces instead of at the nodes: a corner that goes

@@ -25,7 +25,7 @@ pub(crate) struct FacePressure {
 
 struct PressedFace {
     nodes: Vec<usize>,
-    /// Their natural positions; components beyond the dimension are 0.
+    /// Their undeformed positions; components beyond the dimension are 0.
     natural: Vec<[f64; 3]>,
 }
 

@@ -8,7 +8,7 @@ use crate::formula::Formula;
 use crate::input::{InputError, finite};
 use crate::ode::Failure;
 
-/// Vectors at given times (s). In between they change along straight lines; before the first time
+/// Vectors at given times (s). In between they are interpolated linearly; before the first time
 /// and after the last they are constant.
 #[derive(Debug, Clone)]
 pub(crate) struct TimeTable {
@@ -131,7 +131,7 @@ impl Signal {
         Ok(Self(Course::Formula(Arc::new(formula))))
     }
 
-    /// The `values` at the `times` (s, ascending). In between it changes along straight lines; before and
+    /// The `values` at the `times` (s, ascending). In between it is interpolated linearly; before and
     /// after it is constant.
     pub fn table(times: impl Into<Vec<f64>>, values: impl Into<Vec<f64>>) -> Self {
         let values = values.into().into_iter().map(|value| vec![value]).collect();

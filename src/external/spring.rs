@@ -95,7 +95,7 @@ impl Spring {
         self
     }
 
-    /// Natural length L (m), above 0. Default: the distance of its nodes in the natural shape.
+    /// Natural length L (m), above 0. Default: the distance of its nodes in the undeformed shape.
     pub fn length(mut self, length: f64) -> Self {
         self.length = Some(length);
         self
@@ -203,7 +203,7 @@ impl Joint {
         }
     }
 
-    /// Its natural position (m); components beyond the dimension are 0.
+    /// Its undeformed position (m); components beyond the dimension are 0.
     fn place(self, mesh: &Mesh) -> [f64; 3] {
         match self {
             Self::Node(node) => natural(mesh, node),
@@ -218,7 +218,7 @@ struct Line {
     dimension: usize,
     /// Its ends; none where that is a point of space.
     nodes: [Option<usize>; 2],
-    /// From the first end to the second in the natural shape.
+    /// From the first end to the second in the undeformed shape.
     natural: [f64; 3],
     /// L
     length: f64,

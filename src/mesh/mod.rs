@@ -20,7 +20,7 @@ pub use select::Selection;
 
 use crate::input::{InputError, finite};
 
-/// A finite element mesh in its natural shape: cells of one kind, in a space of their dimension or
+/// A finite element mesh in its undeformed shape: cells of one kind, in a space of their dimension or
 /// of a higher one (a string in the plane or in space, a membrane in space).
 ///
 /// Axes are x, y, z in this order. Generators name the sides of a body by them: `left` and `right`

@@ -5,7 +5,7 @@ use std::fmt;
 use super::Mesh;
 use crate::input::{InputError, unknown_among};
 
-/// Nodes, by the name of a set, by number, or by a box around their natural positions.
+/// Nodes, by the name of a set, by number, or by a box around their undeformed positions.
 ///
 /// Strings, arrays and vectors of numbers convert into it:
 /// `body.hold("bottom")`, `body.hold([14, 15])`.

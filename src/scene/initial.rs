@@ -9,19 +9,19 @@ use crate::mesh::Selection;
 /// Velocities that the constraints of the first phase do not allow are projected on the nearest, in the
 /// sense of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves.
 impl Scene {
-    /// Displacements at t = 0 (m): `field` gives one for each natural position. Default: none.
+    /// Displacements at t = 0 (m): `field` gives one for each undeformed position. Default: none.
     pub fn initial_displacement(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         self.start.displacements = self.body.mesh().field(field);
         self
     }
 
-    /// Velocities at t = 0 (m/s): `field` gives one for each natural position. Default: rest.
+    /// Velocities at t = 0 (m/s): `field` gives one for each undeformed position. Default: rest.
     ///
     /// ```
     /// # use pliant::{Body, Cells, Material, Mesh, Phase, Scene};
     /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
     /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
-    /// # let body = Body::new(mesh, rubber).build()?;
+    /// # let body = Body::new(mesh, rubber).thickness(0.01).build()?;
     /// // thrown upwards, turning once a second
     /// let scene = Scene::new(body)
     ///     .initial_velocity(|_| vec![0.0, 5.0])

@@ -17,7 +17,7 @@ pub(crate) enum LoadKind {
     Each,
     /// A force (N) on all nodes together.
     Total,
-    /// A force per natural area (N/m^2) of the faces between the nodes.
+    /// A force per undeformed area (N/m^2) of the faces between the nodes.
     Traction,
 }
 

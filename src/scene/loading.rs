@@ -22,7 +22,7 @@ impl Phase {
     }
 
     /// A force (N) on each of the nodes that has the values `forces`, one component per dimension, at
-    /// the `times` (s, ascending). In between it changes along straight lines; before and after it is
+    /// the `times` (s, ascending). In between it is interpolated linearly; before and after it is
     /// constant.
     pub fn load_table(
         self,
@@ -54,7 +54,7 @@ impl Phase {
     }
 
     /// A constant traction: a force per area (N/m^2) on the faces of the boundary (edges in the plane) between the
-    /// nodes, which all have to belong to such faces. The area is that of the natural shape, and the direction stays
+    /// nodes, which all have to belong to such faces. The area is that of the undeformed shape, and the direction stays
     /// as the body turns (a dead load). A membrane in space is loaded all over or at its rim, a string at its ends.
     ///
     /// Nodal forces are the integrals of the traction times the shape functions.

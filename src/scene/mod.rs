@@ -54,7 +54,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A scene with a body alone, at rest in its natural shape at t = 0.
+    /// A scene with a body alone, at rest in its undeformed shape at t = 0.
     pub fn new(body: Body) -> Self {
         Self {
             start: Start::rest(&body),

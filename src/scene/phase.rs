@@ -106,7 +106,7 @@ impl Phase {
         self.constrain(nodes, Axes::These(vec![axis]), Motion::Path(Arc::new(path)))
     }
 
-    /// One component of nodes that follows a formula of time (m, from the natural position).
+    /// One component of nodes that follows a formula of time (m, from the undeformed position).
     #[cfg(feature = "scene-file")]
     pub(crate) fn follow_formula(
         self,
@@ -118,7 +118,7 @@ impl Phase {
     }
 
     /// One component of nodes that follows a smooth path through points: at the `times` (s,
-    /// ascending, two at least) it has the `displacements` (m, from the natural position).
+    /// ascending, two at least) it has the `displacements` (m, from the undeformed position).
     ///
     /// The path is a cubic spline, twice continuously differentiable, that starts and ends with
     /// velocity 0; before the first time and after the last the component rests.
@@ -204,7 +204,7 @@ impl Phase {
     }
 
     /// As [`actuate`](Self::actuate), with a force that has the values `forces` (N) at the `times` (s,
-    /// ascending). In between it changes along straight lines; before and after it is constant.
+    /// ascending). In between it is interpolated linearly; before and after it is constant.
     pub fn actuate_table<N: Into<String>>(
         self,
         springs: impl IntoIterator<Item = N>,
@@ -230,7 +230,7 @@ impl Phase {
     }
 
     /// As [`pressure`](Self::pressure), with a pressure that has the `values` (Pa) at the `times` (s,
-    /// ascending). In between it changes along straight lines; before and after it is constant.
+    /// ascending). In between it is interpolated linearly; before and after it is constant.
     pub fn pressure_table(
         self,
         chamber: impl Into<String>,

@@ -21,7 +21,7 @@ pub(super) struct Start {
 }
 
 impl Start {
-    /// At rest in the natural shape.
+    /// At rest in the undeformed shape.
     pub(super) fn rest(body: &Body) -> Self {
         let rest = vec![0.0; body.dofs()];
         Self { displacements: rest.clone(), velocities: rest, spin: None, of_nodes: Vec::new() }

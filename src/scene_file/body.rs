@@ -105,7 +105,7 @@ pub(super) const POINT: TableKeys = TableKeys::new(
     "A point mass: a node that belongs to no cell. Its name is a node set.",
     &[
         Key::new("name", Holds::Text, "the name of the point").required(),
-        Key::new("position", Holds::Vector, "its natural position").in_unit("m").required(),
+        Key::new("position", Holds::Vector, "its undeformed position").in_unit("m").required(),
         Key::number("mass", "its mass", "kg").required(),
     ],
     "[[point]]\nname = \"hub\"\nposition = [0.05, 0.05]\nmass = 0.001",

@@ -43,6 +43,7 @@ mod keys;
 mod mesh;
 mod overrides;
 mod phase;
+mod phase_keys;
 mod reference;
 #[cfg(feature = "play")]
 mod rewrite;

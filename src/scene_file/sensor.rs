@@ -26,7 +26,7 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     Kind { word: "position", about: "where nodes are (m)", keys: &[NODES] },
     Kind {
         word: "displacement",
-        about: "how far nodes are from their natural positions (m)",
+        about: "how far nodes are from their undeformed positions (m)",
         keys: &[NODES],
     },
     Kind { word: "velocity", about: "how fast nodes move (m/s)", keys: &[NODES] },
@@ -82,9 +82,10 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
 
 const NODES: Key = Key::new("nodes", Holds::Nodes, "the nodes").required();
 const PLACES: Key = Key::new("nodes", Holds::Nodes, "the nodes").default("`point`");
-const POINT: Key = Key::new("point", Holds::Vector, "the natural position of a point of the body")
-    .in_unit("m")
-    .default("`nodes`");
+const POINT: Key =
+    Key::new("point", Holds::Vector, "the undeformed position of a point of the body")
+        .in_unit("m")
+        .default("`nodes`");
 const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring").required();
 const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
 const LINE: Holds = Holds::Array(&Holds::Nodes, 2);

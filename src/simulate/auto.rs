@@ -185,14 +185,14 @@ fn choose(spectrum: &Spectrum) -> (Method, String) {
     // the ratio that the fastest motions would give it, were the damping that of the material
     let of_material = 0.5 * spectrum.damping_rate * spectrum.lowest_frequency.unwrap_or(0.0)
         / spectrum.highest_frequency.powi(2);
-    let (method, how) = match ratio {
+    let (method, limit) = match ratio {
         // a body that creeps on a floor that damps tells nothing of what vibrates in it
-        1.0.. if of_material < 1.0 => (Method::Arkode, "overdamped from outside"),
-        STRONG_DAMPING.. => (Method::CvodeBdf, "strongly damped"),
-        _ => (Method::Arkode, "lightly damped"),
+        1.0.. if of_material < 1.0 => (Method::Arkode, "overdamped from outside".into()),
+        STRONG_DAMPING.. => (Method::CvodeBdf, format!("{STRONG_DAMPING} or more")),
+        _ => (Method::Arkode, format!("below {STRONG_DAMPING}")),
     };
     let why = spectrum.slowest_period().map_or("nothing vibrates".into(), |period| {
-        format!("the slowest vibration ({period:.1e} s) is {how}, by the ratio {ratio:.1e}")
+        format!("the slowest vibration ({period:.1e} s) has the damping ratio {ratio:.1e}, {limit}")
     });
     (method, format!("{method}, as {why}"))
 }

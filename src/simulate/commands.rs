@@ -82,7 +82,7 @@ impl Simulation {
     }
 
     /// As [`load`](Self::load), with a force (N) that has the values `forces`, one component per dimension, at the
-    /// `times` (s, ascending). In between it changes along straight lines; before and after it is constant.
+    /// `times` (s, ascending). In between it is interpolated linearly; before and after it is constant.
     ///
     /// # Errors
     /// As [`load`](Self::load); times that do not ascend, or are not as many as the forces.

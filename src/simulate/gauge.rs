@@ -119,7 +119,7 @@ fn between(view: &View, [from, to]: [&[usize]; 2]) -> [f64; 3] {
     std::array::from_fn(|i| to[i] - from[i])
 }
 
-/// The ends of a line that has a direction in the natural shape.
+/// The ends of a line that has a direction in the undeformed shape.
 fn line(scene: &Scene, ends: &[Selection; 2]) -> Result<[Vec<usize>; 2], InputError> {
     let mesh = scene.body().mesh();
     let [from, to] = [mesh.select(&ends[0])?, mesh.select(&ends[1])?];

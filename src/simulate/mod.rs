@@ -46,7 +46,7 @@ use crate::settings::Settings;
 use crate::trajectory::Trajectory;
 
 impl Scene {
-    /// Runs the scene, from rest in its natural shape unless a start was given.
+    /// Runs the scene, from rest in its undeformed shape unless a start was given.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings};

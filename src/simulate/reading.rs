@@ -104,7 +104,7 @@ impl Reading {
         What::Position(nodes.into()).into()
     }
 
-    /// How far they are from their natural positions (m).
+    /// How far they are from their undeformed positions (m).
     pub fn displacement(nodes: impl Into<Selection>) -> Self {
         What::Displacement(nodes.into()).into()
     }
@@ -150,7 +150,7 @@ impl Reading {
         What::Stress(Place::Nodes(nodes.into())).into()
     }
 
-    /// Stress (Pa) at the point of the body whose natural position is `x` (m): that at the nodes around it, by their
+    /// Stress (Pa) at the point of the body whose undeformed position is `x` (m): that at the nodes around it, by their
     /// shape functions.
     pub fn stress_at(x: impl Into<Vec<f64>>) -> Self {
         What::Stress(Place::Point(x.into())).into()

@@ -183,7 +183,7 @@ impl<'a> View<'a> {
     }
 
     /// Angle (rad, counter-clockwise) by which a two-dimensional body has turned as a whole: that of the rotation
-    /// which, in the mean over its mass, brings the natural shape nearest to the present one. `None` in other
+    /// which, in the mean over its mass, brings the undeformed shape nearest to the present one. `None` in other
     /// dimensions.
     pub fn rotation(&self) -> Option<f64> {
         self.body().rotation(self.state.u)

@@ -175,7 +175,7 @@ impl Scene {
         Ok((time, u))
     }
 
-    /// The natural shape and the equilibria that were found, as samples.
+    /// The undeformed shape and the equilibria that were found, as samples.
     fn load_curve(&self, phase: usize, search: &mut Search) -> Trajectory {
         let natural = Point::natural(self.body().dofs(), search.mu.len());
         let unloaded = search.rest.energy(0.0, &natural.u);

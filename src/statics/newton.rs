@@ -24,7 +24,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// The natural shape.
+    /// The undeformed shape.
     pub(super) fn natural(dofs: usize, rows: usize) -> Self {
         Self { fraction: 0.0, u: vec![0.0; dofs], mu: vec![0.0; rows], drift: 0.0 }
     }
@@ -69,7 +69,7 @@ pub(super) struct Search<'a> {
 const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
 impl<'a> Search<'a> {
-    /// From the natural shape of a body of `size` (m), `loose` if the constraints alone do not hold
+    /// From the undeformed shape of a body of `size` (m), `loose` if the constraints alone do not hold
     /// it.
     pub(super) fn new(mut rest: AtRest, statics: &'a Statics, size: f64, loose: bool) -> Self {
         let (dofs, rows) = (rest.system().dofs(), rest.system().rows().len());

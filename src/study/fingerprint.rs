@@ -39,7 +39,7 @@ fn add_text(hasher: &mut DefaultHasher, text: fmt::Arguments<'_>) {
     Text(hasher).write_fmt(text).expect("hashing does not fail");
 }
 
-/// Accelerations of the body at rest in its natural shape, at a few times of each phase: loads,
+/// Accelerations of the body at rest in its undeformed shape, at a few times of each phase: loads,
 /// pressures, actuation and paths are functions, whose code cannot be compared.
 fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Error> {
     let state = vec![0.0; state::length(scene.body().dofs())];

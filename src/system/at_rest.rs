@@ -151,7 +151,7 @@ impl AtRest {
     }
 
     /// What the constraints lack, b - A^T u, with b for a fraction of the way: a path that begins in
-    /// the natural shape is followed, another one is shortened.
+    /// the undeformed shape is followed, another one is shortened.
     pub(crate) fn lacking(&self, fraction: f64, u: &[f64], d: &mut [f64]) {
         for (d, row) in d.iter_mut().zip(&self.system.rows) {
             let b = |t: f64| row.prescribed(t).displacement;

@@ -28,7 +28,7 @@ impl Scene {
         System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
     }
 
-    /// How fast the body can move in each phase, in its natural shape and at rest: what makes a scene
+    /// How fast the body can move in each phase, in its undeformed shape and at rest: what makes a scene
     /// stiff, and which method is the right one for it.
     ///
     /// ```

@@ -25,7 +25,7 @@ pub struct PhaseSummary {
     pub pressurized: Vec<String>,
     /// Names of the obstacles that it meets.
     pub obstacles: Vec<String>,
-    /// How fast the body can move, in its natural shape and at rest.
+    /// How fast the body can move, in its undeformed shape and at rest.
     pub spectrum: Spectrum,
 }
 

@@ -19,10 +19,7 @@ fn all_scenes_are_run() {
         let file = SceneFile::parse(&text, Path::new("scene.toml")).unwrap();
         let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
         assert_eq!(motion.last().time, file.scene.end());
-        let mut warnings = motion.report().warnings();
-        // the ring of the third scene has two cells through its thickness
-        warnings.retain(|warning| !warning.contains("cells are too coarse"));
-        assert_eq!(warnings, Vec::<String>::new(), "{}", file.title);
+        assert_eq!(motion.report().warnings(), Vec::<String>::new(), "{}", file.title);
     }
 }
 

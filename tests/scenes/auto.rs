@@ -32,7 +32,7 @@ fn the_choice_follows_the_damping() {
     assert_eq!(methods(&ring), [Method::CvodeBdf]);
     let report = run(&ring, &auto(1e-3)).report().clone();
     let reason = report.phases[0].reason.as_deref().unwrap();
-    assert!(reason.contains("strongly damped"), "{reason}");
+    assert!(reason.contains("0.006 or more"), "{reason}");
     assert!(report.to_string().contains(reason));
 }
 
@@ -138,7 +138,7 @@ fn energy_out_of_nothing_is_told() {
     };
     assert!(warnings.iter().any(|warning| warning.contains("created")), "{warnings:?}");
     let motion = run(&scene, &auto(1e-4));
-    assert_eq!(motion.report().warnings(), Vec::<String>::new());
+    assert!(!motion.report().warnings().iter().any(|warning| warning.contains("created")));
 }
 
 /// An obstacle whose gradient is not that of its distance drives what lies on it without end: no method

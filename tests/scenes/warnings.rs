@@ -214,7 +214,7 @@ fn cells_too_coarse_for_bending() {
 }
 
 /// What any cells can follow: a uniform stretch, also of two materials; a rotation, which leaves nothing
-/// but round-off in Green's strain, in the natural shape or on its way.
+/// but round-off in Green's strain, in the undeformed shape or on its way.
 #[test]
 fn cells_fine_enough_for_anything() {
     let half = pliant::CellSelection::inside([0.0, 0.0], [0.05, 0.1]);

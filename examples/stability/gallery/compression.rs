@@ -183,7 +183,7 @@ fn crush(page: &mut Page) -> Outcome<()> {
     page.say(
         "**Inversion is named.** The same bar, one end loaded up to a part of the limit within a second. \
          A cell with det F <= 0 is refused at every trial point; when no step avoids it, the run ends. The bar of \
-         Cauchy strain passes through itself in silence.",
+         Cauchy strain passes through itself, and a warning tells.",
     );
     page.table(["strain", "method", "load / limit", "outcome"], &rows);
     Ok(())

@@ -11,7 +11,7 @@ use crate::scene::SceneArguments;
 ///
 /// For each phase: the number of constraints, the fastest rate (vibration or decay), the period of the
 /// slowest vibration and its damping ratio, and what acts besides. Rates and periods are estimates for
-/// the natural shape at rest; contacts and springs count as far as they act there. Warnings tell what makes any
+/// the undeformed shape at rest; contacts and springs count as far as they act there. Warnings tell what makes any
 /// motion of the scene doubtful.
 #[derive(Args)]
 pub struct Arguments {

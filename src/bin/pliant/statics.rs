@@ -59,7 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     directory.claim()?;
     directory.write("report.json", |path| write_static_report(outcome, path))?;
-    // the way from the natural shape to a single equilibrium is none that the body takes: pictures alone show both
+    // the way from the undeformed shape to a single equilibrium is none that the body takes: pictures alone show both
     let found = if statics.options.is_curve() { trajectory.clone() } else { trajectory.at_end() };
     directory.write_table(&found, request)?;
     let (files, pictures) = request.formats.iter().partition(|&&format| format == Format::Vtk);

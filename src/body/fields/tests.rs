@@ -11,7 +11,7 @@ use crate::mesh::{CellKind, Cells, Mesh, SolidCells};
 
 const SOFT: Material = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 0.0 };
 
-/// Displacements that map the natural position X of every node to A X.
+/// Displacements that map the undeformed position X of every node to A X.
 fn mapped(mesh: &Mesh, a: &Matrix3<f64>) -> Vec<f64> {
     mesh.field(|x| {
         let natural = Vector3::from_fn(|i, _| x.get(i).copied().unwrap_or(0.0));
@@ -230,7 +230,7 @@ fn energy_densities_add_up_to_the_energy() {
 }
 
 /// Nodal forces of constant stress: the sum of x f^T over the nodes is the stress times the present
-/// volume (in the natural shape, with Cauchy strain), along all directions within the cells.
+/// volume (in the undeformed shape, with Cauchy strain), along all directions within the cells.
 #[test]
 fn stresses_are_those_of_the_nodal_forces() {
     let a = Matrix3::new(1.2, 0.3, -0.1, -0.2, 0.9, 0.2, 0.1, 0.05, 1.1);

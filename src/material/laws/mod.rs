@@ -27,7 +27,7 @@ pub enum Strain {
 /// How the viscous force of a body follows from its velocities.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Viscosity {
-    /// Force -B v with the constant B of the natural shape, as in Hirai. Not invariant to
+    /// Force -B v with the constant B of the undeformed shape, as in Hirai. Not invariant to
     /// rotation: a body that spins as a whole is braked.
     Natural,
     /// Stress from the rate of Green's strain: a body that spins as a whole is not braked.

