@@ -17,6 +17,99 @@ pub(super) fn stored(energy: &Energy) -> [f64; 5] {
     [energy.kinetic, energy.strain, energy.gravity, energy.contact, energy.springs]
 }
 
+/// A kind of columns.
+pub(super) struct ColumnKind {
+    /// Their name, without axes; words in `<>` stand for what differs.
+    pub(super) name: &'static str,
+    pub(super) along: Along,
+    pub(super) unit: &'static str,
+    pub(super) meaning: &'static str,
+}
+
+/// How many columns there are of a kind.
+#[derive(Clone, Copy)]
+pub(super) enum Along {
+    /// One.
+    None,
+    /// One for each axis.
+    Axes,
+    /// As rotations have components: none in one dimension, one in the plane, three in space.
+    Rotations,
+    /// As many as a sensor has components, with names and units of their own.
+    Sensor,
+}
+
+const TRACKED: &str = "u<N>";
+const SENSOR: &str = "<sensor>";
+const REACTION: &str = "reaction_<nodes>";
+
+/// All kinds, in their order.
+pub(super) const COLUMNS: [ColumnKind; 15] = [
+    kind("t", Along::None, "s", "time"),
+    kind("com", Along::Axes, "m", "centre of mass"),
+    kind("momentum", Along::Axes, "kg m/s", "momentum"),
+    kind(
+        "angular_momentum",
+        Along::Rotations,
+        "kg m^2/s",
+        "angular momentum about the centre of mass; `angular_momentum_x`, ... in three dimensions, none in one",
+    ),
+    kind(STORED[0], Along::None, "J", "kinetic energy"),
+    kind(STORED[1], Along::None, "J", "strain energy"),
+    kind(STORED[2], Along::None, "J", "potential energy of gravity"),
+    kind(STORED[3], Along::None, "J", "energy of the contacts"),
+    kind(STORED[4], Along::None, "J", "energy of the springs"),
+    kind("constraint_drift", Along::None, "m", "largest error of a constraint"),
+    kind(
+        TRACKED,
+        Along::Axes,
+        "m",
+        "displacement of each tracked node N, counted from 1 (`track` in `[output]`)",
+    ),
+    kind(
+        SENSOR,
+        Along::Sensor,
+        "its own",
+        "what a sensor reads; each of its components is a column",
+    ),
+    kind(EXCHANGED[0], Along::None, "J", "energy turned into heat since t = 0"),
+    kind(EXCHANGED[1], Along::None, "J", "energy supplied from outside since t = 0"),
+    kind(
+        REACTION,
+        Along::Axes,
+        "N",
+        "force of the constraints on the nodes that a phase holds or moves together, by the name of their set or \
+         their numbers; 0 in phases in which nothing holds them",
+    ),
+];
+
+const fn kind(
+    name: &'static str,
+    along: Along,
+    unit: &'static str,
+    meaning: &'static str,
+) -> ColumnKind {
+    ColumnKind { name, along, unit, meaning }
+}
+
+impl ColumnKind {
+    /// Whether a column with this name is of this kind.
+    fn has(&self, column: &str) -> bool {
+        let stem = match (column.rsplit_once('_'), self.along) {
+            (_, Along::Sensor) => return false,
+            (Some((stem, axis)), Along::Axes | Along::Rotations) if AXES.contains(&axis) => stem,
+            (_, Along::Axes) => return false,
+            (_, Along::None | Along::Rotations) => column,
+        };
+        let is_number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
+        match self.name {
+            TRACKED => stem.strip_prefix('u').is_some_and(is_number),
+            REACTION => stem.starts_with("reaction_"),
+            name => stem == name,
+        }
+    }
+}
+
 /// Which columns there are besides those of every motion.
 pub(super) struct Columns {
     /// Tracked nodes, counted from 0.
@@ -69,31 +162,30 @@ impl Columns {
     pub(super) fn quantities(&self, trajectory: &Trajectory) -> Vec<Quantity> {
         let dimension = trajectory.body().dimension();
         let mut all = Vec::new();
-        let mut add = |name: &str, unit: &str| {
-            all.push(Quantity { name: name.to_owned(), unit: unit.to_owned() });
-        };
-        let vector = |name: &str, unit: &str, add: &mut dyn FnMut(&str, &str)| {
-            AXES[..dimension].iter().for_each(|axis| add(&format!("{name}_{axis}"), unit));
-        };
-        add("t", "s");
-        vector("com", "m", &mut add);
-        vector("momentum", "kg m/s", &mut add);
-        match dimension {
-            1 => {}
-            2 => add("angular_momentum", "kg m^2/s"),
-            _ => vector("angular_momentum", "kg m^2/s", &mut add),
-        }
-        STORED.iter().for_each(|name| add(name, "J"));
-        add("constraint_drift", "m");
-        for node in &self.tracked {
-            vector(&format!("u{}", node + 1), "m", &mut add);
-        }
-        for Quantity { name, unit } in trajectory.sensors() {
-            add(name, unit);
-        }
-        EXCHANGED.iter().for_each(|name| add(name, "J"));
-        for (name, _) in &self.constrained {
-            vector(&format!("reaction_{name}"), "N", &mut add);
+        for kind in &COLUMNS {
+            let stems: Vec<String> = match kind.name {
+                TRACKED => self.tracked.iter().map(|node| format!("u{}", node + 1)).collect(),
+                REACTION => {
+                    self.constrained.iter().map(|(name, _)| format!("reaction_{name}")).collect()
+                }
+                name => vec![name.into()],
+            };
+            let column = |name| Quantity { name, unit: kind.unit.into() };
+            let axes = match (kind.along, dimension) {
+                (Along::Sensor, _) => {
+                    all.extend(trajectory.sensors().iter().cloned());
+                    continue;
+                }
+                (Along::None, _) | (Along::Rotations, 2) => {
+                    all.extend(stems.into_iter().map(column));
+                    continue;
+                }
+                (Along::Rotations, 1) => continue,
+                (Along::Axes | Along::Rotations, _) => &AXES[..dimension],
+            };
+            for stem in stems {
+                all.extend(axes.iter().map(|axis| column(format!("{stem}_{axis}"))));
+            }
         }
         all
     }
@@ -142,23 +234,5 @@ fn label(selection: &Selection) -> String {
 
 /// Unit of a column that a motion has without being asked for it; `None` of others, which are sensors.
 pub(super) fn standard_unit(name: &str) -> Option<&'static str> {
-    let is_axis = |axis: &str| AXES.contains(&axis);
-    let vector = name.rsplit_once('_').filter(|(_, axis)| is_axis(axis)).map(|(stem, _)| stem);
-    match name {
-        "t" => return Some("s"),
-        "angular_momentum" => return Some("kg m^2/s"),
-        "constraint_drift" => return Some("m"),
-        _ if STORED.contains(&name) || EXCHANGED.contains(&name) => return Some("J"),
-        _ => {}
-    }
-    let stem = vector?;
-    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|c| c.is_ascii_digit());
-    match stem {
-        "com" => Some("m"),
-        "momentum" => Some("kg m/s"),
-        "angular_momentum" => Some("kg m^2/s"),
-        _ if stem.starts_with("reaction_") => Some("N"),
-        _ if stem.strip_prefix('u').is_some_and(is_number) => Some("m"),
-        _ => None,
-    }
+    COLUMNS.iter().find(|kind| kind.has(name)).map(|kind| kind.unit)
 }

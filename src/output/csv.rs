@@ -11,20 +11,8 @@ use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::trajectory::{Sample, Trajectory};
 
-/// Writes one row per sample, after a row with the names of the columns:
-///
-/// | columns | meaning |
-/// | --- | --- |
-/// | `t` | time (s) |
-/// | `com_x`, ... | centre of mass (m) |
-/// | `momentum_x`, ... | momentum (kg m/s) |
-/// | `angular_momentum` | about the centre of mass (kg m^2/s); `angular_momentum_x`, ... in three dimensions, none in one |
-/// | `kinetic`, `strain`, `gravity`, `contact`, `springs` | energies (J) |
-/// | `constraint_drift` | largest error of a constraint (m) |
-/// | `u<N>_x`, ... | displacement of each tracked node N (m), numbers counted from 1 |
-/// | names of [sensors](crate::Sampling::sensor) | what they read, each in its unit |
-/// | `dissipated`, `supplied` | energies turned into heat and supplied from outside since t = 0 (J) |
-/// | `reaction_<nodes>_x`, ... | force of the constraints on the nodes that a phase holds or moves together (N), by the name of their set or their numbers; 0 in phases in which nothing holds them |
+/// Writes one row per sample, after a row with the names of the columns: those of [`reference`](super::reference),
+/// with displacements of the nodes that `track` names.
 ///
 /// Numbers have 17 significant digits: read back, they are the very same.
 ///

@@ -22,6 +22,7 @@ mod decades;
 mod plot;
 #[cfg(feature = "png")]
 mod png;
+mod reference;
 mod report;
 mod role;
 mod svg;
@@ -38,6 +39,7 @@ pub(crate) use self::decades::ticks;
 pub use self::plot::{Plot, Table};
 #[cfg(feature = "study")]
 pub(crate) use self::png::png;
+pub use self::reference::reference;
 pub use self::report::{write_report, write_static_report};
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;

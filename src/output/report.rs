@@ -11,26 +11,106 @@ use crate::report::{PhaseReport, Report};
 use crate::sundials;
 use crate::trajectory::{IntegrationFailure, Quantity, Trajectory};
 
-/// Writes how a run was computed, whether it was finished, gave up or was interrupted, as JSON:
-///
-/// | key | meaning |
-/// | --- | --- |
-/// | `status` | `"finished"`, `"failed"` or `"interrupted"` |
-/// | `failure` | `null`, or `phase`, `time` (s), `step` (s) and `cause` of what ended the run |
-/// | `method`, `rtol`, `alpha` | method, relative tolerance, stabilization rate (1/s) |
-/// | `states` | unknowns of the integrator, in the last phase |
-/// | `steps` | steps taken |
-/// | `rhs_evaluations`, `jacobian_evaluations` | evaluations of the right-hand side or residual, and of the tangents where they are not constant |
-/// | `difference_evaluations` | evaluations of forces for tangents by finite differences, of those that do not give theirs |
-/// | `factorizations` | factorizations of the Newton matrix |
-/// | `error_test_failures`, `convergence_failures` | steps repeated as their error was too large, Newton iterations that did not converge |
-/// | `wall_seconds` | wall-clock time of the whole run (s) |
-/// | `phases` | for each phase `name`, `end` (time reached, s), `reason` (why that method, or `null` if it was asked for), all of the above from `method` on, `contact_events` (located), `last_step` (s) and `last_order` |
-/// | `energy_balance_error`, `energy_created`, `energy_scale` | largest change and largest rise of the energy balance, largest sum of the energies (J) |
-/// | `max_constraint_drift` | largest error of a constraint at the end of a step (m) |
-/// | `sensors` | `name` and `unit` of each sensor, in the order of the columns of [`write_csv`](super::write_csv) |
-/// | `warnings` | what makes the result doubtful, in words |
-/// | `versions` | `pliant`, and the linked `sundials` and `suitesparse` (KLU) |
+/// Name, unit and meaning of a key. Those of tables follow them, after a dot; `[]` is each one of a list.
+pub(super) type ReportKey = (&'static str, &'static str, &'static str);
+
+/// The keys of [`write_report`].
+pub(super) const OF_RUN: &[ReportKey] = &[
+    ("status", "", "`\"finished\"`, `\"failed\"` or `\"interrupted\"`"),
+    ("failure", "", "what ended the run; `null` of one that was finished"),
+    ("failure.phase", "", "name of the phase"),
+    ("failure.time", "s", "time reached"),
+    ("failure.step", "s", "size of the last step"),
+    ("failure.cause", "", "the cause, in words"),
+    ("method", "", "method, as `pliant methods` names it"),
+    ("rtol", "1", "relative tolerance"),
+    ("alpha", "1/s", "stabilization rate of constraints"),
+    ("states", "", "unknowns of the integrator, in the last phase"),
+    ("steps", "", "steps taken"),
+    ("rhs_evaluations", "", "evaluations of the right-hand side or residual"),
+    ("jacobian_evaluations", "", "evaluations of the tangents, where they are not constant"),
+    (
+        "difference_evaluations",
+        "",
+        "evaluations of forces for tangents by finite differences, of those that do not give theirs",
+    ),
+    ("factorizations", "", "factorizations of the Newton matrix"),
+    ("error_test_failures", "", "steps repeated as their error was too large"),
+    ("convergence_failures", "", "Newton iterations that did not converge"),
+    ("wall_seconds", "s", "wall-clock time of the whole run"),
+    ("phases", "", "the phases that were begun, in their order"),
+    ("phases[].name", "", "name of the phase"),
+    ("phases[].end", "s", "time reached"),
+    ("phases[].method", "", "method in the end"),
+    ("phases[].reason", "", "why that method; `null` if it was asked for"),
+    ("phases[].rtol", "1", "as above, of this phase alone, as are all that follow"),
+    ("phases[].alpha", "1/s", "stabilization rate"),
+    ("phases[].states", "", "unknowns of the integrator"),
+    ("phases[].steps", "", "steps taken"),
+    ("phases[].rhs_evaluations", "", "evaluations of the right-hand side or residual"),
+    ("phases[].jacobian_evaluations", "", "evaluations of the tangents"),
+    ("phases[].difference_evaluations", "", "evaluations of forces for tangents"),
+    ("phases[].factorizations", "", "factorizations of the Newton matrix"),
+    ("phases[].error_test_failures", "", "steps repeated"),
+    ("phases[].convergence_failures", "", "Newton iterations that did not converge"),
+    ("phases[].wall_seconds", "s", "wall-clock time"),
+    ("phases[].contact_events", "", "contact events that were located"),
+    ("phases[].last_step", "s", "size of the last step"),
+    ("phases[].last_order", "", "order of the last step"),
+    ("energy_balance_error", "J", "largest change of the energy balance"),
+    ("energy_created", "J", "largest rise of the energy balance"),
+    ("energy_scale", "J", "largest sum of the energies"),
+    ("max_constraint_drift", "m", "largest error of a constraint at the end of a step"),
+    ("sensors", "", "the sensors, in the order of their columns in `trajectory.csv`"),
+    ("sensors[].name", "", "name of the column"),
+    ("sensors[].unit", "", "its unit"),
+    ("warnings", "", "what makes the result doubtful, in words"),
+    ("versions", "", "what computed it"),
+    ("versions.pliant", "", "version of `pliant`"),
+    ("versions.sundials", "", "version of the linked SUNDIALS"),
+    ("versions.suitesparse", "", "version of the linked SuiteSparse (KLU)"),
+];
+
+/// The keys of [`write_static_report`].
+pub(super) const OF_STATICS: &[ReportKey] = &[
+    ("status", "", "`\"finished\"` or `\"failed\"`"),
+    ("failure", "", "why the search gave up; `null` if it did not"),
+    ("failure.phase", "", "name of the phase"),
+    ("failure.fraction", "1", "part of the load for which an equilibrium was found"),
+    ("failure.tried", "1", "part for which none was found"),
+    ("failure.cause", "", "the likely cause, and what to try"),
+    ("method", "", "`\"static\"`"),
+    ("states", "", "displacement components"),
+    ("stability", "", "what a small push does to the equilibrium"),
+    ("stability.kind", "", "`\"stable\"`, `\"neutral\"` or `\"unstable\"`"),
+    (
+        "stability.frequency",
+        "Hz",
+        "lowest natural frequency; `null` if it is not stable or nothing can move",
+    ),
+    ("stability.growth", "1/s", "rate at which a push grows; `null` if it is not unstable"),
+    (
+        "removed",
+        "",
+        "rigid motions, in words, that nothing holds and that were taken out of the displacements",
+    ),
+    ("residual", "N", "largest nodal force left unbalanced"),
+    ("force_scale", "N", "largest nodal force of those that balance each other"),
+    ("iterations", "", "Newton iterations in all load steps"),
+    ("factorizations", "", "factorizations of the tangent"),
+    ("load_steps", "", "load steps that converged"),
+    ("failed_steps", "", "load steps that did not, and were made smaller"),
+    ("wall_seconds", "s", "wall-clock time of the search"),
+    ("max_constraint_drift", "m", "largest error of a constraint"),
+    ("warnings", "", "what makes the result doubtful, in words"),
+    ("versions", "", "what computed it"),
+    ("versions.pliant", "", "version of `pliant`"),
+    ("versions.sundials", "", "version of the linked SUNDIALS"),
+    ("versions.suitesparse", "", "version of the linked SuiteSparse (KLU)"),
+];
+
+/// Writes how a run was computed, whether it was finished, gave up or was interrupted, as JSON, with the keys of
+/// [`reference`](super::reference).
 ///
 /// # Errors
 /// [`Error::Output`] if the file cannot be written.
@@ -122,24 +202,8 @@ fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
     })
 }
 
-/// Writes how an equilibrium was found, or how far the search for it came, as JSON:
-///
-/// | key | meaning |
-/// | --- | --- |
-/// | `status` | `"finished"` or `"failed"` |
-/// | `failure` | `null`, or `phase`, `fraction` (part of the load in balance), `tried` (part for which no equilibrium was found) and `cause` |
-/// | `method` | `"static"` |
-/// | `states` | displacement components |
-/// | `stability` | `kind` (`"stable"`, `"neutral"` or `"unstable"`), `frequency` (lowest natural one, Hz; `null` if nothing can move) and `growth` (1/s) |
-/// | `removed` | rigid motions, in words, that nothing holds and that were taken out of the displacements |
-/// | `residual`, `force_scale` | largest nodal force left unbalanced, and largest of those that balance each other (N) |
-/// | `iterations`, `factorizations`, `load_steps`, `failed_steps` | what it took |
-/// | `wall_seconds` | wall-clock time of the search (s) |
-/// | `max_constraint_drift` | largest error of a constraint (m) |
-/// | `warnings` | what makes the result doubtful, in words |
-/// | `versions` | as in [`write_report`] |
-///
-/// What a search that gave up does not know is `null`.
+/// Writes how an equilibrium was found, or how far the search for it came, as JSON, with the keys of
+/// [`reference`](super::reference). What a search that gave up does not know is `null`.
 ///
 /// # Errors
 /// [`Error::Output`] if the file cannot be written.

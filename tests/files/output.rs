@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use pliant::output::{Chart, Snapshots, write_csv, write_energies, write_vtk};
+use pliant::output::{Chart, GrowingTable, Snapshots, write_csv, write_energies, write_vtk};
 use pliant::{
     Body, CellField, Cells, Material, Mesh, NodalField, Obstacle, Phase, Sampling, Scene, Settings,
     Shape, SolidCells, Strain, Trajectory,
@@ -84,6 +84,25 @@ fn a_table_holds_the_samples_to_the_last_bit() -> Outcome {
     // while it is pressed, and while it is free
     let drift: Vec<f64> = square.samples().iter().map(|sample| sample.constraint_drift).collect();
     assert!(drift[1] > 0.0 && drift[1] <= square.report().constraint_drift && drift[3] == 0.0);
+    Ok(())
+}
+
+/// A killed run has left rows behind its last checkpoint, the last one cut off: the run that goes on from there
+/// leaves the very table of a run that was not killed.
+#[test]
+fn a_table_is_cut_where_a_run_goes_on() -> Outcome {
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("trajectory.csv");
+    let square = square()?;
+    write_csv(&square, &path, None)?;
+    let whole = fs::read_to_string(&path)?;
+    let times: Vec<f64> = square.samples().iter().map(|sample| sample.time).collect();
+    for began in [times[0], times[1], 0.5 * (times[1] + times[2]), times[3]] {
+        fs::write(&path, format!("{whole}0.0,0.1"))?;
+        let table = GrowingTable::new(&square, &path, None)?;
+        table.going_on(&square, began)?.catch_up(&square)?;
+        assert_eq!(fs::read_to_string(&path)?, whole, "{began}");
+    }
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use clap::{Arg, Args, Command};
-use pliant::scene_file;
+use pliant::{output, scene_file};
 
 use crate::failure::{Failure, print};
 
@@ -56,7 +56,7 @@ fn page(command: Command) -> String {
         // writing to a text cannot fail
         let _ = section(&mut page, command);
     }
-    page + RESULTS
+    format!("{page}{RESULTS}\n{}", output::reference())
 }
 
 fn section(page: &mut String, command: &Command) -> std::fmt::Result {
