@@ -25,9 +25,7 @@ pub(super) fn merge<'a>(
     text: &str,
 ) -> Result<(), Error> {
     for (key, value) in over {
-        // what is written in braces takes the place of all that was there
-        let is_whole = text.get(value.span()).is_none_or(|written| written.starts_with('{'));
-        let span = value.span();
+        let (is_whole, span) = (is_whole(&value, text), value.span());
         match (table.get_mut(key.get_ref().as_ref()), value.into_inner()) {
             (Some(old), DeValue::Table(new)) if !is_whole => match old.get_mut() {
                 DeValue::Table(old) => merge(old, new, text)?,
@@ -39,6 +37,11 @@ pub(super) fn merge<'a>(
         }
     }
     Ok(())
+}
+
+/// Whether a value takes the place of all that was there, as tables in braces do.
+fn is_whole(value: &Spanned<DeValue>, text: &str) -> bool {
+    text.get(value.span()).is_none_or(|written| written.starts_with('{'))
 }
 
 fn merge_list<'a>(
@@ -65,9 +68,9 @@ fn merge_list<'a>(
         };
         let element =
             by_name.or_else(by_number).and_then(|at| list.get_mut(at)).ok_or_else(missing)?;
-        let span = value.span();
+        let (is_whole, span) = (is_whole(&value, text), value.span());
         match (element.get_mut(), value.into_inner()) {
-            (DeValue::Table(old), DeValue::Table(new)) => merge(old, new, text)?,
+            (DeValue::Table(old), DeValue::Table(new)) if !is_whole => merge(old, new, text)?,
             (_, value) => *element = Spanned::new(span, value),
         }
     }

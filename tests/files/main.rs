@@ -4,6 +4,7 @@ mod documentation;
 mod gmsh;
 mod output;
 mod output_of_cells;
+mod overrides;
 mod plots;
 mod reference;
 mod report;
