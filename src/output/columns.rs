@@ -70,7 +70,7 @@ pub(super) const COLUMNS: [ColumnKind; 15] = [
         SENSOR,
         Along::Sensor,
         "its own",
-        "what a sensor reads; each of its components is a column",
+        "what a sensor reads; each of its components is a column. Equilibria on the way to the load have `load factor`",
     ),
     kind(EXCHANGED[0], Along::None, "J", "energy turned into heat since t = 0"),
     kind(EXCHANGED[1], Along::None, "J", "energy supplied from outside since t = 0"),
