@@ -101,6 +101,62 @@ fn the_schema_knows_the_scenes() {
     }
 }
 
+/// What the schema says of keys that are left out, or are too many, is what reading does.
+#[test]
+fn the_schema_requires_what_reading_does() {
+    let schema = scene_file::schema();
+    let mut missing = 0;
+    for file in [include_str!("../data/rich.toml"), include_str!("../data/solid.toml")] {
+        let lines: Vec<&str> = file.lines().collect();
+        for (at, line) in lines.iter().enumerate() {
+            let Some((key, _)) = line.split_once(" = ") else { continue };
+            let header = lines[..at].iter().rposition(|line| line.starts_with('['));
+            let Some(header) = header else { continue };
+            // regions need only a part of a material: the schema knows one table for both
+            if lines[header] == "[body.material]" {
+                continue;
+            }
+            let name = lines[header].trim_matches(['[', ']']);
+            // tables within others go by their own names alone
+            let inner = name.rsplit('.').next().unwrap();
+            let of_name = |name| schema["definitions"].get(name);
+            let table = of_name(lines[header]).or_else(|| of_name(inner)).unwrap();
+            let own = lines[header + 1..].iter().take_while(|line| !line.starts_with('['));
+            let tables = lines.iter().filter_map(|line| {
+                Some((line.trim_matches(['[', ']']).strip_prefix(name)?.strip_prefix('.')?, ""))
+            });
+            let keys: Vec<(&str, &str)> =
+                own.filter_map(|line| line.split_once(" = ")).chain(tables).collect();
+            assert!(fits(table, &keys), "{name}");
+            let rest: Vec<_> = keys.iter().copied().filter(|other| other.0 != key).collect();
+            let mut text = lines.clone();
+            text.remove(at);
+            let read = SceneFile::parse(&text.join("\n"), Path::new("without.toml"));
+            let told = read.err().map(|error| error.to_string()).unwrap_or_default();
+            let is_missing =
+                [": missing; expected", ": expected either"].iter().any(|part| told.contains(part));
+            assert_eq!(fits(table, &rest), !is_missing, "{name} without {key}: {told}");
+            missing += usize::from(is_missing);
+            if key == "stiffness" && name == "obstacle" {
+                assert!(!fits(table, &[&keys[..], &[("stiffness_density", "1e7")]].concat()));
+            }
+        }
+    }
+    assert!(missing > 20, "{missing}");
+}
+
+/// Whether a table with these keys and values is as a schema wants it, as far as required keys go.
+fn fits(schema: &Value, keys: &[(&str, &str)]) -> bool {
+    let has = |name: &Value| keys.iter().any(|(key, _)| name == key);
+    let list = |name: &str| schema[name].as_array().into_iter().flatten();
+    let kind = schema["properties"]["kind"]["const"].as_str();
+    list("required").all(has)
+        && kind.is_none_or(|kind| keys.contains(&("kind", &format!("\"{kind}\""))))
+        && (schema["oneOf"].is_null() || list("oneOf").filter(|one| fits(one, keys)).count() == 1)
+        && (schema["anyOf"].is_null() || list("anyOf").any(|one| fits(one, keys)))
+        && (schema["not"].is_null() || !fits(&schema["not"], keys))
+}
+
 /// Whether a table of the schema, or the list of properties itself, has a key.
 fn has(table: &Value, key: &str) -> bool {
     let kinds = table["oneOf"].as_array().into_iter().flatten();
