@@ -133,6 +133,7 @@ impl Scene {
     }
 
     /// Forces (N) of the actuators of all springs at time `t` (s) in `phase`.
+    #[cfg(feature = "output")]
     pub(crate) fn actuations(&self, phase: &Phase, t: f64) -> Result<Vec<f64>, InputError> {
         let signals = self.actuation_signals(phase)?.into_iter();
         Ok(signals.map(|signals| signals.iter().map(|signal| signal.at(t)).sum()).collect())

@@ -21,6 +21,7 @@ pub(crate) enum LoadKind {
     Traction,
 }
 
+#[cfg(any(feature = "checkpoint", feature = "scene-file"))]
 impl LoadKind {
     pub(crate) const ALL: [Self; 3] = [Self::Each, Self::Total, Self::Traction];
 
