@@ -2,6 +2,7 @@
 
 use super::{Sample, Trajectory};
 use crate::constraint::PhaseStart;
+use crate::external::Contact;
 use crate::force::{Force, NodalForces};
 use crate::input::InputError;
 use crate::mesh::Selection;
@@ -16,9 +17,17 @@ impl Trajectory {
     /// A sample that is not of this trajectory; a distance function of your own that has changed
     /// since the run and has no meaning any more.
     pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
-        let phase = self.phase_of(sample)?;
+        self.forces_of(&self.scene.contacts(self.phase_of(sample)?)?, sample)
+    }
+
+    /// The same of `contacts` alone.
+    pub(crate) fn forces_of<'a>(
+        &self,
+        contacts: impl IntoIterator<Item = &'a Contact>,
+        sample: &Sample,
+    ) -> Result<Vec<f64>, InputError> {
         let mut forces = NodalForces::zeros(self.body().dofs());
-        for contact in self.scene.contacts(phase)? {
+        for contact in contacts {
             let added = contact.add_forces(sample.time, &sample.u, &sample.v, &mut forces);
             added.map_err(|failure| refused(sample, failure))?;
         }

@@ -108,6 +108,37 @@ fn the_data_are_those_of_the_samples() -> Outcome {
     Ok(())
 }
 
+/// The resultants of the obstacles add up to the contact forces of the samples, and act at nodes that they push.
+#[test]
+fn arrows_are_the_forces_of_obstacles() -> Outcome {
+    let trajectory = square()?;
+    let data = data(&page(&trajectory, "")?)?;
+    let contacts = data["contacts"].as_array().ok_or("no list")?;
+    let singles = |value: &Value| -> Result<Vec<f64>, Box<dyn Error>> {
+        let bytes = decoded(value)?;
+        Ok(bytes.as_chunks::<4>().0.iter().map(|&b| f64::from(f32::from_le_bytes(b))).collect())
+    };
+    let mut largest = 0.0_f64;
+    for (k, sample) in trajectory.samples().iter().enumerate() {
+        let forces = trajectory.contact_forces(sample)?;
+        let mut sum = [0.0; 2];
+        for contact in contacts {
+            let (force, at) = (singles(&contact["forces"])?, singles(&contact["at"])?);
+            sum = [0, 1].map(|axis| sum[axis] + force[2 * k + axis]);
+            // floor and walls push at the outside of the square, which is 0.3 m wide
+            assert!(at[2 * k].abs() < 1.0 && at[2 * k + 1].abs() < 1.0);
+        }
+        for (axis, found) in sum.into_iter().enumerate() {
+            let expected: f64 = forces.iter().skip(axis).step_by(2).sum();
+            // 24 bits
+            assert!((found - expected).abs() <= 1e-6 * expected.abs() + 1e-9, "{found} {expected}");
+            largest = largest.max(expected.abs());
+        }
+    }
+    assert!(largest > 1.0, "{largest} N");
+    Ok(())
+}
+
 /// Long runs are thinned evenly, to their first and last sample.
 /// What commands have changed is drawn as it was: a plate that stops, nodes that are held later, a spring that
 /// pulls.

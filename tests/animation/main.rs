@@ -8,6 +8,8 @@
 mod browser;
 mod data;
 mod page;
+mod saving;
+mod sensors;
 mod showing;
 mod using;
 
@@ -45,6 +47,9 @@ fn it_is_used() -> Outcome {
         ("picture and energies follow", using::picture_and_energies_follow_the_slider),
         ("colours", using::the_colours_are_those_of_the_chosen_quantity),
         ("keyboard", using::all_of_it_works_by_keyboard),
+        ("sensors", sensors::sensors_have_charts),
+        ("saving", saving::the_frame_is_saved),
+        ("arrows", saving::arrows_are_offered),
     ])
 }
 

@@ -22,6 +22,10 @@ pub const END: f64 = 0.16;
 /// A square that is pressed and let go over obstacles of all kinds; a mass hangs on a spring, which
 /// pulls and then pushes. All names are hostile to HTML.
 pub fn square() -> Result<Trajectory, pliant::Error> {
+    square_scene()?.simulate(&Settings::default(), &Sampling::every(0.01))
+}
+
+pub fn square_scene() -> Result<Scene, pliant::Error> {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
     let body = Body::new(mesh, RUBBER).strain(Strain::Cauchy).thickness(0.01).point_mass(
         "bob",
@@ -31,7 +35,7 @@ pub fn square() -> Result<Trajectory, pliant::Error> {
     let named = |name: &str, shape: Shape| Obstacle::new(shape).named(name).stiffness(1e3);
     let pair = [Shape::disc([0.0, -0.2], 0.03), Shape::capsule([0.1, -0.2], [0.2, -0.2], 0.03)];
     let press = Phase::until(PRESSED).named("</script><script>throw 1</script>");
-    Scene::new(body.build()?)
+    let scene = Scene::new(body.build()?)
         .gravity([0.0, -9.8])
         .spring(Spring::between([4], "bob").named("\"<b>\"").stiffness(50.0))
         .obstacle(named("floor", Shape::half_plane([0.0, 0.0], [0.0, 1.0])))
@@ -40,8 +44,8 @@ pub fn square() -> Result<Trajectory, pliant::Error> {
         .obstacle(named("pair", Shape::union(pair)))
         .obstacle(Obstacle::custom(|_, _| 1.0).named("own").stiffness(1.0))
         .phase(press.hold("bottom").move_nodes([14, 15], [0.0, -PUSH]).actuate(["\"<b>\""], -1.0))
-        .phase(Phase::until(END).named("free").actuate(["\"<b>\""], 1.0))
-        .simulate(&Settings::default(), &Sampling::every(0.01))
+        .phase(Phase::until(END).named("free").actuate(["\"<b>\""], 1.0));
+    Ok(scene)
 }
 
 /// An animation in a directory of its own, which goes with it.

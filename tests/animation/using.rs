@@ -175,13 +175,13 @@ pub fn all_of_it_works_by_keyboard(browser: &mut Browser) -> Outcome {
 
     // everything is reached by Tab, has a name, and shows that it has the focus
     let mut reached = Vec::new();
-    for _ in 0..13 {
+    for _ in 0..16 {
         browser.press("Tab", false)?;
         reached.push(browser.text("document.activeElement.id || document.activeElement.tagName")?);
         let outline = browser.text("getComputedStyle(document.activeElement).outlineStyle")?;
         assert_eq!(outline, "solid", "focus on {reached:?}");
     }
-    let mut expected = vec!["quantity", "play", "time", "speed"];
+    let mut expected = vec!["quantity", "play", "time", "speed", "arrows", "png", "svg"];
     expected.extend(["BUTTON"; 8]);
     expected.extend(["SUMMARY"]);
     assert_eq!(reached, expected);

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
-use super::geometry::Geometry;
-use super::pack;
+use super::geometry::{Geometry, in_view};
+use super::{contacts, pack};
 use crate::body::{Body, CellField};
 use crate::constraint::Spline;
 use crate::error::Error;
@@ -13,7 +13,7 @@ use crate::external::{Joint, Obstacle, Shape, ShapeKind};
 use crate::input::InputError;
 use crate::mesh::Mesh;
 use crate::output::role::Role;
-use crate::output::svg::{View, displaced, drawn, positions};
+use crate::output::svg::{View, displaced, positions};
 use crate::scene::{Phase, Scene};
 use crate::system::Energy;
 use crate::trajectory::{Sample, Trajectory};
@@ -41,7 +41,7 @@ pub(super) fn gather(trajectory: &Trajectory, title: &str) -> Result<Value, Erro
     let points = point_masses(mesh);
     let ends = spring_ends(scene)?;
     let geometry = Geometry::new(mesh, ends.iter().flatten().copied(), &points);
-    let frames = thinned(trajectory.samples(), bytes_per_frame(&geometry, mesh.dimension()));
+    let frames = thinned(trajectory.samples(), bytes_per_frame(trajectory, &geometry));
     let view = (mesh.dimension() < 3).then(|| View::of(trajectory, &frames).corners());
     Ok(json!({
         "title": title,
@@ -55,6 +55,8 @@ pub(super) fn gather(trajectory: &Trajectory, title: &str) -> Result<Value, Erro
         "motion": motion(trajectory, &frames, &geometry),
         "quantities": quantities(body, &frames, &geometry),
         "energies": energies(&frames),
+        "sensors": sensors(trajectory, &frames),
+        "contacts": contacts::resultants(trajectory, &frames)?,
         "obstacles": obstacles_in(trajectory, &frames)?,
         "springs": springs(trajectory, &frames, &geometry, &ends)?,
         "points": geometry.places(&points),
@@ -69,8 +71,10 @@ fn thinned(samples: &[Sample], bytes_per_frame: usize) -> Vec<&Sample> {
     (0..frames).map(|k| &samples[k * last / (frames - 1).max(1)]).collect()
 }
 
-fn bytes_per_frame(geometry: &Geometry, dimension: usize) -> usize {
-    2 * dimension.max(2) * geometry.count() + QUANTITIES.len() * geometry.cells.len()
+fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry) -> usize {
+    let axes = trajectory.body().dimension().max(2);
+    let sensors = size_of::<f32>() * trajectory.sensors().len();
+    2 * axes * geometry.count() + QUANTITIES.len() * geometry.cells.len() + sensors
 }
 
 /// Positions of the drawn nodes and anchors, sample by sample.
@@ -199,6 +203,16 @@ fn energies(frames: &[&Sample]) -> Value {
     packed.collect()
 }
 
+/// What the sensors have read; what is no number stays none.
+fn sensors(trajectory: &Trajectory, frames: &[&Sample]) -> Value {
+    let sensors = trajectory.sensors().iter().enumerate();
+    let packed = sensors.map(|(number, sensor)| {
+        let values = pack::singles(frames.iter().map(|sample| sample.sensors[number]));
+        json!({ "name": sensor.name, "unit": sensor.unit, "values": values })
+    });
+    packed.collect()
+}
+
 /// Shapes of the obstacles, unions part by part, and how they move.
 pub(super) fn obstacles(scene: &Scene) -> Value {
     let mut shapes = Vec::new();
@@ -281,11 +295,6 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
         // a function of one's own has no outline
         ShapeKind::Custom(_) => {}
     }
-}
-
-/// A vector as the page draws it: upright in one dimension.
-fn in_view(x: &[f64]) -> Vec<f64> {
-    if x.len() < 3 { drawn(x).to_vec() } else { x.to_vec() }
 }
 
 /// What each spring joins.

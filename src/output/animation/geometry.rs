@@ -142,3 +142,8 @@ fn surface(mesh: &Mesh) -> Faces {
     let faces = mesh.boundary_faces_of_cells().into_iter();
     faces.map(|(cell, face)| (cell, around(mesh.kind(), &face).collect())).collect()
 }
+
+/// A vector as the page draws it: upright in one dimension.
+pub(super) fn in_view(x: &[f64]) -> Vec<f64> {
+    if x.len() < 3 { drawn(x).to_vec() } else { x.to_vec() }
+}

@@ -1,5 +1,6 @@
 //! The motion as a page for a web browser.
 
+mod contacts;
 mod data;
 mod geometry;
 #[cfg(feature = "play")]
@@ -30,14 +31,19 @@ const SCRIPT: &str = concat!(
     include_str!("page/space.js"),
     include_str!("page/stage.js"),
     include_str!("page/chart.js"),
+    include_str!("page/sensors.js"),
+    include_str!("page/contacts.js"),
+    include_str!("page/vectors.js"),
     include_str!("page/controls.js"),
+    include_str!("page/saving.js"),
     include_str!("page/player.js"),
 );
 
 /// Writes the motion as one HTML file that a web browser plays, without a network: the body
 /// coloured by stress or strain energy density, obstacles, springs (coloured while an actuator
-/// pulls or pushes), point masses, held and moved nodes; below it the energies over time and how
-/// the motion was computed, with the warnings of the report. `title` is its heading. Obstacles that
+/// pulls or pushes), point masses, held and moved nodes, forces of obstacles as arrows; below it the energies and what
+/// sensors have read over time, and how the motion was computed, with the warnings of the report. The shown frame can
+/// be saved as PNG or SVG. `title` is its heading. Obstacles that
 /// are given by a function are not drawn.
 ///
 /// Between samples the page interpolates linearly. Of long runs it holds a part of the samples,

@@ -104,7 +104,7 @@ function valueAt(_, { scale }, face) {
   return colours && scale > 0 ? (colouring[face] * colours.scale) / scale || 0 : 0;
 }
 
-function energyAt(_, { values }) {
+function seriesAt(_, { values }) {
   return values[values.length - 1] ?? 0;
 }
 

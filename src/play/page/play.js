@@ -71,8 +71,8 @@ function show(next) {
   const now = performance.now();
   if (now - chartDrawn > 100 || !next.playing) {
     chartDrawn = now;
-    drawChart();
-    showEnergies({ time: last });
+    energyChart.draw();
+    energyChart.tell({ time: last });
     showFacts();
   }
   clock.textContent = `${fixed(next.time, decimals)} s`;
@@ -136,7 +136,7 @@ function draw() {
 
 function redraw() {
   fitStage();
-  drawChart();
+  energyChart.draw();
   draw();
 }
 
@@ -305,7 +305,7 @@ describeStage();
 stage.setAttribute("aria-label", "The body in motion");
 showKey();
 offerQuantities(draw);
-offerSeries(drawChart);
+energyChart.offerSeries(() => energyChart.draw());
 offerSpeeds(data.until);
 letTurn(draw);
 showSign("Play");

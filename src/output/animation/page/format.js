@@ -12,6 +12,19 @@ function prefixed(largest, unit) {
   return { factor, unit: prefix + unit };
 }
 
+/** Units that take a prefix. */
+const PREFIXED = ["m", "s", "m/s", "N", "J", "Pa", "rad"];
+
+/** The same for any unit: others take a power of ten where numbers are very large or small. */
+function scaled(largest, unit) {
+  if (PREFIXED.includes(unit)) return prefixed(largest, unit);
+  const name = unit === "1" ? "" : unit.replace("^2", "\u00b2").replace("^3", "\u00b3");
+  if (largest >= 1e-3 && largest < 1e4) return { factor: 1, unit: name };
+  const power = 3 * Math.floor(Math.log10(largest) / 3);
+  const raised = String(power).replace(/./g, (sign) => (sign === "-" ? "\u207b" : "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079"[sign]));
+  return { factor: Number(`1e${power}`), unit: `10${raised} ${name}`.trim() };
+}
+
 /** The same for lengths (m) that are part of a picture as large as `extent`. */
 function lengthUnit(extent) {
   const [factor, unit] =

@@ -15,6 +15,8 @@ const quantities = data.quantities.map((quantity) => ({
 const energies = data.energies
   .map((series) => ({ ...series, values: singles(series.values) }))
   .filter((series) => series.values.some((value) => value !== 0));
+const sensors = data.sensors.map((sensor) => ({ ...sensor, values: singles(sensor.values) }));
+const contacts = data.contacts.map(({ at, forces }) => ({ at: singles(at), forces: singles(forces) }));
 const springs = data.springs.map((spring) => ({ ...spring, forces: singles(spring.forces) }));
 
 /** The samples before and after `time`, and how far it is from one to the other. */
@@ -55,7 +57,9 @@ function valueAt({ before, after, share }, { values }, face) {
   return between(values, before * count + face, after * count + face, share);
 }
 
-function energyAt({ before, after, share }, { values }) {
+/** A number over time; at a sample its own, whatever is beside it. */
+function seriesAt({ before, after, share }, { values }) {
+  if (share === 0 || share === 1) return values[share === 0 ? before : after];
   return between(values, before, after, share);
 }
 

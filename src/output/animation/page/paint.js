@@ -19,7 +19,7 @@ function paint(name) {
 }
 
 function rgb([red, green, blue], light = 1) {
-  return `rgb(${red * light},${green * light},${blue * light})`;
+  return `rgb(${[red, green, blue].map((part) => Math.round(part * light))})`;
 }
 
 /** A canvas made as fine as the screen, cleared, and its size in CSS pixels. */
@@ -35,7 +35,7 @@ function sheet(canvas) {
   context.clearRect(0, 0, width, height);
   context.font = FONT;
   context.lineJoin = "round";
-  return { context, width, height };
+  return { context, width, height, hatching: () => hatching(context) };
 }
 
 /** Slanted lines, to fill what is solid. */

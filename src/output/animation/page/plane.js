@@ -30,7 +30,7 @@ function drawPlane(sheet, moment, quantity) {
   context.beginPath();
   context.rect(MARGIN.left, MARGIN.top, ...layout.room);
   context.clip();
-  const hatch = hatching(context);
+  const hatch = sheet.hatching();
   for (const obstacle of data.obstacles) drawObstacle(context, layout, obstacle, moment.time, hatch);
   const [xs, ys] = positionsAt(moment);
   const points = { xs: xs.map(layout.x), ys: ys.map(layout.y) };

@@ -2,6 +2,7 @@
 
 const slider = document.getElementById("time");
 const clock = document.getElementById("clock");
+const charts = [energyChart, ...sensorCharts];
 const phaseLine = document.getElementById("phase");
 
 let now = first;
@@ -13,8 +14,8 @@ const decimals = Math.min(6, Math.max(0, Math.round(3 - Math.log10(last - first 
 
 function show() {
   const moment = momentAt(now);
-  drawStage(moment);
-  showEnergies(moment);
+  drawFrame(sheet(stage), moment);
+  for (const chart of charts) chart.tell(moment);
   const time = `${fixed(now, decimals)} s`;
   const { name } = phaseAt(now);
   slider.value = now;
@@ -23,9 +24,14 @@ function show() {
   phaseLine.textContent = `phase: ${name}`;
 }
 
+function drawFrame(drawing, moment) {
+  drawStage(moment, drawing);
+  if (arrows.checked) drawContacts(drawing, moment);
+}
+
 function redraw() {
   fitStage();
-  drawChart();
+  for (const chart of charts) chart.draw();
   show();
 }
 
@@ -78,12 +84,14 @@ const KEYS = {
   End: () => seek(last),
   "+": () => changeSpeed(1),
   "-": () => changeSpeed(-1),
+  p: savePixels,
+  s: saveVectors,
 };
 
 document.addEventListener("keydown", (event) => {
   if (event.ctrlKey || event.altKey || event.metaKey) return;
   const at = event.target.tagName;
-  if (at === "SELECT" || (event.key === " " && ["BUTTON", "SUMMARY"].includes(at))) return;
+  if (at === "SELECT" || (event.key === " " && (["BUTTON", "SUMMARY"].includes(at) || event.target === arrows))) return;
   const act = KEYS[event.key];
   if (!act) return;
   event.preventDefault();
@@ -123,14 +131,19 @@ tellFacts();
 describeStage();
 showKey();
 offerQuantities(show);
-offerSeries(redraw);
+offerContacts(show);
 offerSpeeds(last - first);
-letSeek(seek);
+for (const chart of charts) {
+  chart.offerSeries(redraw);
+  chart.letSeek(seek);
+}
 letTurn(show);
 showSign("Play");
 Object.assign(slider, { min: first, max: last, step: "any" });
 slider.addEventListener("input", () => seek(Number(slider.value)));
 playButton.addEventListener("click", toggle);
+document.getElementById("png").addEventListener("click", savePixels);
+document.getElementById("svg").addEventListener("click", saveVectors);
 window.addEventListener("resize", redraw);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 redraw();

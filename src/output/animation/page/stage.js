@@ -6,8 +6,7 @@ const inSpace = axes === 3;
 /** Chosen quantity; none: one colour. */
 let quantity = quantities[0];
 
-function drawStage(moment) {
-  const drawing = sheet(stage);
+function drawStage(moment, drawing = sheet(stage)) {
   (inSpace ? drawSpace : drawPlane)(drawing, moment, quantity);
 }
 
