@@ -44,7 +44,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let SceneFile { title, statics, output: request, .. } = &file;
     let mut request = request.clone();
     // one state has nothing over time
+    let asked = request.formats.len();
     request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
+    if request.formats.len() < asked && !output.quiet {
+        print("plots over time are of motions: an equilibrium has none")?;
+    }
     let request = &request;
 
     let result = file.equilibrium();
