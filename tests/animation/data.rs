@@ -139,7 +139,6 @@ fn arrows_are_the_forces_of_obstacles() -> Outcome {
     Ok(())
 }
 
-/// Long runs are thinned evenly, to their first and last sample.
 /// What commands have changed is drawn as it was: a plate that stops, nodes that are held later, a spring that
 /// pulls.
 #[test]
@@ -203,6 +202,51 @@ fn an_obstacle_on_a_path_is_drawn_on_it() -> Outcome {
     Ok(())
 }
 
+/// Resultants and centres of pressure of the floor: the sum of the nodal forces, and where their moment about the origin
+/// puts them, for on a level floor without friction all point upward.
+#[test]
+fn arrows_start_at_the_centre_of_pressure() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.05], [5, 3], Cells::Triangles)?;
+    let body = Body::new(mesh, RUBBER).strain(Strain::Green).thickness(0.01).build()?;
+    let floor = |name: &str, height: f64| {
+        Obstacle::half_plane([0.0, height], [0.0, 1.0]).stiffness(200.0).damping(1.0).named(name)
+    };
+    let scene = Scene::new(body)
+        .gravity([0.0, -9.8])
+        .initial_velocity(|_| vec![0.3, 0.0])
+        .obstacle(floor("far", -1.0))
+        .obstacle(floor("floor", -0.002))
+        .phase(Phase::until(0.1));
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
+    let data = data(&page(&trajectory, "")?)?;
+    let contacts = data["contacts"].as_array().ok_or("no list")?;
+    assert_eq!(contacts.len(), 1, "what touches alone");
+    let numbers = |key: &str| -> Result<Vec<f64>, Box<dyn Error>> {
+        let bytes = decoded(&contacts[0][key])?;
+        Ok(bytes.as_chunks::<4>().0.iter().map(|&b| f32::from_le_bytes(b).into()).collect())
+    };
+    let (at, forces) = (numbers("at")?, numbers("forces")?);
+    let natural = trajectory.body().mesh().positions();
+    let mut touching = 0;
+    for (k, sample) in trajectory.samples().iter().enumerate() {
+        let nodal = trajectory.contact_forces(sample)?;
+        let [fx, fy] = [0, 1].map(|axis| nodal.iter().skip(axis).step_by(2).sum::<f64>());
+        let near =
+            |found: f64, expected: f64| (found - expected).abs() < 1e-6 * (1.0 + expected.abs());
+        assert!(near(forces[2 * k], fx) && near(forces[2 * k + 1], fy), "at {} s", sample.time);
+        if fy > 0.0 {
+            touching += 1;
+            let moment: f64 = (0..15)
+                .map(|node| (natural[2 * node] + sample.u[2 * node]) * nodal[2 * node + 1])
+                .sum();
+            assert!(near(at[2 * k], moment / fy), "{} is not {}", at[2 * k], moment / fy);
+        }
+    }
+    assert!(touching > 3, "{touching} samples");
+    Ok(())
+}
+
+/// Long runs are thinned evenly, to their first and last sample.
 #[test]
 fn files_stay_small() -> Outcome {
     let scene = square_jump(10)?;

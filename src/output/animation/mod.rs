@@ -43,8 +43,7 @@ const SCRIPT: &str = concat!(
 /// coloured by stress or strain energy density, obstacles, springs (coloured while an actuator
 /// pulls or pushes), point masses, held and moved nodes, forces of obstacles as arrows; below it the energies and what
 /// sensors have read over time, and how the motion was computed, with the warnings of the report. The shown frame can
-/// be saved as PNG or SVG. `title` is its heading. Obstacles that
-/// are given by a function are not drawn.
+/// be saved as PNG or SVG. `title` is its heading. Obstacles that are given by a function are not drawn.
 ///
 /// Between samples the page interpolates linearly. Of long runs it holds a part of the samples,
 /// evenly spread over their order: a few hundred at most, for a file of about 2 MB at most unless
@@ -53,7 +52,8 @@ const SCRIPT: &str = concat!(
 /// times.
 ///
 /// # Errors
-/// [`Error::Output`] if the file cannot be written.
+/// [`Error::Output`] if the file cannot be written; [`Error::Input`] if a distance function of one's own has no meaning
+/// any more where the body was, so that the forces of its obstacle are not known.
 ///
 /// ```
 /// use pliant::output::write_animation;
