@@ -4,8 +4,6 @@
 //! they differ from a continuous field, the mean at each node of what the cells around it say there. Each
 //! material has a mean of its own, for strains do jump where materials meet.
 
-use nalgebra::DMatrix;
-
 use super::elements::ElementsOf;
 use super::regions::Regions;
 use crate::material::{Deformation, Strain};
@@ -22,10 +20,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Recovery
     for ElementsOf<N, M, D, Q>
 {
     fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> [f64; 2] {
-        let to_nodes = self.extrapolation();
         let [mut energy, mut jumps] = [0.0; 2];
         for cells in regions.by_substance(self.nodes.len()) {
-            let means = self.means(&cells, &to_nodes, strain, u);
+            let means = self.means(&cells, strain, u);
             for &cell in &cells {
                 let hooke = &regions.of(cell).hooke;
                 for ((volume, own), values) in self.strains(cell, strain, u).zip(&self.values) {
@@ -60,13 +57,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 
     /// Means at the nodes of twice the strain that the `cells` around them have there, by their volumes.
-    fn means(
-        &self,
-        cells: &[usize],
-        to_nodes: &DMatrix<f64>,
-        strain: Strain,
-        u: &[f64],
-    ) -> Vec<Matrix<f64, M, M>> {
+    fn means(&self, cells: &[usize], strain: Strain, u: &[f64]) -> Vec<Matrix<f64, M, M>> {
         let count = u.len() / D;
         let (mut means, mut volumes) = (vec![[[0.0; M]; M]; count], vec![0.0; count]);
         for &cell in cells {
@@ -77,8 +68,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             let volume: f64 = own.iter().map(|(volume, _)| volume).sum();
             for (a, &node) in self.nodes[cell].iter().enumerate() {
                 volumes[node] += volume;
-                for (q, (_, strain)) in own.iter().enumerate() {
-                    add(&mut means[node], volume * to_nodes[(a, q)], strain);
+                for ((_, strain), factor) in own.iter().zip(self.extrapolation[a]) {
+                    add(&mut means[node], volume * factor, strain);
                 }
             }
         }
@@ -86,13 +77,6 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             mean.as_flattened_mut().iter_mut().for_each(|x| *x /= volume);
         }
         means
-    }
-
-    /// Values at the nodes of what is known at the strain points, one row each: constant if there is one point, by
-    /// the shape functions if there are as many as nodes.
-    fn extrapolation(&self) -> DMatrix<f64> {
-        let values = DMatrix::from_fn(Q, N, |q, a| self.values[q][a]);
-        values.pseudo_inverse(1e-9).unwrap_or_else(|_| DMatrix::zeros(N, Q))
     }
 }
 
