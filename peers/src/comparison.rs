@@ -17,6 +17,9 @@ const TIMES: usize = 101;
 /// Processor time (s) that each of the two methods of the reference may take.
 const REFERENCE_LIMIT: f64 = 120.0;
 
+/// How the names of lines with lumped inertia end.
+pub const LUMPED: &str = ", lumped";
+
 /// Why a run was not even begun.
 pub const TOO_SLOW: &str = "a rougher run took too long";
 
@@ -101,7 +104,7 @@ impl Comparison {
     pub fn line(&mut self, name: &str, family: &str, way: Way, settings: &[f64]) {
         let name = match self.inertia {
             Inertia::Consistent => name.into(),
-            Inertia::Lumped => format!("{name}, lumped"),
+            Inertia::Lumped => format!("{name}{LUMPED}"),
         };
         let point = |&setting: &f64| Point { name: format!("{setting:e}"), rtol: setting };
         let points = settings.iter().map(point).collect();

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use pliant::study::{Failed, Findings, LineFindings};
 
-use crate::comparison::TOO_SLOW;
+use crate::comparison::{LUMPED, TOO_SLOW};
 use pliant_peers::scenes::Case;
 
 /// Errors of the tip (mm) for which times are compared.
@@ -27,8 +27,13 @@ pub fn write(
         findings.write_chart(file(extension))?;
     }
     let mut page = format!("## {}\n\n![chart]({}.png)\n\n", case.title, case.name);
-    page += "Processor time (s) to reach an error of the tip, and times as long as the fastest of pliant:\n\n";
-    page += &tip_table(findings, tips)?;
+    page += "Processor time (s) to reach an error of the tip, and times as long as the fastest of pliant with the same \
+             inertia (lumped inertia is another model, compared with a reference of its own):\n";
+    for is_lumped in [false, true] {
+        let lines = findings.lines().iter().filter(|line| line.name.ends_with(LUMPED) == is_lumped);
+        page += "\n";
+        page += &tip_table(&lines.collect::<Vec<_>>(), tips)?;
+    }
     page +=
         "\nAll runs: error of node positions (relative), of the tip (mm), processor time (s).\n\n";
     page += &all_runs(findings, tips)?;
@@ -55,7 +60,7 @@ fn time_to_reach(
 }
 
 fn tip_table(
-    findings: &Findings,
+    lines: &[&LineFindings],
     tips: &BTreeMap<(String, String), f64>,
 ) -> Result<String, Failed> {
     let mut table = "| line |".to_owned();
@@ -65,10 +70,10 @@ fn tip_table(
     table += "\n| --- |";
     table += &" --- |".repeat(ACCURACIES.len());
     let best = ACCURACIES.map(|accuracy| {
-        let own = findings.lines().iter().filter(|line| line.name.starts_with("pliant"));
+        let own = lines.iter().filter(|line| line.name.starts_with("pliant"));
         own.filter_map(|line| time_to_reach(line, tips, 1e-3 * accuracy)).min_by(f64::total_cmp)
     });
-    for line in findings.lines() {
+    for line in lines {
         write!(table, "\n| {} |", line.name)?;
         for (accuracy, best) in ACCURACIES.into_iter().zip(best) {
             match (time_to_reach(line, tips, 1e-3 * accuracy), best) {
