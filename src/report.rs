@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::input::told;
 use crate::settings::Method;
 
 /// How a trajectory was computed.
@@ -28,8 +29,53 @@ pub struct Report {
     /// What indicators measured beyond their limits once the run had ended, each with what to change: see
     /// [`warnings`](Self::warnings).
     pub doubts: Vec<String>,
+    /// To what the motion is known, if it was [verified](crate::study::Verification).
+    pub achieved: Option<Achieved>,
     /// Phase by phase.
     pub phases: Vec<PhaseReport>,
+}
+
+/// To what a motion is known: the difference of two runs, the second by a tenth of the tolerance of the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Achieved {
+    /// What was compared.
+    pub quantity: String,
+    /// The relative difference that was asked for at most.
+    pub asked: f64,
+    /// The relative difference that was found.
+    pub difference: f64,
+    /// What both are relative to, in `unit`: how much the quantity changes.
+    pub scale: f64,
+    /// Unit of the quantity.
+    pub unit: String,
+    /// Time (s) until which the runs agree as was asked; the end of the scene if they do in all.
+    pub known_until: f64,
+    /// End of the scene (s).
+    pub end: f64,
+    /// Runs in all.
+    pub runs: usize,
+    /// Relative tolerances of the two.
+    pub rtol: [f64; 2],
+}
+
+impl Achieved {
+    /// Whether the runs agree as was asked.
+    pub fn is_enough(&self) -> bool {
+        self.difference <= self.asked
+    }
+}
+
+impl fmt::Display for Achieved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, asked, difference, scale, unit, runs, rtol, .. } = self;
+        let [coarse, fine] = rtol;
+        let (found, asked, scale) = (told(100.0 * difference), told(100.0 * asked), told(*scale));
+        write!(
+            f,
+            "{quantity} is known to {found} % of {scale} {unit} (asked: {asked} %): the difference of the last two of \
+             {runs} runs, by rtol {coarse:.0e} and {fine:.0e}"
+        )
+    }
 }
 
 /// How one phase was computed.
@@ -105,6 +151,19 @@ impl Report {
         });
         warnings.extend(doubt.map(|doubt| {
             format!("{doubt}, so the motion may be wrong: lower rtol, or choose another method")
+        }));
+        warnings.extend(self.achieved.as_ref().filter(|achieved| !achieved.is_enough()).map(|known| {
+            format!(
+                "two runs with rtol {:.0e} and {:.0e} still differ by {} % in {} (asked: {} %), and are further apart than \
+                 that from t = {} s on: small errors grow there, as after impacts. Rely on the motion until then, and \
+                 later on energies and means alone",
+                known.rtol[0],
+                known.rtol[1],
+                told(100.0 * known.difference),
+                known.quantity,
+                told(100.0 * known.asked),
+                told(known.known_until),
+            )
         }));
         warnings.extend_from_slice(&self.doubts);
         warnings
@@ -184,6 +243,9 @@ impl fmt::Display for Report {
             if !remarks.is_empty() {
                 write!(f, "\nphase \"{name}\": {}", remarks.join("; "))?;
             }
+        }
+        if let Some(achieved) = &self.achieved {
+            write!(f, "\n{achieved}")?;
         }
         self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
     }

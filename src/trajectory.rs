@@ -88,6 +88,20 @@ impl Trajectory {
         self.sensors = sensors;
     }
 
+    /// Keeps the first `count` columns of the sensors.
+    #[cfg(feature = "study")]
+    pub(crate) fn keep_sensors(&mut self, count: usize) {
+        self.sensors.truncate(count);
+        self.samples.iter_mut().for_each(|sample| sample.sensors.truncate(count));
+    }
+
+    /// Adds a column with a value for each sample.
+    #[cfg(feature = "study")]
+    pub(crate) fn add_column(&mut self, quantity: Quantity, values: &[f64]) {
+        self.sensors.push(quantity);
+        self.samples.iter_mut().zip(values).for_each(|(sample, x)| sample.sensors.push(*x));
+    }
+
     /// Puts a sample in the place of the last one.
     pub(crate) fn replace_last(&mut self, sample: Sample) {
         self.samples.pop();

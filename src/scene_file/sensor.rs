@@ -78,6 +78,12 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
             Key::new("to", LINE, "the two ends of the other").required(),
         ],
     },
+    Kind { word: "centre-of-mass", about: "where the centre of mass is (m)", keys: &[] },
+    Kind {
+        word: "rotation",
+        about: "the angle by which a body in the plane has turned as a whole (rad), counter-clockwise",
+        keys: &[],
+    },
 ]);
 
 const NODES: Key = Key::new("nodes", Holds::Nodes, "the nodes").required();
@@ -114,7 +120,9 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
             let end = |key: &str| table.required(key, |value| selection(value, mesh));
             Reading::distance(end("from")?, end("to")?)
         }
-        _ => Reading::angle(ends("from")?, ends("to")?),
+        "angle" => Reading::angle(ends("from")?, ends("to")?),
+        "centre-of-mass" => Reading::centre_of_mass(),
+        _ => Reading::rotation(),
     };
     let component = table.optional("component", |value| value.word(&Component::WORDS))?;
     let reading = match component {
@@ -122,7 +130,7 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         None => reading,
     };
     let alone = Sampling::phase_ends().read(name, reading.clone());
-    alone.check_sensors(scene).map_err(|error| table.blame(error))?;
+    alone.columns(scene).map_err(|error| table.blame(error))?;
     Ok((name.into(), reading))
 }
 

@@ -79,7 +79,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     if let Some(values) = top.get("sensor") {
         let sensors = values.one_or_more()?.into_iter().map(|value| sensor(&value, &scene));
         output.sensors = sensors.collect::<Result<_, _>>()?;
-        output.sampling().check_sensors(&scene).map_err(|error| values.error(error))?;
+        output.sampling().columns(&scene).map_err(|error| values.error(error))?;
     }
     Ok(SceneFile { title: title.into(), scene, settings, statics, output, notes: Vec::new() })
 }

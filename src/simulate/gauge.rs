@@ -96,6 +96,15 @@ impl Reading {
                     Value::Number(across.atan2(dot(&a, &b)))
                 })
             }
+            What::CentreOfMass => Box::new(move |view, _| {
+                let centre = view.centre_of_mass();
+                Value::Vector(std::array::from_fn(|i| centre.get(i).copied().unwrap_or(0.0)))
+            }),
+            What::Rotation if d != 2 => {
+                let mend = "a body turns by one angle in two dimensions only: take the angle between two lines";
+                return Err(InputError::new("rotation in dimension", d, mend));
+            }
+            What::Rotation => Box::new(|view, _| Value::Number(view.rotation().unwrap_or(f64::NAN))),
         })
     }
 }

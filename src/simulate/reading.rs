@@ -28,6 +28,8 @@ pub(super) enum What {
     Strain(Place),
     Distance([Selection; 2]),
     Angle([[Selection; 2]; 2]),
+    CentreOfMass,
+    Rotation,
 }
 
 /// Where a field is read.
@@ -177,6 +179,17 @@ impl Reading {
         What::Angle([from, to].map(|line| line.map(Into::into))).into()
     }
 
+    /// Where the centre of mass is (m).
+    pub fn centre_of_mass() -> Self {
+        What::CentreOfMass.into()
+    }
+
+    /// Angle (rad, counter-clockwise, between -pi and pi) by which a body in the plane has turned as a whole: see
+    /// [`Trajectory::rotation`](crate::Trajectory::rotation).
+    pub fn rotation() -> Self {
+        What::Rotation.into()
+    }
+
     /// One component alone. Default: all of them, each a column.
     pub fn component(mut self, component: Component) -> Self {
         self.component = Some(component);
@@ -184,16 +197,16 @@ impl Reading {
     }
 
     /// Unit of the numbers.
-    pub(super) fn unit(&self) -> &'static str {
+    pub(crate) fn unit(&self) -> &'static str {
         match self.what {
-            What::Position(_) | What::Displacement(_) => "m",
+            What::Position(_) | What::Displacement(_) | What::CentreOfMass => "m",
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
             What::ConstraintForce(_) | What::ContactForce(_) | What::SpringPull(_) => "N",
             What::Pressure(_) | What::Stress(_) => "Pa",
             What::ChamberVolume(_) => "m^3",
             What::Strain(_) => "1",
-            What::Angle(_) => "rad",
+            What::Angle(_) | What::Rotation => "rad",
         }
     }
 
@@ -212,7 +225,7 @@ impl Reading {
             (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
-            | (What::ConstraintForce(_) | What::ContactForce(_), _) => {
+            | (What::ConstraintForce(_) | What::ContactForce(_) | What::CentreOfMass, _) => {
                 (&[X, Y, Z][..dimension], Some(Norm))
             }
             _ => (&[], None),

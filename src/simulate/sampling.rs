@@ -7,6 +7,8 @@ use super::sensor::{Sensor, Sensors, Source};
 use super::view::View;
 use crate::input::{InputError, check_memory, positive};
 use crate::scene::Scene;
+#[cfg(any(feature = "scene-file", feature = "study"))]
+use crate::trajectory::Quantity;
 use crate::trajectory::Sample;
 
 /// When the motion is sampled. The start and the end of each phase always are.
@@ -91,13 +93,13 @@ impl Sampling {
         self
     }
 
-    /// Checks that `scene` has what the sensors read.
+    /// The columns that the sensors have.
     ///
     /// # Errors
-    /// A quantity that it does not have; two columns with one name.
-    #[cfg(feature = "scene-file")]
-    pub(crate) fn check_sensors(&self, scene: &Scene) -> Result<(), InputError> {
-        Sensors::new(&self.sensors, scene).map(|_| ())
+    /// A quantity that `scene` does not have; two columns with one name.
+    #[cfg(any(feature = "scene-file", feature = "study"))]
+    pub(crate) fn columns(&self, scene: &Scene) -> Result<Vec<Quantity>, InputError> {
+        Sensors::new(&self.sensors, scene).map(|sensors| sensors.quantities)
     }
 
     /// Checks the times for `scene`, and finds what its sensors read.

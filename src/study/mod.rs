@@ -48,18 +48,22 @@ mod fastest;
 mod findings;
 mod fingerprint;
 mod general;
+mod quantity;
 mod row;
 mod runner;
 mod scenes;
 mod timing;
 mod truth;
+mod verification;
 
 pub use fastest::{Accuracy, Fastest, time_text};
 pub use findings::{Findings, LineFindings};
 pub use general::General;
+pub use quantity::{Part, Quantity};
 pub use row::Row;
 pub use runner::{Stage, Study};
 pub use scenes::{Scenes, all_methods};
+pub use verification::Verification;
 
 use std::time::Duration;
 

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::quantity::Quantity;
 use super::truth::{Probe, Truth, reason, shared_nodes};
 use super::{Failed, Line, Measured, Point, Problem, fingerprint};
 use crate::error::Error;
@@ -18,6 +19,7 @@ use crate::simulate::Sampling;
 #[derive(Debug)]
 pub struct Scenes {
     title: String,
+    quantity: Quantity,
     alpha: f64,
     finest: f64,
     tolerances: Vec<f64>,
@@ -52,6 +54,7 @@ impl Scenes {
     pub fn new(title: impl Into<String>, scene: Scene) -> Self {
         Self {
             title: title.into(),
+            quantity: Quantity::motion(),
             alpha: Settings::default().alpha,
             finest: 1e-7,
             tolerances: (2..=8).map(|digits| 10_f64.powi(-digits)).collect(),
@@ -62,6 +65,13 @@ impl Scenes {
             check: None,
             reference: None,
         }
+    }
+
+    /// What errors are measured in. Default: the whole motion.
+    #[must_use]
+    pub fn quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
     }
 
     /// Rate of the constraint stabilization (1/s) in the reference, and in the lines that
@@ -174,6 +184,7 @@ impl Scenes {
         let end = self.scenes[0].end();
         for scene in &self.scenes {
             scene.validate()?;
+            self.quantity.check(scene)?;
             if scene.end() != end {
                 let mend = format!("all scenes that are compared end together, at {end} s here");
                 return Err(InputError::new("end of a scene", format!("{} s", scene.end()), mend));
@@ -197,7 +208,7 @@ impl Scenes {
         let scenes: Vec<&Scene> = self.scenes.iter().collect();
         let probes: Vec<Probe> = shared_nodes(&scenes)?
             .into_iter()
-            .map(|nodes| Probe::new(&self.scenes[0], nodes))
+            .map(|nodes| Probe::new(&self.scenes[0], self.quantity.clone(), nodes))
             .collect();
         let check = self.check.map(|k| (&self.scenes[k], &probes[k]));
         let target = self.finest / 30.0;
@@ -248,7 +259,7 @@ impl Problem for Scenes {
         let scenes = [*scene, 0].into_iter().chain(self.check);
         let fingerprints: Vec<u64> = scenes.map(|scene| self.fingerprints[scene]).collect();
         fingerprint::of_text(
-            format_args!("{settings:?} {} {}", self.alpha, self.finest),
+            format_args!("{settings:?} {} {} {:?}", self.alpha, self.finest, self.quantity),
             &fingerprints,
         )
     }
@@ -262,9 +273,9 @@ impl Problem for Scenes {
         let Run { scene, settings } = &self.runs[line][point];
         let Reference { truth, probes } =
             self.reference.as_ref().ok_or("the study was not prepared")?;
-        let (motion, trajectory) =
+        let (seen, trajectory) =
             probes[*scene].run(&self.scenes[*scene], settings, limit).map_err(reason)?;
-        let distance = truth.error(&motion);
+        let distance = truth.error(&seen);
         let report = trajectory.report();
         Ok(Measured {
             error: distance.mean,

@@ -4,18 +4,15 @@ use std::ops::ControlFlow;
 use std::time::Duration;
 
 use super::Failed;
+use super::quantity::{Distance, Quantity, Seen};
 use super::timing::Budget;
 use crate::error::Error;
 use crate::input::InputError;
 use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 use crate::simulate::Sampling;
-use crate::trajectory::Trajectory;
+use crate::trajectory::{Sample, Trajectory};
 
-/// Times at which motions are compared: this many, evenly from the start (without it) to the end.
-const TIMES: usize = 101;
-/// Motion below this fraction of the body's size counts as that large.
-const LEAST_MOTION: f64 = 1e-6;
 /// Methods of different families, each at its highest order: what two of them agree on is right.
 const METHODS: [(Method, Option<u32>); 4] = [
     (Method::CvodeAdams, None),
@@ -26,25 +23,20 @@ const METHODS: [(Method, Option<u32>); 4] = [
 /// No tolerance below: rounding errors rule there.
 const LEAST_RTOL: f64 = 1e-13;
 
-/// Displacements of some nodes at some times.
-#[derive(Debug, Clone)]
-pub(super) struct Motion {
-    dimension: usize,
-    u: Vec<f64>,
-}
-
-/// The nodes and times at which motions are compared.
+/// What is looked at, and when.
 #[derive(Debug, Clone)]
 pub(super) struct Probe {
-    /// Counted from 0.
+    quantity: Quantity,
+    /// Those that count of the whole motion, from 0.
     nodes: Vec<usize>,
     times: Vec<f64>,
 }
 
 impl Probe {
-    pub(super) fn new(scene: &Scene, nodes: Vec<usize>) -> Self {
-        let times = (1..=TIMES).map(|k| scene.end() * (k as f64 / TIMES as f64)).collect();
-        Self { nodes, times }
+    pub(super) fn new(scene: &Scene, quantity: Quantity, nodes: Vec<usize>) -> Self {
+        let count = quantity.times();
+        let times = (1..=count).map(|k| scene.end() * (k as f64 / count as f64)).collect();
+        Self { quantity, nodes, times }
     }
 
     /// Runs `scene` to its end, for a processor time of `limit` at most.
@@ -53,71 +45,33 @@ impl Probe {
         scene: &Scene,
         settings: &Settings,
         limit: Duration,
-    ) -> Result<(Motion, Trajectory), Error> {
+    ) -> Result<(Seen, Trajectory), Error> {
         let mut budget = Budget::new(limit);
-        let sampling = Sampling::at(self.times.clone());
+        let sampling = self.quantity.read_by(Sampling::at(self.times.clone()));
         let trajectory = scene.simulate_with(settings, &sampling, |_| match budget.is_spent() {
             true => ControlFlow::Break(()),
             false => ControlFlow::Continue(()),
         })?;
-        Ok((self.motion(&trajectory), trajectory))
+        let seen = self.quantity.seen(&trajectory, &self.nodes, self.samples(&trajectory));
+        Ok((seen, trajectory))
     }
 
-    fn motion(&self, trajectory: &Trajectory) -> Motion {
-        let dimension = trajectory.body().dimension();
-        let mut u = Vec::with_capacity(self.times.len() * self.nodes.len() * dimension);
+    /// The samples at the times of the probe: those of ends of phases are more.
+    fn samples<'a>(&self, trajectory: &'a Trajectory) -> impl Iterator<Item = &'a Sample> {
         // phase ends within round-off of a time stand for it
         let apart = 2e-9 * trajectory.last().time;
         let mut samples = trajectory.samples().iter().peekable();
-        for time in &self.times {
+        self.times.iter().filter_map(move |time| {
             while samples.next_if(|sample| sample.time < time - apart).is_some() {}
-            let sample = samples.peek().expect("every time up to the end is sampled");
-            for node in &self.nodes {
-                u.extend_from_slice(&sample.u[node * dimension..][..dimension]);
-            }
-        }
-        Motion { dimension, u }
-    }
-}
-
-/// Distances between two motions (m).
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Distance {
-    /// Root mean square over nodes and times.
-    pub(super) mean: f64,
-    /// Largest.
-    pub(super) largest: f64,
-}
-
-impl Motion {
-    fn distance(&self, other: &Self) -> Distance {
-        self.size(|i| self.u[i] - other.u[i])
-    }
-
-    /// Root mean square displacement (m).
-    fn mean(&self) -> f64 {
-        self.size(|i| self.u[i]).mean
-    }
-
-    fn size(&self, component: impl Fn(usize) -> f64) -> Distance {
-        let (mut sum, mut largest) = (0.0, 0.0_f64);
-        let count = self.u.len() / self.dimension;
-        for point in 0..count {
-            let first = point * self.dimension;
-            let square: f64 = (first..first + self.dimension).map(|i| component(i).powi(2)).sum();
-            sum += square;
-            largest = largest.max(square);
-        }
-        Distance { mean: (sum / count as f64).sqrt(), largest: largest.sqrt() }
+            samples.peek().copied() // every time up to the end is sampled
+        })
     }
 }
 
 /// A motion that stands for the exact one, and how far it can be trusted.
 #[derive(Debug)]
 pub(super) struct Truth {
-    motion: Motion,
-    /// What distances are relative to (m).
-    scale: f64,
+    seen: Seen,
     /// Relative error that the motion itself may have.
     pub(super) resolution: f64,
 }
@@ -142,7 +96,7 @@ impl Truth {
             limit,
             tell,
         )?;
-        let mut truth = Self::of(scene, &pair[0], &pair[1]);
+        let mut truth = Self::of(&pair[0], &pair[1]);
         while truth.resolution > target && rtol > 2.0 * LEAST_RTOL {
             rtol = (0.1 * rtol).max(LEAST_RTOL);
             let mut finer = Vec::new();
@@ -154,10 +108,10 @@ impl Truth {
             }
             let Ok([first, second]) = <[Way; 2]>::try_from(finer) else { break };
             // The one that changed less was nearer to the truth already.
-            let change = |old: &Way, new: &Way| old.motion.distance(&new.motion).mean;
+            let change = |old: &Way, new: &Way| old.seen.distance(&new.seen).mean;
             let better = match change(&pair[0], &first) <= change(&pair[1], &second) {
-                true => Self::of(scene, &first, &second),
-                false => Self::of(scene, &second, &first),
+                true => Self::of(&first, &second),
+                false => Self::of(&second, &first),
             };
             // Where rounding errors rule, the methods agree no better.
             let gains = better.resolution < 0.5 * truth.resolution;
@@ -171,25 +125,24 @@ impl Truth {
         }
         if let Some((scene, probe)) = check {
             tell(&format!("reference: the check, {} at rtol {rtol:.0e}", pair[0].settings.method));
-            let (motion, _) =
+            let (seen, _) =
                 probe.run(scene, &Settings { rtol, ..pair[0].settings.clone() }, limit)?;
-            let distance = truth.error(&motion).mean;
+            let distance = truth.error(&seen).mean;
             truth.resolution = truth.resolution.max(distance);
         }
         Ok(truth)
     }
 
-    fn of(scene: &Scene, best: &Way, other: &Way) -> Self {
-        let motion = best.motion.clone();
-        let scale = motion.mean().max(LEAST_MOTION * scene.body().mesh().size());
-        let resolution = motion.distance(&other.motion).mean / scale;
-        Self { motion, scale, resolution: resolution.max(f64::EPSILON) }
+    fn of(best: &Way, other: &Way) -> Self {
+        let seen = best.seen.clone();
+        let resolution = seen.distance(&other.seen).mean / seen.scale;
+        Self { seen, resolution: resolution.max(f64::EPSILON) }
     }
 
     /// Distances from the true motion, relative to it.
-    pub(super) fn error(&self, motion: &Motion) -> Distance {
-        let Distance { mean, largest } = self.motion.distance(motion);
-        Distance { mean: mean / self.scale, largest: largest / self.scale }
+    pub(super) fn error(&self, seen: &Seen) -> Distance {
+        let Distance { mean, largest } = self.seen.distance(seen);
+        Distance { mean: mean / self.seen.scale, largest: largest / self.seen.scale }
     }
 }
 
@@ -197,7 +150,7 @@ impl Truth {
 #[derive(Debug)]
 struct Way {
     settings: Settings,
-    motion: Motion,
+    seen: Seen,
     /// Processor time.
     time: Duration,
 }
@@ -212,8 +165,8 @@ impl Way {
     ) -> Result<Self, Error> {
         tell(&format!("reference: {} at rtol {:.0e}", settings.method, settings.rtol));
         let budget = Budget::new(limit);
-        let (motion, _) = probe.run(scene, &settings, limit)?;
-        Ok(Self { settings, motion, time: Duration::from_secs_f64(budget.spent()) })
+        let (seen, _) = probe.run(scene, &settings, limit)?;
+        Ok(Self { settings, seen, time: Duration::from_secs_f64(budget.spent()) })
     }
 
     fn again(
@@ -310,17 +263,6 @@ pub(super) fn reason(error: Error) -> Failed {
 mod tests {
     use super::*;
     use crate::samples::{ClampedBeam, clamped_beam};
-
-    #[test]
-    fn distances_are_those_of_nodes() {
-        // two nodes at two times, in two dimensions
-        let motion = |u: [f64; 8]| Motion { dimension: 2, u: u.into() };
-        let one = motion([1.0, 1.0, 2.0, 2.0, 1.0, 1.0, 0.0, 0.0]);
-        let other = motion([4.0, 5.0, 2.0, 2.0, 1.0, 1.0, 6.0, -8.0]);
-        let Distance { mean, largest } = one.distance(&other);
-        assert_eq!((mean, largest), ((125.0_f64 / 4.0).sqrt(), 10.0));
-        assert_eq!(one.mean(), (12.0_f64 / 4.0).sqrt());
-    }
 
     #[test]
     fn meshes_share_the_nodes_that_are_at_the_same_places() {
