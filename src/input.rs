@@ -2,6 +2,7 @@
 
 #[cfg(any(feature = "checkpoint", feature = "gmsh"))]
 mod file;
+mod fraction;
 mod memory;
 mod nearest;
 
@@ -11,6 +12,7 @@ use std::fmt::Display;
 pub(crate) use file::read_at_most;
 #[cfg(feature = "checkpoint")]
 pub(crate) use file::read_if_at_most;
+pub use fraction::Fraction;
 pub(crate) use memory::check_memory;
 #[cfg(feature = "scene-file")]
 pub(crate) use nearest::list;

@@ -76,11 +76,11 @@ pub use equations::Equations;
 pub use equilibrium::{Equilibrium, NoEquilibrium, Stability};
 pub use error::{Error, Panicked};
 pub use external::*;
-pub use input::InputError;
+pub use input::{Fraction, InputError};
 pub use integrate::Integrator;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
-pub use report::{Counts, PhaseReport, Report};
+pub use report::{Achieved, Counts, PhaseReport, Report};
 pub use scene::{Phase, Scene};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};

@@ -7,6 +7,7 @@ use super::assembly::Elements;
 use super::elastic::Elastic;
 use super::fields::{CellField, NodalField, Probe, nodal_fields};
 use super::forces::NonlinearTerms;
+use super::recipe::Recipe;
 use super::regions::Regions;
 use crate::element::shares_at;
 use crate::force::NodalForces;
@@ -40,6 +41,8 @@ pub struct Body {
     pub(super) inertia: Arc<NodeMatrix>,
     pub(super) stiffness: Arc<BlockMatrix>,
     pub(super) damping: Arc<BlockMatrix>,
+    /// What it was made from.
+    pub(super) recipe: Arc<Recipe>,
 }
 
 impl fmt::Debug for Body {

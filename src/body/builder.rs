@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::assembled::Body;
 use super::assembly::elements;
 use super::inertia::Inertia;
+use super::recipe::Recipe;
 use super::regions::{CellSelection, Regions};
+use crate::element::Finer;
 use crate::input::{InputError, positive};
 use crate::material::{Material, Plane, Strain, Viscosity};
 use crate::mesh::Mesh;
@@ -15,51 +17,43 @@ use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 #[derive(Debug, Clone)]
 pub struct BodyBuilder {
     mesh: Mesh,
-    material: Material,
-    regions: Vec<(CellSelection, Material)>,
-    strain: Strain,
-    viscosity: Option<Viscosity>,
-    inertia: Inertia,
-    plane: Plane,
-    thickness: Option<f64>,
-    area: Option<f64>,
-    points: Vec<(String, Vec<f64>, f64)>,
+    recipe: Recipe,
 }
 
 impl BodyBuilder {
     /// Thickness h of a two-dimensional body (m).
     pub fn thickness(mut self, thickness: f64) -> Self {
-        self.thickness = Some(thickness);
+        self.recipe.thickness = Some(thickness);
         self
     }
 
     /// Cross-sectional area A of a one-dimensional body (m^2).
     pub fn area(mut self, area: f64) -> Self {
-        self.area = Some(area);
+        self.recipe.area = Some(area);
         self
     }
 
     /// How strain is measured (default: Green).
     pub fn strain(mut self, strain: Strain) -> Self {
-        self.strain = strain;
+        self.recipe.strain = strain;
         self
     }
 
     /// How viscosity acts. Default: natural with Cauchy strain, objective with Green strain.
     pub fn viscosity(mut self, viscosity: Viscosity) -> Self {
-        self.viscosity = Some(viscosity);
+        self.recipe.viscosity = Some(viscosity);
         self
     }
 
     /// How inertia is shared out among the nodes (default: consistently).
     pub fn inertia(mut self, inertia: Inertia) -> Self {
-        self.inertia = inertia;
+        self.recipe.inertia = inertia;
         self
     }
 
     /// A region with a material of its own. Where regions overlap, the last one counts.
     pub fn region(mut self, cells: impl Into<CellSelection>, material: Material) -> Self {
-        self.regions.push((cells.into(), material));
+        self.recipe.regions.push((cells.into(), material));
         self
     }
 
@@ -71,13 +65,38 @@ impl BodyBuilder {
         position: impl Into<Vec<f64>>,
         mass: f64,
     ) -> Self {
-        self.points.push((name.into(), position.into(), mass));
+        self.recipe.points.push((name.into(), position.into(), mass));
         self
     }
 
     /// Plane strain (default) or plane stress, for two-dimensional bodies.
     pub fn plane(mut self, plane: Plane) -> Self {
-        self.plane = plane;
+        self.recipe.plane = plane;
+        self
+    }
+
+    /// The mesh, without point masses.
+    pub(crate) fn own_mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// The same on a finer mesh.
+    ///
+    /// # Errors
+    /// Regions of cells that the mesh does not have.
+    pub(crate) fn on(mut self, finer: &Finer) -> Result<Self, InputError> {
+        for (cells, _) in &mut self.recipe.regions {
+            if let CellSelection::Numbers(_) = cells {
+                let children = finer.children_of(&cells.cells(&self.mesh)?);
+                *cells = CellSelection::Numbers(children.iter().map(|cell| cell + 1).collect());
+            }
+        }
+        Ok(Self { mesh: finer.mesh.clone(), ..self })
+    }
+
+    /// Another material, everywhere that regions have none of their own.
+    pub fn material(mut self, material: Material) -> Self {
+        self.recipe.material = material;
         self
     }
 
@@ -87,15 +106,16 @@ impl BodyBuilder {
     /// A material out of range, a missing or misplaced thickness or area, an inverted or flat cell,
     /// a node without a cell.
     pub fn build(self) -> Result<Body, InputError> {
-        let section = self.section()?;
-        let Self { mut mesh, material, strain, plane, .. } = self;
-        let viscosity = self.viscosity.unwrap_or(match strain {
+        let Self { mut mesh, recipe } = self;
+        let section = recipe.section(&mesh)?;
+        let Recipe { material, strain, plane, .. } = recipe;
+        let viscosity = recipe.viscosity.unwrap_or(match strain {
             Strain::Cauchy => Viscosity::Natural,
             _ => Viscosity::Objective,
         });
-        let regions = Regions::new(&mesh, strain, plane, &material, &self.regions)?;
+        let regions = Regions::new(&mesh, strain, plane, &material, &recipe.regions)?;
         let elements = elements(&mesh, section)?;
-        for (name, position, mass) in &self.points {
+        for (name, position, mass) in &recipe.points {
             positive(&format!("mass of point \"{name}\""), *mass, "kg")?;
             mesh.push_node(name, position)?;
         }
@@ -104,11 +124,11 @@ impl BodyBuilder {
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();
-        elements.add_inertia(&regions, self.inertia, &mut inertia);
+        elements.add_inertia(&regions, recipe.inertia, &mut inertia);
         elements.add_stiffness(&regions, &|substance| substance.hooke, &mut stiffness);
         elements.add_stiffness(&regions, &|substance| substance.viscous.0, &mut damping);
-        let first_point = mesh.node_count() - self.points.len();
-        for (node, (_, _, mass)) in (first_point..).zip(&self.points) {
+        let first_point = mesh.node_count() - recipe.points.len();
+        for (node, (_, _, mass)) in (first_point..).zip(&recipe.points) {
             inertia.add(node, node, *mass);
         }
         let body = Body {
@@ -123,6 +143,7 @@ impl BodyBuilder {
             inertia: Arc::new(inertia),
             stiffness: Arc::new(stiffness),
             damping: Arc::new(damping),
+            recipe: Arc::new(recipe),
         };
         // not the nodal masses: those of quadratic cells are 0 and below at corners
         let mut nodes = 0..body.mesh.node_count();
@@ -135,34 +156,13 @@ impl BodyBuilder {
             None => Ok(body),
         }
     }
-
-    fn section(&self) -> Result<f64, InputError> {
-        let kind = self.mesh.kind();
-        let misplaced = |name: &str, value: f64| {
-            Err(InputError::new(name, value, format!("a body of {kind:?} cells has no {name}")))
-        };
-        match (kind.dimension(), self.area, self.thickness) {
-            (1, Some(area), None) => positive("area", area, "m^2"),
-            (2, None, Some(thickness)) => positive("thickness", thickness, "m"),
-            (3, None, None) => Ok(1.0),
-            (1 | 3, _, Some(thickness)) => misplaced("thickness", thickness),
-            (2 | 3, Some(area), _) => misplaced("area", area),
-            (1, None, None) => Err(missing("area", "a one-dimensional body needs its area in m^2")),
-            _ => Err(missing("thickness", "a two-dimensional body needs its thickness in m")),
-        }
-    }
-}
-
-fn missing(input: &str, mend: &str) -> InputError {
-    InputError::new(input, "(missing)", mend)
 }
 
 impl Body {
     /// Starts a body of `mesh`, made of `material`; [`BodyBuilder::build`] assembles it.
     #[allow(clippy::new_ret_no_self)] // the one way to a body starts here
     pub fn new(mesh: Mesh, material: Material) -> BodyBuilder {
-        BodyBuilder {
-            mesh,
+        let recipe = Recipe {
             material,
             regions: Vec::new(),
             strain: Strain::default(),
@@ -172,6 +172,25 @@ impl Body {
             thickness: None,
             area: None,
             points: Vec::new(),
-        }
+        };
+        BodyBuilder { mesh, recipe }
+    }
+
+    /// The builder that has made it, for a body that differs in something.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Inertia, Material, Mesh};
+    ///
+    /// let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    /// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// let lumped = body.to_builder().inertia(Inertia::Lumped).build()?;
+    /// assert_eq!(lumped.mesh().node_count(), 16);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn to_builder(&self) -> BodyBuilder {
+        let recipe = (*self.recipe).clone();
+        let mesh = self.mesh.without_last(recipe.points.iter().map(|(name, ..)| &name[..]));
+        BodyBuilder { mesh, recipe }
     }
 }

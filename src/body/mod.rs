@@ -9,6 +9,7 @@ mod fields;
 mod forces;
 mod inertia;
 mod polynomial;
+mod recipe;
 mod recovery;
 mod regions;
 mod shares;

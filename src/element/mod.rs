@@ -7,6 +7,7 @@
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
 //! then described in coordinates of its own, along an orthonormal frame in its tangent space.
 
+mod finer;
 mod hexahedron;
 mod place;
 mod quadrilateral;
@@ -23,6 +24,7 @@ mod triangle6;
 
 use nalgebra::{SMatrix, SVector};
 
+pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use place::shares_at;
 pub(crate) use quadrilateral::Quadrilateral;

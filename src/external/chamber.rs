@@ -50,6 +50,17 @@ impl Chamber {
         Self::new(name.into(), Walls::Nodes(nodes.into()))
     }
 
+    /// With other nodes on its walls, as `change` has them; triangles stay.
+    pub(crate) fn with_nodes(
+        mut self,
+        change: impl FnOnce(&Selection) -> Result<Selection, InputError>,
+    ) -> Result<Self, InputError> {
+        if let Walls::Nodes(nodes) = &mut self.walls {
+            *nodes = change(nodes)?;
+        }
+        Ok(self)
+    }
+
     /// A chamber in space, enclosed by `triangles` of nodes (numbers from 1): a closed surface, all
     /// triangles counter-clockwise as seen from outside, or all clockwise.
     pub fn surface(

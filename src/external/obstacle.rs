@@ -101,6 +101,17 @@ impl Obstacle {
         }
     }
 
+    /// With `share` of its stiffness and damping at each node, where they are given per node: as many more nodes share
+    /// them.
+    pub(crate) fn shared_out(mut self, share: f64) -> Self {
+        if let Stiffness::PerNode(stiffness) = &mut self.stiffness {
+            *stiffness *= share;
+            self.damping *= share;
+            self.tangential_damping *= share;
+        }
+        self
+    }
+
     /// As [`Shape::half_plane`].
     pub fn half_plane(point: impl Into<Vec<f64>>, normal: impl Into<Vec<f64>>) -> Self {
         Self::new(Shape::half_plane(point, normal))

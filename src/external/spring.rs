@@ -69,6 +69,14 @@ pub(crate) enum Joint {
 }
 
 impl Spring {
+    /// The nodes that it is joined to.
+    pub(crate) fn selections(&self) -> impl Iterator<Item = &Selection> {
+        self.ends.iter().filter_map(|end| match end {
+            End::Node(nodes) => Some(nodes),
+            End::Point(_) => None,
+        })
+    }
+
     /// A spring from the node that `first` selects to the one that `second` selects.
     pub fn between(first: impl Into<Selection>, second: impl Into<Selection>) -> Self {
         Self::new([End::Node(first.into()), End::Node(second.into())])

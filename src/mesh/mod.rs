@@ -73,11 +73,21 @@ impl Mesh {
                 format!("the mesh has the nodes 1 to {nodes}"),
             ));
         }
-        let (sets, cell_groups) = (BTreeMap::new(), BTreeMap::new());
+        Ok(Self::named(dimension, positions, kind, connectivity))
+    }
+
+    /// With the sets that every mesh has.
+    fn named(
+        dimension: usize,
+        positions: Vec<f64>,
+        kind: CellKind,
+        connectivity: Vec<usize>,
+    ) -> Self {
+        let all = (0..positions.len() / dimension).collect();
+        let (sets, cell_groups) = (BTreeMap::from([("all".into(), all)]), BTreeMap::new());
         let mut mesh = Self { dimension, positions, kind, connectivity, sets, cell_groups };
-        mesh.sets.insert("all".into(), (0..nodes).collect());
         mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
-        Ok(mesh)
+        mesh
     }
 
     /// Adds a node that belongs to no cell, alone in the node set `name`.
@@ -96,6 +106,36 @@ impl Mesh {
         self.positions.extend_from_slice(position);
         self.sets.insert(name.into(), vec![node]);
         Ok(())
+    }
+
+    /// The same mesh without its last nodes, which belong to no cell and have these names.
+    pub(crate) fn without_last<'a>(&self, names: impl ExactSizeIterator<Item = &'a str>) -> Self {
+        let mut mesh = self.clone();
+        mesh.positions.truncate(self.positions.len() - names.len() * self.dimension);
+        for name in names {
+            mesh.sets.remove(name);
+        }
+        mesh
+    }
+
+    /// Other cells, with the nodes that they need: sets and groups are those of every mesh.
+    pub(crate) fn with_cells(
+        &self,
+        positions: Vec<f64>,
+        kind: CellKind,
+        connectivity: Vec<usize>,
+    ) -> Self {
+        Self::named(self.dimension, positions, kind, connectivity)
+    }
+
+    /// Names nodes (from 0).
+    pub(crate) fn set_nodes(&mut self, name: &str, nodes: Vec<usize>) {
+        self.sets.insert(name.into(), nodes);
+    }
+
+    /// Names a group of cells (from 0, ascending).
+    pub(crate) fn set_cells(&mut self, name: &str, cells: Vec<usize>) {
+        self.cell_groups.insert(name.into(), cells);
     }
 
     /// The same mesh, moved by `offset` (m).

@@ -37,14 +37,21 @@ pub(super) enum Along {
     Rotations,
     /// As many as a sensor has components, with names and units of their own.
     Sensor,
+    /// Those that a verified motion has, which stand among its sensors.
+    Verified,
 }
+
+/// The column of the distance from a run with a looser tolerance, and what the name of a sensor's difference from there
+/// ends with.
+pub(crate) const DIFFERENCE: &str = "difference";
+pub(crate) const OF_SENSOR: &str = ".difference";
 
 const TRACKED: &str = "u<N>";
 const SENSOR: &str = "<sensor>";
 const REACTION: &str = "reaction_<nodes>";
 
 /// All kinds, in their order.
-pub(super) const COLUMNS: [ColumnKind; 15] = [
+pub(super) const COLUMNS: [ColumnKind; 17] = [
     kind("t", Along::None, "s", "time"),
     kind("com", Along::Axes, "m", "centre of mass"),
     kind("momentum", Along::Axes, "kg m/s", "momentum"),
@@ -72,6 +79,19 @@ pub(super) const COLUMNS: [ColumnKind; 15] = [
         "its own",
         "what a sensor reads; each of its components is a column. Equilibria on the way to the load have `load factor`",
     ),
+    kind(
+        DIFFERENCE,
+        Along::Verified,
+        "m",
+        "root mean square distance of the nodes from where the run before had them, by ten times the tolerance, with \
+         `--accuracy`",
+    ),
+    kind(
+        "<sensor>.difference",
+        Along::Verified,
+        "its own",
+        "likewise, how far a sensor was from there",
+    ),
     kind(EXCHANGED[0], Along::None, "J", "energy turned into heat since t = 0"),
     kind(EXCHANGED[1], Along::None, "J", "energy supplied from outside since t = 0"),
     kind(
@@ -96,7 +116,7 @@ impl ColumnKind {
     /// Whether a column with this name is of this kind.
     fn has(&self, column: &str) -> bool {
         let stem = match (column.rsplit_once('_'), self.along) {
-            (_, Along::Sensor) => return false,
+            (_, Along::Sensor | Along::Verified) => return false,
             (Some((stem, axis)), Along::Axes | Along::Rotations) if AXES.contains(&axis) => stem,
             (_, Along::Axes) => return false,
             (_, Along::None | Along::Rotations) => column,
@@ -180,7 +200,7 @@ impl Columns {
                     all.extend(stems.into_iter().map(column));
                     continue;
                 }
-                (Along::Rotations, 1) => continue,
+                (Along::Verified, _) | (Along::Rotations, 1) => continue,
                 (Along::Axes | Along::Rotations, _) => &AXES[..dimension],
             };
             for stem in stems {

@@ -32,6 +32,8 @@ mod vtk;
 pub(crate) use self::animation::Picture;
 pub use self::animation::write_animation;
 pub use self::chart::Chart;
+#[cfg(feature = "study")]
+pub(crate) use self::columns::{DIFFERENCE, OF_SENSOR};
 pub use self::csv::{GrowingTable, write_csv, write_energies};
 pub(crate) use self::decades::power_text;
 #[cfg(feature = "study")]

@@ -12,7 +12,9 @@ pub fn reference() -> String {
     let columns = COLUMNS.iter().map(|kind| {
         let name = match kind.along {
             Along::Axes => format!("`{0}_x`, ...", kind.name),
-            Along::None | Along::Rotations | Along::Sensor => format!("`{}`", kind.name),
+            Along::None | Along::Rotations | Along::Sensor | Along::Verified => {
+                format!("`{}`", kind.name)
+            }
         };
         (name, kind.unit, kind.meaning)
     });

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::write_file;
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
-use crate::report::{PhaseReport, Report};
+use crate::report::{Achieved, PhaseReport, Report};
 use crate::sundials;
 use crate::trajectory::{IntegrationFailure, Quantity, Trajectory};
 
@@ -61,6 +61,19 @@ pub(super) const OF_RUN: &[ReportKey] = &[
     ("energy_created", "J", "largest rise of the energy balance"),
     ("energy_scale", "J", "largest sum of the energies"),
     ("max_constraint_drift", "m", "largest error of a constraint at the end of a step"),
+    ("achieved", "", "to what the motion is known; `null` without `--accuracy`"),
+    ("achieved.quantity", "", "what was compared"),
+    ("achieved.asked", "1", "the relative difference of two runs that was asked for at most"),
+    ("achieved.difference", "1", "the one that was found"),
+    ("achieved.scale", "its own", "what both are relative to: how much the quantity changes"),
+    ("achieved.unit", "", "unit of the scale"),
+    (
+        "achieved.known_until",
+        "s",
+        "time until which the runs agree as was asked; the end if they do in all",
+    ),
+    ("achieved.runs", "", "runs in all"),
+    ("achieved.rtol", "1", "relative tolerances of the last two"),
     ("sensors", "", "the sensors, in the order of their columns in `trajectory.csv`"),
     ("sensors[].name", "", "name of the column"),
     ("sensors[].unit", "", "its unit"),
@@ -171,11 +184,27 @@ pub fn write_report(
             "energy_created": report.energy_created,
             "energy_scale": report.energy_scale,
             "max_constraint_drift": report.constraint_drift,
+            "achieved": report.achieved.as_ref().map(of_achieved),
             "sensors": sensors,
             "warnings": report.warnings(),
             "versions": versions(),
         }),
     )
+}
+
+fn of_achieved(achieved: &Achieved) -> Value {
+    let Achieved { quantity, asked, difference, scale, unit, known_until, runs, rtol, .. } =
+        achieved;
+    json!({
+        "quantity": quantity,
+        "asked": asked,
+        "difference": difference,
+        "scale": scale,
+        "unit": unit,
+        "known_until": known_until,
+        "runs": runs,
+        "rtol": rtol,
+    })
 }
 
 fn of_phase(report: &Report, phase: &PhaseReport) -> Value {

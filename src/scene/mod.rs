@@ -1,5 +1,6 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
+mod finer;
 mod forces;
 mod initial;
 mod load;

@@ -2,6 +2,7 @@
 
 use crate::equilibrium::Equilibrium;
 use crate::error::Error;
+use crate::input::Fraction;
 use crate::mesh::Selection;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -17,12 +18,23 @@ pub struct SceneFile {
     pub scene: Scene,
     /// How it is integrated.
     pub settings: Settings,
+    /// How accurate its motion has to be.
+    pub accuracy: AccuracyRequest,
     /// How its equilibrium is sought.
     pub statics: StaticsRequest,
     /// What is to be written.
     pub output: OutputRequest,
     /// What `pliant check` says about the text: keys that have another name now.
     pub notes: Vec<String>,
+}
+
+/// How accurate a motion has to be, if that was asked for: see `study::Verification`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct AccuracyRequest {
+    /// The relative difference of two runs at most.
+    pub within: Option<Fraction>,
+    /// The text that names a `study::Quantity`; the whole motion without it.
+    pub quantity: Option<String>,
 }
 
 /// Which equilibrium is sought, and how.

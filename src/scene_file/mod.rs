@@ -63,7 +63,7 @@ use std::path::Path;
 
 use toml::de::DeTable;
 
-pub use self::contents::{Format, OutputRequest, SceneFile, StaticsRequest};
+pub use self::contents::{AccuracyRequest, Format, OutputRequest, SceneFile, StaticsRequest};
 use self::overrides::{as_toml, merge};
 pub use self::reference::reference;
 #[cfg(feature = "play")]

@@ -1,11 +1,11 @@
 //! `[solver]`, `[statics]` and `[output]`.
 
-use super::contents::{Format, OutputRequest, StaticsRequest};
+use super::contents::{AccuracyRequest, Format, OutputRequest, StaticsRequest};
 use super::keys::{Holds, Key, TableKeys};
 use super::selection::selection;
 use super::value::Value;
 use crate::error::Error;
-use crate::input::{find, positive};
+use crate::input::{Fraction, InputError, find, positive};
 use crate::mesh::Mesh;
 use crate::scene::{Phase, Scene};
 use crate::settings::{Settings, SettingsOption, SettingsValue as Kind};
@@ -18,15 +18,32 @@ pub(super) const SOLVER: TableKeys = TableKeys::new(
     "[solver]\nmethod = \"cvode-bdf\"\nrtol = 1e-6\nalpha = 1e4",
 );
 
-const OPTIONS: [Key; SettingsOption::ALL.len()] = {
-    let mut keys = [Key::number("", "", ""); SettingsOption::ALL.len()];
+const OPTIONS: [Key; SettingsOption::ALL.len() + 2] = {
+    let mut keys = [QUANTITY; SettingsOption::ALL.len() + 2];
+    keys[0] = ACCURACY;
     let mut number = 0;
-    while number < keys.len() {
-        keys[number] = key(&SettingsOption::ALL[number]);
+    while number < SettingsOption::ALL.len() {
+        keys[number + 1] = key(&SettingsOption::ALL[number]);
         number += 1;
     }
     keys
 };
+
+const ACCURACY: Key = Key::new(
+    "accuracy",
+    Holds::Either(&[Holds::Number, Holds::Text]),
+    "how accurate the motion has to be, as `\"1%\"` or `0.01`",
+)
+.law(
+    "The scene is run with a tighter and tighter `rtol`, until two runs agree to that: see `pliant run --help`. Not beside \
+     `rtol`.",
+)
+.default("one run by `rtol`");
+const QUANTITY: Key = Key::new("quantity", Holds::Text, "what `accuracy` is of")
+    .law(QUANTITIES)
+    .default("the whole motion");
+const QUANTITIES: &str = "`motion`; a sensor or a set of nodes, with a component where need be, as `tip.y`; `com`, `rotation`; \
+     behind a colon the part that counts, where all times do not: `end`, `max`, `min`, `frequency`, `damping`.";
 
 const fn key(option: &SettingsOption) -> Key {
     let holds = match option.value {
@@ -97,6 +114,24 @@ pub(super) fn solver(value: &Value) -> Result<Settings, Error> {
     }
     settings.validate().map_err(|error| table.blame(error))?;
     Ok(settings)
+}
+
+/// How accurate the motion has to be, and in what.
+pub(super) fn accuracy(value: &Value) -> Result<AccuracyRequest, Error> {
+    let table = value.table(&SOLVER)?;
+    let fraction = |value: &Value| {
+        let fraction = match value.number() {
+            Ok(number) => number.to_string().parse(),
+            Err(_) => value.string()?.parse(),
+        };
+        fraction.map_err(|error: InputError| value.error(error.mend))
+    };
+    let within: Option<Fraction> = table.optional("accuracy", fraction)?;
+    let quantity = table.optional("quantity", Value::string)?.map(String::from);
+    if within.is_some() && table.get("rtol").is_some() {
+        return Err(table.error("accuracy finds rtol by itself: leave one of them out"));
+    }
+    Ok(AccuracyRequest { within, quantity })
 }
 
 pub(super) fn statics(value: &Value, scene: &Scene) -> Result<StaticsRequest, Error> {

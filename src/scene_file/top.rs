@@ -72,6 +72,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
     }
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
+    let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
     let statics = top.optional("statics", |value| settings::statics(value, &scene))?;
     let statics = statics.unwrap_or_default();
     let output = top.optional("output", |value| settings::output(value, scene.body().mesh()))?;
@@ -81,5 +82,13 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         output.sensors = sensors.collect::<Result<_, _>>()?;
         output.sampling().columns(&scene).map_err(|error| values.error(error))?;
     }
-    Ok(SceneFile { title: title.into(), scene, settings, statics, output, notes: Vec::new() })
+    Ok(SceneFile {
+        title: title.into(),
+        scene,
+        settings,
+        accuracy,
+        statics,
+        output,
+        notes: Vec::new(),
+    })
 }

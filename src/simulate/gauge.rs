@@ -104,7 +104,9 @@ impl Reading {
                 let mend = "a body turns by one angle in two dimensions only: take the angle between two lines";
                 return Err(InputError::new("rotation in dimension", d, mend));
             }
-            What::Rotation => Box::new(|view, _| Value::Number(view.rotation().unwrap_or(f64::NAN))),
+            What::Rotation => {
+                Box::new(|view, _| Value::Number(view.rotation().unwrap_or(f64::NAN)))
+            }
         })
     }
 }

@@ -2,6 +2,7 @@
 
 mod cells;
 mod equations;
+mod finer;
 mod frequencies;
 mod matrices;
 mod meshes;

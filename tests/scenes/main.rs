@@ -29,4 +29,5 @@ mod threads;
 mod tunnelling;
 mod turning;
 mod varying;
+mod verified;
 mod warnings;

@@ -189,7 +189,9 @@ impl Directory {
         write: impl FnOnce(&Path) -> Result<(), Error>,
     ) -> Result<(), Failure> {
         write(&self.path.join(name))?;
-        self.written.push(name);
+        if !self.written.contains(&name) {
+            self.written.push(name);
+        }
         Ok(())
     }
 

@@ -1,5 +1,6 @@
 //! The command `pliant`: soft bodies from scene files, without a line of Rust.
 
+mod accuracy;
 mod chart;
 mod check;
 mod failure;

@@ -6,8 +6,10 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use pliant::output::{GrowingTable, write_report};
 use pliant::simulate::Simulation;
-use pliant::{Error, SceneFile};
+use pliant::study::{Quantity, Verification};
+use pliant::{Error, Fraction, IntegrationFailure, OutputRequest, SceneFile, Trajectory};
 
+use crate::accuracy::AccuracyArguments;
 use crate::failure::{Failure, print};
 use crate::files::{Directory, OutputArguments};
 use crate::progress::Watch;
@@ -33,6 +35,8 @@ pub struct Arguments {
     /// End the scene at this time (s)
     #[arg(long, value_name = "SECONDS")]
     until: Option<f64>,
+    #[command(flatten)]
+    accuracy: AccuracyArguments,
     /// Go on with a run of the same scene that was interrupted or killed, from the checkpoint in its directory;
     /// pictures show the motion from there on
     #[arg(long)]
@@ -89,18 +93,35 @@ impl<'a> Keeper<'a> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, settings, step, until, resume, output } = arguments;
+    let Arguments { scene, settings, step, until, accuracy, resume, output } = arguments;
     let mut file = scene.read()?;
     settings.apply(&mut file.settings)?;
+    accuracy.apply(&mut file.accuracy, settings)?;
     output.apply(&mut file)?;
     file.output.step = step.or(file.output.step);
     file.scene = ended(file.scene, *until)?;
-    let SceneFile { title, scene, settings, output: request, .. } = &file;
-    let mut directory = output.directory(&arguments.scene.path, "")?;
+    let directory = output.directory(&arguments.scene.path, "")?;
+    let watch = Watch::new(file.scene.end(), output.quiet)?;
+    match file.accuracy.within {
+        Some(_) if *resume => Err(Failure::bad_input(
+            "--resume goes on with one run, and --accuracy takes several: leave one of them out",
+        )),
+        Some(within) => verified(&mut file, within, directory, watch, output.quiet),
+        None => once(&file, *resume, directory, watch, output.quiet),
+    }
+}
 
-    let mut watch = Watch::new(scene.end(), output.quiet)?;
+/// One run.
+fn once(
+    file: &SceneFile,
+    resume: bool,
+    mut directory: Directory,
+    mut watch: Watch,
+    quiet: bool,
+) -> Result<(), Failure> {
+    let SceneFile { title, scene, settings, output: request, .. } = file;
     let mut simulation = scene.start(settings)?;
-    if *resume {
+    if resume {
         directory.resumes = true;
         let checkpoint = simulation.read_checkpoint(directory.checkpoint()?)?;
         simulation.restore(&checkpoint)?;
@@ -122,26 +143,104 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Err(_) => return result.map(|_| ()).map_err(Failure::from),
     };
     let trajectory = outcome.unwrap_or_else(|failure| &failure.trajectory);
-    directory.claim()?;
-    directory.write("report.json", |path| write_report(outcome, path))?;
     match resume {
-        true => directory.write("trajectory.csv", |_| table.catch_up(trajectory))?,
-        false => directory.write_table(trajectory, request)?,
+        true => {
+            directory.claim()?;
+            directory.write("report.json", |path| write_report(outcome, path))?;
+            directory.write("trajectory.csv", |_| table.catch_up(trajectory))?;
+        }
+        false => keep(outcome, &mut directory, request)?,
     }
     directory.write_formats(&trajectory.since(began), title, request)?;
     if outcome.is_ok() {
         directory.forget_checkpoint();
     }
-
-    if !output.quiet && !title.is_empty() {
-        print(title)?;
-    }
-    if *resume && !output.quiet {
+    if resume && !quiet {
         print(format_args!("resumed at t = {began} s"))?;
     }
-    print(trajectory.report())?;
-    if !output.quiet {
-        directory.tell()?;
-    }
+    tell(title, trajectory, &directory, quiet)?;
     result.map(|_| ()).map_err(Failure::from)
+}
+
+/// Writes the report and the table of a motion, or of the part of it that there is.
+fn keep(
+    outcome: Result<&Trajectory, &IntegrationFailure>,
+    directory: &mut Directory,
+    request: &OutputRequest,
+) -> Result<(), Failure> {
+    directory.claim()?;
+    directory.write("report.json", |path| write_report(outcome, path))?;
+    let trajectory = outcome.unwrap_or_else(|failure| &failure.trajectory);
+    directory.write_table(trajectory, request)
+}
+
+/// Prints how a motion was computed, and what was written.
+fn tell(
+    title: &str,
+    trajectory: &Trajectory,
+    directory: &Directory,
+    quiet: bool,
+) -> Result<(), Failure> {
+    if !quiet && !title.is_empty() {
+        print(title)?;
+    }
+    print(trajectory.report())?;
+    match quiet {
+        true => Ok(()),
+        false => directory.tell(),
+    }
+}
+
+/// Samples of a motion that is to be accurate, if none were asked for.
+const SAMPLES: f64 = 100.0;
+
+/// Runs until two agree. What a run has found is written as soon as it has ended.
+fn verified(
+    file: &mut SceneFile,
+    within: Fraction,
+    mut directory: Directory,
+    mut watch: Watch,
+    quiet: bool,
+) -> Result<(), Failure> {
+    file.output.step.get_or_insert(file.scene.end() / SAMPLES);
+    let SceneFile { title, scene, settings, accuracy, output: request, .. } = file;
+    let quantity = accuracy.quantity.as_deref().unwrap_or("motion");
+    let quantity = Quantity::named(quantity, scene, &request.sensors)?;
+    let mut verification = Verification::new(scene, within.0)
+        .settings(settings.clone())
+        .sampling(request.sampling())
+        .quantity(quantity);
+    let mut refused = None;
+    let cut_short = loop {
+        let refined = verification.refine(|simulation| match directory.claim() {
+            Ok(()) => watch.see(simulation),
+            Err(failure) => {
+                refused = Some(failure);
+                ControlFlow::Break(())
+            }
+        });
+        refused.take().map_or(Ok(()), Err)?;
+        match (refined, verification.trajectory()) {
+            (Ok(goes_on), Some(trajectory)) => {
+                keep(Ok(trajectory), &mut directory, request)?;
+                if !goes_on {
+                    break None;
+                }
+            }
+            (Err(Error::Integration(failure)), _) => break Some(failure),
+            (refined, _) => return refined.map(|_| ()).map_err(Failure::from),
+        }
+    };
+    watch.finish();
+    let trajectory = match (verification.trajectory(), &cut_short) {
+        (Some(trajectory), _) => trajectory,
+        (None, Some(failure)) => {
+            keep(Err(failure), &mut directory, request)?;
+            &failure.trajectory
+        }
+        (None, None) => return Ok(()), // there is no end without a run
+    };
+    directory.write_formats(trajectory, title, request)?;
+    tell(title, trajectory, &directory, quiet)?;
+    cut_short.map_or(Ok(()), |failure| Err(Error::Integration(failure).into()))
 }

@@ -24,6 +24,11 @@ impl SettingsArguments {
         settings.validate()
     }
 
+    /// Whether the flag of an option was given.
+    pub fn has(&self, key: &str) -> bool {
+        self.0.contains_id(key)
+    }
+
     fn get<T: Clone + Send + Sync + 'static>(&self, key: &str) -> Option<&T> {
         self.0.get_one(key)
     }

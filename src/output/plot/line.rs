@@ -74,6 +74,19 @@ impl Line {
         self.stretches.push(Vec::new());
     }
 
+    /// The data of the areas between this line and another with the same gaps.
+    pub(super) fn area_to(&self, other: &Self) -> String {
+        let mut data = String::new();
+        for (one, other) in self.stretches.iter().zip(&other.stretches) {
+            for (k, [x, y]) in one.iter().chain(other.iter().rev()).enumerate() {
+                // writing to a string does not fail
+                let _ = write!(data, "{}{x:.2} {y:.2}", if k == 0 { 'M' } else { 'L' });
+            }
+            data.push('Z');
+        }
+        data
+    }
+
     /// The data of a path through the stretches, and the points that stand alone.
     pub(super) fn drawn(&self) -> (String, Vec<[f64; 2]>) {
         let (mut data, mut alone) = (String::new(), Vec::new());

@@ -43,6 +43,8 @@ pub(super) struct Page<'a> {
 /// The columns of one unit.
 struct Panel<'a> {
     columns: Vec<&'a Column>,
+    /// How far they are known, if that is known.
+    differences: Vec<Option<&'a Column>>,
     axis: Axis,
     label: String,
     /// Upper edge of its field, and where the legend has each name (px).
@@ -56,9 +58,14 @@ impl<'a> Page<'a> {
         let mut panels: Vec<Panel> = Vec::new();
         for &column in columns {
             let unit = &column.quantity.unit;
-            match panels.iter_mut().find(|panel| panel.columns[0].quantity.unit == *unit) {
-                Some(panel) => panel.columns.push(column),
-                None => panels.push(Panel::new(column)),
+            let same = |panel: &&mut Panel| panel.columns[0].quantity.unit == *unit;
+            let difference = table.difference(column);
+            match panels.iter_mut().find(same) {
+                Some(panel) => {
+                    panel.columns.push(column);
+                    panel.differences.push(difference);
+                }
+                None => panels.push(Panel::new(column, difference)),
             }
         }
         for panel in &mut panels {
@@ -148,11 +155,21 @@ impl<'a> Page<'a> {
         group =
             group.add(frame.set("width", right - self.left).set("fill", "none").set("stroke", INK));
         for (number, column) in panel.columns.iter().enumerate() {
-            let points = self.table.times.iter().zip(&column.values);
-            let line = Line::through(points.map(|(t, value)| match value.is_finite() {
-                true => [self.x(*t), y(*value)],
-                false => [f64::NAN; 2],
-            }));
+            let line = |values: &mut dyn Iterator<Item = f64>| {
+                let points = self.table.times.iter().zip(values);
+                Line::through(points.map(|(t, value)| match value.is_finite() {
+                    true => [self.x(*t), y(value)],
+                    false => [f64::NAN; 2],
+                }))
+            };
+            if let Some(difference) = panel.differences[number] {
+                let edge = |sign: f64| {
+                    let pairs = column.values.iter().zip(&difference.values);
+                    line(&mut pairs.map(|(x, d)| x + sign * d))
+                };
+                group = group.add(band(&edge(1.0), &edge(-1.0), number));
+            }
+            let line = line(&mut column.values.iter().copied());
             group = group.add(series(&line, column, number));
             if let Some([x, y]) = panel.legend.get(number) {
                 let swatch = Line::through([[*x, *y], [x + SWATCH - 8.0, *y]].into_iter());
@@ -203,17 +220,22 @@ impl<'a> Page<'a> {
 }
 
 impl<'a> Panel<'a> {
-    fn new(column: &'a Column) -> Self {
+    fn new(column: &'a Column, difference: Option<&'a Column>) -> Self {
         let axis = Axis::new([].into_iter(), 0.0, TICKS[0], "");
-        let (columns, label) = (vec![column], String::new());
-        Self { columns, axis, label, top: 0.0, legend: Vec::new() }
+        let (columns, differences, label) = (vec![column], vec![difference], String::new());
+        Self { columns, differences, axis, label, top: 0.0, legend: Vec::new() }
     }
 
     /// Finds the axis for all of its columns, and its name.
     fn find_range(&mut self) {
         let unit = &self.columns[0].quantity.unit;
+        let bands = self.columns.iter().zip(&self.differences).flat_map(|(column, difference)| {
+            let distances = difference.into_iter().flat_map(|difference| &difference.values);
+            let pairs = column.values.iter().zip(distances);
+            pairs.flat_map(|(x, distance)| [x - distance, x + distance])
+        });
         let values = self.columns.iter().flat_map(|column| column.values.iter().copied());
-        self.axis = Axis::new(values, 0.06, TICKS[0], unit);
+        self.axis = Axis::new(values.chain(bands), 0.06, TICKS[0], unit);
         let stem = |column: &&Column| match (&column.quantity.unit[..], self.columns.len()) {
             ("J", 2..) => "energy".to_owned(),
             (_, 1) => column.quantity.name.clone(),
@@ -244,6 +266,13 @@ fn places(columns: &[&Column], start: f64, y: f64) -> Vec<[f64; 2]> {
         [x - width, y]
     });
     places.collect()
+}
+
+/// The area between two lines in the colour of a number.
+fn band(upper: &Line, lower: &Line, number: usize) -> Path {
+    let colour = COLOURS[number % COLOURS.len()];
+    let path = Path::new().set("class", "band").set("d", upper.area_to(lower));
+    path.set("fill", colour).set("fill-opacity", 0.25).set("stroke", "none")
 }
 
 /// A line in the colour and stroke of its number. Energies that have gone and come are dashed: what was supplied often

@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::error::Error;
 use crate::input::{InputError, unknown_among};
 use crate::mesh::Selection;
-use crate::output::columns::{Columns, EXCHANGED, STORED, standard_unit};
+use crate::output::columns::{Columns, DIFFERENCE, EXCHANGED, OF_SENSOR, STORED, standard_unit};
 use crate::trajectory::{Quantity, Trajectory};
 
 /// A motion in numbers: what `trajectory.csv` holds of it.
@@ -108,8 +108,12 @@ impl Table {
     /// A name that no column has.
     pub(super) fn chosen(&self, names: Option<&[String]>) -> Result<Vec<&Column>, InputError> {
         let Some(names) = names else {
-            let sensors =
-                self.columns.iter().filter(|column| standard_unit(&column.quantity.name).is_none());
+            let is_sensor = |column: &&Column| {
+                let name = &column.quantity.name;
+                let is_difference = name == DIFFERENCE || name.ends_with(OF_SENSOR);
+                standard_unit(name).is_none() && !is_difference
+            };
+            let sensors = self.columns.iter().filter(is_sensor);
             return Ok(sensors.chain(self.energies()).collect());
         };
         let find = |name: &String| {
@@ -122,6 +126,12 @@ impl Table {
             })
         };
         names.iter().map(find).collect()
+    }
+
+    /// How far a column was from where the run before had it, if that is known.
+    pub(super) fn difference(&self, column: &Column) -> Option<&Column> {
+        let name = Some(&column.quantity.name[..]);
+        self.columns.iter().find(|other| other.quantity.name.strip_suffix(OF_SENSOR) == name)
     }
 
     /// The energies, but for those that are 0 throughout.

@@ -1,0 +1,42 @@
+//! Parts of a whole.
+
+use std::str::FromStr;
+
+use super::InputError;
+
+/// A part of a whole, above 0 and below 1, as an accuracy is given: `0.01`, or `1%`.
+///
+/// ```
+/// assert_eq!("1%".parse::<pliant::Fraction>()?.0, 0.01);
+/// assert_eq!("1e-4".parse::<pliant::Fraction>()?.0, 1e-4);
+/// assert!("150%".parse::<pliant::Fraction>().is_err());
+/// # Ok::<(), pliant::InputError>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fraction(pub f64);
+
+impl Fraction {
+    /// # Errors
+    /// A number that is none, or not above 0 and below 1; `input` is where it was given.
+    pub(crate) fn check(input: &str, part: f64) -> Result<f64, InputError> {
+        if part > 0.0 && part < 1.0 {
+            return Ok(part);
+        }
+        let mend = "it is a part of the whole, above 0 and below 1: 0.01 or 1%";
+        Err(InputError::new(input, part, mend))
+    }
+}
+
+impl FromStr for Fraction {
+    type Err = InputError;
+
+    fn from_str(text: &str) -> Result<Self, InputError> {
+        let number = match text.trim().strip_suffix('%') {
+            Some(percent) => percent.trim_end().parse().map(|percent: f64| percent / 100.0),
+            None => text.trim().parse(),
+        };
+        Self::check("part", number.unwrap_or(f64::NAN))
+            .map(Self)
+            .map_err(|error| InputError { value: format!("\"{text}\""), ..error })
+    }
+}

@@ -1,0 +1,128 @@
+//! Motions with their errors: what is said of them holds against closed forms.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+
+use pliant::simulate::{Component, Reading};
+use pliant::study::{Part, Quantity, Verification};
+use pliant::{
+    Achieved, Body, Error, Inertia, Material, Mesh, Method, Phase, Sampling, Scene, Settings,
+    Strain, Trajectory, samples,
+};
+
+type Outcome = Result<(), Error>;
+
+/// An undamped bar of 4 segments, clamped at its left end, that starts with its lowest mode as displacement.
+fn bar(inertia: Inertia) -> Result<Scene, Error> {
+    let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 };
+    let body = Body::new(Mesh::bar(1.0, 5)?, material).strain(Strain::Cauchy).inertia(inertia);
+    Ok(Scene::new(body.area(1.0).build()?)
+        .initial_displacement(|x| vec![0.1 * (0.5 * PI * x[0]).sin()])
+        .phase(Phase::until(20.0).hold("left")))
+}
+
+/// Angular frequency of its motion: that of the discrete mode.
+fn omega(inertia: Inertia) -> f64 {
+    let h = 0.25;
+    let cosine = (0.5 * PI * h).cos();
+    match inertia {
+        Inertia::Consistent => (6.0 * (1.0 - cosine) / (2.0 + cosine)).sqrt() / h,
+        Inertia::Lumped => (2.0 * (1.0 - cosine)).sqrt() / h,
+    }
+}
+
+fn verify(mut verification: Verification) -> Result<Trajectory, Error> {
+    while verification.refine(|_| ControlFlow::Continue(()))? {}
+    Ok(verification.into_trajectory().unwrap())
+}
+
+fn achieved(trajectory: &Trajectory) -> &Achieved {
+    trajectory.report().achieved.as_ref().unwrap()
+}
+
+/// Values of a column among the sensors.
+fn column(trajectory: &Trajectory, name: &str) -> Vec<f64> {
+    let number = trajectory.sensors().iter().position(|sensor| sensor.name == name).unwrap();
+    trajectory.samples().iter().map(|sample| sample.sensors[number]).collect()
+}
+
+/// The true error is below the accuracy that was asked for, and below the difference that is told.
+#[test]
+fn errors_are_below_what_is_told() -> Outcome {
+    for (method, inertia) in [
+        (Method::Auto, Inertia::Consistent),
+        (Method::CvodeBdf, Inertia::Consistent),
+        (Method::Arkode, Inertia::Consistent),
+        (Method::Rk, Inertia::Lumped),
+        // its steps are bounded by stability, whatever the tolerance
+        (Method::CentralDifference, Inertia::Lumped),
+    ] {
+        let scene = bar(inertia)?;
+        for accuracy in [1e-2, 1e-4] {
+            let end = Reading::displacement("right").component(Component::X);
+            let verification = Verification::new(&scene, accuracy)
+                .settings(Settings { method, ..Settings::default() })
+                .sampling(Sampling::every(0.2).read("end", end));
+            let motion = verify(verification)?;
+            let exact = |t: f64, start: f64| start * (omega(inertia) * t).cos();
+            let (mut off, mut moved) = (0.0, 0.0);
+            let start = &motion.samples()[0].u;
+            for sample in motion.samples() {
+                for (u, start) in sample.u.iter().zip(start) {
+                    off += (u - exact(sample.time, *start)).powi(2);
+                    moved += u.powi(2);
+                }
+            }
+            let error = (off / moved).sqrt();
+            let achieved = achieved(&motion);
+            println!("{method} {accuracy}: {error:.1e} {achieved}");
+            assert!(achieved.is_enough() && achieved.difference <= accuracy, "{achieved}");
+            assert!(error < achieved.difference, "{method} {accuracy}: {error} {achieved}");
+            let scale = (moved / (motion.samples().len() * start.len()) as f64).sqrt();
+            assert!((achieved.scale / scale - 1.0).abs() < 1e-12, "{achieved} {scale}");
+            // column by column: a tolerance a tenth of the other is worth a factor of 2 at least
+            let [end, difference] = ["end", "end.difference"].map(|name| column(&motion, name));
+            for (sample, (end, difference)) in
+                motion.samples().iter().zip(end.iter().zip(difference))
+            {
+                let off = (end - exact(sample.time, start[4])).abs();
+                assert!(off < difference + 0.3 * accuracy * scale, "{off} {difference}");
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The frequency of the end of the bar, and its largest displacement.
+#[test]
+fn numbers_of_a_motion_are_verified() -> Outcome {
+    let scene = bar(Inertia::Consistent)?;
+    let end = Quantity::reading(Reading::displacement("right").component(Component::X));
+    for (part, exact) in [
+        (Part::Frequency, omega(Inertia::Consistent) / (2.0 * PI)),
+        (Part::Largest, 0.1),
+        (Part::End, 0.1 * (20.0 * omega(Inertia::Consistent)).cos()),
+    ] {
+        let verification = Verification::new(&scene, 1e-4).quantity(end.clone().part(part));
+        let motion = verify(verification.sampling(Sampling::every(0.01)))?;
+        let achieved = achieved(&motion);
+        println!("{achieved}; {exact}");
+        assert!(achieved.is_enough(), "{achieved}");
+        if part == Part::Frequency {
+            assert!((achieved.scale / exact - 1.0).abs() < 1e-4, "{achieved} {exact}");
+        }
+    }
+    Ok(())
+}
+
+/// A square that jumps on a hard floor for long: what is said until when it is known.
+#[test]
+fn hard_bounces_are_known_until_a_time() -> Outcome {
+    let scene = samples::square_jump(10)?.lasting(12.0);
+    let sampling = Sampling::every(0.02);
+    let settings = Settings { method: Method::Arkode, ..Settings::default() };
+    let verification = Verification::new(&scene, 1e-3).settings(settings).sampling(sampling);
+    let motion = verify(verification)?;
+    println!("{}\n{:?}", achieved(&motion), motion.report().warnings());
+    Ok(())
+}
