@@ -81,7 +81,7 @@ pub use integrate::Integrator;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use report::{Achieved, Counts, PhaseReport, Report};
-pub use scene::{Phase, Scene};
+pub use scene::{Phase, Scene, Term};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};
 pub use settings::{

@@ -7,6 +7,7 @@ use super::assembly::Elements;
 use super::elastic::Elastic;
 use super::fields::{CellField, NodalField, Probe, nodal_fields};
 use super::forces::NonlinearTerms;
+use super::inertia::Inertia;
 use super::recipe::Recipe;
 use super::regions::Regions;
 use crate::element::shares_at;
@@ -82,6 +83,17 @@ impl Body {
     /// How strain is measured.
     pub fn strain(&self) -> Strain {
         self.strain
+    }
+
+    /// How inertia is shared out among the nodes.
+    pub fn inertia_kind(&self) -> Inertia {
+        self.recipe.inertia
+    }
+
+    /// Number of regions that were given.
+    #[cfg(feature = "study")]
+    pub(crate) fn region_count(&self) -> usize {
+        self.recipe.regions.len()
     }
 
     /// How viscosity acts.

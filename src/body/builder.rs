@@ -94,6 +94,13 @@ impl BodyBuilder {
         Ok(Self { mesh: finer.mesh.clone(), ..self })
     }
 
+    /// Without viscosity, in its regions, too.
+    pub(crate) fn without_viscosity(mut self) -> Self {
+        self.recipe.material.viscosity = 0.0;
+        self.recipe.regions.iter_mut().for_each(|(_, material)| material.viscosity = 0.0);
+        self
+    }
+
     /// Another material, everywhere that regions have none of their own.
     pub fn material(mut self, material: Material) -> Self {
         self.recipe.material = material;

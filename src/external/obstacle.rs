@@ -334,6 +334,16 @@ impl Obstacle {
         self
     }
 
+    /// Whether what slides on it is held back in proportion to its speed.
+    pub(crate) fn has_tangential_damping(&self) -> bool {
+        self.tangential_damping > 0.0
+    }
+
+    /// With nothing that holds back what slides on it.
+    pub(crate) fn without_friction(self) -> Self {
+        Self { friction: None, sticking_speed: None, tangential_damping: 0.0, ..self }
+    }
+
     /// Whether what slides on it is held back by Coulomb's friction.
     pub(crate) fn has_friction(&self) -> bool {
         self.friction.is_some_and(|[at_rest, _]| at_rest > 0.0)

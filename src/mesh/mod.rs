@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 pub use boundary::Face;
 pub use cell::CellKind;
 pub(crate) use cell::FaceKind;
+pub(crate) use generate::BYTES_PER_NODE;
 pub use generate::{Cells, SolidCells};
 pub use select::Selection;
 

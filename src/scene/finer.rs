@@ -7,8 +7,9 @@ use super::{Phase, Scene};
 use crate::body::{Body, BodyBuilder};
 use crate::constraint::Constrained;
 use crate::element::Finer;
-use crate::input::InputError;
-use crate::mesh::{Mesh, Selection};
+use crate::external::Obstacle;
+use crate::input::{InputError, check_memory};
+use crate::mesh::{BYTES_PER_NODE, Mesh, Selection};
 
 impl Scene {
     /// The same scene with its body made in another way: of another material, by another measure of strain, with other
@@ -74,6 +75,14 @@ impl Scene {
             ));
         }
         let builder = self.body.to_builder();
+        let nodes = builder.own_mesh().node_count() << builder.own_mesh().kind().dimension();
+        let mend = "take coarser cells, or halve them less often";
+        check_memory(
+            "finer mesh",
+            format!("{nodes} nodes or so"),
+            BYTES_PER_NODE * nodes as f64,
+            mend,
+        )?;
         let coarse = builder.own_mesh().clone();
         let finer = make(&coarse)?;
         let body = builder.on(&finer)?.build()?;
@@ -90,7 +99,7 @@ impl Scene {
         }
         let count = |mesh: &Mesh| mesh.boundary_nodes().len() as f64;
         let share = count(&coarse) / count(&finer.mesh);
-        let shared = |obstacle: &crate::external::Obstacle| obstacle.clone().shared_out(share);
+        let shared = |obstacle: &Obstacle| obstacle.clone().shared_out(share);
         scene.obstacles = self.obstacles.iter().map(shared).collect();
         for phase in &mut scene.phases {
             change.phase(phase)?;

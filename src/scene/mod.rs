@@ -7,6 +7,7 @@ mod load;
 mod loading;
 mod phase;
 mod start;
+mod term;
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -16,6 +17,7 @@ pub(crate) use load::{Load, LoadKind};
 pub(crate) use phase::ContactWith;
 pub use phase::Phase;
 use start::Start;
+pub use term::Term;
 
 use crate::body::Body;
 use crate::constraint::{PhaseStart, Row, prescribe, rows};

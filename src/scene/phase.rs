@@ -71,6 +71,12 @@ impl Phase {
         self
     }
 
+    /// Whether it has a gravity of its own.
+    #[cfg(feature = "study")]
+    pub(crate) fn has_gravity(&self) -> bool {
+        self.gravity.is_some()
+    }
+
     /// Nodes that stay, in all components, where they are when the phase begins. Where the phase
     /// before prescribed their position, they stay where that should have brought them.
     pub fn hold(self, nodes: impl Into<Selection>) -> Self {

@@ -1,7 +1,7 @@
 //! `[body]`, `[[body.region]]` and `[[point]]`.
 
 use super::keys::{Holds, Key, TableKeys};
-use super::mesh::MESH;
+use super::mesh::{self, MESH};
 use super::selection::{CORNERS, corners};
 use super::value::Value;
 use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
@@ -9,6 +9,7 @@ use crate::error::Error;
 use crate::input::positive;
 use crate::material::{Material, Plane};
 use crate::mesh::Mesh;
+use crate::scene::Scene;
 
 pub(super) const BODY: TableKeys = TableKeys::new(
     "[body]",
@@ -118,7 +119,7 @@ pub(super) fn body(
     points: Option<&Value>,
 ) -> Result<Body, Error> {
     let table = value.table(&BODY)?;
-    let mut mesh = table.required("mesh", |value| super::mesh::mesh(value, dimension))?;
+    let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension))?;
     let material = table.required("material", |value| material(value, None))?;
     let mut body = Body::new(mesh.clone(), material);
     if let Some(thickness) = table.optional("thickness", Value::number)? {
@@ -146,6 +147,12 @@ pub(super) fn body(
         body = add_points(body, points, &mut mesh)?;
     }
     body.build().map_err(|error| table.blame(error))
+}
+
+/// The scene on the mesh that is finer than the one its numbers are of, if the table `[body]` asks for that.
+pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = value.table(&BODY)?;
+    table.required("mesh", |value| mesh::on_finer_mesh(scene, value))
 }
 
 /// A material; keys that are missing are those of `base`, if there is one.

@@ -4,16 +4,26 @@ use super::keys::{Holds, Key, Kind, TableKeys};
 use super::table::Table;
 use super::value::Value;
 use crate::error::Error;
+use crate::input::InputError;
 use crate::mesh::{Cells, Mesh, SolidCells};
+use crate::scene::Scene;
 
 pub(super) const MESH: TableKeys = TableKeys::new(
     "mesh",
     "The mesh of the body, made by a generator or read from a file. Generated meshes name the node sets `left`, \
      `right`, `bottom`, `top` (in space `front` and `back`, too), rings `inner` and `outer`; those of Gmsh have the \
      names of physical groups.",
-    &[Key::new("origin", Holds::Vector, "the place of the lower corner, or of the centre of a ring")
-        .in_unit("m")
-        .default("the origin")],
+    &[
+        Key::new("origin", Holds::Vector, "the place of the lower corner, or of the centre of a ring")
+            .in_unit("m")
+            .default("the origin"),
+        Key::new("quadratic", Holds::Flag, "whether cells get mid nodes")
+            .law(FINER)
+            .default("false"),
+        Key::new("halved", Holds::Count, "how often each cell is divided at the middles of its edges")
+            .law("After `quadratic`, and like it.")
+            .default("0"),
+    ],
     "mesh = { kind = \"ring\", inner = 0.04, outer = 0.05, nodes = [32, 3], cells = \"crossed\", origin = [0.0, 0.05] }",
 )
 .kinds(&[
@@ -53,6 +63,10 @@ pub(super) const MESH: TableKeys = TableKeys::new(
     },
 ]);
 
+const FINER: &str = "Triangles and tetrahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
+     those of the mesh without this; where several nodes are held, moved or under tractions, those between them are, too. Forces \
+     on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared out.";
+
 const SIZE: Key =
     Key::new("size", Holds::Array(&Holds::Number, 2), "width and height").in_unit("m").required();
 const NODES: Key =
@@ -91,6 +105,18 @@ pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Err
         Some(origin) => mesh.translated(&origin).map_err(|error| table.blame(error)),
         None => Ok(mesh),
     }
+}
+
+/// The scene on a finer mesh, if `value` asks for one.
+pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = value.table(&MESH)?;
+    let blame = |error: InputError| table.blame(error);
+    let scene = match table.optional("quadratic", Value::flag)? {
+        Some(true) => scene.quadratic().map_err(blame)?,
+        _ => scene,
+    };
+    let times = table.optional("halved", Value::count)?.unwrap_or(0);
+    (0..times).try_fold(scene, |scene, _| scene.halved().map_err(blame))
 }
 
 fn generate(table: &Table) -> Result<Mesh, Error> {

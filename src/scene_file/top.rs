@@ -71,6 +71,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     if scene.phases().is_empty() {
         return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
     }
+    scene = top.required("body", |body| body::on_finer_mesh(scene, body))?;
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
     let statics = top.optional("statics", |value| settings::statics(value, &scene))?;

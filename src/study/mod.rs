@@ -43,6 +43,7 @@
 //! twenty times as long as the fastest at the same tolerance, is a row with its reason. Each row has the error of the energy
 //! balance, which shows most answers that are wrong and do not say so.
 
+mod advise;
 mod chart;
 mod fastest;
 mod findings;
@@ -56,6 +57,7 @@ mod timing;
 mod truth;
 mod verification;
 
+pub use advise::{Advice, Adviser, Candidate, Choice};
 pub use fastest::{Accuracy, Fastest, time_text};
 pub use findings::{Findings, LineFindings};
 pub use general::General;

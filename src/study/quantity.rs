@@ -67,9 +67,9 @@ impl Quantity {
         Self::default()
     }
 
-    /// What `reading` reads over time.
-    pub fn reading(reading: Reading) -> Self {
-        Self { name: format!("{reading:?}"), reading: Some(reading), part: Part::OverTime }
+    /// What `reading` reads over time, by a name for messages.
+    pub fn reading(name: impl Into<String>, reading: Reading) -> Self {
+        Self { name: name.into(), reading: Some(reading), part: Part::OverTime }
     }
 
     /// A part of it alone.

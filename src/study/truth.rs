@@ -47,13 +47,22 @@ impl Probe {
         limit: Duration,
     ) -> Result<(Seen, Trajectory), Error> {
         let mut budget = Budget::new(limit);
-        let sampling = self.quantity.read_by(Sampling::at(self.times.clone()));
-        let trajectory = scene.simulate_with(settings, &sampling, |_| match budget.is_spent() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        })?;
-        let seen = self.quantity.seen(&trajectory, &self.nodes, self.samples(&trajectory));
-        Ok((seen, trajectory))
+        let trajectory =
+            scene.simulate_with(settings, &self.sampling(), |_| match budget.is_spent() {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            })?;
+        Ok((self.seen(&trajectory), trajectory))
+    }
+
+    /// When a run has to be sampled, and what it has to read.
+    pub(super) fn sampling(&self) -> Sampling {
+        self.quantity.read_by(Sampling::at(self.times.clone()))
+    }
+
+    /// What is seen in a run that was sampled so.
+    pub(super) fn seen(&self, trajectory: &Trajectory) -> Seen {
+        self.quantity.seen(trajectory, &self.nodes, self.samples(trajectory))
     }
 
     /// The samples at the times of the probe: those of ends of phases are more.

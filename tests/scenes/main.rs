@@ -29,5 +29,4 @@ mod threads;
 mod tunnelling;
 mod turning;
 mod varying;
-mod verified;
 mod warnings;

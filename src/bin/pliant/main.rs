@@ -1,6 +1,7 @@
 //! The command `pliant`: soft bodies from scene files, without a line of Rust.
 
 mod accuracy;
+mod advise;
 mod chart;
 mod check;
 mod failure;
@@ -43,6 +44,8 @@ enum Command {
     Play(play::Arguments),
     Static(statics::Arguments),
     Plot(plot::Arguments),
+    #[command(allow_negative_numbers = true)]
+    Advise(advise::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
     Methods(methods::Arguments),
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
         Command::Play(arguments) => play::run(&arguments),
         Command::Static(arguments) => statics::run(&arguments),
         Command::Plot(arguments) => plot::run(&arguments),
+        Command::Advise(arguments) => advise::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),

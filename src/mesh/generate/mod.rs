@@ -12,7 +12,7 @@ pub use grid::Cells;
 use crate::input::{InputError, check_memory};
 
 /// Memory (bytes) that a body takes at least for each node, in the plane and with linear cells: its matrices alone.
-const BYTES_PER_NODE: f64 = 4e3;
+pub(crate) const BYTES_PER_NODE: f64 = 4e3;
 
 /// Checks the numbers of nodes along the axes of a grid.
 fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(), InputError> {

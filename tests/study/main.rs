@@ -1,5 +1,8 @@
 //! Studies: errors against closed forms, the reference, files, failures, charts.
 
+mod advise;
+mod verified;
+
 use std::f64::consts::PI;
 use std::fs;
 use std::time::Duration;

@@ -1,0 +1,130 @@
+//! The advice in words.
+
+use std::fmt;
+
+use super::{Advice, Candidate};
+use crate::body::{Inertia, Strain};
+use crate::input::told;
+use crate::study::time_text;
+
+/// A relative number in percent.
+fn percent(part: f64) -> String {
+    format!("{} %", told_short(100.0 * part))
+}
+
+/// A number with two digits.
+fn told_short(value: f64) -> String {
+    let rounded = format!("{value:.1e}").parse().unwrap_or(value);
+    told(rounded)
+}
+
+impl Advice {
+    /// What was found, reason by reason.
+    pub fn reasons(&self) -> Vec<String> {
+        let mut reasons = Vec::new();
+        let rich = self.truth.as_ref().map(|truth| &truth.choice);
+        if let (Some(law), Some(rich)) = (self.law, rich) {
+            let other = match rich.strain {
+                Strain::Green => "Cauchy strain in place of Green strain",
+                Strain::Cauchy => "Green strain in place of Cauchy strain",
+            };
+            reasons.push(format!("{other} changes it by {}", percent(law)));
+        }
+        for candidate in &self.candidates {
+            let is_mesh = |rich: &super::Choice| {
+                let same = &candidate.choice;
+                same.strain == rich.strain
+                    && same.inertia == rich.inertia
+                    && same.without == rich.without
+                    && same.settings == rich.settings
+            };
+            if let (Some(error), true) = (candidate.error, rich.is_some_and(is_mesh)) {
+                let choice = &candidate.choice;
+                let mesh = match (choice.quadratic, choice.halved) {
+                    (false, 0) => "the mesh as written".to_owned(),
+                    (false, times) => format!("cells halved {times} time(s)"),
+                    (true, 0) => "quadratic cells".to_owned(),
+                    (true, times) => format!("quadratic cells, halved {times} time(s)"),
+                };
+                let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
+                reasons.push(match error {
+                    0.0 => format!("{mesh}: {unknowns} unknowns; what all are compared with"),
+                    _ => format!("{mesh}: {unknowns} unknowns, {} off, {time}", percent(error)),
+                });
+            }
+        }
+        for (term, error) in &self.terms {
+            reasons.push(format!("without {term} it changes by {}", percent(*error)));
+        }
+        if let (Some(error), Some(rich)) = (self.inertia, rich) {
+            let other = match rich.inertia {
+                Inertia::Consistent => "lumped inertia",
+                Inertia::Lumped => "consistent inertia",
+            };
+            reasons.push(format!("{other} changes it by {}", percent(error)));
+        }
+        reasons
+    }
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, accuracy, scale, unit, .. } = self;
+        writeln!(
+            f,
+            "{quantity} to {}, which is {} {unit}",
+            percent(*accuracy),
+            told_short(accuracy * scale)
+        )?;
+        if let Some(until) = self.known_until {
+            writeln!(
+                f,
+                "It can be known until t = {} s only: small errors grow there, as after impacts. What follows is about \
+                 the motion before; rely on energies and means later on.",
+                told(until)
+            )?;
+        }
+        let run = |candidate: &Candidate| match (candidate.error, &candidate.failure) {
+            (_, Some(failure)) => format!("{}: {failure}", candidate.choice),
+            (Some(error), None) => {
+                let time = time_text(candidate.seconds);
+                format!("{}: {} off in {time}", candidate.choice, percent(error))
+            }
+            (None, None) => format!("{}: {}", candidate.choice, time_text(candidate.seconds)),
+        };
+        match &self.enough {
+            Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
+            None if self.resolution > self.accuracy => writeln!(
+                f,
+                "\nNothing is known to be enough: even the finest mesh may be off by {}. Allow more time (--budget), or ask \
+                 for less.",
+                percent(self.resolution)
+            )?,
+            None => writeln!(f, "\nNothing that was tried is enough.")?,
+        }
+        writeln!(f, "As written:  {}", run(&self.written))?;
+        if self.resolution.is_nan() {
+            writeln!(
+                f,
+                "The error of the mesh is not known: there was no finer one to compare with."
+            )?;
+        } else {
+            let resolution = percent(self.resolution);
+            writeln!(f, "What they are compared with may itself be off by {resolution}.")?;
+        }
+        writeln!(f)?;
+        for reason in self.reasons() {
+            writeln!(f, "- {reason}")?;
+        }
+        for failed in self.candidates.iter().filter(|candidate| candidate.failure.is_some()) {
+            writeln!(f, "- failed: {}", run(failed))?;
+        }
+        for what in &self.not_tried {
+            writeln!(f, "- not tried: {what}")?;
+        }
+        if self.is_cut_short {
+            writeln!(f, "- cut short: allow more time (--budget)")?;
+        }
+        write!(f, "\n{} runs in {}", self.runs, time_text(self.seconds))
+    }
+}

@@ -1,0 +1,110 @@
+//! The adviser, on scenes of which it is known what they need.
+
+use std::f64::consts::PI;
+use std::ops::ControlFlow;
+use std::path::Path;
+
+use pliant::study::{Advice, Adviser};
+use pliant::{
+    Body, Cells, Error, Inertia, Material, Mesh, Obstacle, Phase, Sampling, Scene, SceneFile,
+    Settings, Strain, Term,
+};
+
+use super::{dephased, frequency};
+
+type Outcome = Result<(), Error>;
+
+fn advise(scene: &Scene, accuracy: f64) -> Result<Advice, Error> {
+    Adviser::new(scene, accuracy).run(&mut |_| ControlFlow::Continue(()))
+}
+
+/// A bar of 4 segments that vibrates in its lowest mode: errors of coarse meshes are those of their frequencies, and small
+/// displacements need no Green strain.
+#[test]
+fn a_bar_needs_segments_and_no_green_strain() -> Outcome {
+    let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 };
+    let body = Body::new(Mesh::bar(1.0, 5)?, material).strain(Strain::Green).area(1.0).build()?;
+    let scene = Scene::new(body)
+        .initial_displacement(|x| vec![1e-5 * (0.5 * PI * x[0]).sin()])
+        .phase(Phase::until(20.0).hold("left"));
+    let advice = advise(&scene, 0.05)?;
+    println!("{advice}");
+    // what all are compared with
+    let truth = advice.truth.as_ref().unwrap();
+    let nodes = |halved: usize| 4 * (1 << halved) + 1;
+    assert!(truth.choice.halved >= 2 && !truth.choice.quadratic);
+    for candidate in &advice.candidates {
+        let choice = &candidate.choice;
+        let is_plain = choice.without.is_empty() && choice.inertia == Inertia::Consistent;
+        if !is_plain || choice.settings.rtol > 1e-6 {
+            continue;
+        }
+        let exact =
+            dephased(frequency(nodes(choice.halved)), frequency(nodes(truth.choice.halved)));
+        let error = candidate.error.unwrap();
+        // the mode of the coarse bar is not quite that of the fine one: 1 % of the error
+        assert!((error - exact).abs() < 0.02 * exact + 3e-3, "{choice}: {error} {exact}");
+    }
+    assert!(advice.law.unwrap() < 1e-3, "{:?}", advice.law);
+    let enough = advice.enough.as_ref().unwrap();
+    assert_eq!(enough.choice.strain, Strain::Cauchy);
+    assert!(advice.terms.is_empty());
+    Ok(())
+}
+
+/// A block that slides on a floor, beside a wall that it never meets and with a gravity that matters.
+#[test]
+fn what_is_not_felt_may_be_left_out() -> Outcome {
+    let soft = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 100.0 };
+    let mesh = Mesh::rectangle([0.1, 0.05], [3, 2], Cells::Crossed)?;
+    let floor = Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]);
+    let wall = Obstacle::half_plane([5.0, 0.0], [-1.0, 0.0]).stiffness(100.0).named("wall");
+    let scene = Scene::new(Body::new(mesh, soft).thickness(0.01).build()?)
+        .gravity([0.0, -9.8])
+        .initial_velocity(|_| vec![0.2, 0.0])
+        .obstacle(floor.stiffness_density(1e6).damping(1e3).friction_coefficient(0.2))
+        .obstacle(wall)
+        .phase(Phase::until(0.2));
+    let advice = advise(&scene, 0.05)?;
+    println!("{advice}");
+    let change = |term: &Term| advice.terms.iter().find(|(known, _)| known == term).unwrap().1;
+    assert!(change(&Term::Obstacle("wall".into())) < 1e-9);
+    assert!(change(&Term::Friction) > 0.3 && change(&Term::Gravity) > 0.3);
+    let enough = advice.enough.unwrap();
+    assert!(enough.choice.without.contains(&Term::Obstacle("wall".into())), "{}", enough.choice);
+    assert!(!enough.choice.without.contains(&Term::Friction), "{}", enough.choice);
+    Ok(())
+}
+
+/// What is set in a scene file moves as the choice does, bit for bit.
+#[test]
+fn choices_can_be_written_into_scene_files() -> Outcome {
+    for (name, until) in [("square-jump", 0.7), ("ring-roll", 0.1), ("report-8", 0.2)] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{name}.toml"));
+        let file = SceneFile::read(&path)?;
+        let scene = file.scene.clone().ended_at(until);
+        let advice = Adviser::new(&scene, 0.2)
+            .budget(2.0)
+            .settings(file.settings.clone())
+            .run(&mut |_| ControlFlow::Continue(()))?;
+        for (number, candidate) in advice.candidates.iter().enumerate() {
+            let choice = &candidate.choice;
+            if candidate.failure.is_some() || choice.halved > 1 || number % 3 == 1 {
+                continue;
+            }
+            let read = SceneFile::read_with(&path, &choice.overrides(&file.scene))?;
+            let settings = Settings {
+                method: choice.settings.method,
+                rtol: choice.settings.rtol,
+                ..file.settings.clone()
+            };
+            let sampling = Sampling::phase_ends();
+            let ends = [read.scene.ended_at(until), choice.scene(&scene)?].map(|scene| {
+                scene.simulate(&settings, &sampling).map(|motion| motion.last().u.clone())
+            });
+            let [Ok(read), Ok(own)] = ends else { panic!("{name}: {choice}: {ends:?}") };
+            assert_eq!(read, own, "{name}: {choice}");
+        }
+    }
+    Ok(())
+}
