@@ -257,6 +257,12 @@ pub trait Force: Send + Sync {
     /// of them act by their values again.
     fn hold_switches(&self, _on: Option<&[bool]>) {}
 
+    /// The name of what the body rubs against, and whether all points that press there slide, or none does, if it
+    /// is one of these: by the switches as they are held. `None` if they are not, without contact or friction.
+    fn slides(&self) -> Option<(&str, Option<bool>)> {
+        None
+    }
+
     /// A time (s) within a step at which a part of the force acts that the ends of the step do not
     /// show, as they lie before and behind an obstacle. Depths below `tolerance` (m) do not matter.
     ///

@@ -80,7 +80,7 @@ pub use input::{Fraction, InputError};
 pub use integrate::Integrator;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
-pub use report::{Achieved, Counts, PhaseReport, Report};
+pub use report::{Achieved, Counts, PhaseReport, Report, SlipEvent};
 pub use scene::{Phase, Scene, Term};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};

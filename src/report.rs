@@ -95,6 +95,20 @@ pub struct PhaseReport {
     pub reason: Option<String>,
     /// Steps, evaluations, factorizations.
     pub counts: Counts,
+    /// When bodies began to slide, or to stick, under friction, where contact events are located.
+    pub slips: Vec<SlipEvent>,
+}
+
+/// A body begins to slide on an obstacle, or to stick to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlipEvent {
+    /// When (s).
+    pub time: f64,
+    /// Name of the obstacle.
+    pub obstacle: String,
+    /// Whether all points that press are now faster than the
+    /// [sticking speed](crate::Obstacle::sticking_speed), or all slower.
+    pub slides: bool,
 }
 
 impl Report {
@@ -232,14 +246,15 @@ impl fmt::Display for Report {
                  for {tangents} Newton matrices; `Force::add_tangents` saves them"
             )?;
         }
-        for PhaseReport { name, reason, counts, .. } in &self.phases {
+        for PhaseReport { name, reason, counts, slips, .. } in &self.phases {
             let events = match counts.contact_events {
                 0 => None,
                 1 => Some("1 contact event located".to_owned()),
                 count => Some(format!("{count} contact events located")),
             };
-            let remarks: Vec<&str> =
-                reason.as_deref().into_iter().chain(events.as_deref()).collect();
+            let slips = slips_in_words(slips);
+            let remarks = reason.as_deref().into_iter().chain(events.as_deref());
+            let remarks: Vec<&str> = remarks.chain(slips.as_deref()).collect();
             if !remarks.is_empty() {
                 write!(f, "\nphase \"{name}\": {}", remarks.join("; "))?;
             }
@@ -249,6 +264,19 @@ impl fmt::Display for Report {
         }
         self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
     }
+}
+
+/// How often a body began to slide or to stick, and when it first did.
+fn slips_in_words(slips: &[SlipEvent]) -> Option<String> {
+    let of = |slides: bool| {
+        let mut of_kind = slips.iter().filter(|slip| slip.slides == slides);
+        let first = of_kind.next()?;
+        let (count, what) = (1 + of_kind.count(), if slides { "slips" } else { "sticks" });
+        let times = if count == 1 { "once" } else { &format!("{count} times") };
+        Some(format!("{what} {times}, first at {:.4e} s", first.time))
+    };
+    let kinds: Vec<String> = [true, false].into_iter().filter_map(of).collect();
+    (!kinds.is_empty()).then(|| kinds.join("; "))
 }
 
 /// What the integration of a phase cost.

@@ -262,7 +262,7 @@ pub fn main(arguments: &[String]) -> Result<(), Failed> {
     let rtol: f64 = setting.parse()?;
     let times: Vec<f64> =
         fs::read_to_string(times)?.lines().map(str::parse).collect::<Result<_, _>>()?;
-    let tolerances = Settings { rtol, ..Settings::default() }.tolerances(scene.body());
+    let tolerances = Settings { rtol, ..Settings::default() }.tolerances(&scene);
     let atol = [tolerances.position, tolerances.velocity];
     let mut seconds = Vec::new();
     loop {

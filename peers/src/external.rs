@@ -178,7 +178,7 @@ pub fn export(
     let (elastic, viscous) = (body.material().elastic(), body.material().viscous());
     let gravity = scene.acceleration().map_or([0.0; 2], |g| [g[0], g[1]]);
     let is_green = u8::from(body.strain() == pliant::Strain::Green);
-    let unit = Settings { rtol: 1e-3, ..Settings::default() }.tolerances(body);
+    let unit = Settings { rtol: 1e-3, ..Settings::default() }.tolerances(scene);
     let thickness = body.volume() / area(scene);
     // lambda, mu, their viscous counterparts, thickness, gravity, Green?, alpha, atol / rtol
     writeln!(

@@ -49,7 +49,7 @@ pub unsafe extern "C" fn peers_tolerances(handle: *const Handle, rtol: f64, atol
     // SAFETY: as the caller promises
     let (handle, atol) = unsafe { (&*handle, from_raw_parts_mut(atol, 2)) };
     let solver = pliant::Settings { rtol, ..pliant::Settings::default() };
-    let tolerances = solver.tolerances(handle.scene.body());
+    let tolerances = solver.tolerances(&handle.scene);
     atol.copy_from_slice(&[tolerances.position, tolerances.velocity]);
 }
 

@@ -1,9 +1,10 @@
 //! Penalty contact (Hirai (4.3.5), (4.4.2)): obstacles push boundary nodes out of themselves.
 
+mod switches;
 #[cfg(test)]
 mod tests;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use switches::Switches;
 
 use super::friction::{Coulomb, Drag};
 use super::obstacle::{Law, Obstacle};
@@ -27,45 +28,6 @@ pub(crate) struct Contact {
     coulomb: Option<Coulomb>,
     points: Vec<ContactPoint>,
     switches: Switches,
-}
-
-/// Which points touch, and which of their normal forces press: by the numbers that decide on it, or as
-/// held from one contact event to the next.
-struct Switches {
-    are_held: AtomicBool,
-    touch: Vec<AtomicBool>,
-    /// None where nothing hangs on it: with adhesion, and without Coulomb's friction.
-    press: Vec<AtomicBool>,
-}
-
-impl Switches {
-    fn new(points: usize, pressing: bool) -> Self {
-        let off = |count| (0..count).map(|_| AtomicBool::new(false)).collect();
-        Self {
-            are_held: AtomicBool::new(false),
-            touch: off(points),
-            press: off(if pressing { points } else { 0 }),
-        }
-    }
-
-    fn is_on(&self, held: &AtomicBool, value: f64) -> bool {
-        match self.are_held.load(Ordering::Relaxed) {
-            true => held.load(Ordering::Relaxed),
-            // what is no number is taken along, to be found out
-            false => value.is_nan() || value <= 0.0,
-        }
-    }
-
-    /// Whether point number `k` touches, at this distance (m).
-    fn touches(&self, k: usize, distance: f64) -> bool {
-        self.is_on(&self.touch[k], distance)
-    }
-
-    /// Whether the normal force of point number `k` presses, or may pull as well; the law has this
-    /// `pull` (N).
-    fn presses(&self, k: usize, pull: f64) -> bool {
-        self.press.get(k).is_none_or(|press| self.is_on(press, pull))
-    }
 }
 
 struct ContactPoint {
@@ -143,7 +105,7 @@ impl Contact {
         let is_custom = obstacle.shape().is_custom();
         let coulomb = obstacle.coulomb(body.mesh().size());
         let pressing = coulomb.is_some() || !obstacle.has_adhesion();
-        let switches = Switches::new(points.len(), pressing);
+        let switches = Switches::new(points.len(), pressing, obstacle.has_friction());
         Ok(Self { obstacle, dimension, fastest, is_custom, coulomb, points, switches })
     }
 
@@ -366,32 +328,39 @@ impl Force for Contact {
         (self.fastest > 0.0).then(|| self.obstacle.velocity_at(t))
     }
 
-    /// The distances of all points, then the pulls of all normal forces that it matters of; those of
-    /// points that do not touch stay off.
+    /// The distances of all points, then the pulls of all normal forces that it matters of, then how much
+    /// faster all points under friction slide than v0; those of points that do not touch, or press, stay off.
     fn switches(&self) -> usize {
-        self.switches.touch.len() + self.switches.press.len()
+        self.switches.count()
     }
 
     fn switch_values(&self, t: f64, u: &[f64], v: &[f64], values: &mut [f64]) {
-        let (distances, pulls) = values.split_at_mut(self.points.len());
+        let [distances, pulls, excesses] = self.switches.parts(values);
         let moved = self.obstacle.displacement(t);
         for (distance, point) in distances.iter_mut().zip(&self.points) {
             *distance = self.nearest(&moved, point, u).distance;
         }
         pulls.fill(f64::INFINITY);
-        if !pulls.is_empty() {
-            for Touch { k, point, nearest, rate, .. } in self.touches(t, u, v) {
-                pulls[k] = point.law.pull(nearest.distance, rate);
+        excesses.fill(f64::INFINITY);
+        if pulls.is_empty() {
+            return;
+        }
+        for Touch { k, point, nearest, rate, slip, .. } in self.touches(t, u, v) {
+            pulls[k] = point.law.pull(nearest.distance, rate);
+            if let (Some(excess), Some(slip), Some(coulomb)) =
+                (excesses.get_mut(k), slip, self.coulomb)
+            {
+                *excess = norm(&slip.sliding) - coulomb.sticking_speed;
             }
         }
     }
 
     fn hold_switches(&self, on: Option<&[bool]>) {
-        let Switches { are_held, touch, press } = &self.switches;
-        for (held, &on) in touch.iter().chain(press).zip(on.into_iter().flatten()) {
-            held.store(on, Ordering::Relaxed);
-        }
-        are_held.store(on.is_some(), Ordering::Relaxed);
+        self.switches.hold(on);
+    }
+
+    fn slides(&self) -> Option<(&str, Option<bool>)> {
+        self.switches.all_slide().map(|slides| (self.obstacle.name(), slides))
     }
 
     fn passage(&self, step: &Step, tolerance: f64, clearances: &mut [f64]) -> Option<f64> {

@@ -36,12 +36,14 @@ use crate::input::{InputError, not_negative, positive};
 /// ```
 ///
 /// some 2/3 v0 tan(a)/mu_s; on a steeper one it slides with the acceleration g (sin(a) - mu_k cos(a)).
-/// Stick and slip are not located as events. What the force takes is heat, counted relative to the
+/// Where contact events are located ([`Settings::contact_events`](crate::Settings::contact_events)), so are the
+/// moments at which points pass v0, and the report says when the body slips and sticks
+/// ([`PhaseReport::slips`](crate::PhaseReport::slips)). What the force takes is heat, counted relative to the
 /// obstacle. In statics ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing slides, and there is no
 /// friction.
 ///
 /// Near rest friction is a damper of 3 mu_s N/(2 v0). Implicit methods do not mind it, but speeds are as good
-/// as their tolerances: what sticks creeps by the law alone once `atol_velocity` is well below v0. Explicit
+/// as their tolerances, so `atol_velocity` stays well below v0 if it is not given. Explicit
 /// steps are bounded by it (central differences: on a node of mass m to 2 m v0/(3 mu_s N)): give them a
 /// larger [`sticking_speed`](Self::sticking_speed).
 #[derive(Debug, Clone)]
@@ -347,6 +349,11 @@ impl Obstacle {
     /// Whether what slides on it is held back by Coulomb's friction.
     pub(crate) fn has_friction(&self) -> bool {
         self.friction.is_some_and(|[at_rest, _]| at_rest > 0.0)
+    }
+
+    /// The sliding speed (m/s) below which a body of `size` (m) sticks to it; `None` without friction.
+    pub(crate) fn sticks_below(&self, size: f64) -> Option<f64> {
+        self.coulomb(size).filter(|_| self.has_friction()).map(|coulomb| coulomb.sticking_speed)
     }
 
     pub(super) fn is_per_area(&self) -> bool {

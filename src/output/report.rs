@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::write_file;
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
-use crate::report::{Achieved, PhaseReport, Report};
+use crate::report::{Achieved, PhaseReport, Report, SlipEvent};
 use crate::sundials;
 use crate::trajectory::{IntegrationFailure, Quantity, Trajectory};
 
@@ -55,6 +55,14 @@ pub(super) const OF_RUN: &[ReportKey] = &[
     ("phases[].convergence_failures", "", "Newton iterations that did not converge"),
     ("phases[].wall_seconds", "s", "wall-clock time"),
     ("phases[].contact_events", "", "contact events that were located"),
+    (
+        "phases[].slips",
+        "",
+        "when the body began to slide or to stick under friction, where contact events are located",
+    ),
+    ("phases[].slips[].time", "s", "when"),
+    ("phases[].slips[].obstacle", "", "name of the obstacle"),
+    ("phases[].slips[].slides", "", "whether it began to slide; `false`: to stick"),
     ("phases[].last_step", "s", "size of the last step"),
     ("phases[].last_order", "", "order of the last step"),
     ("energy_balance_error", "J", "largest change of the energy balance"),
@@ -208,7 +216,10 @@ fn of_achieved(achieved: &Achieved) -> Value {
 }
 
 fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
-    let PhaseReport { name, end, states, wall_seconds, method, reason, counts } = phase;
+    let PhaseReport { name, end, states, wall_seconds, method, reason, counts, slips } = phase;
+    let slips = slips.iter().map(|SlipEvent { time, obstacle, slides }| {
+        json!({ "time": time, "obstacle": obstacle, "slides": slides })
+    });
     json!({
         "name": name,
         "end": end,
@@ -226,6 +237,7 @@ fn of_phase(report: &Report, phase: &PhaseReport) -> Value {
         "convergence_failures": counts.convergence_failures,
         "wall_seconds": wall_seconds,
         "contact_events": counts.contact_events,
+        "slips": slips.collect::<Vec<_>>(),
         "last_step": counts.last_step,
         "last_order": counts.last_order,
     })

@@ -127,7 +127,7 @@ impl FromStr for Method {
     }
 }
 
-/// How contact events are met: nodes that touch an obstacle or leave it.
+/// How contact events are met: nodes that touch an obstacle or leave it, and under friction stick or slip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactEvents {
     /// Where it is faster: [`Method::Auto`] locates them while it is explicit Runge-Kutta, and with implicit methods

@@ -73,7 +73,7 @@ impl SettingsOption {
             key: "atol_velocity",
             meaning: "absolute tolerance of velocities",
             unit: "m/s",
-            default: "`rtol` times a hundredth of the speed of waves",
+            default: "`rtol` times a hundredth of the speed of waves; with friction at most 1/400 of `sticking_speed`",
             value_name: "METRES/SECOND",
             value: SettingsValue::Number(|settings, atol| settings.atol_velocity = Some(atol)),
         },

@@ -1,8 +1,8 @@
 //! The record of all settings, and the tolerances that follow from it.
 
 use super::method::{ContactEvents, Method};
-use crate::body::Body;
 use crate::input::{InputError, positive};
+use crate::scene::Scene;
 
 /// How a scene is integrated.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,7 +16,9 @@ pub struct Settings {
     /// so that smaller displacements count as that large.
     pub atol_position: Option<f64>,
     /// Absolute tolerance of velocities (m/s). Default: rtol times a hundredth of the speed of
-    /// waves in the body, its displacements' counterpart in a vibration.
+    /// waves in the body, its displacements' counterpart in a vibration; and no more than 1/400 of the
+    /// [sticking speed](crate::Obstacle::sticking_speed) of an obstacle with friction, without which a step
+    /// does not see what breaks loose.
     pub atol_velocity: Option<f64>,
     /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger
     /// means less drift; it costs the implicit methods and central differences nothing, `rk` a step
@@ -92,13 +94,18 @@ impl Settings {
         }
     }
 
-    /// The absolute tolerances in force for `body`.
-    pub fn tolerances(&self, body: &Body) -> AbsoluteTolerances {
+    /// The absolute tolerances in force for `scene`.
+    pub fn tolerances(&self, scene: &Scene) -> AbsoluteTolerances {
         const SMALL_STRAIN: f64 = 0.01;
+        const SMALL_CREEP: f64 = 1.0 / 400.0;
+        let body = scene.body();
         let (size, young) = (body.mesh().size(), body.material().young);
         let volume = body.volume();
         let position = self.rtol * SMALL_STRAIN * size;
-        let velocity = self.rtol * SMALL_STRAIN * body.material().wave_speed();
+        let sticking = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
+        let velocity = sticking
+            .map(|speed| SMALL_CREEP * speed)
+            .fold(self.rtol * SMALL_STRAIN * body.material().wave_speed(), f64::min);
         AbsoluteTolerances {
             position: self.atol_position.unwrap_or(position),
             velocity: self.atol_velocity.unwrap_or(velocity),

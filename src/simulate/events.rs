@@ -1,7 +1,8 @@
-//! Contact events: where a node touches an obstacle or leaves it.
+//! Contact events: where a node touches an obstacle or leaves it, slips or sticks.
 
 use super::stepper::{Failed, Stepper};
 use crate::force::Step;
+use crate::report::SlipEvent;
 use crate::state::State;
 use crate::system::System;
 
@@ -29,6 +30,10 @@ pub(super) struct Events {
     /// Events found, and those in a row that did not move time ahead.
     pub(super) count: usize,
     standing: usize,
+    /// Whether the body slides, force by force, as it was last known.
+    slides: Vec<Option<bool>>,
+    /// When that changed.
+    pub(super) slips: Vec<SlipEvent>,
 }
 
 /// Events in a row at one time, after which the switches are left to themselves.
@@ -47,6 +52,14 @@ impl Events {
         refill(&mut self.values, count, 0.0);
         system.hold_switches(None);
         self.set(system, t, state);
+        self.slips.retain(|slip| slip.time <= t);
+        let Self { slides, slips, .. } = self;
+        let known = |(obstacle, slides): (&str, Option<bool>)| {
+            let last = || slips.iter().rfind(|slip| slip.obstacle == obstacle);
+            slides.unwrap_or_else(|| last().is_some_and(|slip| slip.slides))
+        };
+        slides.clear();
+        slides.extend(system.slides().map(|now| now.map(known)));
     }
 
     /// What the last step has met, from the state `before` at time `start` (s) to time `end` (s).
@@ -113,11 +126,29 @@ impl Events {
         self.standing = if step > 0.0 { 0 } else { self.standing + 1 };
         self.clearances.fill(0.0);
         self.set(system, t, state);
+        self.note_slips(system, t);
         if self.standing == STANDING {
             // a node that trembles at the edge
             system.hold_switches(None);
             self.on.clear();
             self.values.clear();
+        }
+    }
+
+    /// Notes where all of the body has begun to slide, or to stick. What lifts off does neither, nor does what
+    /// is taken back at once.
+    fn note_slips(&mut self, system: &System, time: f64) {
+        let Self { slides, slips, .. } = self;
+        for (known, now) in slides.iter_mut().zip(system.slides()) {
+            let Some((obstacle, Some(slides))) = now else { continue };
+            if known.replace(slides).is_none_or(|known| known == slides) {
+                continue;
+            }
+            let last = slips.iter().rposition(|slip| slip.obstacle == obstacle);
+            match last.filter(|&last| time - slips[last].time <= PRECISION * time) {
+                Some(last) => drop(slips.remove(last)),
+                None => slips.push(SlipEvent { time, obstacle: obstacle.to_owned(), slides }),
+            }
         }
     }
 

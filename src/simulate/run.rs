@@ -117,7 +117,7 @@ impl Run {
             gauges: Arc::new(gauges),
             sampling: sampling.clone(),
             sensors,
-            atol: settings.tolerances(scene.body()),
+            atol: settings.tolerances(scene),
             clock,
             time: 0.0,
             state,

@@ -113,6 +113,7 @@ impl Stage {
             method: settings.method,
             reason: reason.clone(),
             counts,
+            slips: self.leg.events.slips.clone(),
         }
     }
 }

@@ -284,6 +284,11 @@ impl System {
         }
     }
 
+    /// What the body rubs against, force by force, and [whether it slides](crate::force::Force::slides) there.
+    pub(crate) fn slides(&self) -> impl Iterator<Item = Option<(&str, Option<bool>)>> {
+        self.forces.iter().map(|force| force.slides())
+    }
+
     /// Largest |A^T u - b| (m).
     pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
         let drift = |row: &Row| (row.apply(u) - row.prescribed(t).displacement).abs();

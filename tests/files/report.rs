@@ -7,7 +7,9 @@ use pliant::IntegrationFailure;
 use pliant::output::{write_report, write_static_report};
 use pliant::samples::{SQUARE_MATERIAL, ring_springs, square_jump};
 use pliant::simulate::Reading;
-use pliant::{Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, Settings, Statics, Strain};
+use pliant::{
+    Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, SceneFile, Settings, Statics, Strain,
+};
 use pliant::{Trajectory, sundials};
 use serde_json::{Value, json};
 
@@ -68,7 +70,8 @@ fn a_finished_run() {
     let sampling = Sampling::every(0.01).read("top", Reading::position("top"));
     let run = square_jump(4).unwrap().simulate(&settings, &sampling).unwrap();
     let report = written(Ok(&run));
-    assert_eq!(keys(&report), without(documented("run"), "failure."));
+    let expected = without(without(documented("run"), "failure."), "phases[].slips[].");
+    assert_eq!(keys(&report), expected);
     let phases = report["phases"].as_array().unwrap();
     for (phase, (name, end)) in phases.iter().zip([("push", 0.5), ("hold", 1.0), ("free", 1.5)]) {
         assert_eq!((&phase["name"], &phase["end"]), (&json!(name), &json!(end)));
@@ -106,12 +109,27 @@ fn a_finished_run() {
 }
 
 #[test]
+fn what_slips_and_sticks() {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/stick-slip.toml");
+    let SceneFile { scene, settings, .. } = SceneFile::read(file).unwrap();
+    let run = scene.simulate(&settings, &Sampling::phase_ends());
+    let report = written(Ok(&run.unwrap()));
+    let documented = without(without(documented("run"), "failure."), "sensors[].");
+    assert_eq!(keys(&report), documented);
+    let slips = report["phases"][0]["slips"].as_array().unwrap();
+    for (slip, slides) in slips.iter().zip([true, false]) {
+        assert_eq!([&slip["obstacle"], &slip["slides"]], [&json!("belt"), &json!(slides)]);
+    }
+}
+
+#[test]
 fn runs_that_end_early() {
     let failed = ring_springs(5.0).unwrap().simulate(&Settings::default(), &Sampling::every(0.01));
     let Err(Error::Integration(failure)) = failed else { panic!("no failure") };
     let report = written(Err(&failure));
     assert_eq!(report["status"], "failed");
-    assert_eq!(keys(&report), without(documented("run"), "sensors[]."));
+    let expected = without(without(documented("run"), "sensors[]."), "phases[].slips[].");
+    assert_eq!(keys(&report), expected);
     // the springs A2 and A6 shrink to nothing 10 ms after they begin to
     assert!((report["failure"]["time"].as_f64().unwrap() - 0.21).abs() < 0.003);
     let cause = report["failure"]["cause"].as_str().unwrap();

@@ -114,6 +114,24 @@ fn equilibria() {
     }
 }
 
+/// The block slips and sticks when its page says.
+#[test]
+fn stick_slip() {
+    let file = SceneFile::read(path("scenes/stick-slip.toml")).unwrap();
+    let (trajectory, error) = run(&file);
+    assert_eq!(error, None);
+    let slips = &trajectory.report().phases[0].slips;
+    assert_eq!(slips.len(), 7, "{slips:?}");
+    assert!(slips[0].slides && (slips[0].time / 0.49 - 1.0).abs() < 0.02, "{:?}", slips[0]);
+    let mut closed_form = [0.409, 0.392].iter().cycle();
+    for pair in slips.windows(2) {
+        let (found, expected) = (pair[1].time - pair[0].time, closed_form.next().unwrap());
+        println!("{found} {expected}");
+        // it starts and stops at finite speeds
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+    }
+}
+
 /// Scenes written to the first description of the format.
 #[test]
 fn scenes_of_the_page() {
@@ -132,7 +150,13 @@ fn scenes_of_the_page() {
 /// No scene file is left out above.
 #[test]
 fn all_scenes_are_run() {
-    let other = ["ring-springs-5N", "static-square", "beam-static-cauchy", "beam-static-green"];
+    let other = [
+        "ring-springs-5N",
+        "static-square",
+        "beam-static-cauchy",
+        "beam-static-green",
+        "stick-slip",
+    ];
     for entry in std::fs::read_dir(path("scenes")).unwrap() {
         let file = entry.unwrap().path();
         if file.is_dir() {

@@ -5,13 +5,14 @@ use pliant::{
     Spring, Strain, Trajectory, Viscosity,
 };
 
-const G: f64 = 9.8;
-const STIFF: Material = Material { density: 1000.0, young: 1e7, poisson: 0.3, viscosity: 100.0 };
+pub(super) const G: f64 = 9.8;
+pub(super) const STIFF: Material =
+    Material { density: 1000.0, young: 1e7, poisson: 0.3, viscosity: 100.0 };
 /// Sticking speed (m/s).
 const V0: f64 = 1e-3;
 
 /// A block of 20 cm x 10 cm x 10 cm, 2 kg, on a plane that is inclined by `angle` and carries its weight.
-fn block(angle: f64) -> Body {
+pub(super) fn block(angle: f64) -> Body {
     let depth = 1000.0 * 0.1 * G * angle.cos() / STIFFNESS;
     let (sine, cosine) = angle.sin_cos();
     let turned = |x: &[f64]| {
@@ -27,10 +28,10 @@ fn block(angle: f64) -> Body {
 }
 
 /// Contact stiffness (N/m^3): a block of 10 cm sinks by 0.1 mm.
-const STIFFNESS: f64 = 1e7;
+pub(super) const STIFFNESS: f64 = 1e7;
 
 /// A plane through the origin that is inclined by `angle`; it damps a block's bouncing as fast as can be.
-fn plane(angle: f64) -> Obstacle {
+pub(super) fn plane(angle: f64) -> Obstacle {
     let plane = Obstacle::half_plane([0.0, 0.0], [-angle.sin(), angle.cos()]);
     plane.stiffness_density(STIFFNESS).damping(6e4).sticking_speed(V0)
 }
@@ -42,7 +43,7 @@ fn run(scene: &Scene, method: Method, times: &[f64]) -> Trajectory {
 
 /// The energy balance closes to `tolerance` of all energy there was.
 #[track_caller]
-fn assert_balanced(trajectory: &Trajectory, tolerance: f64) {
+pub(super) fn assert_balanced(trajectory: &Trajectory, tolerance: f64) {
     let report = trajectory.report();
     let part = report.energy_error / report.energy_scale;
     println!("{}: energy off by {part:.1e}, {} steps", report.method, report.steps());
@@ -165,25 +166,19 @@ fn a_belt_takes_a_block_along() {
     }
 }
 
-/// A block on a belt, tied to a wall by a spring k. It sticks until k x = mu_s m g. Then, with
-/// omega^2 = k/m, D = (mu_s - mu_k) m g/k and tan(phi) = w/(omega D), it swings about mu_k m g/k with the amplitude
-/// A = D/cos(phi), until it has the speed w of the belt again, at -D, (pi + 2 phi)/omega later; and 2 D/w after
-/// that it slips again.
-#[test]
-fn a_block_on_a_belt_sticks_and_slips() {
+/// A block on a level plane, and a wall to tie it to by a spring.
+pub(super) fn tied_block() -> Body {
+    let mesh = Mesh::rectangle([0.2, 0.1], [5, 3], Cells::Rectangles).unwrap();
+    let mesh = mesh.translated(&[0.0, -1000.0 * 0.1 * G / STIFFNESS]).unwrap();
+    let damped = Material { viscosity: 1000.0, ..STIFF };
+    let body = Body::new(mesh, damped).strain(Strain::Cauchy).thickness(0.1);
+    body.point_mass("wall", [-0.3, 0.05], 1.0).build().unwrap()
+}
+
+pub(super) fn stick_slip() -> (Scene, f64, f64) {
     let (w, k, m, [at_rest, sliding]) = (0.1, 200.0, 2.0, [0.5, 0.3]);
-    let body = {
-        let mesh = Mesh::rectangle([0.2, 0.1], [5, 3], Cells::Rectangles).unwrap();
-        let mesh = mesh.translated(&[0.0, -1000.0 * 0.1 * G / STIFFNESS]).unwrap();
-        let damped = Material { viscosity: 1000.0, ..STIFF };
-        Body::new(mesh, damped).strain(Strain::Cauchy).thickness(0.1).point_mass(
-            "wall",
-            [-0.3, 0.05],
-            1.0,
-        )
-    };
     let belt = plane(0.0).friction_coefficients(at_rest, sliding).sticking_speed(4e-4);
-    let scene = Scene::new(body.build().unwrap())
+    let scene = Scene::new(tied_block())
         .gravity([0.0, -G])
         .spring(Spring::between("wall", [6]).stiffness(k))
         .obstacle(belt.velocity([w, 0.0]))
@@ -193,6 +188,16 @@ fn a_block_on_a_belt_sticks_and_slips() {
     let phi = (w / (omega * d)).atan();
     let highest = sliding * m * G / k + d / phi.cos();
     let period = (std::f64::consts::PI + 2.0 * phi) / omega + 2.0 * d / w;
+    (scene, period, highest)
+}
+
+/// A block on a belt, tied to a wall by a spring k. It sticks until k x = mu_s m g. Then, with
+/// omega^2 = k/m, D = (mu_s - mu_k) m g/k and tan(phi) = w/(omega D), it swings about mu_k m g/k with the amplitude
+/// A = D/cos(phi), until it has the speed w of the belt again, at -D, (pi + 2 phi)/omega later; and 2 D/w after
+/// that it slips again.
+#[test]
+fn a_block_on_a_belt_sticks_and_slips() {
+    let (scene, period, highest) = stick_slip();
     for method in [Method::Auto, Method::CvodeBdf, Method::Ida, Method::IdaIndexTwo] {
         let settings = Settings { method, rtol: 1e-6, max_steps: 200_000, ..Settings::default() };
         let trajectory = scene.simulate(&settings, &Sampling::every(1e-3)).unwrap();

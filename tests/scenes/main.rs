@@ -22,6 +22,7 @@ mod readings;
 mod ring;
 mod sensors;
 mod simulation;
+mod slips;
 mod square_jump;
 mod square_press;
 mod start;

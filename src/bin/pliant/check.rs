@@ -72,7 +72,7 @@ fn surroundings(scene: &Scene) -> Result<(), Failure> {
 fn solver(file: &SceneFile) -> Result<(), Failure> {
     let SceneFile { scene, settings, output, .. } = file;
     let Settings { method, rtol, alpha, max_order, contact_events, max_steps, .. } = settings;
-    let atol = settings.tolerances(scene.body());
+    let atol = settings.tolerances(scene);
     line("solver", &format!("{method}, rtol {rtol:e}, alpha {alpha} 1/s"))?;
     let (position, velocity) = (atol.position, atol.velocity);
     line("", &format!("atol {position:.2e} m and {velocity:.2e} m/s"))?;
