@@ -7,7 +7,7 @@
 
 use std::fmt;
 
-use crate::input::unknown;
+use crate::input::{InputError, unknown};
 
 /// A formula, ready to be evaluated.
 #[derive(Clone)]
@@ -154,10 +154,20 @@ impl Formula {
     }
 
     /// The function without derivatives in it, if there is one.
-    pub(crate) fn kink(&self) -> Option<&'static str> {
+    fn kink(&self) -> Option<&'static str> {
         self.steps.iter().find_map(|step| match step {
             Step::Function(Function { name, rule: Kinked(_) | Choice(_) }) => Some(*name),
             _ => None,
+        })
+    }
+
+    /// Checks that a path can follow it: that its derivatives exist.
+    pub(crate) fn check_smooth(&self) -> Result<(), InputError> {
+        self.kink().map_or(Ok(()), |name| {
+            let mend = format!(
+                "{name} has no velocity at its kink: give a smooth formula, or a path through points"
+            );
+            Err(InputError::new("path", self.text(), mend))
         })
     }
 

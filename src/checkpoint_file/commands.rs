@@ -141,9 +141,7 @@ impl InForce {
                 .turned
                 .iter()
                 .map(|obstacle| {
-                    let is_uniform = obstacle.splines().is_empty();
-                    let velocity = is_uniform.then(|| obstacle.velocity_at(0.0));
-                    (obstacle.name().into(), obstacle.offset(), velocity)
+                    (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
                 })
                 .collect(),
         })

@@ -8,7 +8,6 @@ use super::row::{Row, RowMotion};
 use super::start::PhaseStart;
 use super::turn::Turning;
 use super::{Axes, Axis, Constrained, Constraint, Motion};
-use crate::formula::Formula;
 use crate::input::{InputError, finite};
 use crate::mesh::Mesh;
 use crate::vector::norm;
@@ -32,7 +31,7 @@ pub(crate) fn rows(
     for Constraint { what, how } in constraints {
         match how {
             Motion::Spline(spline) => spline.validate("displacements of a path", "m")?,
-            Motion::Formula(formula) => check_smooth(formula)?,
+            Motion::Formula(formula) => formula.check_smooth()?,
             Motion::Turn(turn) => turn.validate(dimension)?,
             Motion::Hold | Motion::Velocity(_) | Motion::Path(_) => {}
         }
@@ -69,16 +68,6 @@ pub(crate) fn rows(
         check_path(row, phase, dimension, start.time)?;
     }
     without_repetitions(rows, dimension, phase)
-}
-
-/// Checks that b, b' and b'' can be had of a formula.
-fn check_smooth(formula: &Formula) -> Result<(), InputError> {
-    formula.kink().map_or(Ok(()), |name| {
-        let mend = format!(
-            "{name} has no velocity at its kink: give a smooth formula, or a path through points"
-        );
-        Err(InputError::new("path", formula.text(), mend))
-    })
 }
 
 fn row(

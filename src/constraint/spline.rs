@@ -13,7 +13,7 @@ pub(crate) struct Spline {
     times: Vec<f64>,
     /// b at these times (m).
     displacements: Vec<f64>,
-    /// b' there (m/s).
+    /// b' there (m/s). Between two points the path is the cubic that has both.
     velocities: Vec<f64>,
 }
 
@@ -29,12 +29,6 @@ impl Spline {
         &self.times
     }
 
-    /// Velocities (m/s) at the points. Between two points the path is the cubic that has both.
-    #[cfg(feature = "output")]
-    pub(crate) fn velocities(&self) -> &[f64] {
-        &self.velocities
-    }
-
     /// A bound on the speed (m/s): between two points the velocity is a quadratic Bezier curve, no larger than
     /// its control points.
     pub(crate) fn fastest(&self) -> f64 {
@@ -48,7 +42,7 @@ impl Spline {
     }
 
     /// Displacements (m) of the points.
-    #[cfg(any(feature = "checkpoint", feature = "output"))]
+    #[cfg(feature = "checkpoint")]
     pub(crate) fn displacements(&self) -> &[f64] {
         &self.displacements
     }

@@ -8,9 +8,11 @@ use switches::Switches;
 
 use super::friction::{Coulomb, Drag};
 use super::obstacle::{Law, Obstacle};
-use super::passage::{Path, deepest};
+use super::passage::{Path, deepest, difference};
 use super::shape::Nearest;
+use super::signal::finite_at;
 use super::surface::{SurfacePoint, boundary_nodes, gauss_points};
+use super::travel::Cubics;
 use crate::body::Body;
 use crate::force::{Force, NodalForces, Reservoir, Step, Tangents};
 use crate::input::InputError;
@@ -22,8 +24,8 @@ use crate::vector::{dot, norm};
 pub(crate) struct Contact {
     obstacle: Obstacle,
     dimension: usize,
-    /// A bound on |w| (m/s).
-    fastest: f64,
+    /// A bound on |w| (m/s), if there is one for all times.
+    fastest: Option<f64>,
     is_custom: bool,
     coulomb: Option<Coulomb>,
     points: Vec<ContactPoint>,
@@ -129,20 +131,35 @@ impl Contact {
         self.obstacle.nearest(moved, x, self.dimension)
     }
 
-    /// The path of a point within a step, as the obstacle sees it.
-    fn path(&self, point: &ContactPoint, step: &Step) -> Path {
-        let d = self.dimension;
-        let x = [0, 1].map(|k| {
-            let u = point.on.at(step.u[k], d);
-            let moved = self.obstacle.displacement(step.times[k]);
-            std::array::from_fn(|i| point.natural[i] + u[i] - moved[i])
+    /// The path of a point within one of so many equal `parts` of a step, as the obstacle sees it, and when that is (s).
+    fn path(
+        &self,
+        point: &ContactPoint,
+        step: &Step,
+        number: usize,
+        parts: usize,
+    ) -> ([f64; 2], Path) {
+        let ([start, end], d) = (step.times, self.dimension);
+        let x = step.u.map(|u| {
+            let u = point.on.at(u, d);
+            std::array::from_fn(|i| point.natural[i] + u[i])
         });
-        let v = [0, 1].map(|k| {
-            let v = point.on.at(step.v[k], d);
-            let w = self.obstacle.velocity_at(step.times[k]);
-            std::array::from_fn(|i| v[i] - w[i])
+        let v = step.v.map(|v| point.on.at(v, d));
+        let ends = [number, number + 1].map(|k| {
+            let (t, [x, v]) = match k {
+                0 => (start, [x[0], v[0]]),
+                k if k == parts => (end, [x[1], v[1]]),
+                k => {
+                    let part = k as f64 / parts as f64;
+                    let [x, slope] = Path::new(x, v, end - start).at(part);
+                    (start + part * (end - start), [x, slope.map(|x| x / (end - start))])
+                }
+            };
+            let (moved, w) = (self.obstacle.displacement(t), self.obstacle.velocity_at(t));
+            (t, difference(&x, &moved), difference(&v, &w))
         });
-        Path::new(x, v, step.times[1] - step.times[0])
+        let times = ends.map(|(t, ..)| t);
+        (times, Path::new(ends.map(|(_, x, _)| x), ends.map(|(.., v)| v), times[1] - times[0]))
     }
 
     fn touches<'a>(
@@ -216,6 +233,11 @@ impl Force for Contact {
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
         let w = self.obstacle.velocity_at(t);
+        if self.fastest.is_none() {
+            for x in self.obstacle.displacement(t).into_iter().chain(w) {
+                finite_at(t, format_args!("path of obstacle \"{}\"", self.obstacle.name()), x)?;
+            }
+        }
         for touch in self.touches(t, u, v) {
             self.check(t, &touch)?;
             let drag = touch.drag();
@@ -325,7 +347,7 @@ impl Force for Contact {
     }
 
     fn velocity(&self, t: f64) -> Option<[f64; 3]> {
-        (self.fastest > 0.0).then(|| self.obstacle.velocity_at(t))
+        (self.fastest != Some(0.0)).then(|| self.obstacle.velocity_at(t))
     }
 
     /// The distances of all points, then the pulls of all normal forces that it matters of, then how much
@@ -365,21 +387,29 @@ impl Force for Contact {
 
     fn passage(&self, step: &Step, tolerance: f64, clearances: &mut [f64]) -> Option<f64> {
         let (d, [start, end]) = (self.dimension, step.times);
-        let reach = step.reach(d) + (end - start) * self.fastest;
+        let Cubics { parts, fastest } = match self.fastest {
+            Some(fastest) => Cubics { parts: 1, fastest },
+            None => self.obstacle.cubics(step.times, 0.5 * tolerance),
+        };
+        let reach = step.reach(d) + (end - start) * fastest;
         let mut first: Option<f64> = None;
         for (point, clearance) in self.points.iter().zip(clearances) {
             *clearance -= reach;
             if *clearance > 0.0 {
                 continue;
             }
-            let (shape, path) = (self.obstacle.shape(), self.path(point, step));
-            let [before, after] =
-                [path.start(), path.end()].map(|x| shape.nearest(&x[..d]).distance);
+            let shape = self.obstacle.shape();
+            let path = |number: usize| self.path(point, step, number, parts);
+            let distance = |x: &[f64; 3]| shape.nearest(&x[..d]).distance;
+            let [before, after] = [distance(path(0).1.start()), distance(path(parts - 1).1.end())];
             *clearance = after.abs();
             // forces at an end that is half as deep tell enough
             let depth = 2.0 * f64::max(0.0, -before.min(after)) + tolerance;
-            if let Some(part) = deepest(shape, &path, d, depth) {
-                let t = start + part * (end - start);
+            let found = (0..parts).map(path).find_map(|([from, to], path)| {
+                let part = deepest(shape, &path, d, depth)?;
+                Some(from + part * (to - from))
+            });
+            if let Some(t) = found {
                 first = Some(first.map_or(t, |first| first.min(t)));
             }
         }

@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use super::friction::Coulomb;
 use super::shape::{Nearest, Shape};
-use super::travel::{Travel, Waypoints};
+use super::travel::{Cubics, Travel, Waypoints};
 use crate::constraint::Spline;
+#[cfg(feature = "scene-file")]
+use crate::formula::Formula;
 use crate::input::{InputError, not_negative, positive};
 
 /// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force on each
@@ -238,6 +240,14 @@ impl Obstacle {
         self
     }
 
+    /// A path by smooth formulas of time instead, one per component: the displacement (m) from where the obstacle
+    /// was said to be.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn follow_formulas(mut self, formulas: Vec<Formula>) -> Self {
+        self.travel = Travel::Formulas(formulas.into());
+        self
+    }
+
     /// Name of the obstacle.
     pub fn name(&self) -> &str {
         &self.name
@@ -308,14 +318,40 @@ impl Obstacle {
         self.travel.velocity(t)
     }
 
-    /// A bound on its speed (m/s); 0 if it rests.
-    pub(crate) fn fastest(&self) -> f64 {
+    /// A bound on its speed (m/s) at all times, 0 if it rests; there is none if it follows formulas.
+    pub(super) fn fastest(&self) -> Option<f64> {
         self.travel.fastest()
     }
 
-    /// The smooth path that it moves along, by components; none if its velocity is constant.
-    pub(crate) fn splines(&self) -> &[Spline] {
-        self.travel.splines()
+    /// Cubics that it moves along between two times (s), up to `tolerance` (m), and how fast.
+    pub(crate) fn cubics(&self, times: [f64; 2], tolerance: f64) -> Cubics {
+        self.travel.cubics(times, tolerance)
+    }
+
+    /// Its velocity (m/s) if that is constant; 0 beyond the dimension.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn constant_velocity(&self) -> Option<[f64; 3]> {
+        self.travel.is_uniform().then(|| self.velocity_at(0.0))
+    }
+
+    /// Times (s) between which its path is a cubic, up to a time `end` and to `tolerance` (m); none if its
+    /// velocity is constant.
+    #[cfg(feature = "output")]
+    pub(crate) fn knots(&self, end: f64, tolerance: f64) -> Vec<f64> {
+        match self.travel {
+            Travel::Uniform(_) => Vec::new(),
+            Travel::Path(_) => self.breaks().into(),
+            Travel::Formulas(_) => {
+                let Cubics { parts, .. } = self.cubics([0.0, end], tolerance);
+                (0..=parts).map(|k| k as f64 / parts as f64 * end).collect()
+            }
+        }
+    }
+
+    /// How far its velocity or path alone have brought it by time `t` (m).
+    #[cfg(feature = "output")]
+    pub(crate) fn travelled(&self, t: f64) -> [f64; 3] {
+        self.travel.displacement(t)
     }
 
     /// How far it is from where its velocity or path alone would have brought it (m).
@@ -326,7 +362,7 @@ impl Obstacle {
 
     /// Times (s) between which it moves by one law.
     pub(crate) fn breaks(&self) -> &[f64] {
-        self.splines().first().map_or(&[], Spline::times)
+        self.travel.splines().first().map_or(&[], Spline::times)
     }
 
     /// The same obstacle with this [`offset`](Self::offset).

@@ -34,6 +34,32 @@ impl Path {
         &self.0[3]
     }
 
+    /// Position (m) at `s`, from 0 to 1, and its derivative by `s`.
+    pub(super) fn at(&self, s: f64) -> [[f64; 3]; 2] {
+        let between =
+            |a: &[f64; 3], b: &[f64; 3]| std::array::from_fn(|i| a[i] + s * (b[i] - a[i]));
+        let [a, b, c, d] = &self.0;
+        let [ab, bc, cd]: [[f64; 3]; 3] = [between(a, b), between(b, c), between(c, d)];
+        let [abc, bcd]: [[f64; 3]; 2] = [between(&ab, &bc), between(&bc, &cd)];
+        [between(&abc, &bcd), difference(&bcd, &abc).map(|x| 3.0 * x)]
+    }
+
+    /// The second derivatives (m) by `s` at both ends.
+    pub(super) fn bends(&self) -> [[f64; 3]; 2] {
+        let bend = |k: usize| {
+            std::array::from_fn(|i| {
+                6.0 * (self.0[k][i] - 2.0 * self.0[k + 1][i] + self.0[k + 2][i])
+            })
+        };
+        [bend(0), bend(1)]
+    }
+
+    /// A bound on the speed (m/s), if it takes `duration` (s).
+    pub(super) fn fastest(&self, duration: f64) -> f64 {
+        let side = |ends: &[[f64; 3]]| norm(&difference(&ends[1], &ends[0]));
+        3.0 / duration * self.0.windows(2).map(side).fold(0.0, f64::max)
+    }
+
     /// A bound on its length (m).
     fn length(&self) -> f64 {
         let side = |ends: &[[f64; 3]]| norm(&difference(&ends[1], &ends[0]));
@@ -105,7 +131,7 @@ impl Search {
     }
 }
 
-fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
+pub(super) fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     std::array::from_fn(|i| a[i] - b[i])
 }
 

@@ -15,6 +15,7 @@ const MOST_OF_BODY: f64 = 0.02;
 /// How near the body came to an obstacle while that acted.
 pub(super) struct Meeting {
     obstacle: String,
+    /// A bound on its speed (m/s) at and between samples.
     speed: f64,
     /// Least distance (m), below 0 inside the obstacle.
     nearest: f64,
@@ -36,8 +37,11 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
         return Vec::new();
     }
     let limits = depth_limits(scene.body());
+    // of speeds, for paths by formulas
+    let precision = 1e-3 * scene.body().mesh().size();
     let mut meetings: Vec<Meeting> = Vec::new();
     let mut acting: Option<(&Phase, Vec<Contact>)> = None;
+    let mut last = 0.0;
     for sample in samples {
         let Ok(phase) = trajectory.phase_of(sample) else { continue };
         if acting.as_ref().is_none_or(|(last, _)| !ptr::eq(*last, phase)) {
@@ -49,13 +53,15 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
             let number = known.unwrap_or_else(|| {
                 meetings.push(Meeting {
                     obstacle: name.to_owned(),
-                    speed: contact.obstacle().fastest(),
+                    speed: 0.0,
                     nearest: f64::INFINITY,
                     deepest: Deepest { depth: 0.0, limit: 1.0, node: 0 },
                 });
                 meetings.len() - 1
             });
             let meeting = &mut meetings[number];
+            let fastest = contact.obstacle().cubics([last, sample.time], precision).fastest;
+            meeting.speed = meeting.speed.max(fastest);
             contact.each_distance(sample.time, &sample.u, |distance, node| {
                 meeting.nearest = meeting.nearest.min(distance);
                 let Deepest { depth, limit, .. } = meeting.deepest;
@@ -64,6 +70,7 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
                 }
             });
         }
+        last = sample.time;
     }
     meetings
 }

@@ -96,17 +96,7 @@ fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
 fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let nodes = nodes(table, scene)?;
     let axes = axes(table, scene)?.unwrap_or_else(|| all_axes(scene).into());
-    let formulas = table.optional("displacement", |value| {
-        let formulas =
-            value.one_or_more()?.iter().map(Value::formula).collect::<Result<Vec<_>, _>>()?;
-        match formulas.len() == axes.len() {
-            true => Ok(formulas),
-            false => {
-                let what = number_of(axes.len(), "component");
-                Err(value.unexpected(format!("{what}, one per axis")))
-            }
-        }
-    })?;
+    let formulas = table.optional("displacement", |value| value.formulas(axes.len(), "axis"))?;
     if let Some(formulas) = formulas {
         let axes = axes.into_iter().zip(formulas);
         return Ok(axes.fold(phase, |phase, (axis, formula)| {

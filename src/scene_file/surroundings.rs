@@ -145,26 +145,32 @@ const fn vector(name: &'static str, meaning: &'static str, unit: &'static str) -
 
 const WAY: TableKeys = TableKeys::new(
     "obstacle.path",
-    "The obstacle runs smoothly (a cubic spline) through points, and begins and ends at rest; before and after it stays.",
+    "The obstacle runs smoothly (a cubic spline) through points, and begins and ends at rest; before and after it stays. Or it \
+     follows formulas without `abs`, `min`, `max` and `step`, which have no velocity at their kinks.",
     &[
-        Key::new("times", Holds::List(&Holds::Number), "times in ascending order")
-            .in_unit("s")
-            .required(),
+        Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s"),
         Key::new(
             "displacements",
             Holds::List(&Holds::Vector),
             "displacements, at these times, from where it was said to be",
         )
-        .in_unit("m")
-        .required(),
+        .in_unit("m"),
+        Key::new(
+            "displacement",
+            Holds::ChangingVector,
+            "the displacement from where it was said to be",
+        )
+        .in_unit("m"),
     ],
     "[[obstacle]]\n\
      kind = \"disc\"\n\
      centre = [0.05, 0.15]\n\
      radius = 0.02\n\
      stiffness = 1.0e3\n\
-     path = { times = [0.0, 0.5, 1.0], displacements = [[0.0, 0.0], [0.0, -0.02], [0.0, 0.0]] }",
-);
+     path = { times = [0.0, 0.5, 1.0], displacements = [[0.0, 0.0], [0.0, -0.02], [0.0, 0.0]] }\n\
+     # or: path = { displacement = [0.0, \"0.01*sin(20*t)\"] }",
+)
+.one_of(&[&["times", "displacements"], &["displacement"]]);
 
 const COEFFICIENTS: TableKeys = TableKeys::new(
     "friction_coefficient",
@@ -266,15 +272,25 @@ pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> 
             return Err(value.error("a path has its own velocity: give one of path and velocity"));
         }
         let path = value.table(&WAY)?;
-        let times = path.required("times", Value::numbers)?;
-        let displacements = path.required("displacements", |value| {
-            value.list_of("displacements, one per time", |x| x.vector(body.dimension()))
-        })?;
-        obstacle = obstacle.path(times, displacements);
+        obstacle = way(obstacle, &path, body.dimension())?;
     }
     unique(table, obstacle.name(), scene.obstacles().iter().map(Obstacle::name))?;
     Contact::new(body, &obstacle).map_err(|error| table.blame(error))?;
     Ok(scene.obstacle(obstacle))
+}
+
+/// The `obstacle` on the path that `table` describes.
+fn way(obstacle: Obstacle, table: &Table, dimension: usize) -> Result<Obstacle, Error> {
+    let formulas =
+        table.optional("displacement", |value| value.formulas(dimension, "dimension"))?;
+    if let Some(formulas) = formulas {
+        return Ok(obstacle.follow_formulas(formulas));
+    }
+    let times = table.required("times", Value::numbers)?;
+    let displacements = table.required("displacements", |value| {
+        value.list_of("displacements, one per time", |x| x.vector(dimension))
+    })?;
+    Ok(obstacle.path(times, displacements))
 }
 
 /// The `obstacle` with the tangential forces of `table`.

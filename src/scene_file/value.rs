@@ -177,20 +177,26 @@ impl<'a> Value<'a> {
         Formula::parse(&text).map_err(|problem| self.no_formula(&problem))
     }
 
+    /// So many formulas of time, one `per` dimension or axis; one may stand alone.
+    pub(super) fn formulas(&self, count: usize, per: &str) -> Result<Vec<Formula>, Error> {
+        let formulas =
+            self.one_or_more()?.iter().map(Self::formula).collect::<Result<Vec<_>, _>>()?;
+        match formulas.len() == count {
+            true => Ok(formulas),
+            false => {
+                let what = number_of(count, "component");
+                Err(self.unexpected(format!("{what}, one per {per}")))
+            }
+        }
+    }
+
     /// A vector, or formulas of its components.
     pub(super) fn vector_signal(&self, dimension: usize) -> Result<VectorSignal, Error> {
         let items = self.one_or_more()?;
         if !items.iter().any(|item| matches!(item.value, DeValue::String(_))) {
             return Ok(VectorSignal::Constant(self.vector(dimension)?));
         }
-        let formulas = self.list_of("numbers or formulas", Self::formula)?;
-        match formulas.len() == dimension {
-            true => Ok(VectorSignal::Formulas(formulas.into())),
-            false => {
-                let what = number_of(dimension, "component");
-                Err(self.unexpected(format!("{what}, one per dimension")))
-            }
-        }
+        Ok(VectorSignal::Formulas(self.formulas(dimension, "dimension")?.into()))
     }
 
     /// What `read` reads of what is no text.

@@ -17,6 +17,7 @@ mod friction;
 mod index_two;
 mod moving_obstacles;
 mod observer;
+mod oscillating;
 mod planes;
 mod readings;
 mod ring;

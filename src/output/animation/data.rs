@@ -1,13 +1,13 @@
 //! The data of a motion as JSON, for the page.
 
 use std::collections::BTreeMap;
+use std::ptr;
 
 use serde_json::{Value, json};
 
 use super::geometry::{Geometry, in_view};
 use super::{contacts, pack};
 use crate::body::{Body, CellField};
-use crate::constraint::Spline;
 use crate::error::Error;
 use crate::external::{Joint, Obstacle, Shape, ShapeKind};
 use crate::input::InputError;
@@ -23,6 +23,8 @@ use crate::trajectory::{Sample, Trajectory};
 const MOST_FRAMES: usize = 800;
 const MOST_BYTES: usize = 1_400_000;
 const FEW_FRAMES: usize = 60;
+/// How near the drawn path of an obstacle is to its formula, in sizes of the body.
+const FOLLOWED: f64 = 1e-3;
 /// Part of the values of cells that the scale of colours covers.
 const PERCENTILE: f64 = 0.99;
 
@@ -228,8 +230,12 @@ fn obstacles_in(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Er
     let (scene, mut shapes) = (trajectory.scene(), Vec::new());
     for obstacle in scene.obstacles() {
         let mut courses: Vec<Value> = Vec::new();
+        let mut last = None;
         for sample in frames {
             let moving = trajectory.phase_of(sample)?.moving(obstacle);
+            if last.replace(moving).is_some_and(|last| ptr::eq(last, moving)) {
+                continue;
+            }
             let next = course(scene, moving, sample.time);
             if courses.last().is_none_or(|last| {
                 ["start", "velocity", "path"].iter().any(|key| last[key] != next[key])
@@ -249,20 +255,15 @@ fn course(scene: &Scene, obstacle: &Obstacle, since: f64) -> Value {
     let [start, velocity] =
         [obstacle.offset(), obstacle.velocity_at(0.0)].map(|x| in_view(&x[..dimension]));
     let mut course = json!({ "since": since, "start": start, "velocity": velocity });
-    let splines = obstacle.splines();
-    if !splines.is_empty() {
-        let points = |part: fn(&Spline) -> &[f64]| -> Vec<_> {
-            let point = |k: usize| {
-                let x: Vec<f64> = splines.iter().map(|spline| part(spline)[k]).collect();
-                in_view(&x)
-            };
-            (0..obstacle.breaks().len()).map(point).collect()
+    let times = obstacle.knots(scene.end(), FOLLOWED * scene.body().mesh().size());
+    if !times.is_empty() {
+        let points = |at: &dyn Fn(f64) -> [f64; 3]| -> Vec<_> {
+            times.iter().map(|&t| in_view(&at(t)[..dimension])).collect()
         };
         let (displacements, velocities) =
-            (points(Spline::displacements), points(Spline::velocities));
-        course["path"] = json!({
-            "times": obstacle.breaks(), "displacements": displacements, "velocities": velocities,
-        });
+            (points(&|t| obstacle.travelled(t)), points(&|t| obstacle.velocity_at(t)));
+        course["path"] =
+            json!({ "times": times, "displacements": displacements, "velocities": velocities });
     }
     course
 }
