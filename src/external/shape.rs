@@ -176,7 +176,7 @@ impl Shape {
 
     /// The shape with a normal of length 1, if all its numbers make sense. `input` completes the
     /// name of a number.
-    pub(super) fn validated(
+    pub(crate) fn validated(
         &self,
         dimension: usize,
         input: &dyn Fn(&str) -> String,

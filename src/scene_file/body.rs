@@ -91,6 +91,7 @@ const REGION: TableKeys = TableKeys::new(
         Key::new("box", Holds::Corners, CORNERS).in_unit("m"),
         Key::new("group", Holds::Text, "the name of a group of cells")
             .law("A physical group of Gmsh."),
+        Key::new("cells", Holds::List(&Holds::Count), "numbers of cells, from 1"),
         Key::new("material", Holds::Table(&MATERIAL), "the keys of the material that differ")
             .required(),
     ],
@@ -99,7 +100,7 @@ const REGION: TableKeys = TableKeys::new(
      box = [[0.0, 0.0], [0.05, 0.02]] # cells whose centroid lies in it\n\
      material = { young = 2.0e5 }",
 )
-.one_of(&[&["box"], &["group"]]);
+.one_of(&[&["box"], &["group"], &["cells"]]);
 
 pub(super) const POINT: TableKeys = TableKeys::new(
     "[[point]]",
@@ -185,7 +186,11 @@ fn add_regions(
             Err(error) => Err(value.error(error)),
         };
         let group = table.optional("group", |value| checked(value, value.string()?.into()))?;
-        let cells = match group {
+        let numbers = table.optional("cells", |value| {
+            let numbers = value.list_of("cell numbers", Value::count)?;
+            checked(value, CellSelection::Numbers(numbers))
+        })?;
+        let cells = match group.or(numbers) {
             Some(cells) => cells,
             None => table.required("box", |value| {
                 let [min, max] = corners(value, mesh)?;

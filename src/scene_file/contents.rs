@@ -63,8 +63,10 @@ impl SceneFile {
 /// What a run is to write.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OutputRequest {
-    /// Time between samples (s). Without it, phases are sampled at their ends only.
+    /// Time between samples (s). Without it and `times`, phases are sampled at their ends only.
     pub step: Option<f64>,
+    /// Times of samples (s), in place of a step.
+    pub times: Option<Vec<f64>>,
     /// Nodes whose displacements the table lists.
     pub track: Option<Selection>,
     /// Sensors: their names, and what they read.
@@ -110,14 +112,24 @@ impl Format {
 
 impl Default for OutputRequest {
     fn default() -> Self {
-        Self { step: None, track: None, sensors: Vec::new(), formats: vec![Format::Csv] }
+        Self {
+            step: None,
+            times: None,
+            track: None,
+            sensors: Vec::new(),
+            formats: vec![Format::Csv],
+        }
     }
 }
 
 impl OutputRequest {
     /// When the motion is sampled, and what is read then.
     pub fn sampling(&self) -> Sampling {
-        let times = self.step.map_or_else(Sampling::phase_ends, Sampling::every);
+        let times = match (&self.times, self.step) {
+            (Some(times), _) => Sampling::at(&**times),
+            (None, Some(step)) => Sampling::every(step),
+            (None, None) => Sampling::phase_ends(),
+        };
         let sensors = self.sensors.iter();
         sensors.fold(times, |sampling, (name, reading)| sampling.read(name, reading.clone()))
     }

@@ -4,7 +4,8 @@ use toml::de::DeValue;
 
 use super::keys::TableKeys;
 use super::phase_keys::{
-    ACTUATE, HOLD, LOAD, MOVE, PATH, PHASE, PRESSURE, PRESSURE_ON, ROTATE, SYMMETRY,
+    ACTUATE, HOLD, HOLD_COMBINATION, LOAD, MOVE, PATH, PHASE, PRESSURE, PRESSURE_ON, ROTATE,
+    SYMMETRY, TERMS,
 };
 use super::selection::selection;
 use super::table::Table;
@@ -21,12 +22,13 @@ use crate::vector::norm;
 type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
 
 /// The tables inside of a phase: what they add.
-const PARTS: [(&TableKeys, Add); 9] = [
+const PARTS: [(&TableKeys, Add); 10] = [
     (&HOLD, hold),
     (&MOVE, moving),
     (&PATH, path),
     (&ROTATE, rotate),
     (&SYMMETRY, symmetry),
+    (&HOLD_COMBINATION, hold_combination),
     (&LOAD, load),
     (&PRESSURE, pressure),
     (&PRESSURE_ON, pressure_on),
@@ -145,6 +147,24 @@ fn symmetry(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> 
     Ok(phase.symmetry(nodes(table, scene)?, normal))
 }
 
+fn hold_combination(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let terms = table.required("terms", |value| value.tables(&TERMS))?;
+    let term = |term: &Table| {
+        let node = term.required("node", |value| {
+            let node = value.count()?;
+            let known = scene.body().mesh().select(&[node].into());
+            known.map(|_| node).map_err(|error| value.error(error))
+        })?;
+        let axis = term.required("axis", |value| value.word(known_axes(scene)))?;
+        let coefficient = term.required("coefficient", |value| match value.finite()? {
+            0.0 => Err(value.unexpected("a number other than 0")),
+            coefficient => Ok(coefficient),
+        })?;
+        Ok((node, axis, coefficient))
+    };
+    Ok(phase.hold_combination(terms.iter().map(term).collect::<Result<Vec<_>, Error>>()?))
+}
+
 fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
     let dimension = scene.body().dimension();
     let nodes = nodes(table, scene)?;
@@ -210,11 +230,13 @@ fn nodes(table: &Table, scene: &Scene) -> Result<Selection, Error> {
 
 /// The named axes; `None` stands for all.
 fn axes(table: &Table, scene: &Scene) -> Result<Option<Vec<Axis>>, Error> {
-    let known = [("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z)];
-    let known = &known[..scene.body().dimension()];
     table.optional("axes", |value| {
-        value.one_or_more()?.iter().map(|axis| axis.word(known)).collect()
+        value.one_or_more()?.iter().map(|axis| axis.word(known_axes(scene))).collect()
     })
+}
+
+fn known_axes(scene: &Scene) -> &'static [(&'static str, Axis)] {
+    &[("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z)][..scene.body().dimension()]
 }
 
 fn all_axes(scene: &Scene) -> &'static [Axis] {

@@ -17,6 +17,7 @@ pub(super) const PHASE: TableKeys = TableKeys::new(
         part("path", &PATH, "nodes that follow a path"),
         part("rotate", &ROTATE, "nodes that turn"),
         part("symmetry", &SYMMETRY, "nodes on planes of symmetry"),
+        part("hold_combination", &HOLD_COMBINATION, "sums of displacements that stay as they are"),
         part("load", &LOAD, "forces on nodes, tractions on faces"),
         part("pressure", &PRESSURE, "pressures in chambers"),
         part("pressure_on", &PRESSURE_ON, "pressures on faces"),
@@ -120,6 +121,28 @@ pub(super) const SYMMETRY: TableKeys = TableKeys::new(
             .required(),
     ],
     "symmetry = [{ nodes = \"left\", normal = [1.0, 0.0] }]",
+);
+
+pub(super) const HOLD_COMBINATION: TableKeys = TableKeys::new(
+    "hold_combination",
+    "A row of constraints: the sum of displacements, each times a coefficient, keeps the value that it has when the phase \
+     begins. Two nodes with 1 and -1 move alike along an axis.",
+    &[Key::new("terms", Holds::Tables(&TERMS), "the displacements").required()],
+    "hold_combination = [{ terms = [\n\
+     \x20   { node = 3, axis = \"x\", coefficient = 1.0 },\n\
+     \x20   { node = 6, axis = \"x\", coefficient = -1.0 },\n\
+     ] }]",
+);
+
+pub(super) const TERMS: TableKeys = TableKeys::new(
+    "terms",
+    "One displacement of a row.",
+    &[
+        Key::new("node", Holds::Count, "the number of the node, from 1").required(),
+        Key::new("axis", Holds::Word(|| vec!["x", "y", "z"]), "the axis").required(),
+        Key::number("coefficient", "the coefficient, other than 0", "1").required(),
+    ],
+    "hold_combination = [{ terms = [{ node = 3, axis = \"y\", coefficient = 1.0 }] }]",
 );
 
 pub(super) const LOAD: TableKeys = TableKeys::new(

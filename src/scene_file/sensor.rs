@@ -130,7 +130,7 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         None => reading,
     };
     let alone = Sampling::phase_ends().read(name, reading.clone());
-    alone.columns(scene).map_err(|error| table.blame(error))?;
+    alone.check(scene).map_err(|error| table.blame(error))?;
     Ok((name.into(), reading))
 }
 

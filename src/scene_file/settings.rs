@@ -6,9 +6,9 @@ use super::selection::selection;
 use super::value::Value;
 use crate::error::Error;
 use crate::input::{Fraction, InputError, find, positive};
-use crate::mesh::Mesh;
 use crate::scene::{Phase, Scene};
 use crate::settings::{Settings, SettingsOption, SettingsValue as Kind};
+use crate::simulate::Sampling;
 use crate::statics::Statics;
 
 pub(super) const SOLVER: TableKeys = TableKeys::new(
@@ -85,6 +85,9 @@ pub(super) const OUTPUT: TableKeys = TableKeys::new(
     "What `pliant run` writes.",
     &[
         Key::number("step", "the time between samples", "s").default("the ends of the phases only"),
+        Key::new("times", Holds::List(&Holds::Number), "times of samples, in any order, in place of a step")
+            .in_unit("s")
+            .law("The start and the ends of the phases are sampled besides."),
         Key::new("track", Holds::Nodes, "nodes whose displacements the table lists"),
         Key::new(
             "formats",
@@ -155,17 +158,25 @@ pub(super) fn statics(value: &Value, scene: &Scene) -> Result<StaticsRequest, Er
     Ok(StaticsRequest { phase: phase.map(Into::into), options })
 }
 
-pub(super) fn output(value: &Value, mesh: &Mesh) -> Result<OutputRequest, Error> {
+pub(super) fn output(value: &Value, scene: &Scene) -> Result<OutputRequest, Error> {
     let table = value.table(&OUTPUT)?;
     let step = table.optional("step", Value::number)?;
     if let Some(step) = step {
         positive("step", step, "s").map_err(|error| table.blame(error))?;
     }
-    let track = table.optional("track", |value| selection(value, mesh))?;
+    let times = table.optional("times", |value| {
+        let times = value.numbers()?;
+        if step.is_some() {
+            return Err(value.error("samples are taken at times or by step: give one of them"));
+        }
+        Sampling::at(&*times).check(scene).map_err(|error| value.error(error))?;
+        Ok(times)
+    })?;
+    let track = table.optional("track", |value| selection(value, scene.body().mesh()))?;
     let formats = table.optional("formats", |value| {
         let known = Format::ALL.map(|format| (format.name(), format));
         value.one_or_more()?.iter().map(|format| format.word(&known)).collect()
     })?;
     let formats = formats.unwrap_or_else(|| vec![Format::Csv]);
-    Ok(OutputRequest { step, track, sensors: Vec::new(), formats })
+    Ok(OutputRequest { step, times, track, sensors: Vec::new(), formats })
 }

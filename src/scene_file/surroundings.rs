@@ -43,8 +43,13 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
             "nodes",
             Holds::Nodes,
             "the nodes of its walls: part of the boundary, or a closed polygon of numbers",
+        ),
+        Key::new(
+            "triangles",
+            Holds::List(&Holds::Array(&Holds::Count, 3)),
+            "the triangles of its walls in space, by the numbers of their nodes",
         )
-        .required(),
+        .law("A closed surface, all of them counter-clockwise as seen from outside, or all clockwise."),
         Key::new(
             "closed_by_line",
             Holds::Flag,
@@ -55,7 +60,8 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
         Key::number("thickness", "the thickness", "m").default("that of the body"),
     ],
     "[[chamber]]\nname = \"inside\"\nnodes = \"inner\"",
-);
+)
+.one_of(&[&["nodes"], &["triangles"]]);
 
 pub(super) const OBSTACLE: TableKeys = TableKeys::new(
     "[[obstacle]]",
@@ -100,42 +106,62 @@ pub(super) const OBSTACLE: TableKeys = TableKeys::new(
      friction_coefficient = { static = 0.6, kinetic = 0.5 }",
 )
 .one_of(&[&["stiffness"], &["stiffness_density"]])
-.kinds(&[
-    Kind {
-        word: "half-plane",
-        about: "all that lies beyond an edge (in space, a face)",
-        keys: &[
-            vector("point", "a point on its edge", "m"),
-            vector("normal", "the direction out of it", "1"),
-        ],
-    },
-    Kind {
-        word: "disc",
-        about: "a disc (in space, a ball), or all around one",
-        keys: &[
-            vector("centre", "the centre", "m"),
-            RADIUS,
-            Key::new("cavity", Holds::Flag, "whether bodies are inside of it").default("false"),
-        ],
-    },
-    Kind {
-        word: "box",
-        about: "a box along the axes",
-        keys: &[
-            vector("min", "the lower corner", "m"),
-            vector("max", "the upper corner", "m"),
-        ],
-    },
-    Kind {
-        word: "capsule",
-        about: "all that is no farther than `radius` from a straight line",
-        keys: &[
-            vector("from", "one end of its axis", "m"),
-            vector("to", "the other end of its axis", "m"),
-            RADIUS,
-        ],
-    },
-]);
+.kinds(&[HALF_PLANE, DISC, BOX, CAPSULE, UNION]);
+
+const PARTS: TableKeys = TableKeys::new(
+    "obstacle.parts",
+    "One shape of a union.",
+    &[],
+    "[[obstacle]]\n\
+     kind = \"union\"\n\
+     parts = [\n\
+     \x20   { kind = \"box\", min = [0.0, -0.3], max = [0.1, -0.2] },\n\
+     \x20   { kind = \"disc\", centre = [0.1, -0.25], radius = 0.05 },\n\
+     ]\n\
+     stiffness = 1.0e3",
+)
+.kinds(&[HALF_PLANE, DISC, BOX, CAPSULE]);
+
+const HALF_PLANE: Kind = Kind {
+    word: "half-plane",
+    about: "all that lies beyond an edge (in space, a face)",
+    keys: &[
+        vector("point", "a point on its edge", "m"),
+        vector("normal", "the direction out of it", "1"),
+    ],
+};
+
+const DISC: Kind = Kind {
+    word: "disc",
+    about: "a disc (in space, a ball), or all around one",
+    keys: &[
+        vector("centre", "the centre", "m"),
+        RADIUS,
+        Key::new("cavity", Holds::Flag, "whether bodies are inside of it").default("false"),
+    ],
+};
+
+const BOX: Kind = Kind {
+    word: "box",
+    about: "a box along the axes",
+    keys: &[vector("min", "the lower corner", "m"), vector("max", "the upper corner", "m")],
+};
+
+const CAPSULE: Kind = Kind {
+    word: "capsule",
+    about: "all that is no farther than `radius` from a straight line",
+    keys: &[
+        vector("from", "one end of its axis", "m"),
+        vector("to", "the other end of its axis", "m"),
+        RADIUS,
+    ],
+};
+
+const UNION: Kind = Kind {
+    word: "union",
+    about: "several shapes as one, which move together",
+    keys: &[Key::new("parts", Holds::Tables(&PARTS), "the shapes").required()],
+};
 
 const RADIUS: Key = Key::number("radius", "the radius", "m").required();
 
@@ -232,8 +258,16 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = &value.table(&CHAMBER)?;
     let body = scene.body();
     let name = table.required("name", Value::string)?;
-    let nodes = table.required("nodes", |value| selection(value, body.mesh()))?;
-    let mut chamber = Chamber::within(name, nodes);
+    let triangles = table.optional("triangles", |value| {
+        value.list_of("triangles, three node numbers each", Value::counts::<3>)
+    })?;
+    let mut chamber = match triangles {
+        Some(triangles) => Chamber::surface(name, triangles),
+        None => {
+            let nodes = table.required("nodes", |value| selection(value, body.mesh()))?;
+            Chamber::within(name, nodes)
+        }
+    };
     if table.optional("closed_by_line", Value::flag)? == Some(true) {
         chamber = chamber.closed_by_line();
     }
@@ -345,6 +379,14 @@ fn shape(table: &Table, dimension: usize) -> Result<Shape, Error> {
             }
         }
         "box" => Shape::box_between(vector("min")?, vector("max")?),
-        _ => Shape::capsule(vector("from")?, vector("to")?, radius()?),
+        "capsule" => Shape::capsule(vector("from")?, vector("to")?, radius()?),
+        _ => {
+            let part = |part: &Table| {
+                let shape = shape(part, dimension)?;
+                shape.validated(dimension, &str::to_owned).map_err(|error| part.blame(error))
+            };
+            let parts = table.required("parts", |value| value.tables(&PARTS))?;
+            Shape::union(parts.iter().map(part).collect::<Result<Vec<_>, _>>()?)
+        }
     })
 }

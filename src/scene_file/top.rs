@@ -76,12 +76,12 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
     let statics = top.optional("statics", |value| settings::statics(value, &scene))?;
     let statics = statics.unwrap_or_default();
-    let output = top.optional("output", |value| settings::output(value, scene.body().mesh()))?;
+    let output = top.optional("output", |value| settings::output(value, &scene))?;
     let mut output = output.unwrap_or_else(OutputRequest::default);
     if let Some(values) = top.get("sensor") {
         let sensors = values.one_or_more()?.into_iter().map(|value| sensor(&value, &scene));
         output.sensors = sensors.collect::<Result<_, _>>()?;
-        output.sampling().columns(&scene).map_err(|error| values.error(error))?;
+        output.sampling().check(&scene).map_err(|error| values.error(error))?;
     }
     Ok(SceneFile {
         title: title.into(),

@@ -7,7 +7,7 @@ use super::sensor::{Sensor, Sensors, Source};
 use super::view::View;
 use crate::input::{InputError, check_memory, positive};
 use crate::scene::Scene;
-#[cfg(any(feature = "scene-file", feature = "study"))]
+#[cfg(feature = "study")]
 use crate::trajectory::Quantity;
 use crate::trajectory::Sample;
 
@@ -97,9 +97,18 @@ impl Sampling {
     ///
     /// # Errors
     /// A quantity that `scene` does not have; two columns with one name.
-    #[cfg(any(feature = "scene-file", feature = "study"))]
+    #[cfg(feature = "study")]
     pub(crate) fn columns(&self, scene: &Scene) -> Result<Vec<Quantity>, InputError> {
         Sensors::new(&self.sensors, scene).map(|sensors| sensors.quantities)
+    }
+
+    /// Checks the times for `scene`, and that it has what the sensors read.
+    ///
+    /// # Errors
+    /// Times outside the scene or too close; a quantity that it does not have; two columns with one name.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn check(&self, scene: &Scene) -> Result<(), InputError> {
+        self.sensors(scene).map(|_| ())
     }
 
     /// Checks the times for `scene`, and finds what its sensors read.

@@ -103,6 +103,22 @@ fn bar(until: f64) -> String {
     )
 }
 
+/// Times of samples stand in the file, and flags go before them.
+#[test]
+fn samples_are_taken_at_times() {
+    let place = Place::new();
+    let text = bar(0.2).replace("step = 0.1", "times = [0.15, 0.05]");
+    let times = |flags: &[&str]| -> Vec<f64> {
+        let output = place.run(&[&["run", place.scene(&text), "--quiet"], flags].concat());
+        assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
+        place.table("out/scene").1.iter().map(|row| row[0]).collect()
+    };
+    assert_eq!(times(&[]), [0.0, 0.05, 0.15, 0.2]);
+    assert_eq!(times(&["--until", "0.1"]), [0.0, 0.05, 0.1]);
+    assert_eq!(times(&["--step", "0.1"]), [0.0, 0.1, 0.2]);
+    says(&stdout(&place.run(&["check", place.scene(&text)])), &["at 2 times"]);
+}
+
 #[test]
 fn run_writes_the_motion_and_how_it_was_computed() {
     let place = Place::new();

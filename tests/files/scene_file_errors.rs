@@ -105,3 +105,36 @@ fn files_that_cannot_be_read() {
     let message = error.to_string();
     assert!(message.starts_with("cannot read nowhere/scene.toml: No such file"), "{message}");
 }
+
+/// Parts of a union have lines and keys of their own.
+#[test]
+fn parts_of_unions() {
+    for (parts, expected) in [
+        ("[]", "rich.toml:33: obstacle.parts: ..."),
+        (
+            "[{ kind = \"disc\", centre = [0.0, 0.0], radius = 1.0 },\n{ kind = \"disc\", centre = [0.0, 0.0], radius = -1.0 }]",
+            "rich.toml:34: obstacle.parts.radius: -1.0 cannot be used: ...",
+        ),
+        (
+            "[{ kind = \"disc\", centre = [0.0, 0.0] }]",
+            "rich.toml:33: obstacle.parts.radius: missing; expected the radius (m)",
+        ),
+        (
+            "[{ kind = \"union\", parts = [] }]",
+            "rich.toml:33: obstacle.parts.parts: unknown key; ...",
+        ),
+        ("[{ kind = \"cone\" }]", "rich.toml:33: obstacle.parts.kind: \"cone\" is unknown; ..."),
+        ("3", "rich.toml:33: obstacle.parts: expected the shapes: a table; found 3"),
+    ] {
+        let (plain, union) = (
+            "kind = \"half-plane\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n",
+            format!("kind = \"union\"\nparts = {parts}\n"),
+        );
+        assert!(RICH.contains(plain));
+        let found = message(&RICH.replacen(plain, &union, 1));
+        match expected.strip_suffix("...") {
+            None => assert_eq!(found, expected, "{parts}"),
+            Some(start) => assert!(found.starts_with(start), "{parts}: {found}"),
+        }
+    }
+}

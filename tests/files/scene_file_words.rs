@@ -56,6 +56,7 @@ fn in_the_plane() {
         Settings { method: Method::CvodeBdf, rtol: 1e-5, ..Settings::default() }
     );
     let output = OutputRequest {
+        times: None,
         step: Some(0.01),
         track: Some(corners([0.0, 0.2], [0.3, 0.3])),
         sensors: Vec::new(),
@@ -256,4 +257,90 @@ fn of_motion() {
         .spin([1.0, 0.0, -2.0])
         .phase(Phase::until(0.02).rotate([1], [0.1, 0.0, 0.0], [0.0, 3.0, 4.0]));
     agree(&file, &scene);
+}
+
+/// A union, whose parts are felt as the API's; samples at times; a row of constraints.
+#[test]
+fn of_lists() {
+    let file = SceneFile::parse(
+        r#"
+        gravity = [0.0, -9.8]
+        [body]
+        mesh = { kind = "rectangle", size = [0.1, 0.1], nodes = [3, 3], cells = "rectangles", origin = [0.0, 0.01] }
+        thickness = 0.01
+        material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 100.0 }
+        [[obstacle]]
+        kind = "union"
+        parts = [
+            { kind = "half-plane", point = [0.0, 0.0], normal = [0.0, 2.0] },
+            { kind = "disc", centre = [0.05, 0.0], radius = 0.005 },
+            { kind = "box", min = [0.08, -0.1], max = [0.2, 0.002] },
+            { kind = "capsule", from = [-0.1, 0.0], to = [0.0, 0.0], radius = 0.003 },
+            { kind = "disc", cavity = true, centre = [0.0, 0.0], radius = 1.0 },
+        ]
+        stiffness = 100.0
+        [[phase]]
+        until = 0.1
+        hold_combination = [
+            { terms = [{ node = 1, axis = "x", coefficient = 1.0 }, { node = 3, axis = "x", coefficient = -1 }] },
+            { terms = { node = 8, axis = "x", coefficient = 2 } },
+        ]
+        [output]
+        times = [0.07, 0.02, 0.1]
+        "#,
+        Path::new("lists.toml"),
+    );
+    let (file, rubber) =
+        (file.unwrap(), Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 100.0 });
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles).unwrap();
+    let body = Body::new(mesh.translated(&[0.0, 0.01]).unwrap(), rubber).thickness(0.01);
+    let floor = Obstacle::union([
+        Shape::half_plane([0.0, 0.0], [0.0, 2.0]),
+        Shape::disc([0.05, 0.0], 0.005),
+        Shape::box_between([0.08, -0.1], [0.2, 0.002]),
+        Shape::capsule([-0.1, 0.0], [0.0, 0.0], 0.003),
+        Shape::cavity([0.0, 0.0], 1.0),
+    ]);
+    let fall = Phase::until(0.1)
+        .hold_combination([(1, Axis::X, 1.0), (3, Axis::X, -1.0)])
+        .hold_combination([(8, Axis::X, 2.0)]);
+    let scene = Scene::new(body.build().unwrap())
+        .gravity([0.0, -9.8])
+        .obstacle(floor.stiffness(100.0))
+        .phase(fall);
+    agree(&file, &scene);
+    let motion = file.scene.simulate(&file.settings, &file.output.sampling()).unwrap();
+    let times: Vec<f64> = motion.samples().iter().map(|sample| sample.time).collect();
+    assert_eq!(times, [0.0, 0.02, 0.07, 0.1]);
+    // the row holds, and the disc is touched before the floor would be
+    let u = &motion.last().u;
+    assert!((u[0] - u[4]).abs() < 1e-9 && u[14].abs() < 1e-9, "{u:?}");
+    assert!(motion.contact_forces(motion.last()).unwrap()[3] > 0.0);
+}
+
+/// Regions and walls by numbers, in space.
+#[test]
+fn of_numbers() {
+    let file = SceneFile::parse(
+        r#"
+        [body]
+        mesh = { kind = "cuboid", size = [0.1, 0.1, 0.1], nodes = [2, 2, 2], cells = "tetrahedra" }
+        material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 100.0 }
+        region = { cells = [1, 4], material = { young = 2e5 } }
+        [[chamber]]
+        name = "bag"
+        triangles = [[1, 2, 3], [1, 3, 5], [2, 1, 5], [2, 5, 3]]
+        [[phase]]
+        until = 0.01
+        pressure = { chamber = "bag", value = 100.0 }
+        "#,
+        Path::new("numbers.toml"),
+    );
+    let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 100.0 };
+    let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], SolidCells::Tetrahedra).unwrap();
+    let tough = Material { young: 2e5, ..rubber };
+    let body = Body::new(mesh, rubber).region(CellSelection::Numbers(vec![1, 4]), tough);
+    let bag = Chamber::surface("bag", [[1, 2, 3], [1, 3, 5], [2, 1, 5], [2, 5, 3]]);
+    let scene = Scene::new(body.build().unwrap()).chamber(bag);
+    agree(&file.unwrap(), &scene.phase(Phase::until(0.01).pressure("bag", 100.0)));
 }

@@ -79,9 +79,10 @@ fn solver(file: &SceneFile) -> Result<(), Failure> {
     let order = max_order.map_or(String::new(), |order| format!("order up to {order}, "));
     let events = format!("contact events: {contact_events}");
     line("", &format!("{order}up to {max_steps} steps in a phase, {events}"))?;
-    let step = match output.step {
-        Some(step) => format!("every {step} s"),
-        None => "at the ends of the phases".into(),
+    let step = match (&output.times, output.step) {
+        (Some(times), _) => format!("at {} times", times.len()),
+        (None, Some(step)) => format!("every {step} s"),
+        (None, None) => "at the ends of the phases".into(),
     };
     if !output.sensors.is_empty() {
         let names: Vec<&str> = output.sensors.iter().map(|(name, _)| &name[..]).collect();

@@ -98,8 +98,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     settings.apply(&mut file.settings)?;
     accuracy.apply(&mut file.accuracy, settings)?;
     output.apply(&mut file)?;
-    file.output.step = step.or(file.output.step);
+    if step.is_some() {
+        (file.output.step, file.output.times) = (*step, None);
+    }
     file.scene = ended(file.scene, *until)?;
+    if let Some(times) = &mut file.output.times {
+        times.retain(|t| *t <= file.scene.end());
+    }
     let directory = output.directory(&arguments.scene.path, "")?;
     let watch = Watch::new(file.scene.end(), output.quiet)?;
     match file.accuracy.within {
