@@ -56,6 +56,8 @@ mod surroundings;
 mod table;
 mod top;
 mod value;
+#[cfg(feature = "play")]
+mod written;
 
 use std::cell::RefCell;
 use std::io;
@@ -72,6 +74,8 @@ pub use self::schema::schema;
 use self::source::Source;
 use self::table::Table;
 use self::top::TOP;
+#[cfg(feature = "play")]
+use self::written::written;
 use crate::error::Error;
 use crate::input::read_at_most;
 
@@ -95,12 +99,18 @@ impl SceneFile {
     /// As [`read`](Self::read); [`Error::Input`] for an override that is no key and value.
     pub fn read_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<Self, Error> {
         let path = path.as_ref();
-        let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
-            String::from_utf8(bytes)
-                .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))
-        });
-        let text = text.map_err(|source| Error::Read { path: path.into(), source })?;
-        parse(text, path, overrides)
+        parse(text_of(path)?, path, overrides)
+    }
+
+    /// The text of a scene file, with the values of `overrides`, as those of [`read_with`](Self::read_with), written
+    /// into it: all else stays as it was.
+    ///
+    /// # Errors
+    /// A file that cannot be read; [`Error::Input`] for an override that is no key and value, or for which the text
+    /// has no place.
+    #[cfg(feature = "play")]
+    pub fn text_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<String, Error> {
+        overrides.iter().try_fold(text_of(path.as_ref())?, |text, over| written(&text, over))
     }
 
     /// As [`read`](Self::read), from the `text` of a file at `path`.
@@ -110,6 +120,14 @@ impl SceneFile {
     pub fn parse(text: &str, path: &Path) -> Result<Self, Error> {
         parse(text.into(), path, &[])
     }
+}
+
+fn text_of(path: &Path) -> Result<String, Error> {
+    let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
+        String::from_utf8(bytes)
+            .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))
+    });
+    text.map_err(|source| Error::Read { path: path.into(), source })
 }
 
 fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFile, Error> {

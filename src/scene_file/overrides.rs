@@ -40,8 +40,19 @@ pub(super) fn merge<'a>(
 }
 
 /// Whether a value takes the place of all that was there, as tables in braces do.
-fn is_whole(value: &Spanned<DeValue>, text: &str) -> bool {
+pub(super) fn is_whole(value: &Spanned<DeValue>, text: &str) -> bool {
     text.get(value.span()).is_none_or(|written| written.starts_with('{'))
+}
+
+/// The place of the table in a list that has the name `key`, or else this number (from 1).
+pub(super) fn element(list: &[Spanned<DeValue>], key: &str) -> Option<usize> {
+    let by_name = list.iter().position(|value| name_of(value) == Some(key));
+    let by_number = || key.parse::<usize>().ok()?.checked_sub(1);
+    by_name.or_else(by_number).filter(|at| *at < list.len())
+}
+
+fn name_of<'t>(value: &'t Spanned<DeValue>) -> Option<&'t str> {
+    value.get_ref().as_table()?.get("name")?.get_ref().as_str()
 }
 
 fn merge_list<'a>(
@@ -50,24 +61,16 @@ fn merge_list<'a>(
     over: DeTable<'a>,
     text: &str,
 ) -> Result<(), Error> {
-    let name = |value: &Spanned<DeValue>| match value.get_ref() {
-        DeValue::Table(table) => {
-            table.get("name").and_then(|name| name.get_ref().as_str()).map(String::from)
-        }
-        _ => None,
-    };
     let mut known: Vec<String> = (1..=list.len()).map(|number| number.to_string()).collect();
-    known.extend(list.iter().filter_map(name));
+    known.extend(list.iter().filter_map(name_of).map(String::from));
     for (key, value) in over {
         let key = key.get_ref();
-        let by_name = list.iter().position(|value| name(value).is_some_and(|name| name == *key));
-        let by_number = || key.parse::<usize>().ok()?.checked_sub(1);
         let missing = || {
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
             InputError::new("--set", format!("{of}.{key}"), unknown(key, &known))
         };
-        let element =
-            by_name.or_else(by_number).and_then(|at| list.get_mut(at)).ok_or_else(missing)?;
+        let at = element(list, key);
+        let element = at.and_then(|at| list.get_mut(at)).ok_or_else(missing)?;
         let (is_whole, span) = (is_whole(&value, text), value.span());
         match (element.get_mut(), value.into_inner()) {
             (DeValue::Table(old), DeValue::Table(new)) if !is_whole => merge(old, new, text)?,

@@ -83,7 +83,7 @@ fn is_list(text: &str) -> bool {
 }
 
 /// Puts `entry` after the value that ends at `at`: on a line of its own, or, within braces, beside it.
-fn insertion(text: &str, at: usize, entry: &str) -> (Range<usize>, String) {
+pub(super) fn insertion(text: &str, at: usize, entry: &str) -> (Range<usize>, String) {
     let rest = text.get(at..).unwrap_or_default();
     let line = rest.lines().next().unwrap_or_default();
     match line.trim_start().starts_with([',', '}']) {

@@ -484,6 +484,17 @@ fn chart_compares_methods_and_goes_on_where_it_stopped() {
     let both = table();
     assert!(both.starts_with(&first) && both.lines().count() == 1 + 16, "{both}");
 
+    // other values are another problem beside it, for the variants too, and are kept as well
+    let softer = ["chart", scene, "--rtol", "1e-3", "--variants", "softer.toml"];
+    let softer = [&softer, &flags[..], &["--set", "body.material.young=3e4"]].concat();
+    assert_eq!(place.run(&softer).status.code(), Some(0));
+    let all = table();
+    assert!(all.starts_with(&both) && all.lines().count() == 1 + 24, "{all}");
+    let overridden = all.lines().skip(1 + 16);
+    assert!(overridden.clone().all(|line| line.contains("(body.material.young=3e4)")), "{all}");
+    assert_eq!(place.run(&softer).status.code(), Some(0));
+    assert_eq!(table(), all);
+
     let output = place.run(&["chart", scene, "--rtol", "2", "--out", "bad"]);
     assert_eq!(output.status.code(), Some(2), "{output:?}");
     let output =

@@ -52,6 +52,32 @@ const CASES: [(&str, &str, &str); 15] = [
     ),
 ];
 
+/// Written into the text they mean the same; tables under headings have no place of their own.
+#[cfg(feature = "play")]
+#[test]
+fn overrides_are_written_into_the_text() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("rich.toml");
+    fs::write(&path, RICH).unwrap();
+    let mut refused = Vec::new();
+    for (over, ..) in CASES {
+        let over = [over.to_owned()];
+        match SceneFile::text_with(&path, &over) {
+            Ok(text) => {
+                let written = SceneFile::parse(&text, &path).unwrap();
+                let read = SceneFile::read_with(&path, &over).unwrap();
+                assert_eq!(contents(&written), contents(&read), "{over:?}");
+                // all else stays as it was
+                let kept = RICH.lines().filter(|line| text.lines().any(|other| other == *line));
+                assert!(kept.count() + 1 >= RICH.lines().count(), "{text}");
+            }
+            Err(error) => refused.push(error.to_string()),
+        }
+    }
+    assert_eq!(refused.len(), 2, "{refused:?}");
+    assert!(refused.iter().all(|error| error.contains("the scene file has no place for it")));
+}
+
 #[test]
 fn overrides_are_as_if_written_in_the_file() {
     let plain = contents(&read(RICH, &[]).unwrap());

@@ -10,6 +10,7 @@ use pliant::{Method, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
 use crate::files::Directory;
+use crate::scene::SceneArguments;
 use crate::settings::ended;
 
 /// Chart speed against accuracy on a scene, method by method and tolerance by tolerance
@@ -17,13 +18,12 @@ use crate::settings::ended;
 /// Errors are those of node positions, relative to the motion, against a reference that two
 /// methods agree on. Writes chart.svg, chart.png, chart.md (the fastest for each accuracy, and what to know
 /// before trusting it) and chart.csv (all runs). Runs that chart.csv has already are not run again,
-/// so that a command that was interrupted can be given again. Of the file's table [solver] only
+/// so that a command that was interrupted can be given again. --set counts for the variants, too. Of the file's table [solver] only
 /// alpha and contact_events count.
 #[derive(Args)]
 pub struct Arguments {
-    /// Scene file
-    #[arg(value_name = "FILE")]
-    scene: PathBuf,
+    #[command(flatten)]
+    scene: SceneArguments,
     /// Integration methods [default: all, some of them with several orders]
     #[arg(long, value_delimiter = ',')]
     methods: Vec<Method>,
@@ -64,13 +64,13 @@ pub struct Arguments {
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let file = SceneFile::read(&arguments.scene)?;
-    let stem = stem(&arguments.scene);
-    let title = if file.title.is_empty() { &stem } else { &file.title };
+    let file = arguments.scene.read()?;
+    let stem = stem(&arguments.scene.path);
+    let title = arguments.scene.title(if file.title.is_empty() { &stem } else { &file.title });
     let path = arguments.out.clone().unwrap_or(Path::new("out").join(format!("{stem}-chart")));
     let mut directory = Directory::new(path.clone())?;
 
-    let mut scenes = problem(arguments, title, &file)?;
+    let mut scenes = problem(arguments, &title, &file)?;
     let bar = bar(arguments.quiet);
     let findings = Study::new(&mut scenes)
         .repetitions(arguments.repetitions)
@@ -112,7 +112,7 @@ fn problem(arguments: &Arguments, title: &str, file: &SceneFile) -> Result<Scene
         scenes = scenes.line(name, settings.clone());
     }
     for path in &arguments.variants {
-        let (variant, stem) = (SceneFile::read(path)?, stem(path));
+        let (variant, stem) = (arguments.scene.read_too(path)?, stem(path));
         for (name, settings) in &lines {
             let scene = ended(variant.scene.clone(), arguments.until)?;
             scenes = scenes.variant(format!("{stem}: {name}"), scene, settings.clone());

@@ -1,6 +1,6 @@
 //! The scene file that a command is about.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use pliant::{Error, SceneFile};
@@ -20,6 +20,25 @@ pub struct SceneArguments {
 impl SceneArguments {
     /// Reads the file.
     pub fn read(&self) -> Result<SceneFile, Error> {
-        SceneFile::read_with(&self.path, &self.set)
+        self.read_too(&self.path)
+    }
+
+    /// Reads another file, with the same values in place of its own.
+    pub fn read_too(&self, path: &Path) -> Result<SceneFile, Error> {
+        SceneFile::read_with(path, &self.set)
+    }
+
+    /// A title that tells what is not as in the file.
+    pub fn title(&self, title: &str) -> String {
+        match self.set[..] {
+            [] => title.into(),
+            _ => format!("{title} ({})", self.set.join(", ")),
+        }
+    }
+
+    /// The text of the file with these values in it.
+    #[cfg(feature = "play")]
+    pub fn text(&self) -> Result<String, Error> {
+        SceneFile::text_with(&self.path, &self.set)
     }
 }
