@@ -215,7 +215,7 @@ mod tests {
         Travel::Formulas([text, "0.3*t"].map(|text| Formula::parse(text).unwrap()).into())
     }
 
-    /// Between the ends of each part formulas are followed to the tolerance, and their speed to a few percent: by a
+    /// Between the ends of each part formulas are followed to the tolerance, and their speed is bounded, by twice it at most: by a
     /// look at ten thousand places. The times begin and end at the same phase of what oscillates, so that the ends
     /// alone tell nothing.
     #[test]

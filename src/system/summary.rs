@@ -15,6 +15,8 @@ pub struct PhaseSummary {
     pub start: f64,
     /// When it ends (s).
     pub end: f64,
+    /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
+    pub gravity: Option<Vec<f64>>,
     /// Number of rows of its constraints: one for each component of a node that is held or moved.
     pub constraints: usize,
     /// Number of nodes under loads and pressures on faces, counted once for each of them.
@@ -58,10 +60,12 @@ impl Scene {
         let actuated = phase.actuations.iter().flat_map(|(springs, _)| springs);
         let pressurized = phase.pressures.iter().map(|(chamber, _)| chamber);
         let obstacles = phase.contacts(self.obstacles())?.into_iter().map(Obstacle::name);
+        let gravity = phase.gravity.as_deref().filter(|own| Some(*own) != self.acceleration());
         Ok(PhaseSummary {
             name: phase.name.clone(),
             start,
             end: phase.until,
+            gravity: gravity.map(Into::into),
             constraints: rows.len(),
             loaded_nodes,
             actuated: actuated.cloned().collect(),

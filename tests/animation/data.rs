@@ -246,6 +246,60 @@ fn arrows_start_at_the_centre_of_pressure() -> Outcome {
     Ok(())
 }
 
+/// Forces of contacts take room, too: with those of two hundred floors, 3.2 kB a frame, fewer frames are kept.
+#[test]
+fn contacts_are_counted() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Rectangles)?;
+    let body = Body::new(mesh, pliant::samples::SQUARE_MATERIAL).thickness(0.01).build()?;
+    let floor =
+        |k| Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(1.0).named(format!("{k}"));
+    let scene = Scene::new(body).gravity([0.0, -9.8]).phase(Phase::until(0.01));
+    let scene = (0..200).fold(scene, |scene, k| scene.obstacle(floor(k)));
+    let long = scene.simulate(&Settings::default(), &Sampling::every(1.25e-5))?;
+    let page = page(&long, "")?;
+    let frames = data(&page)?["times"].as_array().map_or(0, Vec::len);
+    // 1.4 MB of numbers at most
+    assert!((420..440).contains(&frames), "{frames}");
+    assert!(fs::metadata(&page.path)?.len() < 2_100_000);
+    Ok(())
+}
+
+/// An obstacle that follows a formula is drawn along cubics as near to it as a thousandth of the body.
+#[test]
+fn paths_by_formulas_are_drawn() -> Outcome {
+    let scene = r#"
+        [body]
+        mesh = { kind = "rectangle", size = [0.1, 0.1], nodes = [2, 2], cells = "rectangles" }
+        thickness = 0.01
+        material = { density = 1e3, young = 1e5, poisson = 0.3, viscosity = 100.0 }
+        [[obstacle]]
+        kind = "disc"
+        centre = [0.0, -0.5]
+        radius = 0.1
+        stiffness = 1.0
+        path = { displacement = ["0.02*t", "0.1*sin(20*t)"] }
+        [[phase]]
+        until = 1.0
+    "#;
+    let scene = pliant::SceneFile::parse(scene, std::path::Path::new("drawn.toml"))?.scene;
+    let data = data(&page(&scene.simulate(&Settings::default(), &Sampling::every(0.1))?, "")?)?;
+    let courses = data["obstacles"][0]["courses"].as_array().ok_or("no courses")?;
+    assert_eq!(courses.len(), 1);
+    let path = &courses[0]["path"];
+    let times: Vec<f64> = serde_json::from_value(path["times"].clone())?;
+    let vectors = |key: &str| serde_json::from_value::<Vec<[f64; 2]>>(path[key].clone());
+    let (x, v) = (vectors("displacements")?, vectors("velocities")?);
+    assert_eq!((times[0], times[times.len() - 1]), (0.0, 1.0));
+    for (k, pair) in times.windows(2).enumerate() {
+        let span = pair[1] - pair[0];
+        let middle = 0.5 * (x[k][1] + x[k + 1][1]) + 0.125 * span * (v[k][1] - v[k + 1][1]);
+        let exact = 0.1 * (20.0 * (pair[0] + 0.5 * span)).sin();
+        assert!((middle - exact).abs() < 1.5e-4, "{middle} {exact}");
+        assert!((x[k][0] - 0.02 * pair[0]).abs() < 1e-15 && v[k][0] == 0.02);
+    }
+    Ok(())
+}
+
 /// Long runs are thinned evenly, to their first and last sample.
 #[test]
 fn files_stay_small() -> Outcome {

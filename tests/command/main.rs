@@ -452,7 +452,16 @@ fn check_prints_what_a_scene_contains() {
     // 0.4 % less on five cells, (k h)^2/24
     let text = stdout(&place.run(&["check", place.scene(&bar(1.0))]));
     says(&text, &["5.63", "loads on 1 node(s)", "6 displacements"]);
-    assert!(!text.contains("note:"), "{text}");
+    assert!(!text.contains("note:") && !text.contains("gravity"), "{text}");
+    // where a phase has its own
+    let falling = bar(1.0).replace("dimension = 1", "dimension = 1\ngravity = [-1.0]");
+    let checked = ["check", place.scene(&falling), "--set", "phase.pull.gravity=[-2.5]"];
+    says(
+        &stdout(&place.run(&checked)),
+        &["gravity    [-1.0] m/s^2", "  gravity [-2.5] m/s^2; loads on"],
+    );
+    let same = ["check", place.scene(&falling), "--set", "phase.pull.gravity=[-1.0]"];
+    assert_eq!(stdout(&place.run(&same)).matches("gravity").count(), 1);
     let old = fs::read_to_string(shipped("problem-4.toml")).unwrap();
     let old = old.replace("\ntangential_damping =", "\nfriction =");
     let text = stdout(&place.run(&["check", place.scene(&old)]));

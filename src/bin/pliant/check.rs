@@ -116,6 +116,9 @@ fn timeline(phases: &[PhaseSummary]) -> Result<(), Failure> {
 /// What acts in a phase, in words.
 fn acting(phase: &PhaseSummary) -> String {
     let mut words = Vec::new();
+    if let Some(gravity) = &phase.gravity {
+        words.push(format!("gravity {gravity:?} m/s^2"));
+    }
     if phase.loaded_nodes > 0 {
         words.push(format!("loads on {} node(s)", phase.loaded_nodes));
     }

@@ -75,8 +75,11 @@ fn thinned(samples: &[Sample], bytes_per_frame: usize) -> Vec<&Sample> {
 
 fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry) -> usize {
     let axes = trajectory.body().dimension().max(2);
-    let sensors = size_of::<f32>() * trajectory.sensors().len();
-    2 * axes * geometry.count() + QUANTITIES.len() * geometry.cells.len() + sensors
+    let sensors = trajectory.sensors().len();
+    // a place and a force of each
+    let contacts = 2 * axes * trajectory.scene().obstacles().len();
+    let singles = size_of::<f32>() * (sensors + contacts);
+    2 * axes * geometry.count() + QUANTITIES.len() * geometry.cells.len() + singles
 }
 
 /// Positions of the drawn nodes and anchors, sample by sample.
