@@ -158,7 +158,7 @@ pub enum Tangents {
 /// A force that depends on time t (s), displacements u (m) and velocities v (m/s) of the nodes.
 ///
 /// [`Scene::force`](crate::Scene::force) adds one of any crate to a scene. It has to implement
-/// [`add_forces`](Self::add_forces), [`is_nonlinear`](Self::is_nonlinear), [`potential`](Self::potential) and
+/// [`add_forces`](Self::add_forces), and with a conservative part [`potential`](Self::potential) and
 /// [`reservoir`](Self::reservoir); the rest is for forces that couple distant nodes, have kinks or should cost less.
 ///
 /// # What a force may rely on, and what it has to keep
@@ -231,14 +231,21 @@ pub trait Force: Send + Sync {
     ) {
     }
 
-    /// Whether the force depends on u or v, so that the Newton matrix must follow it.
-    fn is_nonlinear(&self) -> bool;
+    /// Whether the force depends on u or v, so that the Newton matrix must follow it. One that changes with time alone saves
+    /// the search for its tangents by `false`.
+    fn is_nonlinear(&self) -> bool {
+        true
+    }
 
     /// Potential energy (J) of the conservative part.
-    fn potential(&self, t: f64, u: &[f64]) -> f64;
+    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
+        0.0
+    }
 
     /// Where that energy belongs.
-    fn reservoir(&self) -> Reservoir;
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::None
+    }
 
     /// Velocity (m/s) at time `t` (s) of what the force comes from, if that moves by itself: an obstacle.
     fn velocity(&self, _t: f64) -> Option<[f64; 3]> {

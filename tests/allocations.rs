@@ -179,10 +179,6 @@ impl Force for Springs {
         Ok(())
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         u.iter().map(|u| 10.0 * u * u).sum()
     }

@@ -74,10 +74,6 @@ impl Force for Magnet {
         Tangents::Added
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         let one = |(n, mass): (usize, &f64)| -self.strength * mass / self.arm(n, u).1.powf(1.5);
         self.masses.iter().enumerate().map(one).sum()
@@ -155,17 +151,5 @@ impl Force for Wind {
             }
         }
         Tangents::Added
-    }
-
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
     }
 }

@@ -39,10 +39,6 @@ impl Force for Elastic {
         Tangents::Added
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         if self.terms.elastic { self.elements.energy(&self.regions, u) } else { 0.0 }
     }

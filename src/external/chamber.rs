@@ -6,7 +6,7 @@ mod walls;
 
 use super::signal::{self, Signal, finite_at};
 use crate::body::Body;
-use crate::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::force::{Force, NodalForces, Tangents};
 use crate::input::{InputError, positive};
 use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
@@ -366,18 +366,6 @@ impl Force for ChamberForce {
             }
         }
         Tangents::Added
-    }
-
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
     }
 
     fn couplings(&self) -> Vec<[usize; 2]> {

@@ -332,10 +332,6 @@ impl Force for Contact {
         }
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, t: f64, u: &[f64]) -> f64 {
         let moved = self.obstacle.displacement(t);
         let energy = |(k, point): (usize, &ContactPoint)| {

@@ -1,7 +1,7 @@
 //! Loads: given forces on nodes.
 
 use super::signal::{VectorSignal, finite_at};
-use crate::force::{Force, NodalForces, Reservoir};
+use crate::force::{Force, NodalForces};
 use crate::ode::Failure;
 
 /// Constant forces on some degrees of freedom.
@@ -26,14 +26,6 @@ impl Force for Load {
 
     fn is_nonlinear(&self) -> bool {
         false
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
     }
 }
 
@@ -79,13 +71,5 @@ impl Force for VaryingLoad {
 
     fn is_nonlinear(&self) -> bool {
         false
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
     }
 }

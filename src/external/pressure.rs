@@ -3,7 +3,7 @@
 use super::faces::{FacePoint, Loaded, MOST_NODES, face_points, natural, on_no_face};
 use super::signal::{Signal, finite_at};
 use crate::body::Body;
-use crate::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::force::{Force, NodalForces, Tangents};
 use crate::input::InputError;
 use crate::mesh::Selection;
 use crate::ode::Failure;
@@ -125,17 +125,5 @@ impl Force for FacePressure {
             }
         });
         Tangents::Added
-    }
-
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
     }
 }

@@ -400,10 +400,6 @@ impl Force for SpringForce {
         Tangents::Added
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         0.5 * self.stiffness * (self.line.length(u).0 - self.line.length).powi(2)
     }
@@ -444,18 +440,6 @@ impl Force for Actuator {
         let (stretch, force) = (self.line.stretch(u, v), signal::sum(&self.force, t));
         self.line.add_tangent(stiffness, |i, j| stretch.turn(force, i, j));
         Tangents::Added
-    }
-
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
     }
 
     fn couplings(&self) -> Vec<[usize; 2]> {

@@ -370,10 +370,6 @@ impl Force for Trap {
         Tangents::Added
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         u.iter().enumerate().map(|(dof, u)| 0.5 * self.stiffness(dof) * u * u).sum()
     }

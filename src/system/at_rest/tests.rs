@@ -38,18 +38,6 @@ impl Force for Growing {
         stiffness.block_mut(2, 2).unwrap()[0] -= 1000.0 * u[2];
         Tangents::Added
     }
-
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
-    }
 }
 
 /// K is the derivative of the forces, and their total that of the energy, when a part of the

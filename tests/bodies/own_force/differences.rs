@@ -72,10 +72,6 @@ impl Force for Threads {
         Tangents::Added
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         let one = |&pair: &[usize; 2]| {
             let d = apart(u, pair);
@@ -318,10 +314,6 @@ impl Force for Edge {
         Ok(())
     }
 
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
     fn potential(&self, _t: f64, u: &[f64]) -> f64 {
         u.iter().map(|u| 1.5 * u * u).sum()
     }
@@ -367,18 +359,6 @@ impl Force for Bomb {
         assert!(t < 0.01, "a force that panics");
         forces.applied[0] += 1.0 - u[0];
         Ok(())
-    }
-
-    fn is_nonlinear(&self) -> bool {
-        true
-    }
-
-    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
-        0.0
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::None
     }
 }
 
