@@ -8,7 +8,7 @@
 //! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
 //! | SVG, PNG | sensors and energies over time, of a motion or of a table that a run has left | [`Plot`] |
 //! | SVG | any series over each other | [`Chart`] |
-//! | HTML | the motion, to be played by a web browser | [`write_animation`] |
+//! | HTML | the motion, or several side by side, to be played by a web browser | [`write_animation`], [`write_animations`], [`join_animations`] |
 //! | VTK | ParaView and other viewers of meshes: motion, forces, strain and stress | [`write_vtk`] |
 //!
 //! Directories are created as needed. A file is written under another name first and renamed when
@@ -30,7 +30,7 @@ mod vtk;
 
 #[cfg(feature = "play")]
 pub(crate) use self::animation::Picture;
-pub use self::animation::write_animation;
+pub use self::animation::{join_animations, write_animation, write_animations};
 pub use self::chart::Chart;
 #[cfg(feature = "study")]
 pub(crate) use self::columns::{DIFFERENCE, OF_SENSOR};

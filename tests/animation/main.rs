@@ -4,6 +4,7 @@
 //! share two, one after the other.
 
 // its other users need what these tests do not
+mod beside;
 #[allow(dead_code)]
 mod browser;
 mod data;
@@ -50,6 +51,18 @@ fn it_is_used() -> Outcome {
         ("sensors", sensors::sensors_have_charts),
         ("saving", saving::the_frame_is_saved),
         ("arrows", saving::arrows_are_offered),
+    ])
+}
+
+#[test]
+fn motions_stand_side_by_side() -> Outcome {
+    in_browser(&[
+        ("two in the plane", beside::two_are_played_by_one_clock),
+        ("same colours", beside::colours_mean_the_same),
+        ("in space", beside::bodies_in_space_are_as_large_and_turn_together),
+        ("plane and space", beside::a_plane_and_a_space_have_one_scale),
+        ("saving both", beside::all_of_them_are_saved),
+        ("phone", beside::they_stand_one_below_the_other_on_a_phone),
     ])
 }
 

@@ -100,9 +100,9 @@ pub fn colours(browser: &mut Browser, canvas: &str) -> Result<[usize; 2], Box<dy
 }
 
 /// Centres of the orange dots at the moved nodes in the picture (px), from left to right.
-pub fn moved_dots(browser: &mut Browser) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+pub fn moved_dots(browser: &mut Browser, canvas: &str) -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
     let found = browser.evaluate(&format!(
-        "(() => {{ const {{ data, width }} = ({PIXELS})('#stage');
+        "(() => {{ const {{ data, width }} = ({PIXELS})({canvas:?});
            const dots = [];
            for (let k = 0; k < data.length; k += 4) {{
              if (data[k] !== 213 || data[k + 1] !== 94 || data[k + 2] !== 0) continue;
@@ -123,11 +123,15 @@ pub fn cursor(browser: &mut Browser) -> Result<f64, Box<dyn Error>> {
     )
 }
 
-/// An energy (J) as its button tells it, and half of its last digit.
-pub fn energy(browser: &mut Browser, name: &str) -> Result<[f64; 2], Box<dyn Error>> {
+/// An energy (J) as its button tells it, and half of its last digit; `motion` of those side by side.
+pub fn energy(
+    browser: &mut Browser,
+    name: &str,
+    motion: usize,
+) -> Result<[f64; 2], Box<dyn Error>> {
     let text = browser.text(&format!(
         "[...document.querySelectorAll('#series button')].find((button) =>
-           button.textContent.startsWith({name:?})).querySelector('.value').textContent"
+           button.textContent.startsWith({name:?})).querySelectorAll('.value')[{motion}].textContent"
     ))?;
     let (number, unit) = text.split_once(' ').ok_or("no unit")?;
     let unit = match unit {

@@ -5,7 +5,10 @@ use super::browser::Browser;
 use super::page::*;
 
 /// What clicking on a button offers as a file: its ending, type and contents as a data address.
-fn offered(browser: &mut Browser, button: &str) -> Result<[String; 3], Box<dyn std::error::Error>> {
+pub fn offered(
+    browser: &mut Browser,
+    button: &str,
+) -> Result<[String; 3], Box<dyn std::error::Error>> {
     // what the page hands to the browser is kept, and not saved
     let text = browser.text(&format!(
         "new Promise((done) => {{

@@ -151,9 +151,9 @@ pub fn the_near_side_of_a_solid_is_seen(browser: &mut Browser) -> Outcome {
         .phase(Phase::until(0.01).move_nodes("front", still))
         .phase(Phase::until(0.02).move_nodes("back", still));
     let _page = shown(browser, &scene.simulate(&Settings::default(), &Sampling::every(0.01))?)?;
-    assert_eq!(moved_dots(browser)?.len(), 9);
+    assert_eq!(moved_dots(browser, "#stage")?.len(), 9);
     browser.press("End", false)?;
-    assert_eq!(moved_dots(browser)?.len(), 5);
+    assert_eq!(moved_dots(browser, "#stage")?.len(), 5);
     Ok(())
 }
 

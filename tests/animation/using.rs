@@ -55,7 +55,7 @@ pub fn it_plays_and_pauses(browser: &mut Browser) -> Outcome {
 pub fn picture_and_energies_follow_the_slider(browser: &mut Browser) -> Outcome {
     let trajectory = square()?;
     let _page = shown(browser, &trajectory)?;
-    let high = moved_dots(browser)?;
+    let high = moved_dots(browser, "#stage")?;
     let [[left, top], [right, _]] = high[..] else { return Err(format!("{high:?}").into()) };
     let scale = (right - left) / 0.1;
     let edges = {
@@ -72,7 +72,7 @@ pub fn picture_and_energies_follow_the_slider(browser: &mut Browser) -> Outcome 
         assert!((clock(browser)? - time).abs() < 1e-3);
         let expected = edges[0] + time / END * (edges[1] - edges[0]);
         assert!((cursor(browser)? - expected).abs() < 1.0, "at {time}");
-        let dots = moved_dots(browser)?;
+        let dots = moved_dots(browser, "#stage")?;
         for [_, y] in &dots {
             let down = (y - top) / scale;
             // the centres of dots are known to half a pixel
@@ -96,12 +96,12 @@ pub fn picture_and_energies_follow_the_slider(browser: &mut Browser) -> Outcome 
         ("balance", last.balance()),
     ];
     for (name, value) in expected {
-        let [told, digit] = energy(browser, name)?;
+        let [told, digit] = energy(browser, name, 0)?;
         assert!((told - value).abs() <= 1.01 * digit, "{name}: {told} is not {value}");
     }
     browser.drag(&[[edges[0] + 5.0 / 16.0 * (edges[1] - edges[0]), from[1]]])?;
     assert!((clock(browser)? - 0.05).abs() < 1e-3);
-    let [told, digit] = energy(browser, "strain")?;
+    let [told, digit] = energy(browser, "strain", 0)?;
     let sample = trajectory.samples().iter().find(|s| (s.time - 0.05).abs() < 1e-9);
     let strain = sample.ok_or("no sample")?.energy.strain;
     // within a pixel of that time, the square is pressed on

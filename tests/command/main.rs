@@ -1,5 +1,6 @@
 //! The command `pliant` as a whole: what it writes, what it says, how it ends.
 
+mod beside;
 mod world;
 
 use std::fs;

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod advise;
+mod beside;
 mod chart;
 mod check;
 mod failure;
@@ -46,6 +47,7 @@ enum Command {
     Plot(plot::Arguments),
     #[command(allow_negative_numbers = true)]
     Advise(advise::Arguments),
+    Beside(beside::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
     Methods(methods::Arguments),
@@ -62,6 +64,7 @@ fn main() -> ExitCode {
         Command::Static(arguments) => statics::run(&arguments),
         Command::Plot(arguments) => plot::run(&arguments),
         Command::Advise(arguments) => advise::run(&arguments),
+        Command::Beside(arguments) => beside::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),

@@ -36,8 +36,8 @@ pub(super) const QUANTITIES: [Quantity; 2] = [
     ("Strain energy density", "J/m\u{b3}", |field| field.energy_density),
 ];
 
-/// Everything that the page shows.
-pub(super) fn gather(trajectory: &Trajectory, title: &str) -> Result<Value, Error> {
+/// Everything that the page shows of a motion.
+pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error> {
     let scene = trajectory.scene();
     let (body, mesh) = (scene.body(), scene.body().mesh());
     let points = point_masses(mesh);
@@ -46,7 +46,7 @@ pub(super) fn gather(trajectory: &Trajectory, title: &str) -> Result<Value, Erro
     let frames = thinned(trajectory.samples(), bytes_per_frame(trajectory, &geometry));
     let view = (mesh.dimension() < 3).then(|| View::of(trajectory, &frames).corners());
     Ok(json!({
-        "title": title,
+        "name": name,
         "run": run(trajectory),
         "report": trajectory.report().to_string(),
         "warnings": trajectory.report().warnings(),

@@ -15,6 +15,8 @@ use crate::system::Energy;
 const DRAWING: &str = concat!(
     include_str!("page/format.js"),
     include_str!("page/paint.js"),
+    include_str!("page/view.js"),
+    include_str!("page/colour.js"),
     include_str!("page/plane.js"),
     include_str!("page/space.js"),
     include_str!("page/stage.js"),

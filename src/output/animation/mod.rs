@@ -7,14 +7,16 @@ mod geometry;
 mod live;
 mod pack;
 
+use std::fs;
 use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 #[cfg(feature = "play")]
 pub(crate) use self::live::Picture;
 use super::write_file;
 use crate::error::Error;
+use crate::input::InputError;
 use crate::trajectory::Trajectory;
 
 /// The page, its style and its script; `/*...*/` marks the place of the others.
@@ -24,20 +26,31 @@ const PICTURE: &str = include_str!("page/picture.html");
 const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = concat!(
     include_str!("page/decode.js"),
-    include_str!("page/motion.js"),
+    include_str!("page/moment.js"),
     include_str!("page/format.js"),
     include_str!("page/paint.js"),
-    include_str!("page/plane.js"),
-    include_str!("page/space.js"),
-    include_str!("page/stage.js"),
+    include_str!("page/view.js"),
+    include_str!("page/colour.js"),
     include_str!("page/chart.js"),
     include_str!("page/sensors.js"),
-    include_str!("page/contacts.js"),
+    include_str!("page/arrows.js"),
     include_str!("page/vectors.js"),
     include_str!("page/controls.js"),
+    include_str!("page/picture.js"),
+    include_str!("page/motions.js"),
     include_str!("page/saving.js"),
     include_str!("page/player.js"),
 );
+/// What each motion has for itself, in place of `/*picture*/` in the script.
+const OF_EACH: &str = concat!(
+    include_str!("page/motion.js"),
+    include_str!("page/plane.js"),
+    include_str!("page/space.js"),
+    include_str!("page/stage.js"),
+    include_str!("page/contacts.js"),
+);
+/// What stands before and after the data of a page.
+const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</script>"];
 
 /// Writes the motion as one HTML file that a web browser plays, without a network: the body
 /// coloured by stress or strain energy density, obstacles, springs (coloured while an actuator
@@ -73,9 +86,104 @@ pub fn write_animation(
     path: impl AsRef<Path>,
     title: &str,
 ) -> Result<(), Error> {
-    let data = data::gather(trajectory, title)?;
-    let page = filled(PAGE, STYLE, SCRIPT, &data);
-    write_file(path.as_ref(), |file| file.write_all(page.as_bytes()))
+    write_animations(&[("", trajectory)], path, title)
+}
+
+/// As [`write_animation`], with several motions side by side, each with its name: one clock plays them, in the same part
+/// of space, as large, and with the same colours for the same values. Charts have the lines of all of them. Scenes,
+/// meshes, methods and times may be different; a motion that has ended stays as it is then.
+///
+/// # Errors
+/// Those of [`write_animation`]; [`Error::Input`] without any motion.
+///
+/// ```
+/// use pliant::output::write_animations;
+/// # use pliant::{Method, Sampling, Settings, samples::beam_jump};
+/// # let directory = tempfile::tempdir().unwrap();
+/// # let path = directory.path().join("methods.html");
+/// let scene = beam_jump()?;
+/// let run = |method| {
+///     scene.simulate(&Settings { method, ..Settings::default() }, &Sampling::every(0.01))
+/// };
+/// let (bdf, rk) = (run(Method::CvodeBdf)?, run(Method::Rk)?);
+/// write_animations(&[("BDF", &bdf), ("Runge-Kutta", &rk)], &path, "A beam jumps twice")?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+pub fn write_animations(
+    motions: &[(&str, &Trajectory)],
+    path: impl AsRef<Path>,
+    title: &str,
+) -> Result<(), Error> {
+    let motions = motions.iter().map(|(name, trajectory)| data::gather(trajectory, name));
+    write_page(motions.collect::<Result<_, _>>()?, path.as_ref(), title)
+}
+
+/// As [`write_animations`], with the motions of pages that have been written before, by name and file: nothing is
+/// computed again.
+///
+/// # Errors
+/// [`Error::Read`] for a file that cannot be read; [`Error::Input`] without any file, and for one that holds no motion,
+/// several, or one of another version of pliant; [`Error::Output`] if the page cannot be written.
+///
+/// ```
+/// use pliant::output::{join_animations, write_animation};
+/// # use pliant::{Sampling, Settings, samples::beam_jump};
+/// # let directory = tempfile::tempdir().unwrap();
+/// # let [one, both] = ["one.html", "both.html"].map(|name| directory.path().join(name));
+/// # let trajectory = beam_jump()?.simulate(&Settings::default(), &Sampling::every(0.01))?;
+/// write_animation(&trajectory, &one, "A beam jumps")?;
+/// join_animations(&[("one", &one), ("the same", &one)], &both, "Twice the same")?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+pub fn join_animations<P: AsRef<Path>>(
+    pages: &[(&str, P)],
+    path: impl AsRef<Path>,
+    title: &str,
+) -> Result<(), Error> {
+    let motions = pages.iter().map(|(name, page)| {
+        let mut motion = read_motion(page.as_ref())?;
+        motion["name"] = (*name).into();
+        Ok(motion)
+    });
+    write_page(motions.collect::<Result<_, Error>>()?, path.as_ref(), title)
+}
+
+fn write_page(motions: Vec<Value>, path: &Path, title: &str) -> Result<(), Error> {
+    if motions.is_empty() {
+        let mend = "name at least one motion to be shown";
+        return Err(InputError::new("motions", "none", mend).into());
+    }
+    let data = json!({ "version": env!("CARGO_PKG_VERSION"), "title": title, "motions": motions });
+    let script = SCRIPT.replace("/*picture*/", OF_EACH);
+    let page = filled(PAGE, STYLE, &script, &data);
+    write_file(path, |file| file.write_all(page.as_bytes()))
+}
+
+/// The motion of the page in the file at `path`.
+fn read_motion(path: &Path) -> Result<Value, Error> {
+    let text = fs::read_to_string(path)
+        .map_err(|source| Error::Read { path: path.to_path_buf(), source })?;
+    let [before, after] = DATA;
+    let data = text.split_once(before).and_then(|(_, rest)| rest.split_once(after));
+    let data = data.and_then(|(data, _)| serde_json::from_str::<Value>(data).ok());
+    let refuse = |mend| Err(InputError::new("animation", path.display(), mend).into());
+    let Some(mut data) = data else {
+        return refuse("it is no animation of pliant: format html of a run writes one".to_string());
+    };
+    let (version, present) = (&data["version"], env!("CARGO_PKG_VERSION"));
+    if version != present {
+        let version = version.as_str().unwrap_or("another one");
+        return refuse(format!(
+            "it was written by version {version}, and this is {present}: run the scene again"
+        ));
+    }
+    match data["motions"].as_array_mut().map(Vec::as_mut_slice) {
+        Some([motion]) => Ok(motion.take()),
+        motions => refuse(format!(
+            "it shows {} motions: name the pages of single ones",
+            motions.map_or(0, |motions| motions.len())
+        )),
+    }
 }
 
 /// A page with its style, its script and its data.

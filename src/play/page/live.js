@@ -30,7 +30,11 @@ function corners([across, upward]) {
 }
 
 data.motion = { ranges: roomy(extent()) };
-if (axes === 2) data.view = corners(data.motion.ranges);
+data.view = axes === 2 ? corners(data.motion.ranges) : around(data);
+
+const figure = document.querySelector("figure");
+/** Pixels per metre of the picture. */
+const scale = () => fitting();
 
 /** Shows more if the body leaves the part of the plane that is shown. Returns whether it did. */
 function follow() {
@@ -51,7 +55,7 @@ const times = [];
 let first = 0;
 let last = 0;
 const energies = data.energies
-  .map((name, number) => ({ name, number, values: [] }))
+  .map((name, number) => ({ name, number, times, values: [] }))
   .filter(({ name }) => !data.absent.includes(name));
 // scales grow with what is seen
 const quantities = data.quantities.map((quantity) => ({ ...quantity, scale: 0, peak: 0 }));

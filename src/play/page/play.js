@@ -46,9 +46,8 @@ socket.addEventListener("close", () => {
 });
 
 function ask() {
-  const chosen = quantities.indexOf(quantity);
   const since = times.length ? last : null;
-  send({ do: "look", colours: chosen < 0 ? null : chosen, since }, ({ frame: next }) => {
+  send({ do: "look", colours: quantities[chosen] ? chosen : null, since }, ({ frame: next }) => {
     if (next) show(next);
     requestAnimationFrame(ask);
   });
@@ -56,6 +55,7 @@ function ask() {
 
 /** Decimals that tell a thousandth of the scene. */
 const decimals = Math.min(6, Math.max(0, Math.round(3 - Math.log10(data.until || 1))));
+const energyChart = chartOfEnergies([energies]);
 let scaleShown = -1;
 let chartDrawn = 0;
 
@@ -63,16 +63,17 @@ function show(next) {
   take(next);
   // while a hand pulls, what is under it stays there
   if (!held) follow();
+  const quantity = quantities[chosen];
   if (quantity && quantity.scale !== scaleShown) {
     scaleShown = quantity.scale;
-    showScale();
+    showScale(quantity);
   }
   draw();
   const now = performance.now();
   if (now - chartDrawn > 100 || !next.playing) {
     chartDrawn = now;
     energyChart.draw();
-    energyChart.tell({ time: last });
+    energyChart.tell(last, [frame]);
     showFacts();
   }
   clock.textContent = `${fixed(next.time, decimals)} s`;
@@ -97,7 +98,7 @@ function showFacts() {
   const count = (number) => number.toLocaleString("en");
   const size = step > 0 ? prefixed(step, "s") : null;
   const slow = playing && factor !== null && factor < speed ? ", slower than asked for" : "";
-  listFacts({
+  listFacts(document.getElementById("facts"), {
     Mesh: `${count(data.mesh.nodes)} nodes, ${count(data.mesh.cells)} ${data.mesh.cellName}`,
     Method: method + (order ? `, order ${order}` : ""),
     Tolerance: signed(data.solver.rtol),
@@ -135,7 +136,7 @@ function draw() {
 }
 
 function redraw() {
-  fitStage();
+  stage.style.height = `${wantedHeight()}px`;
   energyChart.draw();
   draw();
 }
@@ -301,10 +302,9 @@ document.getElementById("save").addEventListener("click", () => send({ do: "save
   link.click();
   URL.revokeObjectURL(link.href);
 }));
-describeStage();
-stage.setAttribute("aria-label", "The body in motion");
+describeStage("The body in motion");
 showKey();
-offerQuantities(draw);
+offerQuantities(quantities, draw);
 energyChart.offerSeries(() => energyChart.draw());
 offerSpeeds(data.until);
 letTurn(draw);

@@ -4,10 +4,26 @@ const PLOT = { left: 58, right: 14, top: 26, bottom: 36, height: 230 };
 /** Lines of energies that differ by more than their colour. */
 const DASHES = { gravity: [8, 3], springs: [2, 2], dissipated: [10, 3, 2, 3], supplied: [5, 4], balance: [1, 3] };
 
-/** `series` of one unit, each with a name, values, a colour of the style sheet and dashes; a button for each shows and hides it. */
+/** For lines beyond the colours, and for motions that share a chart. */
+const STROKES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
+
+/** The series of one chart from the lines of each motion: what has the same name is one of them, with a line for each motion that has it. */
+function seriesOf(motions, colourOf, dashesOf) {
+  const names = [...new Set(motions.flat().map(({ name }) => name))];
+  return names.map((name, k) => ({
+    name,
+    colour: colourOf(name, k),
+    lines: motions.map((lines, motion) => {
+      const line = lines.find((line) => line.name === name);
+      return line && { ...line, dashes: motions.length > 1 ? STROKES[motion % STROKES.length] : dashesOf(name, k) };
+    }),
+  }));
+}
+
+/** `series` of one unit; a button for each shows and hides its lines. */
 class Chart {
   hidden = new Set();
-  /** The buttons of the series, and where they show the value of the moment. */
+  /** The lines of the series, and where their buttons show the values of the moment. */
   switches = [];
 
   /** In the elements `frame`, `plot`, `cursor` and `list`; `withZero`: 0 is in the range. */
@@ -68,7 +84,8 @@ class Chart {
     context.rect(PLOT.left - 1, PLOT.top - 2, right - PLOT.left + 2, floor - PLOT.top + 4);
     context.clip();
     context.lineWidth = 2;
-    for (const { values, colour, dashes } of shown) {
+    const lines = shown.flatMap(({ colour, lines }) => lines.map((line) => line && { ...line, colour }));
+    for (const { times, values, colour, dashes } of lines.filter(Boolean)) {
       context.strokeStyle = paint(colour);
       context.setLineDash(dashes);
       context.beginPath();
@@ -110,7 +127,7 @@ class Chart {
   /** From the least to the largest number shown, with some room, and the unit for them. */
   range(shown) {
     let [low, high] = this.withZero ? [0, 0] : [Infinity, -Infinity];
-    for (const { values } of shown) {
+    for (const { values } of shown.flatMap(({ lines }) => lines.filter(Boolean))) {
       for (const value of values) {
         if (!Number.isFinite(value)) continue;
         low = Math.min(low, value);
@@ -128,29 +145,28 @@ class Chart {
     return [low < 0 || !this.withZero ? low - pad : 0, high + pad];
   }
 
-  /** Moves the line to the moment and tells the values there. */
-  tell(moment) {
-    this.cursor.style.transform = `translateX(${this.xOf(moment.time)}px)`;
+  /** Moves the line to `time` and tells the values at the moments of the motions. */
+  tell(time, moments) {
+    this.cursor.style.transform = `translateX(${this.xOf(time)}px)`;
     const { factor, unit, decimals } = this.scale;
-    for (const { series, value } of this.switches) {
-      const now = seriesAt(moment, series);
-      value.textContent = Number.isFinite(now) ? `${fixed(now / factor, decimals)} ${unit}`.trimEnd() : "no value";
+    const told = (now) => (Number.isFinite(now) ? `${fixed(now / factor, decimals)} ${unit}`.trimEnd() : "no value");
+    for (const { lines, values } of this.switches) {
+      lines.forEach((line, motion) => {
+        values[motion].textContent = line ? told(seriesAt(moments[motion], line)) : "none";
+      });
     }
   }
 
   /** A button for each series that shows and hides it; `redraw` is called after that. */
   offerSeries(redraw) {
-    for (const series of this.series) {
-      const { name, colour, dashes } = series;
+    for (const { name, colour, lines } of this.series) {
       const button = document.createElement("button");
-      const value = document.createElement("span");
-      value.className = "value";
       button.type = "button";
       button.setAttribute("aria-pressed", "true");
-      button.innerHTML =
-        `<svg viewBox="0 0 22 10" aria-hidden="true"><path d="M0 5h22" stroke="var(--${colour})" ` +
-        `stroke-width="2.5" stroke-dasharray="${dashes.join(" ")}"/></svg>`;
-      button.append(name, value);
+      const dashes = lines.length > 1 ? [] : lines[0].dashes;
+      button.innerHTML = strokeSign(`var(--${colour})`, dashes);
+      const values = lines.map(() => Object.assign(document.createElement("span"), { className: "value" }));
+      button.append(name, ...values);
       button.addEventListener("click", () => {
         const shown = this.hidden.delete(name);
         if (!shown) this.hidden.add(name);
@@ -158,7 +174,7 @@ class Chart {
         redraw();
       });
       this.list.append(button);
-      this.switches.push({ series, value });
+      this.switches.push({ lines, values });
     }
   }
 
@@ -175,14 +191,25 @@ class Chart {
   }
 }
 
-const energyChart = new Chart(
-  {
-    frame: document.getElementById("chart"),
-    plot: document.getElementById("plot"),
-    cursor: document.getElementById("cursor"),
-    list: document.getElementById("series"),
-  },
-  energies.map((series) => Object.assign(series, { colour: series.name, dashes: DASHES[series.name] ?? [] })),
-  "J",
-  true,
-);
+/** A piece of a line, as the drawing of a key. */
+function strokeSign(colour, dashes) {
+  return (
+    `<svg viewBox="0 0 22 10" aria-hidden="true"><path d="M0 5h22" stroke="${colour}" ` +
+    `stroke-width="2.5" stroke-dasharray="${dashes.join(" ")}"/></svg>`
+  );
+}
+
+/** The chart of the energies of each motion. */
+function chartOfEnergies(motions) {
+  return new Chart(
+    {
+      frame: document.getElementById("chart"),
+      plot: document.getElementById("plot"),
+      cursor: document.getElementById("cursor"),
+      list: document.getElementById("series"),
+    },
+    seriesOf(motions, (name) => name, (name) => DASHES[name] ?? []),
+    "J",
+    true,
+  );
+}

@@ -30,8 +30,8 @@ function changeSpeed(steps) {
 }
 
 /** Lists `facts`, text by name. */
-function listFacts(facts) {
-  document.getElementById("facts").replaceChildren(...Object.entries(facts).flatMap(([name, content]) => [
+function listFacts(list, facts) {
+  list.replaceChildren(...Object.entries(facts).flatMap(([name, content]) => [
     Object.assign(document.createElement("dt"), { textContent: name }),
     Object.assign(document.createElement("dd"), { textContent: content }),
   ]));

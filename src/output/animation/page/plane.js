@@ -5,20 +5,31 @@ const MARGIN = { left: 46, right: 12, top: 10, bottom: upright ? 12 : 40 };
 /** Width of a bar as drawn (m): enough to be seen, for a bar has none of its own. */
 const barWidth = upright ? Math.max(body.width, 0.1 * (data.view[1][1] - data.view[0][1])) : 0;
 
+/** What the margins leave of a sheet (px). */
+function roomOn(width, height) {
+  return [width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom];
+}
+
+/** Pixels per metre with which the view fills `room`. */
+function fitView(room) {
+  const [low, high] = data.view;
+  return Math.min(...room.map((size, axis) => size / (high[axis] - low[axis])));
+}
+
 /** Where points of the plane (m) are on a sheet (px). */
 function layOut({ width, height }) {
   const [[low, bottom], [high, top]] = data.view;
-  const room = [width - MARGIN.left - MARGIN.right, height - MARGIN.top - MARGIN.bottom];
-  const scale = Math.min(room[0] / (high - low), room[1] / (top - bottom));
+  const room = roomOn(width, height);
+  const pixels = scale();
   const middle = [(low + high) / 2, (bottom + top) / 2];
   const centre = [MARGIN.left + room[0] / 2, MARGIN.top + room[1] / 2];
   return {
-    scale,
+    scale: pixels,
     room,
-    low: [middle[0] - room[0] / scale / 2, middle[1] - room[1] / scale / 2],
-    high: [middle[0] + room[0] / scale / 2, middle[1] + room[1] / scale / 2],
-    x: (x) => centre[0] + (x - middle[0]) * scale,
-    y: (y) => centre[1] - (y - middle[1]) * scale,
+    low: [middle[0] - room[0] / pixels / 2, middle[1] - room[1] / pixels / 2],
+    high: [middle[0] + room[0] / pixels / 2, middle[1] + room[1] / pixels / 2],
+    x: (x) => centre[0] + (x - middle[0]) * pixels,
+    y: (y) => centre[1] - (y - middle[1]) * pixels,
   };
 }
 

@@ -2,8 +2,7 @@
 
 const slider = document.getElementById("time");
 const clock = document.getElementById("clock");
-const charts = [energyChart, ...sensorCharts];
-const phaseLine = document.getElementById("phase");
+const forceOfLongest = roundForce(Math.max(...pictures.map(({ strongest }) => strongest)));
 
 let now = first;
 /** Time stamp of the last frame (ms) while the motion is played; null otherwise. */
@@ -13,24 +12,29 @@ let played = null;
 const decimals = Math.min(6, Math.max(0, Math.round(3 - Math.log10(last - first || 1))));
 
 function show() {
-  const moment = momentAt(now);
-  drawFrame(sheet(stage), moment);
-  for (const chart of charts) chart.tell(moment);
+  for (const picture of pictures) drawFrame(picture, sheet(picture.stage));
+  const moments = pictures.map(({ momentAt }) => momentAt(now));
+  for (const chart of charts) chart.tell(now, moments);
   const time = `${fixed(now, decimals)} s`;
-  const { name } = phaseAt(now);
+  const told = pictures.map((picture, k) => {
+    const { name } = picture.phaseAt(now);
+    const ended = now > picture.last ? `, ended at ${fixed(picture.last, decimals)} s` : "";
+    figures[k].querySelector(".phase").textContent = `phase: ${name}${ended}`;
+    return `${several ? `${picture.name}: ` : ""}phase ${name}${ended}`;
+  });
   slider.value = now;
-  slider.setAttribute("aria-valuetext", `${time}, phase ${name}`);
+  slider.setAttribute("aria-valuetext", [time, ...told].join(", "));
   clock.textContent = time;
-  phaseLine.textContent = `phase: ${name}`;
 }
 
-function drawFrame(drawing, moment) {
-  drawStage(moment, drawing);
-  if (arrows.checked) drawContacts(drawing, moment);
+function drawFrame({ momentAt, drawStage, drawContacts }, drawing) {
+  drawStage(momentAt(now), drawing);
+  if (arrows.checked) drawContacts(drawing, momentAt(now), forceOfLongest);
 }
 
 function redraw() {
-  fitStage();
+  const height = Math.max(...pictures.map(({ wantedHeight }) => wantedHeight()));
+  for (const { stage } of pictures) stage.style.height = `${height}px`;
   for (const chart of charts) chart.draw();
   show();
 }
@@ -70,7 +74,7 @@ function toggle() {
 /** Goes `count` samples on, or back, and stays there. */
 function step(count) {
   pause();
-  const { before, share } = momentAt(now);
+  const { before, share } = momentIn(times, now);
   // between two samples, the one before is one step back
   const from = count < 0 && share > 0 && share < 1 ? before + 1 : before + (share === 1 ? 1 : 0);
   seek(times[Math.min(Math.max(from + count, 0), times.length - 1)]);
@@ -98,12 +102,7 @@ document.addEventListener("keydown", (event) => {
   act(event);
 });
 
-function tellFacts() {
-  const title = data.title || "Motion of a soft body";
-  document.title = document.getElementById("title").textContent = title;
-  document.getElementById("report").textContent = data.report;
-  document.getElementById("end").textContent = `of ${fixed(last, decimals)} s`;
-  const { run } = data;
+function factsOf({ run, times }) {
   const count = (number) => number.toLocaleString("en");
   const energy = (value) => {
     const { factor, unit } = prefixed(value, "J");
@@ -112,32 +111,50 @@ function tellFacts() {
   const shown = times.length === run.samples
     ? `all ${count(run.samples)}`
     : `${count(times.length)} of ${count(run.samples)}, evenly thinned for this page`;
-  const facts = {
+  return {
     Mesh: `${count(run.nodes)} nodes, ${count(run.cells)} ${run.cellName}`,
     Method: `${run.method}, relative tolerance ${signed(run.rtol)}`,
     Effort: `${count(run.steps)} steps, ${count(run.factorizations)} factorizations, ${number(run.seconds)} s`,
     "Energy balance": `off by at most ${energy(run.energyError)}, of ${energy(run.energyScale)}`,
     Samples: `${shown}; straight lines between them`,
   };
-  const warnings = document.getElementById("warnings");
-  warnings.hidden = data.warnings.length === 0;
-  for (const warning of data.warnings) {
-    warnings.append(Object.assign(document.createElement("li"), { textContent: warning }));
-  }
-  listFacts(facts);
 }
 
+/** What stays as it is while the motions are played. */
+function tellFacts() {
+  const title = page.title || names.filter(Boolean).join(" | ") || "Motion of a soft body";
+  document.title = document.getElementById("title").textContent = title;
+  document.getElementById("end").textContent = `of ${fixed(last, decimals)} s`;
+  const warnings = document.getElementById("warnings");
+  pictures.forEach(({ name, data, describeStage, showKey }, k) => {
+    const about = several ? `${name}: ` : "";
+    const [from, to] = [data.times[0], data.times[data.times.length - 1]];
+    describeStage(`${about}Motion of the body from ${number(from)} to ${number(to)} seconds`);
+    showKey();
+    for (const heading of [figures[k], computations[k]].map((part) => part.querySelector(".name"))) {
+      heading.hidden = !several;
+      heading.innerHTML = strokeSign("currentColor", STROKES[k % STROKES.length]);
+      heading.append(name);
+    }
+    listFacts(computations[k].querySelector("dl"), factsOf(data));
+    computations[k].querySelector("pre").textContent = data.report;
+    for (const warning of data.warnings) {
+      warnings.append(Object.assign(document.createElement("li"), { textContent: about + warning }));
+    }
+  });
+  warnings.hidden = warnings.children.length === 0;
+}
+
+document.body.classList.toggle("several", several);
 tellFacts();
-describeStage();
-showKey();
-offerQuantities(show);
-offerContacts(show);
+offerQuantities(pictures[0].quantities, show);
+offerArrows(pictures.some(({ data }) => data.contacts.length), forceOfLongest, show);
 offerSpeeds(last - first);
 for (const chart of charts) {
   chart.offerSeries(redraw);
   chart.letSeek(seek);
 }
-letTurn(show);
+for (const { letTurn } of pictures) letTurn(show);
 showSign("Play");
 Object.assign(slider, { min: first, max: last, step: "any" });
 slider.addEventListener("input", () => seek(Number(slider.value)));

@@ -2,10 +2,14 @@
 
 /** Colours of the style sheet: those of the energies tell sensors apart as well. */
 const COLOURS = ["kinetic", "strain", "gravity", "contact", "springs", "dissipated", "supplied", "balance"];
-/** For those beyond the colours. */
-const STROKES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
+/** The charts of the sensors of each motion. */
+function chartsOfSensors(motions) {
+  const units = [...new Set(motions.flat().map(({ unit }) => unit))];
+  document.getElementById("sensors").hidden = units.length === 0;
+  return units.map((unit) => chartOfSensors(motions.map((sensors) => sensors.filter((sensor) => sensor.unit === unit)), unit));
+}
 
-const sensorCharts = [...new Set(sensors.map(({ unit }) => unit))].map((unit) => {
+function chartOfSensors(motions, unit) {
   const element = (tag, className) => Object.assign(document.createElement(tag), { className });
   const elements = {
     frame: element("div", "chart"),
@@ -21,12 +25,7 @@ const sensorCharts = [...new Set(sensors.map(({ unit }) => unit))].map((unit) =>
   list.setAttribute("aria-label", `Sensors shown (${named})`);
   frame.append(plot, cursor);
   document.getElementById("sensors").append(frame, list);
-  const read = sensors.filter((sensor) => sensor.unit === unit);
-  const series = read.map((sensor, k) => ({
-    ...sensor,
-    colour: COLOURS[k % COLOURS.length],
-    dashes: STROKES[Math.floor(k / COLOURS.length) % STROKES.length],
-  }));
-  return new Chart(elements, series, unit, false);
-});
-document.getElementById("sensors").hidden = sensors.length === 0;
+  const colourOf = (_, k) => COLOURS[k % COLOURS.length];
+  const dashesOf = (_, k) => STROKES[Math.floor(k / COLOURS.length) % STROKES.length];
+  return new Chart(elements, seriesOf(motions, colourOf, dashesOf), unit, false);
+}

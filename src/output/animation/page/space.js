@@ -1,26 +1,12 @@
 // Bodies in space, seen from far away (all lines of sight parallel), to be turned by hand.
 
-const view = { azimuth: Math.PI / 6, elevation: Math.PI / 9 };
 const LIGHT = [-0.35, -0.55, 0.76];
+const [middle, radius] = ball(data.view);
 
-/** Middle and radius of a ball around the whole motion and the obstacles that are near. */
-const [middle, radius] = (() => {
-  const ball = (ranges) => [
-    ranges.map(([least, largest]) => (least + largest) / 2),
-    Math.hypot(...ranges.map(([least, largest]) => (largest - least) / 2)) || 1,
-  ];
-  const [centre, half] = ball(data.motion.ranges);
-  const near = data.motion.ranges.map((range) => [...range]);
-  for (const { centre: at, from = at, to = at, radius = 0, min, max } of data.obstacles) {
-    const [low, high] = [min ?? from, max ?? to];
-    if (!low || Math.hypot(...low.map((x, axis) => (x + high[axis]) / 2 - centre[axis])) > 2 * half) continue;
-    near.forEach((range, axis) => {
-      range[0] = Math.min(range[0], low[axis] - radius, high[axis] - radius);
-      range[1] = Math.max(range[1], low[axis] + radius, high[axis] + radius);
-    });
-  }
-  return ball(near);
-})();
+/** Pixels per metre with which the ball around the view fills a sheet. */
+function fitBall(width, height) {
+  return (0.54 * Math.min(width, height)) / radius;
+}
 
 function dot(a, b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -33,16 +19,16 @@ function look({ width, height }) {
   const right = [ca, sa, 0];
   const up = [-se * sa, se * ca, ce];
   const away = [-ce * sa, ce * ca, -se];
-  const scale = (0.54 * Math.min(width, height)) / radius;
+  const pixels = scale();
   const from = (x) => [x[0] - middle[0], x[1] - middle[1], x[2] - middle[2]];
   return {
     right,
     up,
     away,
-    scale,
+    scale: pixels,
     place: (x) => {
       const arm = from(x);
-      return [width / 2 + scale * dot(right, arm), height / 2 - scale * dot(up, arm)];
+      return [width / 2 + pixels * dot(right, arm), height / 2 - pixels * dot(up, arm)];
     },
     depth: (x) => dot(away, from(x)),
   };

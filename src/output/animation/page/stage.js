@@ -1,17 +1,20 @@
-// The picture of the body, the scale of its colours and the key of its marks.
+// The picture of the body and the key of its marks.
 
-const stage = document.getElementById("stage");
+const stage = figure.querySelector("canvas");
 const inSpace = axes === 3;
 
-/** Chosen quantity; none: one colour. */
-let quantity = quantities[0];
-
 function drawStage(moment, drawing = sheet(stage)) {
-  (inSpace ? drawSpace : drawPlane)(drawing, moment, quantity);
+  (inSpace ? drawSpace : drawPlane)(drawing, moment, quantities[chosen]);
 }
 
-/** As high as the motion asks for, as far as the window has room. */
-function fitStage() {
+/** Pixels per metre with which the motion fills the picture. */
+function fitting() {
+  const { clientWidth: width, clientHeight: height } = stage;
+  return inSpace ? fitBall(width, height) : fitView(roomOn(width, height));
+}
+
+/** As high as the motion asks for, as far as the window has room (px). */
+function wantedHeight() {
   const width = stage.clientWidth;
   const most = Math.max(240, Math.min(0.46 * window.innerHeight, 1.1 * width));
   let wanted = 0.6 * width;
@@ -20,53 +23,15 @@ function fitStage() {
     const shape = (high[1] - low[1]) / (high[0] - low[0]);
     wanted = (width - MARGIN.left - MARGIN.right) * shape + MARGIN.top + MARGIN.bottom;
   }
-  stage.style.height = `${Math.round(Math.min(Math.max(wanted, 200), most))}px`;
+  return Math.round(Math.min(Math.max(wanted, 200), most));
 }
 
-function describeStage() {
-  const motion = `Motion of the body from ${number(first)} to ${number(last)} seconds`;
-  const turning = inSpace ? ". Arrow keys turn it" : "";
-  stage.setAttribute("aria-label", motion + turning);
-  document.getElementById("turning").hidden = !inSpace;
-  if (inSpace) {
-    stage.tabIndex = 0;
-    stage.classList.add("turns");
-  }
-}
-
-/** The choice of quantities; `redraw` is called after a choice. */
-function offerQuantities(redraw) {
-  const choice = document.getElementById("quantity");
-  for (const { name } of [...quantities, { name: "None" }]) choice.append(new Option(name));
-  const choose = () => {
-    quantity = quantities[choice.selectedIndex];
-    showScale();
-    redraw();
-  };
-  choice.addEventListener("change", choose);
-  document.getElementById("ramp").style.background =
-    `linear-gradient(to right, ${VIRIDIS.map((colour) => rgb(colour)).join()})`;
-  showScale();
-}
-
-function showScale() {
-  document.getElementById("scale").hidden = !quantity;
-  const peak = document.getElementById("peak");
-  const ends = document.getElementById("ends");
-  peak.textContent = "";
-  if (!quantity) return;
-  const { factor, unit } = prefixed(quantity.scale, quantity.unit);
-  const most = quantity.scale / factor;
-  const beyond = quantity.peak > 1.001 * quantity.scale;
-  const labels = ["0", number(most / 2), `${beyond ? "\u2265 " : ""}${number(most)} ${unit}`];
-  ends.replaceChildren(...(most > 0 ? labels : ["0 everywhere"]).map((label) => {
-    const end = document.createElement("span");
-    end.textContent = label;
-    return end;
-  }));
-  if (beyond) {
-    peak.textContent = `99 % of all cells and times are below; largest ${number(quantity.peak / factor)} ${unit}`;
-  }
+function describeStage(what) {
+  stage.setAttribute("aria-label", inSpace ? `${what}. Arrow keys turn it` : what);
+  if (!inSpace) return;
+  document.getElementById("turning").hidden = false;
+  stage.tabIndex = 0;
+  stage.classList.add("turns");
 }
 
 /** What the marks mean, as far as the motion has them. */
@@ -83,7 +48,7 @@ function showKey() {
     [forces.some((force) => force < 0), zigzag("pull"), "actuator pulls"],
     [forces.some((force) => force > 0), zigzag("push"), "actuator pushes"],
   ];
-  const key = document.getElementById("key");
+  const key = figure.querySelector(".key");
   for (const [, sign, meaning] of entries.filter(([exists]) => exists)) {
     const entry = document.createElement("li");
     entry.innerHTML = `<svg viewBox="0 0 22 12" aria-hidden="true">${sign}</svg>`;

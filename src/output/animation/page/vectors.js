@@ -146,9 +146,9 @@ function plain(text) {
   return text.replace(/&/g, "&amp;").replace(/</g, "&lt;").replace(/"/g, "&quot;");
 }
 
-/** What `draw` draws on a sheet as large as `canvas`, as an SVG file. */
-function vectorsOf({ clientWidth: width, clientHeight: height }, draw) {
+/** What `draw` draws on a sheet of that size (px), as an SVG file. */
+function vectorsOf([width, height], draw) {
   const context = new Vectors();
-  draw({ context, width, height, hatching: () => "url(#hatch)" });
+  draw({ context, hatching: () => "url(#hatch)" });
   return context.file(width, height);
 }

@@ -1,0 +1,39 @@
+// What colours mean: the choice of quantities, and the scale.
+
+/** Number of the chosen quantity; beyond the last: one colour. */
+let chosen = 0;
+
+/** The choice of quantities; `redraw` is called after a choice. */
+function offerQuantities(quantities, redraw) {
+  const choice = document.getElementById("quantity");
+  for (const { name } of [...quantities, { name: "None" }]) choice.append(new Option(name));
+  const choose = () => {
+    chosen = choice.selectedIndex;
+    showScale(quantities[chosen]);
+    redraw();
+  };
+  choice.addEventListener("change", choose);
+  document.getElementById("ramp").style.background =
+    `linear-gradient(to right, ${VIRIDIS.map((colour) => rgb(colour)).join()})`;
+  showScale(quantities[chosen]);
+}
+
+function showScale(quantity) {
+  document.getElementById("scale").hidden = !quantity;
+  const peak = document.getElementById("peak");
+  const ends = document.getElementById("ends");
+  peak.textContent = "";
+  if (!quantity) return;
+  const { factor, unit } = prefixed(quantity.scale, quantity.unit);
+  const most = quantity.scale / factor;
+  const beyond = quantity.peak > 1.001 * quantity.scale;
+  const labels = ["0", number(most / 2), `${beyond ? "\u2265 " : ""}${number(most)} ${unit}`];
+  ends.replaceChildren(...(most > 0 ? labels : ["0 everywhere"]).map((label) => {
+    const end = document.createElement("span");
+    end.textContent = label;
+    return end;
+  }));
+  if (beyond) {
+    peak.textContent = `99 % of all cells and times are below; largest ${number(quantity.peak / factor)} ${unit}`;
+  }
+}
