@@ -24,6 +24,7 @@ use crate::input::InputError;
 use crate::output::Picture;
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::simulate::Sampling;
 
 const PAGE: &str = include_str!("page/play.html");
 const STYLE: &str = include_str!("page/play.css");
@@ -81,6 +82,16 @@ impl Player {
         let port = listener.local_addr().map_err(|error| no_port(port, &error))?.port();
         data["title"] = title.into();
         Ok(Self { listener, door: Door::new(port)?, data, session })
+    }
+
+    /// Shows what the sensors of `sampling` read over time, below the energies. They are read as often as the energies,
+    /// so its times need be no more than [`Sampling::phase_ends`].
+    ///
+    /// # Errors
+    /// Sensors for what the scene does not have; times that cannot be used.
+    pub fn sensors(mut self, sampling: &Sampling) -> Result<Self, Error> {
+        self.data["sensors"] = self.session.read(sampling)?;
+        Ok(self)
     }
 
     /// Lets what is done by the sliders be saved as a scene file: that at `path` with the text `text`, from which

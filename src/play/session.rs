@@ -16,7 +16,7 @@ use crate::input::InputError;
 use crate::output::Picture;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::simulate::{Checkpoint, Simulation};
+use crate::simulate::{Checkpoint, Sampling, Simulation};
 
 /// Parts of the scene, and time (s), after which the past is noted at the latest.
 const FINE: f64 = 1e-3;
@@ -50,11 +50,12 @@ pub(super) struct Session {
 impl Session {
     /// A session of `scene` at its start, and what of it stays as it is, for the page.
     pub(super) fn new(scene: &Scene, settings: &Settings) -> Result<(Self, Value), Error> {
-        let simulation = scene.start(settings)?;
+        let mut simulation = scene.start(settings)?;
         let (picture, mut fixed) = Picture::new(scene)?;
         let sliders = Slider::all(scene);
         fixed["start"] = picture.places(scene.body().mesh(), simulation.view().displacements());
         fixed["sliders"] = sliders.iter().map(Slider::to_json).collect();
+        fixed["sensors"] = json!([]);
         fixed["until"] = scene.end().into();
         fixed["mesh"] = frame::mesh(scene);
         fixed["solver"] = json!({ "rtol": format!("{:e}", settings.rtol) });
@@ -64,7 +65,7 @@ impl Session {
             hand: None,
             playing: false,
             pace: Pace::new(),
-            past: Past::of(&simulation),
+            past: Past::of(&mut simulation),
             trouble: None,
             record: Record::default(),
             original: None,
@@ -72,6 +73,15 @@ impl Session {
             simulation,
         };
         Ok((session, fixed))
+    }
+
+    /// Has the sensors of `sampling` read from the start on; what they are, for the page.
+    pub(super) fn read(&mut self, sampling: &Sampling) -> Result<Value, InputError> {
+        self.simulation.record(sampling)?;
+        self.start = self.simulation.checkpoint();
+        self.past = Past::of(&mut self.simulation);
+        let sensors = self.simulation.trajectory().sensors().iter();
+        Ok(sensors.map(|sensor| json!({ "name": sensor.name, "unit": sensor.unit })).collect())
     }
 
     /// Plays until nobody can ask for anything any more.
@@ -167,7 +177,7 @@ impl Session {
     fn go_back(&mut self) -> Result<(), Error> {
         self.simulation.restore(&self.start)?;
         (self.hand, self.trouble, self.record) = (None, None, Record::default());
-        self.past = Past::of(&self.simulation);
+        self.past = Past::of(&mut self.simulation);
         self.pace.start();
         Ok(())
     }
@@ -233,7 +243,7 @@ impl Session {
             let result = self.simulation.advance_to(to.min(from + fine));
             let is_later = self.simulation.time() > from;
             if is_later {
-                self.past.note(&self.simulation);
+                self.past.note(&mut self.simulation);
             }
             result?;
             goes_on = is_later && !self.pace.is_spent();

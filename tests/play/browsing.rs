@@ -4,14 +4,15 @@ use std::thread::sleep;
 use std::time::Duration;
 
 use super::browser::Browser;
-use super::{Outcome, served};
+use super::talking::READ;
+use super::{BEAM, Outcome, served_scene};
 
 /// The picture of the scene (px): where a node is drawn, by the functions of the page's own ruler.
 const CLOCK: &str = "parseFloat(document.querySelector('#clock').textContent)";
 
 #[test]
 fn it_is_played_by_hand() -> Outcome {
-    let address = served(|_| {})?;
+    let address = served_scene(&format!("{BEAM}{READ}"), |_| {})?;
     let mut browser = Browser::start()?;
     browser.resize([1200, 800], false)?;
     browser.visit(&address)?;
@@ -32,6 +33,18 @@ fn it_is_played_by_hand() -> Outcome {
         sleep(Duration::from_millis(300));
     }
     assert!(browser.text("document.querySelector('#facts').textContent")?.contains("order"));
+
+    // a chart for each unit of the sensors
+    let read = "[...document.querySelectorAll('#sensors .series button')].map((button) =>
+        [...button.childNodes].slice(1).map((part) => part.textContent).join(' ')).join(';')";
+    let told = browser.text(read)?;
+    let [tip, inside, clamp] = told.split(';').collect::<Vec<_>>()[..] else {
+        return Err(told.into());
+    };
+    assert!(tip.starts_with("tip ") && tip.ends_with(" mm"), "{told}");
+    assert!(inside.starts_with("inside 0") && inside.ends_with(" Pa"), "{told}");
+    assert!(clamp.starts_with("clamp ") && clamp.ends_with('N'), "{told}");
+    assert_eq!(browser.number("document.querySelectorAll('#sensors canvas').length")?, 3.0);
 
     // a node is pulled: a line goes from it to the mouse
     let picture = "document.querySelector('#stage').toDataURL()";

@@ -66,7 +66,8 @@ fn served(change: impl FnOnce(&mut Settings)) -> Result<String, Box<dyn Error>> 
 fn served_scene(text: &str, change: impl FnOnce(&mut Settings)) -> Result<String, Box<dyn Error>> {
     let mut file = SceneFile::parse(text, Path::new(PATH))?;
     change(&mut file.settings);
-    let player = Player::new(&file.scene, &file.settings, &file.title, 0)?.saving(text, PATH);
+    let player = Player::new(&file.scene, &file.settings, &file.title, 0)?;
+    let player = player.sensors(&file.output.sampling())?.saving(text, PATH);
     let address = player.address();
     thread::spawn(move || player.serve());
     Ok(address)

@@ -136,6 +136,61 @@ fn the_past_is_told() -> Outcome {
     Ok(())
 }
 
+/// The beam with sensors.
+pub const READ: &str = r#"
+[[sensor]]
+name = "tip"
+kind = "position"
+nodes = 33
+component = "y"
+
+[[sensor]]
+name = "inside"
+kind = "pressure"
+chamber = "inside"
+
+[[sensor]]
+name = "clamp"
+kind = "constraint-force"
+nodes = "left"
+component = "x"
+"#;
+
+/// What sensors read over time is what they read of the scene as it runs, from its start to its end, also after going
+/// back; and reading leaves the motion alone.
+#[test]
+fn sensors_are_told() -> Outcome {
+    let text = format!("{BEAM}{READ}");
+    let file = SceneFile::parse(&text, Path::new(PATH))?;
+    let mut client = Client::at(&served_scene(&text, |_| {})?)?;
+    let trajectory = file.scene.simulate(&file.settings, &file.output.sampling())?;
+    let samples = trajectory.samples();
+    for _ in 0..2 {
+        let end = client.play()?;
+        let past = end["past"].as_array().ok_or("no past")?;
+        for (moment, sample) in [(past.first(), samples.first()), (past.last(), samples.last())] {
+            let (moment, sample) = (moment.ok_or("no moment")?, sample.ok_or("no sample")?);
+            assert_eq!(moment[0], sample.time);
+            let read: Vec<f64> = serde_json::from_value(moment[2].clone())?;
+            assert_eq!(read.len(), 3);
+            for (number, (found, expected)) in read.iter().zip(&sample.sensors).enumerate() {
+                // of a tip that moves by mm, a pressure of 500 Pa, a force of some 0.1 N
+                let close = [CLOSE, 1e-9, 1e-3][number];
+                assert!((found - expected).abs() < close, "{number}: {found} {expected}");
+            }
+        }
+        // the tip is a corner of the picture
+        let tip = past[past.len() - 1][2][0].as_f64().ok_or("no tip")?;
+        let places = places(&end)?;
+        assert!(places.iter().any(|place| (place[1] - tip).abs() < CLOSE), "{tip}");
+
+        let mut unread = Client::at(&served(|_| {})?)?;
+        assert_eq!(unread.play()?["places"], end["places"]);
+        client.order(json!({ "do": "start" }))?;
+    }
+    Ok(())
+}
+
 /// A node follows the hand, and goes back when it is let go.
 #[test]
 fn a_hand_pulls() -> Outcome {

@@ -3,6 +3,7 @@
 use std::process;
 
 use clap::Args;
+use pliant::OutputRequest;
 use pliant::play::Player;
 
 use crate::failure::{Failure, print};
@@ -13,8 +14,8 @@ use crate::settings::SettingsArguments;
 ///
 /// Prints the address of a page, which this machine alone can open. On it time goes on and stops as you want,
 /// slower or faster; sliders set the pressures of chambers, the forces of actuators and the loads on nodes, and the
-/// mouse pulls nodes. The page shows the energies and what the integrator does, and saves what was done by the sliders as a
-/// scene file, which has the values of --set in it. Flags override the table [solver] of the
+/// mouse pulls nodes. The page shows the energies, what sensors read and what the integrator does, and saves what was done
+/// by the sliders as a scene file, which has the values of --set in it. Flags override the table [solver] of the
 /// file. Ctrl-C ends it.
 #[derive(Args)]
 pub struct Arguments {
@@ -38,7 +39,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         file.scene = file.scene.lasting(end);
     }
     let player = Player::new(&file.scene, &file.settings, &file.title, *port)?;
-    let player = player.saving(text, &scene.path);
+    // read as often as the energies, whatever the times of a run
+    let sensors = OutputRequest { step: None, times: None, ..file.output }.sampling();
+    let player = player.sensors(&sensors)?.saving(text, &scene.path);
     // nothing is kept that would have to be saved
     ctrlc::set_handler(|| process::exit(0))
         .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;

@@ -21,6 +21,7 @@ const DRAWING: &str = concat!(
     include_str!("page/space.js"),
     include_str!("page/stage.js"),
     include_str!("page/chart.js"),
+    include_str!("page/sensors.js"),
     include_str!("page/controls.js"),
 );
 

@@ -57,6 +57,7 @@ let last = 0;
 const energies = data.energies
   .map((name, number) => ({ name, number, times, values: [] }))
   .filter(({ name }) => !data.absent.includes(name));
+const sensors = data.sensors.map((sensor, number) => ({ ...sensor, number, times, values: [] }));
 // scales grow with what is seen
 const quantities = data.quantities.map((quantity) => ({ ...quantity, scale: 0, peak: 0 }));
 // marks are explained as soon as an actuator can act
@@ -78,22 +79,23 @@ function take(next) {
     const shown = quantities[next.colours.quantity];
     shown.scale = Math.max(shown.scale, next.colours.scale);
   }
-  for (const [time, told] of next.past) {
+  for (const [time, told, read] of next.past) {
     times.push(time);
     last = time;
     for (const { number, values } of energies) values.push(told[number]);
+    for (const { number, values } of sensors) values.push(read[number] ?? NaN);
   }
   if (times.length > MOST_POINTS) {
     const thin = (list) => list.splice(0, list.length, ...list.filter((_, k) => k % 2 === 0));
     thin(times);
-    for (const { values } of energies) thin(values);
+    for (const { values } of [...energies, ...sensors]) thin(values);
   }
 }
 
 function forget() {
   last = 0;
   times.length = 0;
-  for (const { values } of energies) values.length = 0;
+  for (const { values } of [...energies, ...sensors]) values.length = 0;
   for (const quantity of quantities) quantity.scale = 0;
 }
 

@@ -55,7 +55,7 @@ function ask() {
 
 /** Decimals that tell a thousandth of the scene. */
 const decimals = Math.min(6, Math.max(0, Math.round(3 - Math.log10(data.until || 1))));
-const energyChart = chartOfEnergies([energies]);
+const charts = [chartOfEnergies([energies]), ...chartsOfSensors([sensors])];
 let scaleShown = -1;
 let chartDrawn = 0;
 
@@ -72,8 +72,10 @@ function show(next) {
   const now = performance.now();
   if (now - chartDrawn > 100 || !next.playing) {
     chartDrawn = now;
-    energyChart.draw();
-    energyChart.tell(last, [frame]);
+    for (const chart of charts) {
+      chart.draw();
+      chart.tell(last, [frame]);
+    }
     showFacts();
   }
   clock.textContent = `${fixed(next.time, decimals)} s`;
@@ -137,7 +139,7 @@ function draw() {
 
 function redraw() {
   stage.style.height = `${wantedHeight()}px`;
-  energyChart.draw();
+  for (const chart of charts) chart.draw();
   draw();
 }
 
@@ -305,7 +307,7 @@ document.getElementById("save").addEventListener("click", () => send({ do: "save
 describeStage("The body in motion");
 showKey();
 offerQuantities(quantities, draw);
-energyChart.offerSeries(() => energyChart.draw());
+for (const chart of charts) chart.offerSeries(() => chart.draw());
 offerSpeeds(data.until);
 letTurn(draw);
 showSign("Play");

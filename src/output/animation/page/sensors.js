@@ -20,7 +20,7 @@ function chartOfSensors(motions, unit) {
   const { frame, plot, cursor, list } = elements;
   const named = unit === "1" ? "numbers" : unit;
   plot.setAttribute("role", "img");
-  plot.setAttribute("aria-label", `Sensors (${named}) over time. The time slider moves the line.`);
+  plot.setAttribute("aria-label", `Sensors (${named}) over time`);
   list.setAttribute("role", "group");
   list.setAttribute("aria-label", `Sensors shown (${named})`);
   frame.append(plot, cursor);
