@@ -40,8 +40,10 @@ pub struct Equilibrium {
     pub(crate) trajectory: Trajectory,
     /// What a small push does to it.
     pub stability: Stability,
-    /// Rigid motions, in words, that nothing holds in a linear body whose loads balance each other, and that were taken out of
+    /// Rigid motions, in words, that nothing holds in a body whose loads balance each other, and that were taken out of
     /// the displacements u: R^T M u = 0 for each motion R, so that the body has neither moved nor turned in the mean over its mass.
+    /// With Green's strain a body turns to where loads of constant direction balance each other, which then hold it: a turn
+    /// is removed only if no force minds it.
     pub removed: Vec<String>,
     /// Largest nodal force that is not balanced (N).
     pub residual: f64,

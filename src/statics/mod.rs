@@ -13,13 +13,16 @@
 //! of actuators by a factor. Obstacles in motion count as standing where they are: nothing is dragged
 //! along. Nor does friction act, for how it acts depends on how the body came there.
 //!
-//! A linear body that nothing holds is in equilibrium if its loads balance each other. Of all its places that
+//! A body that nothing holds is in equilibrium if its loads balance each other. Of all its places that
 //! one is taken in which it has not moved as a whole: the displacements have no part in any rigid motion R, R^T M u = 0.
+//! With Green's strain a body turns to where loads of constant direction balance each other, and is free only for motions against
+//! which no force acts: all of them if it is under pressure all around.
 //!
 //! By arc length the load is no longer given, but found with the displacements, along the path of equilibria: it falls
 //! where the body snaps through.
 
 mod arc_length;
+mod free;
 mod newton;
 mod options;
 mod rigid;
@@ -28,6 +31,7 @@ use std::time::Instant;
 
 use newton::{Point, Search, Stuck};
 pub use options::Statics;
+use rigid::RigidMotion;
 
 use crate::constraint::{PhaseStart, prescribe};
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
@@ -36,7 +40,7 @@ use crate::indicator;
 use crate::input::{InputError, find};
 use crate::report::Report;
 use crate::scene::{Phase, Scene};
-use crate::system::{AtRest, ForceBalance};
+use crate::system::AtRest;
 use crate::trajectory::{Commanded, Quantity, Sample, Trajectory};
 
 impl Scene {
@@ -56,7 +60,7 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// Bad input; [`Error::Input`] if a linear body is held so that it can still move as a
+    /// Bad input; [`Error::Input`] if the body is held so that it can still move as a
     /// whole, and its loads move it; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
     pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
         self.at_rest_in(0, statics)
@@ -84,23 +88,28 @@ impl Scene {
         let (time, u) = self.left_by_phases_before(number)?;
         let start = PhaseStart { time, u: &u };
         let system = self.system(&model, phase, forces.swap_remove(number), &start, 0.0)?;
-        let free =
-            rigid::free_motions(self.body().mesh(), self.body().inertia().pattern(), system.rows());
+        let mesh = self.body().mesh();
+        let (dimension, size, positions) = (mesh.dimension(), mesh.size(), mesh.positions());
+        let natural = rigid::Shape { dimension, size, positions };
+        let pattern = self.body().inertia().pattern();
+        let free = rigid::free_motions(natural, pattern, system.rows());
         let words: Vec<&str> = free.iter().map(|motion| &*motion.words).collect();
         let words = words.join(", ");
-        let mut rest = AtRest::new(system, phase.end(), phase.name())?;
+        let rest = AtRest::new(system, phase.end(), phase.name())?;
         let loose = |freedom: &str, mend: &str| {
             let input = format!("constraints of phase \"{}\"", phase.name());
             let value = format!("leaving the body free {freedom}");
             Error::from(InputError::new(input, value, mend))
         };
-        let natural = vec![0.0; self.body().dofs()];
         let linear = rest.is_linear();
-        if linear && !free.is_empty() {
-            let mut loads = ForceBalance::zeros(natural.len());
-            // linear forces have a meaning everywhere
-            let _ = rest.evaluate(1.0, &natural, &mut loads);
-            if let Some(resultant) = free.iter().find_map(|motion| motion.resultant(&loads.total)) {
+        let mut search = Search::new(rest, statics, self.body(), !free.is_empty());
+        if !free.is_empty() && search.rest.is_under_dead_loads() {
+            // forces in the undeformed shape have a meaning
+            let _ = search.rest.evaluate(1.0, &search.u, &mut search.at);
+            // what a moment does, a turn may balance
+            let is_lost = |motion: &&RigidMotion| !motion.is_turn && search.is_neutral(motion, 0.0);
+            let mut lost = free.iter().filter(|motion| linear || is_lost(motion));
+            if let Some(resultant) = lost.find_map(|motion| motion.resultant(&search.at.total)) {
                 let freedom = format!("for {words}; {resultant}");
                 return Err(loose(&freedom, "hold more of its nodes, or balance the loads"));
             }
@@ -112,23 +121,20 @@ impl Scene {
                     "for arc length, hold more of its nodes",
                 ));
             }
-            if rest.is_driven() {
+            if search.rest.is_driven() {
                 let input = format!("statics.arc_steps for phase \"{}\"", phase.name());
                 let mend = "obstacles that move cannot go back with the load: let them stand, or leave it 0";
                 return Err(InputError::new(input, statics.arc_steps, mend).into());
             }
         }
-        let mut search = Search::new(rest, statics, self.body().mesh().size(), !free.is_empty());
         let result = if statics.arc_steps > 0 { search.trace() } else { search.all() };
-        if linear && result.is_ok() {
-            rigid::remove(&free, self.body().inertia(), search.displacements());
-        }
         let mut trajectory = self.load_curve(number, &mut search);
         trajectory.report.wall_seconds = clock.elapsed().as_secs_f64();
         trajectory.report.doubts = indicator::of_equilibrium(&trajectory, result.is_ok());
         if let Err(Stuck { mut cause, residual }) = result {
             if !free.is_empty() {
                 cause += &format!("; the constraints leave the body free for {words}");
+                search.resultants().iter().for_each(|left| cause += &format!("; {left}"));
             }
             return Err(Box::new(NoEquilibrium {
                 phase: phase.name().into(),
@@ -148,11 +154,7 @@ impl Scene {
         Ok(Equilibrium {
             trajectory,
             stability,
-            removed: if linear {
-                free.into_iter().map(|motion| motion.words).collect()
-            } else {
-                Vec::new()
-            },
+            removed: std::mem::take(&mut search.removed),
             residual: search.residual,
             force_scale: search.at.scale,
             iterations: search.iterations,

@@ -1,6 +1,7 @@
 //! The search for an equilibrium: Newton's method downhill, load step by load step.
 
 use super::options::Statics;
+use crate::body::Body;
 use crate::equilibrium::Stability;
 use crate::ode::Failure;
 use crate::system::{AtRest, ForceBalance};
@@ -34,6 +35,9 @@ impl Point {
 pub(super) struct Search<'a> {
     pub(super) rest: AtRest,
     pub(super) statics: &'a Statics,
+    pub(super) body: &'a Body,
+    /// Whether the constraints alone do not hold the body.
+    pub(super) is_loose: bool,
     /// Size of the body (m): no iteration moves a node by more than half of it.
     pub(super) size: f64,
     /// Multiples of M that are added to K: the least one, and the present one (1/s^2).
@@ -43,7 +47,7 @@ pub(super) struct Search<'a> {
     highest: f64,
     /// K is constant, and has been factorized.
     is_done: bool,
-    is_linear: bool,
+    pub(super) is_linear: bool,
     /// Part of constraints and loads in force at `u`.
     pub(super) fraction: f64,
     /// Part last tried.
@@ -58,6 +62,8 @@ pub(super) struct Search<'a> {
     pub(super) failed_steps: usize,
     /// The equilibria found: those of a load curve, or else the last one.
     pub(super) curve: Vec<Point>,
+    /// Rigid motions, in words, that were taken out of the last one.
+    pub(super) removed: Vec<String>,
     pub(super) trial: ForceBalance,
     pub(super) x: Vec<f64>,
     pub(super) d: Vec<f64>,
@@ -69,19 +75,25 @@ pub(super) struct Search<'a> {
 const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
 impl<'a> Search<'a> {
-    /// From the undeformed shape of a body of `size` (m), `loose` if the constraints alone do not hold
-    /// it.
-    pub(super) fn new(mut rest: AtRest, statics: &'a Statics, size: f64, loose: bool) -> Self {
+    /// From the undeformed shape of a `body`, which `is_loose` if the constraints alone do not hold it.
+    pub(super) fn new(
+        mut rest: AtRest,
+        statics: &'a Statics,
+        body: &'a Body,
+        is_loose: bool,
+    ) -> Self {
         let (dofs, rows) = (rest.system().dofs(), rest.system().rows().len());
         let u = vec![0.0; dofs];
         rest.update_tangent(1.0, &u);
         let highest = rest.highest();
-        let floor = if loose { SHIFTS[0] * highest } else { 0.0 };
+        let floor = if is_loose { SHIFTS[0] * highest } else { 0.0 };
         Self {
             is_linear: rest.is_linear(),
             rest,
             statics,
-            size,
+            body,
+            is_loose,
+            size: body.mesh().size(),
             floor,
             shift: floor,
             highest,
@@ -96,6 +108,7 @@ impl<'a> Search<'a> {
             load_steps: 0,
             failed_steps: 0,
             curve: Vec::new(),
+            removed: Vec::new(),
             trial: ForceBalance::zeros(dofs),
             x: vec![0.0; dofs],
             d: vec![0.0; rows],
@@ -112,7 +125,7 @@ impl<'a> Search<'a> {
             let target = self.fraction + step;
             self.tried = if target > 1.0 - 1e-9 { 1.0 } else { target };
             let (u, mu) = (self.u.clone(), self.mu.clone());
-            match self.balance() {
+            match self.balance().and_then(|()| self.place()) {
                 Ok(()) => {
                     self.arrive();
                     step = largest.min(2.0 * step);
@@ -151,11 +164,6 @@ impl<'a> Search<'a> {
         part * self.rest.time()
     }
 
-    /// The displacements of the last equilibrium.
-    pub(super) fn displacements(&mut self) -> &mut [f64] {
-        self.curve.last_mut().map_or(&mut [], |point| &mut point.u)
-    }
-
     /// Finds the equilibrium for the part `tried` of the load, from `u`.
     pub(super) fn balance(&mut self) -> Result<(), Stuck> {
         let Statics { rtol, max_iterations, .. } = *self.statics;
@@ -163,9 +171,11 @@ impl<'a> Search<'a> {
         self.evaluate()?;
         for iteration in 0..max_iterations {
             self.iterations += 1;
+            self.turn();
             self.prepare()?;
             self.rest.lacking(self.tried, &self.u, &mut self.d);
             self.rest.solve(&self.at.total, &self.d, &mut self.x, &mut self.mu);
+            self.keep_place();
             self.residual = self.rest.residual(&self.at.total, &self.mu, &mut self.work);
             let (lacking, length) = (largest(&self.d), largest(&self.x));
             if !length.is_finite() {
@@ -223,7 +233,7 @@ impl<'a> Search<'a> {
             let shorter = match self.rest.evaluate(self.tried, &self.work, &mut self.trial) {
                 Ok(()) => {
                     let rise = self.trial.energy_since(&self.at, factor, &self.x);
-                    let round_off = self.trial.round_off() + self.at.round_off();
+                    let round_off = self.trial.round_off(&self.u) + self.at.round_off(&self.u);
                     if rise <= 1e-4 * factor * slope + round_off {
                         std::mem::swap(&mut self.at, &mut self.trial);
                         std::mem::swap(&mut self.u, &mut self.work);
@@ -282,7 +292,7 @@ pub(super) fn reason(failure: Failure) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{Body, Strain};
+    use crate::body::Strain;
     use crate::constraint::PhaseStart;
     use crate::mesh::Mesh;
     use crate::samples::BEAM_MATERIAL;
@@ -293,16 +303,16 @@ mod tests {
     #[test]
     fn no_step_goes_uphill() {
         let mesh = Mesh::bar(0.1, 3).unwrap();
-        let body = Body::new(mesh, BEAM_MATERIAL).area(2e-4).strain(Strain::Green).build();
+        let body = Body::new(mesh, BEAM_MATERIAL).area(2e-4).strain(Strain::Green).build().unwrap();
         let phase = Phase::until(1.0).hold("left").load("right", [1.0]);
-        let scene = Scene::new(body.unwrap()).phase(phase.clone());
+        let scene = Scene::new(body).phase(phase.clone());
         let start = PhaseStart { time: 0.0, u: &[0.0; 3] };
         let mut forces = scene.forces().unwrap();
         let model = scene.model(&forces);
         let system = scene.system(&model, &phase, forces.remove(0), &start, 0.0).unwrap();
         let rest = AtRest::new(system, 1.0, "test").unwrap();
         let statics = Statics::default();
-        let mut search = Search::new(rest, &statics, 0.1, false);
+        let mut search = Search::new(rest, &statics, scene.body(), false);
         search.tried = 1.0;
         assert!(search.evaluate().is_ok());
         let start = search.at.clone();

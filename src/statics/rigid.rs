@@ -1,9 +1,8 @@
-//! Rigid motions that constraints leave free.
+//! Rigid motions that constraints leave free, of a body as it is.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::constraint::Row;
-use crate::mesh::Mesh;
 use crate::sparse::{NodeMatrix, NodePattern};
 use crate::vector::{dot, norm};
 
@@ -13,15 +12,69 @@ const NOTHING: f64 = 1e-12;
 /// Resultants of loads below this, relative to the sum of their absolute values, are round-off.
 const BALANCED: f64 = 1e-12;
 
+/// A body as it is.
+#[derive(Clone, Copy)]
+pub(super) struct Shape<'a> {
+    pub(super) dimension: usize,
+    /// Its size (m).
+    pub(super) size: f64,
+    /// Positions (m), dimension components per node.
+    pub(super) positions: &'a [f64],
+}
+
+impl<'a> Shape<'a> {
+    fn position(&self, node: usize) -> &'a [f64] {
+        &self.positions[node * self.dimension..][..self.dimension]
+    }
+}
+
 /// A rigid motion.
 pub(super) struct RigidMotion {
     pub(super) words: String,
     /// Displacements (m): of a unit along a direction, or of a unit angle about a point.
-    values: Vec<f64>,
-    is_turn: bool,
+    pub(super) values: Vec<f64>,
+    pub(super) is_turn: bool,
+    /// The nodes that move.
+    nodes: Vec<usize>,
+    /// W and t of the displacements W x + t of a node at x, as [W, t; 0, 0].
+    generator: DMatrix<f64>,
 }
 
 impl RigidMotion {
+    /// Carries nodes, of undeformed positions `natural`, on by `size` (rad or m) of this motion, turns along circles: what that adds
+    /// to the displacements `u`.
+    pub(super) fn carry(&self, size: f64, natural: &[f64], u: &mut [f64]) {
+        let order = self.generator.nrows();
+        let motion = (&self.generator * size).exp() - DMatrix::identity(order, order);
+        for &node in &self.nodes {
+            let dofs = node * (order - 1)..(node + 1) * (order - 1);
+            let x = at(&natural[dofs.clone()], &u[dofs.clone()]);
+            u[dofs].iter_mut().zip((&motion * x).iter()).for_each(|(u, x)| *u += x);
+        }
+    }
+
+    /// Makes this motion that of the body with displacements `u`.
+    pub(super) fn move_to(&mut self, natural: &[f64], u: &[f64]) {
+        let order = self.generator.nrows();
+        for &node in &self.nodes {
+            let dofs = node * (order - 1)..(node + 1) * (order - 1);
+            let moved = &self.generator * at(&natural[dofs.clone()], &u[dofs.clone()]);
+            self.values[dofs].copy_from_slice(&moved.as_slice()[..order - 1]);
+        }
+    }
+
+    /// Work (J) of nodal forces `f` (N) as the displacements `x` (m) turn by a unit angle of this motion: f . W x.
+    pub(super) fn turned_work(&self, f: &[f64], x: &[f64]) -> f64 {
+        let dimension = self.generator.nrows() - 1;
+        let work = |&node: &usize| {
+            let [f, x] = [f, x].map(|values| &values[node * dimension..][..dimension]);
+            let turned =
+                |i: usize| (0..dimension).map(|j| self.generator[(i, j)] * x[j]).sum::<f64>();
+            (0..dimension).map(|i| f[i] * turned(i)).sum::<f64>()
+        };
+        self.nodes.iter().map(work).sum()
+    }
+
     /// What the nodal `loads` (N) that are not in balance come to along the motion, in words.
     pub(super) fn resultant(&self, loads: &[f64]) -> Option<String> {
         let sum = dot(&self.values, loads);
@@ -33,9 +86,22 @@ impl RigidMotion {
     }
 }
 
-/// Takes the `motions` out of the displacements `u`: R^T M u = 0 after that. `inertia` is M.
+/// (x, 1) of a node.
+fn at(natural: &[f64], u: &[f64]) -> DVector<f64> {
+    let position = natural.iter().zip(u).map(|(x, u)| x + u);
+    DVector::from_iterator(u.len() + 1, position.chain([1.0]))
+}
+
+/// Takes the small `motions` out of the displacements `u`: R^T M u = 0 after that. `inertia` is M.
 pub(super) fn remove(motions: &[RigidMotion], inertia: &NodeMatrix, u: &mut [f64]) {
-    let Some(first) = motions.first() else { return };
+    for (motion, part) in motions.iter().zip(parts(motions, inertia, u)) {
+        u.iter_mut().zip(&motion.values).for_each(|(u, r)| *u -= part * r);
+    }
+}
+
+/// The parts c of the `motions` R in the displacements `u`, R^T M (u - R c) = 0. `inertia` is M.
+pub(super) fn parts(motions: &[RigidMotion], inertia: &NodeMatrix, u: &[f64]) -> Vec<f64> {
+    let Some(first) = motions.first() else { return Vec::new() };
     let dimension = first.values.len() / inertia.pattern().nodes();
     let weigh = |motion: &RigidMotion| {
         let mut product = vec![0.0; motion.values.len()];
@@ -46,31 +112,31 @@ pub(super) fn remove(motions: &[RigidMotion], inertia: &NodeMatrix, u: &mut [f64
     let count = motions.len();
     let masses = DMatrix::from_fn(count, count, |i, j| dot(&weighed[i], &motions[j].values));
     let momenta = DVector::from_fn(count, |i, _| dot(&weighed[i], u));
-    let Some(parts) = masses.cholesky().map(|masses| masses.solve(&momenta)) else { return };
-    for (motion, part) in motions.iter().zip(parts.iter()) {
-        u.iter_mut().zip(&motion.values).for_each(|(u, r)| *u -= part * r);
-    }
+    let parts = masses.cholesky().map(|masses| masses.solve(&momenta));
+    parts.map_or(vec![0.0; count], |parts| parts.as_slice().to_vec())
 }
 
 /// The rigid motions that `rows` leave free; those of each connected piece of the body.
-pub(super) fn free_motions(mesh: &Mesh, pattern: &NodePattern, rows: &[Row]) -> Vec<RigidMotion> {
+pub(super) fn free_motions(shape: Shape, pattern: &NodePattern, rows: &[Row]) -> Vec<RigidMotion> {
     let pieces = pattern.pieces();
     let count = pieces.iter().max().map_or(0, |last| last + 1);
     let mut nodes = vec![Vec::new(); count];
     pieces.iter().enumerate().for_each(|(node, &piece)| nodes[piece].push(node));
     let mut motions = Vec::new();
     for (piece, nodes) in nodes.iter().enumerate() {
-        let modes = Modes::new(mesh, nodes);
-        let inside = |dof: usize| pieces[dof / mesh.dimension()] == piece;
-        for mode in modes.free(mesh, rows, inside) {
+        let modes = Modes::new(shape, nodes);
+        let inside = |dof: usize| pieces[dof / shape.dimension] == piece;
+        for mode in modes.free(shape, rows, inside) {
             let who = match count {
                 1 => String::new(),
                 _ => format!("the piece with node {} ", nodes[0] + 1),
             };
             motions.push(RigidMotion {
                 words: who + &modes.describe(&mode),
-                values: modes.displacements(&mode, mesh, nodes),
+                values: modes.displacements(&mode, shape, nodes),
                 is_turn: modes.turn(&mode) > 0.0,
+                nodes: nodes.clone(),
+                generator: modes.generator(&mode),
             });
         }
     }
@@ -89,9 +155,9 @@ struct Modes {
 }
 
 impl Modes {
-    fn new(mesh: &Mesh, nodes: &[usize]) -> Self {
-        let dimension = mesh.dimension();
-        let mean = |axis| nodes.iter().map(|&n| mesh.position(n)[axis]).sum::<f64>();
+    fn new(shape: Shape, nodes: &[usize]) -> Self {
+        let dimension = shape.dimension;
+        let mean = |axis| nodes.iter().map(|&n| shape.position(n)[axis]).sum::<f64>();
         let centre: Vec<f64> = (0..dimension).map(|i| mean(i) / nodes.len() as f64).collect();
         let planes: &[[usize; 2]] = match dimension {
             1 => &[],
@@ -100,11 +166,11 @@ impl Modes {
         };
         let count = dimension + planes.len();
         let products = DMatrix::zeros(count, count);
-        let mut modes = Self { dimension, planes, centre, radius: mesh.size(), products };
+        let mut modes = Self { dimension, planes, centre, radius: shape.size, products };
         for &node in nodes {
             for axis in 0..dimension {
                 let values: Vec<f64> =
-                    (0..count).map(|mode| modes.value(mode, mesh.position(node), axis)).collect();
+                    (0..count).map(|mode| modes.value(mode, shape.position(node), axis)).collect();
                 add_square(&mut modes.products, &values);
             }
         }
@@ -123,14 +189,14 @@ impl Modes {
     }
 
     /// Coefficients of the modes that move nothing of `rows`, reduced to echelon form.
-    fn free(&self, mesh: &Mesh, rows: &[Row], inside: impl Fn(usize) -> bool) -> Vec<Vec<f64>> {
+    fn free(&self, shape: Shape, rows: &[Row], inside: impl Fn(usize) -> bool) -> Vec<Vec<f64>> {
         let count = self.products.nrows();
         let mut hold = DMatrix::zeros(count, count);
         for row in rows {
             let largest = row.terms.iter().fold(0.0_f64, |most, (_, c)| most.max(c.abs()));
             let mut values = vec![0.0; count];
             for &(dof, c) in row.terms.iter().filter(|(dof, _)| inside(*dof)) {
-                let (position, axis) = (mesh.position(dof / self.dimension), dof % self.dimension);
+                let (position, axis) = (shape.position(dof / self.dimension), dof % self.dimension);
                 for (mode, value) in values.iter_mut().enumerate() {
                     *value += c / largest * self.value(mode, position, axis);
                 }
@@ -149,20 +215,45 @@ impl Modes {
         norm(&mode[self.dimension..]) / self.radius
     }
 
-    /// Displacements of the `nodes` in a mode, of unit angle or length; of the other nodes 0.
-    fn displacements(&self, mode: &[f64], mesh: &Mesh, nodes: &[usize]) -> Vec<f64> {
+    /// Size of a mode (rad, or m without a turn).
+    fn size(&self, mode: &[f64]) -> f64 {
         let turn = self.turn(mode);
-        let size = if turn > 0.0 { turn } else { norm(mode) };
-        let mut values = vec![0.0; mesh.node_count() * self.dimension];
+        if turn > 0.0 { turn } else { norm(mode) }
+    }
+
+    /// Displacement in a mode at `position` along `axis`.
+    fn displacement(&self, mode: &[f64], position: &[f64], axis: usize) -> f64 {
+        let value = |(number, c): (usize, &f64)| c * self.value(number, position, axis);
+        mode.iter().enumerate().map(value).sum()
+    }
+
+    /// Displacements of the `nodes` in a mode, of unit angle or length; of the other nodes 0.
+    fn displacements(&self, mode: &[f64], shape: Shape, nodes: &[usize]) -> Vec<f64> {
+        let size = self.size(mode);
+        let mut values = vec![0.0; shape.positions.len()];
         for &node in nodes {
             for axis in 0..self.dimension {
-                let value =
-                    |(number, c): (usize, &f64)| c * self.value(number, mesh.position(node), axis);
                 values[node * self.dimension + axis] =
-                    mode.iter().enumerate().map(value).sum::<f64>() / size;
+                    self.displacement(mode, shape.position(node), axis) / size;
             }
         }
         values
+    }
+
+    /// [W, t; 0, 0] with the displacements W x + t in a mode, of unit angle or length.
+    fn generator(&self, mode: &[f64]) -> DMatrix<f64> {
+        let (d, size) = (self.dimension, self.size(mode));
+        let at = |position: &[f64], axis: usize| self.displacement(mode, position, axis) / size;
+        let zero = vec![0.0; d];
+        DMatrix::from_fn(d + 1, d + 1, |i, j| match (i < d, j < d) {
+            (true, true) => {
+                let mut unit = zero.clone();
+                unit[j] = 1.0;
+                at(&unit, i) - at(&zero, i)
+            }
+            (true, false) => at(&zero, i),
+            (false, _) => 0.0,
+        })
     }
 
     fn describe(&self, mode: &[f64]) -> String {

@@ -64,9 +64,10 @@ impl ForceBalance {
         self.potential - from.potential - work
     }
 
-    /// Size of the round-off in differences of energy (J).
-    pub(crate) fn round_off(&self) -> f64 {
-        8.0 * f64::EPSILON * self.terms
+    /// Size of the round-off in differences of energy (J) at displacements near `u`, of which the work has the digits.
+    pub(crate) fn round_off(&self, u: &[f64]) -> f64 {
+        let work: f64 = self.unbound.iter().zip(u).map(|(f, u)| (f * u).abs()).sum();
+        f64::EPSILON * (8.0 * self.terms + work)
     }
 
     fn clear(&mut self) {
@@ -142,6 +143,12 @@ impl AtRest {
     /// Whether no force but the linear elastic one depends on the displacements.
     pub(crate) fn is_linear(&self) -> bool {
         self.system.forces.iter().all(|force| !force.is_nonlinear())
+    }
+
+    /// Whether no force from outside depends on the displacements.
+    pub(crate) fn is_under_dead_loads(&self) -> bool {
+        let mut forces = self.system.forces.iter();
+        forces.all(|force| !force.is_nonlinear() || force.reservoir() == Reservoir::Strain)
     }
 
     /// Potential energies with a fraction of gravity and of the way of obstacles.
@@ -226,6 +233,11 @@ impl AtRest {
         if let Some(constant) = &self.system.model.stiffness {
             stiffness.values.iter_mut().zip(&constant.values).for_each(|(k, c)| *k += c);
         }
+    }
+
+    /// K as it was last brought to some displacements.
+    pub(crate) fn tangent(&self) -> &BlockMatrix {
+        self.system.tangents().0
     }
 
     /// Largest K_ii / M_ii (1/s^2): of the order of the square of the highest frequency.

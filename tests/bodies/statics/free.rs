@@ -1,4 +1,5 @@
 //! Linear bodies that nothing holds, under loads that balance each other.
+//! Those with Green's strain: `free_green.rs`.
 
 use pliant::{
     Axis, Body, Cells, Equilibrium, Mesh, Phase, Scene, SolidCells, Stability, Statics, Strain,
@@ -118,16 +119,4 @@ fn what_loads_leave_is_told() {
         shifted.contains("loads leave a force of -3.000e-1 N for moving along (0, 1)"),
         "{shifted}"
     );
-}
-
-/// Green's strain knows where the body turns to, so nothing is taken out: it stays where it was because nothing drives it away.
-#[test]
-fn a_free_green_bar_stays_where_it_is() {
-    let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
-    let body = Body::new(mesh, RUBBER).thickness(0.01).strain(Strain::Green).build().unwrap();
-    let pulled = Phase::until(1.0).load_total("left", [-5.0, 0.0]).load_total("right", [5.0, 0.0]);
-    let free = solve(&Scene::new(body).phase(pulled));
-    assert!(free.removed.is_empty());
-    let centre = free.trajectory().centre_of_mass(free.sample());
-    assert!((centre[0] - 0.15).abs() < 1e-9 && (centre[1] - 0.1).abs() < 1e-9, "{centre:?}");
 }

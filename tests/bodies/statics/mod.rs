@@ -1,6 +1,7 @@
 //! Equilibria against printed and closed forms, and against what mechanics demands of them.
 
 mod free;
+mod free_green;
 mod load_curve;
 mod phases;
 mod spread;
