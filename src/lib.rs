@@ -61,6 +61,8 @@ mod settings;
 pub mod simulate;
 pub mod sparse;
 mod state;
+#[cfg(feature = "checkpoint")]
+mod state_file;
 pub mod statics;
 #[cfg(feature = "study")]
 pub mod study;
@@ -81,7 +83,7 @@ pub use integrate::Integrator;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 pub use report::{Achieved, Counts, PhaseReport, Report, SlipEvent};
-pub use scene::{Phase, Scene, Term};
+pub use scene::{BodyState, Phase, Scene, Term};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};
 pub use settings::{

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::body::Body;
 use crate::input::told;
 use crate::report::Report;
-use crate::scene::{Phase, Scene};
+use crate::scene::{BodyState, Phase, Scene};
 use crate::settings::Method;
 use crate::system::Energy;
 
@@ -129,6 +129,15 @@ impl Trajectory {
         self.samples.truncate(count);
         let report = &mut self.report;
         (report.energy_error, report.energy_created, report.energy_scale) = (error, created, scale);
+    }
+
+    /// What another scene can [start from](Scene::starting_from), of one of the samples.
+    pub fn state(&self, sample: &Sample) -> BodyState {
+        BodyState {
+            positions: self.body().mesh().positions().to_vec(),
+            displacements: sample.u.clone(),
+            velocities: sample.v.clone(),
+        }
     }
 
     /// The last sample alone, with the same report.

@@ -1,6 +1,6 @@
 //! What a scene is told about its start.
 
-use super::Scene;
+use super::{BodyState, Scene};
 use crate::input::InputError;
 use crate::mesh::Selection;
 
@@ -9,6 +9,38 @@ use crate::mesh::Selection;
 /// Velocities that the constraints of the first phase do not allow are projected on the nearest, in the
 /// sense of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves.
 impl Scene {
+    /// Starts from a state of an earlier motion, or from an equilibrium, of a body with the same mesh: displacements and
+    /// velocities at t = 0. All else may differ, such as material, strain, loads and obstacles. Time and energies begin anew.
+    ///
+    /// [`initial_displacement`](Self::initial_displacement) and [`initial_velocity`](Self::initial_velocity), called after it,
+    /// take the place of one or the other; [`spin`](Self::spin) is on top of its velocities.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Statics};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.02], [11, 3], Cells::Triangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 4.0 };
+    /// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// let bent = Scene::new(body.clone()).phase(Phase::until(1.0).hold("left").load([22], [0.0, -0.01]));
+    /// let bent = bent.equilibrium(&Statics::default())?;
+    /// // let go
+    /// let scene = Scene::new(body)
+    ///     .starting_from(&bent.trajectory().state(bent.sample()))
+    ///     .phase(Phase::until(0.1).hold("left"));
+    /// let motion = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
+    /// assert_eq!(motion.samples()[0].u, bent.displacements());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// [`validate`](Self::validate) and runs refuse a state of another mesh.
+    pub fn starting_from(mut self, state: &BodyState) -> Self {
+        let BodyState { positions, displacements, velocities } = state.clone();
+        self.start.positions = Some(positions);
+        self.start.displacements = displacements;
+        self.start.velocities = velocities;
+        self
+    }
+
     /// Displacements at t = 0 (m): `field` gives one for each undeformed position. Default: none.
     pub fn initial_displacement(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
         self.start.displacements = self.body.mesh().field(field);

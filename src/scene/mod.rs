@@ -1,5 +1,6 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
+mod body_state;
 mod finer;
 mod forces;
 mod initial;
@@ -12,6 +13,7 @@ mod term;
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
+pub use body_state::BodyState;
 pub(crate) use load::{Load, LoadKind};
 #[cfg(feature = "checkpoint")]
 pub(crate) use phase::ContactWith;

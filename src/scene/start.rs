@@ -1,5 +1,6 @@
 //! How a scene starts: displacements and velocities at t = 0.
 
+use super::body_state::check_positions;
 use super::phase::check_vector;
 use crate::body::Body;
 use crate::constraint::angular;
@@ -10,6 +11,8 @@ use crate::vector::cross;
 /// The start as the user of a scene gives it.
 #[derive(Debug, Clone)]
 pub(super) struct Start {
+    /// Undeformed positions (m) of the body that had the displacements, if it was another one.
+    pub(super) positions: Option<Vec<f64>>,
     /// Displacements (m).
     pub(super) displacements: Vec<f64>,
     /// Velocities (m/s), but for what follows.
@@ -24,16 +27,25 @@ impl Start {
     /// At rest in the undeformed shape.
     pub(super) fn rest(body: &Body) -> Self {
         let rest = vec![0.0; body.dofs()];
-        Self { displacements: rest.clone(), velocities: rest, spin: None, of_nodes: Vec::new() }
+        Self {
+            positions: None,
+            displacements: rest.clone(),
+            velocities: rest,
+            spin: None,
+            of_nodes: Vec::new(),
+        }
     }
 
     /// Velocities at t = 0.
     ///
     /// # Errors
-    /// Numbers of components that do not fit the body, numbers that are not finite, unknown nodes.
+    /// A state of another mesh, numbers of components that do not fit the body, numbers that are not finite, unknown nodes.
     pub(super) fn velocities(&self, body: &Body) -> Result<Vec<f64>, InputError> {
         let dimension = body.dimension();
-        let Self { displacements, velocities, spin, of_nodes } = self;
+        let Self { positions, displacements, velocities, spin, of_nodes } = self;
+        if let Some(positions) = positions {
+            check_positions(positions, body)?;
+        }
         for (name, vector) in
             [("initial displacement", displacements), ("initial velocity", velocities)]
         {

@@ -4,15 +4,24 @@ use super::keys::{Holds, Key, TableKeys};
 use super::selection::selection;
 use super::value::Value;
 use crate::error::Error;
-use crate::scene::Scene;
+use crate::scene::{BodyState, Scene};
 
 pub(super) const INITIAL: TableKeys = TableKeys::new(
     "[initial]",
     "How the body moves at first. What the first phase holds or moves takes its part of that, as by an impact. In \
      statics nothing moves.",
     &[
+        Key::new(
+            "from",
+            Holds::Text,
+            "what `pliant run` or `pliant static` has left of a body with the same mesh: the directory, or its \
+             `state.json`, relative to the scene file",
+        )
+        .law("It gives displacements and velocities; all else may differ, and time begins anew.")
+        .default("undeformed, at rest"),
         Key::new("velocity", Holds::Vector, "the velocity of all nodes")
             .in_unit("m/s")
+            .law("Not beside a state `from` which they move already.")
             .default("0"),
         Key::new(
             "spin",
@@ -41,7 +50,18 @@ const OF_NODES: TableKeys = TableKeys::new(
 pub(super) fn add_initial(mut scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = value.table(&INITIAL)?;
     let dimension = scene.body().dimension();
-    if let Some(velocity) = table.optional("velocity", |v| v.vector(dimension))? {
+    let mut moves = false;
+    if let Some(value) = table.get("from") {
+        let state = BodyState::read(value.source.beside(value.string()?));
+        let state = state.map_err(|error| value.error(error))?;
+        moves = state.velocities.iter().any(|&v| v != 0.0);
+        scene = scene.starting_from(&state);
+        scene.initial_velocities().map_err(|error| value.error(error))?;
+    }
+    if let Some(velocity) = table.optional("velocity", |v| match moves {
+        true => Err(v.error("in the state `from` the nodes move already: leave one of both out")),
+        false => v.vector(dimension),
+    })? {
         scene = scene.initial_velocity(move |_| velocity.clone());
     }
     if let Some(spin) = table.optional("spin", |value| {

@@ -67,7 +67,10 @@ fn a_signal_keeps_what_was_computed() {
         assert!(report["steps"].as_u64().unwrap() >= 1 && rows.len() >= 2);
         let (last, time) = (rows.last().unwrap()[0], report["failure"]["time"].as_f64().unwrap());
         assert!((last - time).abs() <= f64::EPSILON * time, "{last} {time}");
-        assert_eq!(place.files("out/scene"), ["checkpoint.json", "report.json", "trajectory.csv"]);
+        assert_eq!(
+            place.files("out/scene"),
+            ["checkpoint.json", "report.json", "state.json", "trajectory.csv"]
+        );
     }
 }
 
@@ -178,7 +181,10 @@ fn a_run_owns_its_directory() {
     assert_eq!(of("0.5").status.code(), Some(0));
     assert_eq!(frames(&place), 3);
     assert_eq!(place.run(&["run", scene]).status.code(), Some(0));
-    assert_eq!(place.files("out/scene"), ["notes.txt", "report.json", "trajectory.csv"]);
+    assert_eq!(
+        place.files("out/scene"),
+        ["notes.txt", "report.json", "state.json", "trajectory.csv"]
+    );
 
     fs::remove_file(place.path("out/scene/trajectory.csv")).unwrap();
     let mut child = endless(&place, &[]);

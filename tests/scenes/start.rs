@@ -2,7 +2,7 @@
 
 use pliant::{
     Body, Cells, Inertia, Material, Mesh, Method, Phase, Sampling, Scene, Settings, SolidCells,
-    Strain, Viscosity,
+    Statics, Strain, Viscosity,
 };
 
 const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 100.0 };
@@ -114,4 +114,89 @@ fn nodes_may_have_velocities_of_their_own() {
     says(scene().initial_velocity_of("lid", [1.0, 0.0]), &["lid"]);
     let bar = Body::new(Mesh::bar(1.0, 2).unwrap(), RUBBER).area(1e-4).build().unwrap();
     says(Scene::new(bar).spin([1.0]).phase(Phase::until(1.0)), &["spin", "1 dimension"]);
+}
+
+/// A run that is cut in two at the end of a phase, the second scene starting from the last state of the first, is the whole run.
+/// (Nodes that begin to be held while they move are stopped by an impact at the start of a scene, and at the rate alpha later.)
+#[test]
+fn a_run_cut_in_two_is_the_whole_run() {
+    let body = || {
+        let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
+        Body::new(mesh, RUBBER).thickness(0.01).strain(Strain::Green).build().unwrap()
+    };
+    let press = |phase: Phase| phase.hold("bottom").load("top", [0.5, -4.0]);
+    let free = |phase: Phase| phase.hold("bottom");
+    let floor = |scene: Scene| scene.gravity([0.0, -G]);
+    for method in [Method::CvodeBdf, Method::Arkode, Method::Rk] {
+        let settings = Settings { method, rtol: 1e-9, ..Settings::default() };
+        let simulate =
+            |scene: Scene| floor(scene).simulate(&settings, &Sampling::every(0.01)).unwrap();
+        let whole = simulate(
+            Scene::new(body()).phase(press(Phase::until(0.04))).phase(free(Phase::until(0.1))),
+        );
+        let first = simulate(Scene::new(body()).phase(press(Phase::until(0.04))));
+        let state = first.state(first.last());
+        let second =
+            simulate(Scene::new(body()).starting_from(&state).phase(free(Phase::until(0.06))));
+        assert_eq!(second.samples().len(), 7);
+        let most = |x: &[f64]| x.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let apart =
+            |a: &[f64], b: &[f64]| most(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>());
+        let (end, begin) = (second.last(), &second.samples()[0]);
+        assert_eq!(begin.u, first.last().u);
+        let off = apart(&whole.last().u, &end.u) / most(&end.u);
+        println!("{method}: {off:.1e}, moved {:.1e} since", apart(&begin.u, &end.u) / most(&end.u));
+        // round-off of the times, which differ by 0.04 s: 6e-13 at most
+        assert!(off < 1e-11, "{method}: {off:e}");
+        assert!(apart(&begin.u, &end.u) > 0.1 * most(&end.u));
+    }
+}
+
+/// A bar of one cell, in equilibrium with a pull F at its end, and let go: u = F/k cos(omega t), with k = E A/L and
+/// the mass rho A L/3 at its end.
+#[test]
+fn an_equilibrium_let_go_swings() {
+    let (length, area, force) = (0.1, 2e-4, 0.5);
+    let material = Material { viscosity: 0.0, ..RUBBER };
+    let bar = || {
+        let mesh = Mesh::bar(length, 2).unwrap();
+        Body::new(mesh, material).area(area).strain(Strain::Cauchy).build().unwrap()
+    };
+    let pulled = Scene::new(bar()).phase(Phase::until(1.0).hold("left").load("right", [force]));
+    let pulled = pulled.equilibrium(&Statics::default()).unwrap();
+    let state = pulled.trajectory().state(pulled.sample());
+    let scene = Scene::new(bar()).starting_from(&state).phase(Phase::until(0.02).hold("left"));
+    let settings = Settings { rtol: 1e-9, ..Settings::default() };
+    let motion = scene.simulate(&settings, &Sampling::every(0.001)).unwrap();
+    let stiffness = RUBBER.young * area / length;
+    let omega = (stiffness / (RUBBER.density * area * length / 3.0)).sqrt();
+    for sample in motion.samples() {
+        let expected = force / stiffness * (omega * sample.time).cos();
+        let error = (sample.u[1] - expected).abs() / (force / stiffness);
+        assert!(error < 1e-6, "t {}: {error:e}", sample.time);
+    }
+}
+
+#[test]
+fn a_state_of_another_mesh_is_refused() {
+    let scene = |size: f64, nodes: [usize; 2]| {
+        let mesh = Mesh::rectangle([size, 0.1], nodes, Cells::Triangles).unwrap();
+        Scene::new(Body::new(mesh, RUBBER).thickness(0.01).build().unwrap())
+            .phase(Phase::until(1e-4))
+    };
+    let motion = scene(0.2, [3, 2]).simulate(&Settings::default(), &Sampling::phase_ends());
+    let motion = motion.unwrap();
+    let state = motion.state(motion.last());
+    let told = |scene: Scene| scene.starting_from(&state).validate().unwrap_err().to_string();
+    scene(0.2, [3, 2]).starting_from(&state).validate().unwrap();
+    let more = told(scene(0.2, [3, 3]));
+    assert!(more.contains("state at the start = 6 nodes"), "{more}");
+    assert!(more.contains("this body has 9"), "{more}");
+    let longer = told(scene(0.2 + 1e-6, [3, 2]));
+    assert!(longer.contains("node 2 at [0.1, 0.0] undeformed"), "{longer}");
+    assert!(longer.contains("same mesh"), "{longer}");
+    let mut turned = state.clone();
+    turned.velocities[3] = f64::NAN;
+    let scene = scene(0.2, [3, 2]).starting_from(&turned);
+    assert!(scene.validate().unwrap_err().to_string().contains("initial velocity"));
 }

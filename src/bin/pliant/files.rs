@@ -76,11 +76,14 @@ pub struct Directory {
 /// From which a run that was ended can go on.
 const CHECKPOINT: &str = "checkpoint.json";
 const TABLE: &str = "trajectory.csv";
+/// From which another scene can start.
+const STATE: &str = "state.json";
 /// Names of results, beside the frames of VTK.
-const RESULTS: [&str; 8] = [
+const RESULTS: [&str; 9] = [
     TABLE,
     CHECKPOINT,
     "report.json",
+    STATE,
     "snapshots.svg",
     "animation.html",
     "body.pvd",
@@ -180,6 +183,11 @@ impl Directory {
         output: &OutputRequest,
     ) -> Result<(), Failure> {
         self.write(TABLE, |path| write_csv(trajectory, path, output.track.as_ref()))
+    }
+
+    /// Writes the last state, from which another scene can start.
+    pub fn write_state(&mut self, trajectory: &Trajectory) -> Result<(), Failure> {
+        self.write(STATE, |path| trajectory.state(trajectory.last()).write(path))
     }
 
     /// Has a file written.

@@ -43,6 +43,7 @@ All stand in `--out`, by default `out/` and the name of the scene file (`static`
 | --- | --- |
 | `trajectory.csv` | one row per sample; it grows while the scene runs |
 | `report.json` | how it was computed, warnings, and why it ended |
+| `state.json` | the last state, or the equilibrium: `[initial]` of another scene may name it as `from` |
 | `snapshots.svg` | pictures (format `svg`) |
 | `animation.html` | an animation for the web browser, in one file (format `html`; `pliant beside` puts several side by side) |
 | `plot.svg`, `plot.png` | sensors and energies over time (formats `plot`, `png`; not of `static`; `pliant plot` draws them later) |

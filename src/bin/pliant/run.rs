@@ -18,8 +18,8 @@ use crate::settings::{SettingsArguments, ended};
 
 /// Run a scene and write its motion
 ///
-/// Writes trajectory.csv (one row per output time), report.json (how it was computed) and what
-/// --formats asks for. Flags override the tables [solver] and [output] of the file. Ctrl-C (or
+/// Writes trajectory.csv (one row per output time), report.json (how it was computed), state.json (the last state, for other
+/// scenes to start from) and what --formats asks for. Flags override the tables [solver] and [output] of the file. Ctrl-C (or
 /// SIGTERM, SIGHUP) ends the run after the present step; what was computed until then is written.
 /// trajectory.csv grows every second while the scene runs, and checkpoint.json is renewed every ten seconds: --resume
 /// goes on from there. Results of an earlier run in the same directory are taken away.
@@ -156,6 +156,7 @@ fn once(
         }
         false => keep(outcome, &mut directory, request)?,
     }
+    directory.write_state(trajectory)?;
     directory.write_formats(&trajectory.since(began), title, request)?;
     if outcome.is_ok() {
         directory.forget_checkpoint();

@@ -12,7 +12,7 @@ use crate::scene::SceneArguments;
 /// Find the equilibrium of a phase of a scene
 ///
 /// Its constraints, gravity, loads, obstacles and springs are taken as they are at its end; there is
-/// no motion. Writes trajectory.csv with one row, report.json, and what --formats asks for, to
+/// no motion. Writes trajectory.csv with one row, report.json, state.json (for other scenes to start from), and what --formats asks for, to
 /// out/NAME-static for the scene file NAME.toml if --out does not say otherwise. With several steps these are
 /// the load curve: one row and one frame for each equilibrium, with its load factor.
 #[derive(Args)]
@@ -66,6 +66,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     // the way from the undeformed shape to a single equilibrium is none that the body takes: pictures alone show both
     let found = if statics.options.is_curve() { trajectory.clone() } else { trajectory.at_end() };
     directory.write_table(&found, request)?;
+    if outcome.is_ok() {
+        directory.write_state(trajectory)?;
+    }
     let (files, pictures) = request.formats.iter().partition(|&&format| format == Format::Vtk);
     for (shown, formats) in [(&found, files), (trajectory, pictures)] {
         directory.write_formats(shown, title, &OutputRequest { formats, ..request.clone() })?;
