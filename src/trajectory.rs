@@ -88,6 +88,12 @@ impl Trajectory {
         self.sensors = sensors;
     }
 
+    /// Keeps the samples that `is_kept` passes, of which there has to be one.
+    #[cfg(feature = "study")]
+    pub(crate) fn keep_samples(&mut self, is_kept: impl FnMut(&Sample) -> bool) {
+        self.samples.retain(is_kept);
+    }
+
     /// Keeps the first `count` columns of the sensors.
     #[cfg(feature = "study")]
     pub(crate) fn keep_sensors(&mut self, count: usize) {

@@ -184,7 +184,10 @@ impl Change<'_> {
 
     /// The start, at all nodes.
     fn start(&self, scene: &Scene, body: &Body) -> Result<super::start::Start, InputError> {
+        scene.start.velocities(self.body)?;
         let mut start = scene.start.clone();
+        // it was of this mesh, as it should be
+        start.positions = None;
         let (d, own) = (body.dimension(), self.coarse.node_count() * body.dimension());
         for field in [&mut start.displacements, &mut start.velocities] {
             // point masses come last

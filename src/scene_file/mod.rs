@@ -56,7 +56,7 @@ mod surroundings;
 mod table;
 mod top;
 mod value;
-#[cfg(feature = "play")]
+#[cfg(any(feature = "play", feature = "study"))]
 mod written;
 
 use std::cell::RefCell;
@@ -74,7 +74,7 @@ pub use self::schema::schema;
 use self::source::Source;
 use self::table::Table;
 use self::top::TOP;
-#[cfg(feature = "play")]
+#[cfg(any(feature = "play", feature = "study"))]
 use self::written::written;
 use crate::error::Error;
 use crate::input::read_at_most;
@@ -108,7 +108,7 @@ impl SceneFile {
     /// # Errors
     /// A file that cannot be read; [`Error::Input`] for an override that is no key and value, or for which the text
     /// has no place.
-    #[cfg(feature = "play")]
+    #[cfg(any(feature = "play", feature = "study"))]
     pub fn text_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<String, Error> {
         overrides.iter().try_fold(text_of(path.as_ref())?, |text, over| written(&text, over))
     }

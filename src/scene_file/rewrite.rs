@@ -6,6 +6,7 @@ use std::ops::Range;
 use serde_json::Value;
 use toml::de::{DeTable, DeValue};
 
+use super::written::insertion;
 use crate::external::{Course, Signal, VectorSignal};
 use crate::mesh::Selection;
 use crate::scene::{Load, Phase};
@@ -80,19 +81,6 @@ fn is_list(text: &str) -> bool {
     let begins = |inner: &str| inner.trim_start().starts_with(['{', ']', '#']);
     let begins = text.starts_with('{') || text.strip_prefix('[').is_some_and(begins);
     begins && text.ends_with([']', '}'])
-}
-
-/// Puts `entry` after the value that ends at `at`: on a line of its own, or, within braces, beside it.
-pub(super) fn insertion(text: &str, at: usize, entry: &str) -> (Range<usize>, String) {
-    let rest = text.get(at..).unwrap_or_default();
-    let line = rest.lines().next().unwrap_or_default();
-    match line.trim_start().starts_with([',', '}']) {
-        true => (at..at, format!(", {entry}")),
-        false => {
-            let end = at + line.len();
-            (end..end, format!("\n{entry}"))
-        }
-    }
 }
 
 fn pressures(phase: &Phase) -> String {

@@ -1,10 +1,11 @@
 //! Overrides written into the text of a scene file; all else stays as it was written.
 
+use std::ops::Range;
+
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::overrides::{as_toml, element, is_whole, merge};
-use super::rewrite::insertion;
 use crate::error::Error;
 use crate::input::InputError;
 
@@ -14,8 +15,10 @@ use crate::input::InputError;
 /// No key and value; a text in which there is no place for it.
 pub(super) fn written(text: &str, over: &str) -> Result<String, Error> {
     let toml = as_toml(over)?;
-    let new = changed(text, &toml).filter(|new| is_meant(new, text, &toml));
-    new.ok_or_else(|| {
+    // a table of dotted keys has no place of its own: its entries stand before all else
+    let candidates = [changed(text, &toml), Some(format!("{toml}\n{text}"))];
+    let mut new = candidates.into_iter().flatten().filter(|new| is_meant(new, text, &toml));
+    new.next().ok_or_else(|| {
         let mend = "the text of the scene file has no place for it: write it into the file";
         InputError::new("--set", over, mend).into()
     })
@@ -75,6 +78,19 @@ fn inserted(
     let last = values.filter(is_plain).max_by_key(|value| value.span().start)?;
     let (place, entry) = insertion(text, last.span().end, &entry);
     Some([text.get(..place.start)?, &entry, text.get(place.end..)?].concat())
+}
+
+/// Puts `entry` after the value that ends at `at`: on a line of its own, or, within braces, beside it.
+pub(super) fn insertion(text: &str, at: usize, entry: &str) -> (Range<usize>, String) {
+    let rest = text.get(at..).unwrap_or_default();
+    let line = rest.lines().next().unwrap_or_default();
+    match line.trim_start().starts_with([',', '}']) {
+        true => (at..at, format!(", {entry}")),
+        false => {
+            let end = at + line.len();
+            (end..end, format!("\n{entry}"))
+        }
+    }
 }
 
 /// Whether the text `new` says what `text` says with `toml` merged into it.

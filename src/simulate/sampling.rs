@@ -17,6 +17,8 @@ use crate::trajectory::Sample;
 #[derive(Debug, Clone, Default)]
 pub struct Sampling {
     times: Times,
+    /// More times (s), ascending.
+    also: Vec<f64>,
     sensors: Vec<Sensor>,
 }
 
@@ -36,12 +38,30 @@ impl Sampling {
 
     /// At all multiples of `step` (s).
     pub fn every(step: f64) -> Self {
-        Self { times: Times::Every(step), sensors: Vec::new() }
+        Self { times: Times::Every(step), ..Self::default() }
     }
 
     /// At the given times (s), in any order.
     pub fn at(times: impl Into<Vec<f64>>) -> Self {
-        Self { times: Times::At(times.into()), sensors: Vec::new() }
+        Self { times: Times::At(times.into()), ..Self::default() }
+    }
+
+    /// At these times (s, ascending, within the scene) as well.
+    #[cfg(feature = "study")]
+    pub(crate) fn also_at(mut self, times: Vec<f64>) -> Self {
+        self.also = times;
+        self
+    }
+
+    /// Whether a sample within a phase is there for [`also_at`](Self::also_at) alone.
+    #[cfg(feature = "study")]
+    pub(crate) fn is_extra(&self, time: f64) -> bool {
+        let is_asked = match &self.times {
+            Times::PhaseEnds => false,
+            Times::Every(step) => (time / step).round() * step == time,
+            Times::At(times) => times.contains(&time),
+        };
+        !is_asked && self.also.contains(&time)
     }
 
     /// Adds a sensor: a number that `reading` reads with each sample, beside what samples hold by themselves
@@ -165,7 +185,21 @@ impl Sampling {
                 (Inner::Listed(times), count)
             }
         };
-        Schedule { inner, count, end }
+        let asked = Schedule { inner, count, end };
+        if self.also.is_empty() {
+            return asked;
+        }
+        let mut times: Vec<f64> = (0..count).filter_map(|number| asked.get(number)).collect();
+        let is_new = |t: &&f64| {
+            let next = times.partition_point(|time| *time < **t - apart);
+            times.get(next).is_none_or(|time| *time > **t + apart)
+        };
+        let inside = self.also.iter().filter(|t| **t > after && **t < before);
+        let new: Vec<f64> = inside.filter(is_new).copied().collect();
+        times.extend(new);
+        times.sort_by(f64::total_cmp);
+        let count = times.len();
+        Schedule { inner: Inner::Listed(times), count, end }
     }
 }
 
@@ -221,6 +255,8 @@ mod tests {
         assert_eq!(within(Sampling::every(0.1), 0.31, 0.35), [0.35]);
         assert_eq!(within(Sampling::at([0.4, 0.1, 0.3, 0.1]), 0.0, 0.35), [0.1, 0.3, 0.35]);
         assert_eq!(within(Sampling::phase_ends(), 0.3, 0.45), [0.45]);
+        let both = Sampling { also: vec![0.05, 0.1, 0.2, 0.28, 0.35], ..Sampling::every(0.1) };
+        assert_eq!(within(both, 0.0, 0.35), [0.05, 0.1, 0.2, 0.28, 3.0 * 0.1, 0.35]);
         // more than fit in memory
         assert_eq!(within(Sampling::every(0.002), 0.0, 1e6)[..2], [0.002, 0.004]);
     }

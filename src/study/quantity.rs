@@ -187,7 +187,7 @@ impl Quantity {
                 seen.scale = change.mean.max(least);
                 seen
             }
-            Part::End => one(series().last().unwrap_or(f64::NAN), change.largest),
+            Part::End => one(series().next_back().unwrap_or(f64::NAN), change.largest),
             Part::Largest => one(series().fold(start[0], f64::max), change.largest),
             Part::Least => one(series().fold(start[0], f64::min), change.largest),
             Part::Frequency => {
@@ -298,10 +298,12 @@ fn swings(times: &[f64], values: impl Iterator<Item = f64>) -> Option<(f64, f64)
     for (t, x) in times.windows(3).zip(values.windows(3)) {
         let (before, after) = (x[1] - x[0], x[2] - x[1]);
         if before * after < 0.0 || (after == 0.0 && before != 0.0) {
-            // the turning point of the parabola through the three, which are evenly spread
-            let part = 0.5 * (before + after) / (before - after);
-            let height = x[1] + 0.25 * (before + after) * part;
-            turns.push([t[1] + part * (t[2] - t[1]), height]);
+            // the turning point of the parabola through the three
+            let [before, after] = [before / (t[1] - t[0]), after / (t[2] - t[1])];
+            let curvature = (after - before) / (t[2] - t[0]);
+            let slope = before + curvature * (t[1] - t[0]);
+            let away = -0.5 * slope / curvature;
+            turns.push([t[1] + away, x[1] + 0.5 * slope * away]);
         }
     }
     let (first, last) = (turns.first()?, turns.last()?);

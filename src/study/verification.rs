@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::input::{Fraction, InputError};
 use crate::output::{DIFFERENCE, OF_SENSOR};
 use crate::report::Achieved;
-use crate::scene::Scene;
+use crate::scene::{Phase, Scene};
 use crate::settings::{ContactEvents, Settings};
 use crate::simulate::{Sampling, Simulation};
 use crate::trajectory::{Quantity as Column, Trajectory};
@@ -45,8 +45,11 @@ pub struct Verification<'a> {
 #[derive(Debug)]
 struct Run {
     settings: Settings,
+    /// The samples that were asked for.
     trajectory: Trajectory,
-    /// The quantity that counts, and the displacements of all nodes, at each sample.
+    /// The times (s) at which it was looked at, and whether a sample of them was asked for.
+    looks: Vec<(f64, bool)>,
+    /// The quantity that counts, and the displacements of all nodes, at each of them.
     asked: Seen,
     motion: Seen,
     /// Columns of the sensors that were asked for.
@@ -65,8 +68,8 @@ const TIGHTEST: f64 = 1e-12;
 /// A tolerance that has a run take less than so many times the steps of the one before is not what bounds them:
 /// stability is. Then the steps are bounded themselves, by half of what they were in the mean.
 const FINER: f64 = 1.3;
-/// Samples of a motion that is to be sampled at the ends of its phases only.
-const SAMPLES: f64 = 100.0;
+/// Runs are compared at so many times at least, evenly spread: at few, they may agree by chance.
+const LOOKS: usize = 100;
 impl<'a> Verification<'a> {
     /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
     pub fn new(scene: &'a Scene, accuracy: f64) -> Self {
@@ -74,7 +77,7 @@ impl<'a> Verification<'a> {
             scene,
             accuracy,
             settings: Settings::default(),
-            sampling: Sampling::every(scene.end() / SAMPLES),
+            sampling: Sampling::every(scene.end() / LOOKS as f64),
             quantity: Quantity::motion(),
             runs: 0,
             last: None,
@@ -89,7 +92,7 @@ impl<'a> Verification<'a> {
         self
     }
 
-    /// When the motion is sampled, which is where runs are compared. Default: a hundred times, evenly.
+    /// When the motion is sampled. Runs are compared there, and at a hundred times in any case. Default: at those.
     #[must_use]
     pub fn sampling(mut self, sampling: Sampling) -> Self {
         self.sampling = sampling;
@@ -118,7 +121,8 @@ impl<'a> Verification<'a> {
             Some(last) => self.tighter(last),
         };
         let mut simulation = self.scene.start(&settings)?;
-        simulation.record(&self.quantity.read_by(self.sampling.clone()))?;
+        let sampling = self.quantity.read_by(self.sampling.clone()).also_at(self.looks());
+        simulation.record(&sampling)?;
         let mut trajectory = simulation.finish(observer)?;
         self.runs += 1;
         let nodes: Vec<usize> = (0..self.scene.body().mesh().node_count()).collect();
@@ -127,7 +131,13 @@ impl<'a> Verification<'a> {
         let (asked, motion) = (seen(&self.quantity), seen(&Quantity::motion()));
         trajectory.keep_sensors(trajectory.sensors().len() - self.quantity.columns(self.scene)?);
         let sensors = trajectory.sensors().len();
-        let mut run = Run { settings, trajectory, asked, motion, sensors, is_bounded: false };
+        let ends: Vec<f64> = self.scene.phases().iter().map(Phase::end).collect();
+        let is_kept = |time: f64| !sampling.is_extra(time) || ends.contains(&time);
+        let looks = trajectory.samples().iter().map(|sample| (sample.time, is_kept(sample.time)));
+        let looks = looks.collect();
+        trajectory.keep_samples(|sample| is_kept(sample.time));
+        let mut run =
+            Run { settings, trajectory, looks, asked, motion, sensors, is_bounded: false };
         let difference = self.last.as_ref().map(|before| self.compare(before, &mut run));
         let is_tightest = run.settings.rtol < 2.0 * TIGHTEST;
         self.last = Some(run);
@@ -144,6 +154,12 @@ impl<'a> Verification<'a> {
     /// As [`into_trajectory`](Self::into_trajectory), as far as it has come.
     pub fn trajectory(&self) -> Option<&Trajectory> {
         self.last.as_ref().map(|run| &run.trajectory)
+    }
+
+    /// Times (s) at which runs are compared in any case.
+    fn looks(&self) -> Vec<f64> {
+        let count = LOOKS.max(self.quantity.times());
+        (1..count).map(|k| self.scene.end() * (k as f64 / count as f64)).collect()
     }
 
     /// The settings of the first run.
@@ -188,9 +204,8 @@ impl<'a> Verification<'a> {
             false => (apart.clone(), run.motion.scale),
         };
         let end = self.scene.end();
-        let samples = run.trajectory.samples().iter();
         let is_apart = |(distance, _): &(&f64, _)| **distance > self.accuracy * series.1;
-        let parted = series.0.iter().zip(samples).find(is_apart).map(|(_, sample)| sample.time);
+        let parted = series.0.iter().zip(&run.looks).find(is_apart).map(|(_, look)| look.0);
         let known_until = match difference <= self.accuracy {
             true => end,
             false => parted.unwrap_or(end),
@@ -206,7 +221,9 @@ impl<'a> Verification<'a> {
             ..sensor.clone()
         };
         let names: Vec<Column> = run.trajectory.sensors().iter().map(named).collect();
-        run.trajectory.add_column(metres, &apart);
+        let kept = apart.iter().zip(&run.looks).filter(|(_, look)| look.1);
+        let kept: Vec<f64> = kept.map(|(distance, _)| *distance).collect();
+        run.trajectory.add_column(metres, &kept);
         for (name, column) in names.into_iter().zip(&columns) {
             run.trajectory.add_column(name, column);
         }

@@ -2,10 +2,12 @@
 
 use std::error::Error;
 use std::fs;
+use std::ops::ControlFlow;
 use std::path::Path;
 
 use pliant::output::{Plot, Table, write_csv, write_report};
 use pliant::simulate::{Component, Reading};
+use pliant::study::Verification;
 use pliant::{Sampling, Settings, Statics, Trajectory, samples};
 
 type Outcome = Result<(), Box<dyn Error>>;
@@ -130,6 +132,22 @@ fn poor_tables_have_pictures() -> Outcome {
         assert!(!picture.contains("NaN") && !picture.contains("inf"), "{rows}: {picture}");
         look(&path, &[])?;
     }
+    Ok(())
+}
+
+/// What sensors differ by in two runs is a band around their lines, and no line of its own.
+#[test]
+fn verified_motions_have_bands() -> Outcome {
+    let scene = samples::square_jump(4)?;
+    let sampling = Sampling::every(0.01).read("top", Reading::position("top"));
+    let mut verification = Verification::new(&scene, 0.01).sampling(sampling);
+    while verification.refine(|_| ControlFlow::Continue(()))? {}
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("plot.svg");
+    Plot::new().write(verification.trajectory().unwrap(), &path)?;
+    let (texts, counts) = look(&path, &["band"])?;
+    assert_eq!(counts, [2]);
+    assert!(!texts.iter().any(|text| text.contains("difference")), "{texts:?}");
     Ok(())
 }
 

@@ -7,6 +7,7 @@ use pliant::IntegrationFailure;
 use pliant::output::{write_report, write_static_report};
 use pliant::samples::{SQUARE_MATERIAL, ring_springs, square_jump};
 use pliant::simulate::Reading;
+use pliant::study::Verification;
 use pliant::{
     Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, SceneFile, Settings, Statics, Strain,
 };
@@ -52,6 +53,11 @@ fn without(keys: Vec<String>, table: &str) -> Vec<String> {
     keys.into_iter().filter(|key| !key.starts_with(table)).collect()
 }
 
+/// The keys of a run that was not verified.
+fn of_run() -> Vec<String> {
+    without(documented("run"), "achieved.")
+}
+
 fn written(run: Result<&Trajectory, &IntegrationFailure>) -> Value {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("new/report.json");
@@ -70,7 +76,7 @@ fn a_finished_run() {
     let sampling = Sampling::every(0.01).read("top", Reading::position("top"));
     let run = square_jump(4).unwrap().simulate(&settings, &sampling).unwrap();
     let report = written(Ok(&run));
-    let expected = without(without(documented("run"), "failure."), "phases[].slips[].");
+    let expected = without(without(of_run(), "failure."), "phases[].slips[].");
     assert_eq!(keys(&report), expected);
     let phases = report["phases"].as_array().unwrap();
     for (phase, (name, end)) in phases.iter().zip([("push", 0.5), ("hold", 1.0), ("free", 1.5)]) {
@@ -109,12 +115,26 @@ fn a_finished_run() {
 }
 
 #[test]
+fn what_two_runs_differ_by() {
+    let scene = square_jump(4).unwrap();
+    let mut verification = Verification::new(&scene, 0.01);
+    while verification.refine(|_| ControlFlow::Continue(())).unwrap() {}
+    let report = written(Ok(verification.trajectory().unwrap()));
+    let documented = without(without(documented("run"), "failure."), "phases[].slips[].");
+    assert_eq!(keys(&report), documented);
+    let achieved = &report["achieved"];
+    assert_eq!([&achieved["quantity"], &achieved["unit"]], [&json!("motion"), &json!("m")]);
+    assert!(achieved["difference"].as_f64().unwrap() <= achieved["asked"].as_f64().unwrap());
+    assert_eq!(report["sensors"], json!([{ "name": "difference", "unit": "m" }]));
+}
+
+#[test]
 fn what_slips_and_sticks() {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/stick-slip.toml");
     let SceneFile { scene, settings, .. } = SceneFile::read(file).unwrap();
     let run = scene.simulate(&settings, &Sampling::phase_ends());
     let report = written(Ok(&run.unwrap()));
-    let documented = without(without(documented("run"), "failure."), "sensors[].");
+    let documented = without(without(of_run(), "failure."), "sensors[].");
     assert_eq!(keys(&report), documented);
     let slips = report["phases"][0]["slips"].as_array().unwrap();
     for (slip, slides) in slips.iter().zip([true, false]) {
@@ -128,7 +148,7 @@ fn runs_that_end_early() {
     let Err(Error::Integration(failure)) = failed else { panic!("no failure") };
     let report = written(Err(&failure));
     assert_eq!(report["status"], "failed");
-    let expected = without(without(documented("run"), "sensors[]."), "phases[].slips[].");
+    let expected = without(without(of_run(), "sensors[]."), "phases[].slips[].");
     assert_eq!(keys(&report), expected);
     // the springs A2 and A6 shrink to nothing 10 ms after they begin to
     assert!((report["failure"]["time"].as_f64().unwrap() - 0.21).abs() < 0.003);

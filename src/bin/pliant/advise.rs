@@ -1,15 +1,19 @@
 //! `pliant advise`
 
+use std::fs::File;
+use std::io::Write;
 use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use pliant::Fraction;
-use pliant::study::{Adviser, Quantity};
+use pliant::study::{Advice, Adviser, Candidate, Quantity};
+use pliant::{Fraction, SceneFile};
 
 use crate::failure::{Failure, print};
+use crate::files::Directory;
 use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
 
@@ -37,14 +41,26 @@ pub struct Arguments {
     /// End the scene at this time (s)
     #[arg(long, value_name = "SECONDS")]
     until: Option<f64>,
+    /// Directory for advice.json (all that was found) and candidates.csv [default: none]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Write the scene file with what is enough, and why, to this new file
+    #[arg(long, value_name = "FILE")]
+    write: Option<PathBuf>,
     /// Show no progress
     #[arg(long, short)]
     quiet: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, settings, quantity, within, budget, until, quiet } = arguments;
+    let Arguments { scene, settings, quantity, within, budget, until, out, write, quiet } =
+        arguments;
     let mut file = scene.read()?;
+    let mut directory = out.clone().map(Directory::new).transpose()?;
+    if let Some(path) = write.as_ref().filter(|path| path.exists()) {
+        let path = path.display();
+        return Err(Failure::bad_input(format!("{path} is there already: write to another file")));
+    }
     settings.apply(&mut file.settings)?;
     file.scene = ended(file.scene, *until)?;
     let quantity = Quantity::named(quantity, &file.scene, &file.output.sensors)?;
@@ -65,7 +81,42 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     });
     bar.finish_and_clear();
-    print(advice?)
+    let advice = advice?;
+    print(&advice)?;
+    if let Some(directory) = &mut directory {
+        directory.write("advice.json", |path| advice.write_json(&file.scene, path))?;
+        directory.write("candidates.csv", |path| advice.write_csv(path))?;
+        directory.tell()?;
+    }
+    match (write, &advice.enough) {
+        (Some(path), Some(enough)) => write_scene(scene, &file, &advice, enough, path),
+        (Some(_), None) => {
+            Err(Failure::failed("nothing is known to be enough: no scene file is written"))
+        }
+        (None, _) => Ok(()),
+    }
+}
+
+/// Writes the scene file with what is enough, beneath the reasons as comments.
+fn write_scene(
+    scene: &SceneArguments,
+    file: &SceneFile,
+    advice: &Advice,
+    enough: &Candidate,
+    path: &Path,
+) -> Result<(), Failure> {
+    let comment = |line: &str| format!("# {line}").trim_end().to_owned() + "\n";
+    let reasons: String = advice.to_string().lines().map(comment).collect();
+    let text = scene.text(&enough.choice.overrides(&file.scene))?;
+    // a schema stands on the first line
+    let (first, rest) = match text.starts_with("#:schema") {
+        true => text.split_at(text.find('\n').map_or(text.len(), |end| end + 1)),
+        false => ("", &text[..]),
+    };
+    let failed = |error| Failure::failed(format!("cannot write to {}: {error}", path.display()));
+    let mut new = File::create_new(path).map_err(failed)?;
+    new.write_all(format!("{first}{reasons}\n{rest}").as_bytes()).map_err(failed)?;
+    print(format_args!("written: {}", path.display()))
 }
 
 /// What is being tried, on a terminal only.

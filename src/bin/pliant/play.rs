@@ -33,7 +33,7 @@ pub struct Arguments {
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let Arguments { scene, settings, port, until } = arguments;
-    let (mut file, text) = (scene.read()?, scene.text()?);
+    let (mut file, text) = (scene.read()?, scene.text(&[])?);
     settings.apply(&mut file.settings)?;
     if let Some(end) = *until {
         file.scene = file.scene.lasting(end);

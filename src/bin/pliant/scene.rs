@@ -36,9 +36,8 @@ impl SceneArguments {
         }
     }
 
-    /// The text of the file with these values in it.
-    #[cfg(feature = "play")]
-    pub fn text(&self) -> Result<String, Error> {
-        SceneFile::text_with(&self.path, &self.set)
+    /// The text of the file with these values in it, and then others.
+    pub fn text(&self, others: &[String]) -> Result<String, Error> {
+        SceneFile::text_with(&self.path, &[&self.set[..], others].concat())
     }
 }

@@ -230,7 +230,7 @@ impl<'a> Panel<'a> {
     fn find_range(&mut self) {
         let unit = &self.columns[0].quantity.unit;
         let bands = self.columns.iter().zip(&self.differences).flat_map(|(column, difference)| {
-            let distances = difference.into_iter().flat_map(|difference| &difference.values);
+            let distances = difference.iter().flat_map(|difference| &difference.values);
             let pairs = column.values.iter().zip(distances);
             pairs.flat_map(|(x, distance)| [x - distance, x + distance])
         });

@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::{Advice, Candidate};
+use super::advice::{Advice, Candidate};
+use super::choice::Choice;
 use crate::body::{Inertia, Strain};
 use crate::input::told;
 use crate::study::time_text;
@@ -31,7 +32,7 @@ impl Advice {
             reasons.push(format!("{other} changes it by {}", percent(law)));
         }
         for candidate in &self.candidates {
-            let is_mesh = |rich: &super::Choice| {
+            let is_mesh = |rich: &Choice| {
                 let same = &candidate.choice;
                 same.strain == rich.strain
                     && same.inertia == rich.inertia
@@ -93,6 +94,9 @@ impl fmt::Display for Advice {
             (None, None) => format!("{}: {}", candidate.choice, time_text(candidate.seconds)),
         };
         match &self.enough {
+            Some(enough) if self.resolution.is_nan() => {
+                writeln!(f, "\nEnough on this mesh: {}", run(enough))?;
+            }
             Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
             None if self.resolution > self.accuracy => writeln!(
                 f,
@@ -106,7 +110,7 @@ impl fmt::Display for Advice {
         if self.resolution.is_nan() {
             writeln!(
                 f,
-                "The error of the mesh is not known: there was no finer one to compare with."
+                "What the mesh lacks is not known: no finer one gave a motion to compare with."
             )?;
         } else {
             let resolution = percent(self.resolution);

@@ -34,6 +34,8 @@ const OF_TIGHT: f64 = 0.05;
 const OF_LAW: f64 = 0.3;
 const OF_TERM: f64 = 0.05;
 const OF_MESH: f64 = 0.6;
+/// The finest mesh is fine enough if it may be off by this part of the accuracy itself.
+const OF_TRUTH: f64 = 0.3;
 /// Tolerances of the runs that models are compared by: the first, as part of the accuracy, what each is of the one before, and the
 /// tightest.
 const FIRST: f64 = 0.1;
@@ -50,15 +52,18 @@ pub(super) const HALVING: f64 = 1.0 / 3.0;
 impl Search<'_> {
     /// Climbs until all is known, or there is no more time.
     pub(super) fn climb(&mut self, found: &mut Found) -> Result<(), Stop> {
-        let written = Choice::written(&self.scene, &self.adviser.settings);
+        let written = Choice::written(&self.scene, &self.request.settings);
         found.written = self.run(&written)?;
         let Some(tight) = self.tight(&written, found)? else { return Ok(()) };
         found.models.push(tight.clone());
         let rich = self.law(&tight, found)?;
         self.refine(&rich, found)?;
         self.leave_out(&rich, found)?;
-        let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
-        self.sweep(&enough, found)
+        match self.enough(&rich, found) {
+            // no method makes up for a mesh that is too coarse
+            Some(enough) if self.allowed(found) > 0.0 => self.sweep(&enough, found),
+            _ => Ok(()),
+        }
     }
 
     fn error(&self, one: &Solved, truth: &Solved) -> f64 {
@@ -67,11 +72,11 @@ impl Search<'_> {
 
     /// The model as it was written with hardly any error of the integration. `None` if it has no such motion.
     fn tight(&mut self, written: &Choice, found: &mut Found) -> Result<Option<Solved>, Stop> {
-        let mut rtol = (FIRST * self.adviser.accuracy).clamp(TIGHTEST, LOOSEST);
+        let mut rtol = (FIRST * self.request.accuracy).clamp(TIGHTEST, LOOSEST);
         let mut before: Option<Solved> = None;
         loop {
             let contact_events = ContactEvents::Locate;
-            let Settings { alpha, max_step, max_steps, .. } = self.adviser.settings;
+            let Settings { alpha, max_step, max_steps, .. } = self.request.settings;
             let own = Settings {
                 rtol,
                 contact_events,
@@ -85,11 +90,11 @@ impl Search<'_> {
             };
             if let Some(before) = &before {
                 let apart = self.error(before, &solved);
-                if apart <= OF_TIGHT * self.adviser.accuracy {
+                if apart <= OF_TIGHT * self.request.accuracy {
                     return Ok(Some(solved));
                 }
                 if rtol <= 2.0 * TIGHTEST {
-                    let limit = self.adviser.accuracy * solved.seen.scale;
+                    let limit = self.request.accuracy * solved.seen.scale;
                     let distances = solved.seen.distances(&before.seen);
                     let parted = distances.iter().position(|distance| *distance > limit);
                     let part = parted.map(|at| at as f64 / distances.len() as f64);
@@ -155,7 +160,7 @@ impl Search<'_> {
             // two steps that agree need no third
             if choice.halved == 2
                 && has_quadratic
-                && self.resolution(found) < 0.1 * self.adviser.accuracy
+                && self.resolution(found) < OF_TRUTH * self.request.accuracy
             {
                 return Ok(());
             }
@@ -172,6 +177,13 @@ impl Search<'_> {
             [.., before, truth] => HALVING * self.error(before, truth),
             _ => f64::NAN,
         }
+    }
+
+    /// The error that a candidate may have: the accuracy less what its measure may be off by. A mesh that was compared with
+    /// none is taken as it is.
+    pub(super) fn allowed(&self, found: &Found) -> f64 {
+        let resolution = self.resolution(found);
+        self.request.accuracy - if resolution.is_nan() { 0.0 } else { resolution }
     }
 
     /// Tries what may be left out.
@@ -196,7 +208,7 @@ impl Search<'_> {
 
     /// The cheapest model on the cheapest mesh that is right, but for the integration.
     pub(super) fn enough(&self, rich: &Solved, found: &Found) -> Option<Choice> {
-        let accuracy = self.adviser.accuracy;
+        let accuracy = self.request.accuracy;
         let truth = found.meshes.last()?;
         let is_fine = |mesh: &&Solved| self.error(mesh, truth) <= OF_MESH * accuracy;
         let fine = found.meshes.iter().filter(is_fine);
@@ -215,7 +227,7 @@ impl Search<'_> {
         let Some(truth) = found.meshes.last().cloned() else { return Ok(()) };
         let mut fastest = f64::INFINITY;
         let lumped_is_enough =
-            found.inertia.is_some_and(|error| error <= OF_LAW * self.adviser.accuracy);
+            found.inertia.is_some_and(|error| error <= OF_LAW * self.request.accuracy);
         let mut ways = vec![
             (Method::Auto, enough.inertia),
             (Method::Arkode, enough.inertia),
@@ -226,15 +238,12 @@ impl Search<'_> {
         }
         for (method, inertia) in ways {
             for rtol in TOLERANCES {
-                let Settings { alpha, max_step, max_steps, .. } = self.adviser.settings;
+                let Settings { alpha, max_step, max_steps, .. } = self.request.settings;
                 let own =
                     Settings { method, rtol, alpha, max_step, max_steps, ..Settings::default() };
                 let choice = Choice { settings: own, inertia, ..enough.clone() };
                 let Some(solved) = self.run(&choice)? else { continue };
-                let resolution = self.resolution(found);
-                let allowed =
-                    self.adviser.accuracy - if resolution.is_nan() { 0.0 } else { resolution };
-                let is_right = self.error(&solved, &truth) <= allowed;
+                let is_right = self.error(&solved, &truth) <= self.allowed(found);
                 let seconds = solved.seconds;
                 found.sweep.push(solved);
                 if is_right {

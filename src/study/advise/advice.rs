@@ -1,0 +1,66 @@
+//! What was found out.
+
+use super::choice::Choice;
+use crate::scene::Term;
+
+/// What is enough for a scene, and what that was found from.
+#[derive(Debug, Clone)]
+pub struct Advice {
+    /// What has to be right.
+    pub quantity: String,
+    /// The relative accuracy that was asked for, and what it is relative to: how much the quantity changes, in `unit`.
+    pub accuracy: f64,
+    /// See `accuracy`.
+    pub scale: f64,
+    /// Unit of the scale.
+    pub unit: String,
+    /// The scene as it was written.
+    pub written: Candidate,
+    /// The cheapest that is right, if there is one: its error and the [`resolution`](Self::resolution) are below the accuracy
+    /// together.
+    pub enough: Option<Candidate>,
+    /// What all were compared with, and the relative error that it may have itself (NaN: not known).
+    pub truth: Option<Candidate>,
+    /// See `truth`.
+    pub resolution: f64,
+    /// What the other measure of strain changes (relative).
+    pub law: Option<f64>,
+    /// What the other inertia changes.
+    pub inertia: Option<f64>,
+    /// What is changed by leaving something out.
+    pub terms: Vec<(Term, f64)>,
+    /// All that were run, in their order.
+    pub candidates: Vec<Candidate>,
+    /// Time (s) until which the motion can be known, if small errors grow too large before its end: then all else is
+    /// about the motion until some time before that.
+    pub known_until: Option<f64>,
+    /// What was not tried, and why.
+    pub not_tried: Vec<String>,
+    /// Whether the budget was spent, or the observer has ended the search, before all was tried.
+    pub is_cut_short: bool,
+    /// Runs, and the time (s) that they took in all.
+    pub runs: usize,
+    /// See `runs`.
+    pub seconds: f64,
+}
+
+/// A choice, and how good it is.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// The choice.
+    pub choice: Choice,
+    /// Its relative error; none without a motion, or without anything to compare with.
+    pub error: Option<f64>,
+    /// Wall-clock time (s) of one run.
+    pub seconds: f64,
+    /// Unknowns of the integrator.
+    pub unknowns: usize,
+    /// Why there is no motion.
+    pub failure: Option<String>,
+}
+
+impl Candidate {
+    pub(super) fn new(choice: Choice) -> Self {
+        Self { choice, error: None, seconds: 0.0, unknowns: 0, failure: None }
+    }
+}

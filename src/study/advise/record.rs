@@ -1,0 +1,76 @@
+//! The advice as data.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::advice::{Advice, Candidate};
+use crate::error::Error;
+use crate::output::write_file;
+use crate::scene::Scene;
+
+impl Advice {
+    /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `law`,
+    /// `inertia`, `terms`, `candidates`, `known_until`, `not_tried`, `is_cut_short`, `runs`, `seconds`, as the fields are; `null` is
+    /// not known. A candidate has `model` and `set`, what has to be set in the file of the scene `written` for it.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written.
+    pub fn write_json(&self, written: &Scene, path: impl AsRef<Path>) -> Result<(), Error> {
+        let candidate = |candidate: &Candidate| -> Value {
+            let Candidate { choice, error, seconds, unknowns, failure } = candidate;
+            json!({
+                "model": choice.to_string(),
+                "set": choice.overrides(written),
+                "error": error,
+                "seconds": seconds,
+                "unknowns": unknowns,
+                "failure": failure,
+            })
+        };
+        let terms = self.terms.iter();
+        let terms =
+            terms.map(|(term, error)| json!({ "without": term.to_string(), "error": error }));
+        let document = json!({
+            "quantity": self.quantity,
+            "accuracy": self.accuracy,
+            "scale": self.scale,
+            "unit": self.unit,
+            "written": candidate(&self.written),
+            "enough": self.enough.as_ref().map(candidate),
+            "truth": self.truth.as_ref().map(candidate),
+            "resolution": self.resolution,
+            "law": self.law,
+            "inertia": self.inertia,
+            "terms": terms.collect::<Vec<_>>(),
+            "candidates": self.candidates.iter().map(candidate).collect::<Vec<_>>(),
+            "known_until": self.known_until,
+            "not_tried": self.not_tried,
+            "is_cut_short": self.is_cut_short,
+            "runs": self.runs,
+            "seconds": self.seconds,
+        });
+        write_file(path.as_ref(), |file| writeln!(file, "{document:#}"))
+    }
+
+    /// Writes a row for each candidate as CSV: `model`, `error` (relative), `seconds`, `unknowns`, `failure`.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written.
+    pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        write_file(path.as_ref(), |file| {
+            let mut table = csv::Writer::from_writer(file);
+            table.write_record(["model", "error", "seconds", "unknowns", "failure"])?;
+            for Candidate { choice, error, seconds, unknowns, failure } in &self.candidates {
+                table.write_record([
+                    choice.to_string(),
+                    error.map(|error| format!("{error:e}")).unwrap_or_default(),
+                    format!("{seconds:e}"),
+                    unknowns.to_string(),
+                    failure.clone().unwrap_or_default(),
+                ])?;
+            }
+            table.flush()
+        })
+    }
+}

@@ -1,0 +1,68 @@
+//! How good a result is, and what a scene needs: `run --accuracy`, `advise`.
+
+use std::fs;
+
+use serde_json::Value;
+
+use super::{Place, bar, says, stderr, stdout};
+
+#[test]
+fn an_accuracy_is_reached_and_told() {
+    let place = Place::new();
+    let scene = place.scene(&bar(0.3));
+    let output = place.run(&["run", scene, "--accuracy", "0.1%", "--quantity", "right.x", "-q"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    says(&stdout(&output), &["right.x is known to"]);
+    let report = fs::read_to_string(place.path("out/scene/report.json")).unwrap();
+    let report: Value = serde_json::from_str(&report).unwrap();
+    let achieved = &report["achieved"];
+    assert!(achieved["difference"].as_f64().unwrap() <= 1e-3, "{achieved}");
+    assert_eq!(achieved["quantity"], "right.x");
+    let table = fs::read_to_string(place.path("out/scene/trajectory.csv")).unwrap();
+    assert!(table.lines().next().unwrap().contains(",difference,"), "{table}");
+}
+
+#[test]
+fn what_contradicts_an_accuracy_is_refused() {
+    let place = Place::new();
+    let scene = place.scene(&bar(0.3));
+    for (flags, message) in [
+        (&["--accuracy", "1%", "--rtol", "1e-3"][..], "leave one of them out"),
+        (&["--accuracy", "1%", "--resume"], "leave one of them out"),
+        (&["--quantity", "right.x"], "give both"),
+        (
+            &["--accuracy", "1%", "--quantity", "rigth.x"],
+            "a set of nodes (all, boundary, left, right)",
+        ),
+        (&["--accuracy", "1%", "--quantity", "right.x:ende"], "did you mean \"end\"?"),
+        (&["--accuracy", "1"], "above 0 and below 1"),
+    ] {
+        let output = place.run(&[&["run", scene], flags].concat());
+        assert_eq!(output.status.code(), Some(2), "{flags:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(message), "{flags:?}: {}", stderr(&output));
+    }
+    assert!(!place.path("out").exists());
+}
+
+#[test]
+fn advice_is_written_into_a_scene_that_runs() {
+    let place = Place::new();
+    let scene = place.scene(&bar(0.3));
+    let ask =
+        ["advise", scene, "--within", "5%", "--quantity", "right.x", "--write", "enough.toml"];
+    let output = place.run(&[&ask[..], &["--out", "advice", "-q"]].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let parts =
+        ["right.x to 5 %", "Enough:", "As written:", "Cauchy strain in place of Green strain"];
+    says(&stdout(&output), &parts);
+    assert_eq!(place.files("advice"), ["advice.json", "candidates.csv"]);
+    let advice = fs::read_to_string(place.path("advice/advice.json")).unwrap();
+    let advice: Value = serde_json::from_str(&advice).unwrap();
+    assert!(advice["enough"]["error"].as_f64().unwrap() <= 0.05, "{advice}");
+    let output = place.run(&["run", "enough.toml", "-q"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    // what is there is not written over
+    let output = place.run(&ask);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("is there already"), "{}", stderr(&output));
+}
