@@ -22,6 +22,7 @@ pub struct Chamber {
     name: String,
     walls: Walls,
     is_closed_by_line: bool,
+    is_closed_by_lid: bool,
     thickness: Option<f64>,
 }
 
@@ -71,7 +72,7 @@ impl Chamber {
     }
 
     fn new(name: String, walls: Walls) -> Self {
-        Self { name, walls, is_closed_by_line: false, thickness: None }
+        Self { name, walls, is_closed_by_line: false, is_closed_by_lid: false, thickness: None }
     }
 
     /// Walls in the plane that are open at one place are closed there by the straight line between their ends, which
@@ -79,6 +80,13 @@ impl Chamber {
     /// error.
     pub fn closed_by_line(mut self) -> Self {
         self.is_closed_by_line = true;
+        self
+    }
+
+    /// Walls in space that are open are closed by a lid on each of their rims, from the mean of the rim's nodes to its
+    /// edges: flat, if the rim is. The nodes of the rim feel the pressure on it. Without this a rim is an error.
+    pub fn closed_by_lid(mut self) -> Self {
+        self.is_closed_by_lid = true;
         self
     }
 
@@ -104,20 +112,23 @@ impl Chamber {
         pressure: Vec<Signal>,
     ) -> Result<ChamberForce, InputError> {
         if self.is_closed_by_line && body.dimension() != 2 {
-            let mend = "a line closes walls in the plane only: give a closed surface";
+            let mend = "a line closes walls in the plane only: in space say closed_by_lid, or give a closed surface";
             return Err(InputError::new(self.input("closed_by_line"), true, mend));
+        }
+        if self.is_closed_by_lid && body.dimension() != 3 {
+            let mend = "a lid closes walls in space only: in the plane say closed_by_line";
+            return Err(InputError::new(self.input("closed_by_lid"), true, mend));
         }
         let geometry = match (&self.walls, body.dimension()) {
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
             (Walls::Nodes(nodes), 3) => {
-                let (triangles, weight) = self.faces(body.mesh(), nodes)?;
-                let surface = Surface::new(body.mesh(), triangles);
+                let surface = Surface::new(body.mesh(), self.faces(body.mesh(), nodes)?);
                 // seen from outside the body, and so from inside the chamber
                 let sign = match body.mesh().kind().dimension() {
                     3 => -1.0,
                     _ => self.surface_sign(body, &surface)?,
                 };
-                Geometry::Surface(surface, sign * weight)
+                Geometry::Surface(surface, sign)
             }
             (Walls::Triangles(triangles), 3) => {
                 let surface = Surface::new(body.mesh(), self.triangles(body.mesh(), triangles)?);
@@ -218,7 +229,7 @@ fn present<const N: usize, const D: usize>(
 }
 
 /// What encloses a chamber, with the factor from p times the gradient of its area or volume to
-/// the force: +-h, or +- the weight of a triangle.
+/// the force: +-h, or +-1.
 enum Geometry {
     Polygon(Polygon, f64),
     Surface(Surface, f64),
@@ -273,33 +284,37 @@ impl Polygon {
     }
 }
 
+/// The corners of a triangle, and what it counts as: where surfaces are means of others, they are parts of 1.
+type Triangle = ([usize; 3], f64);
+
 struct Surface {
-    triangles: Vec<[usize; 3]>,
+    triangles: Vec<Triangle>,
     /// Natural positions of their corners.
     corners: Vec<[[f64; 3]; 3]>,
 }
 
 impl Surface {
-    fn new(mesh: &Mesh, triangles: Vec<[usize; 3]>) -> Self {
-        let corners = triangles.iter().map(|nodes| nodes.map(|node| position(mesh, node)));
+    fn new(mesh: &Mesh, triangles: Vec<Triangle>) -> Self {
+        let corners = triangles.iter().map(|(nodes, _)| nodes.map(|node| position(mesh, node)));
         let corners = corners.collect();
         Self { triangles, corners }
     }
 
     /// Triangles with the present positions of their corners.
-    fn iter<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (&'a [usize; 3], [[f64; 3]; 3])> {
+    fn iter<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (&'a Triangle, [[f64; 3]; 3])> {
         let triangles = self.triangles.iter().zip(&self.corners);
-        triangles.map(|(nodes, corners)| (nodes, present(nodes, corners, u)))
+        triangles.map(|(triangle, corners)| (triangle, present(&triangle.0, corners, u)))
     }
 
     /// Signed volume V = (1/6) sum a . (b x c) over the triangles abc.
     fn volume(&self, u: &[f64]) -> f64 {
-        self.iter(u).map(|(_, [a, b, c])| dot(&a, &cross(&b, &c)) / 6.0).sum()
+        self.iter(u).map(|((_, part), [a, b, c])| part * dot(&a, &cross(&b, &c)) / 6.0).sum()
     }
 
     /// Adds `factor` dV/du.
     fn add_gradient(&self, factor: f64, u: &[f64], forces: &mut [f64]) {
-        for (nodes, x) in self.iter(u) {
+        for ((nodes, part), x) in self.iter(u) {
+            let factor = factor * part;
             for k in 0..3 {
                 let normal = cross(&x[(k + 1) % 3], &x[(k + 2) % 3]);
                 for i in 0..3 {
@@ -312,7 +327,8 @@ impl Surface {
     /// Adds `factor` d^2V/du^2: for the edge from a to b of a triangle abc, the blocks
     /// -[c x]/6 and, transposed, [c x]/6.
     fn add_hessian(&self, factor: f64, u: &[f64], matrix: &mut BlockMatrix) {
-        for (nodes, x) in self.iter(u) {
+        for ((nodes, part), x) in self.iter(u) {
+            let factor = factor * part;
             for k in 0..3 {
                 let (a, b) = (nodes[k], nodes[(k + 1) % 3]);
                 let c = x[(k + 2) % 3].map(|c| factor / 6.0 * c);
@@ -372,7 +388,7 @@ impl Force for ChamberForce {
         match &self.geometry {
             Geometry::Polygon(polygon, _) => polygon.edges.clone(),
             Geometry::Surface(surface, _) => {
-                let edges = |&[a, b, c]: &[usize; 3]| [[a, b], [b, c], [c, a]];
+                let edges = |&([a, b, c], _): &Triangle| [[a, b], [b, c], [c, a]];
                 surface.triangles.iter().flat_map(edges).collect()
             }
         }

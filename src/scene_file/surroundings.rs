@@ -57,6 +57,13 @@ pub(super) const CHAMBER: TableKeys = TableKeys::new(
         )
         .law("Without it a gap is an error.")
         .default("false"),
+        Key::new(
+            "closed_by_lid",
+            Holds::Flag,
+            "whether walls in space that are open are closed by lids on their rims, from the mean of a rim's nodes to its edges",
+        )
+        .law("Without it a rim is an error. The nodes of the rim feel the pressure on its lid.")
+        .default("false"),
         Key::number("thickness", "the thickness", "m").default("that of the body"),
     ],
     "[[chamber]]\nname = \"inside\"\nnodes = \"inner\"",
@@ -270,6 +277,9 @@ pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
     };
     if table.optional("closed_by_line", Value::flag)? == Some(true) {
         chamber = chamber.closed_by_line();
+    }
+    if table.optional("closed_by_lid", Value::flag)? == Some(true) {
+        chamber = chamber.closed_by_lid();
     }
     if let Some(h) = table.optional("thickness", Value::number)? {
         chamber = chamber.thickness(h);

@@ -93,6 +93,7 @@ fn in_space() {
         .obstacle(hull.friction_coefficient(0.3))
         .obstacle(Obstacle::new(step).named("step").stiffness(100.0))
         .obstacle(rail.stiffness(100.0))
+        .chamber(Chamber::within("drum", "top").closed_by_lid())
         .phase(Phase::until(0.02).named("fall").contact_with(["floor", "hull"]))
         .phase(press);
     agree(&file, &scene);

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::Chamber;
+use super::{Chamber, Triangle};
 use crate::external::faces::{between, list};
 use crate::external::surface::pieces;
 use crate::input::InputError;
@@ -34,44 +34,85 @@ impl Chamber {
         }
     }
 
-    /// The triangles (nodes from 0) of the boundary of the body between the selected nodes, and the
-    /// weight of each.
+    /// The triangles of the boundary of the body between the selected nodes, and those of lids.
     pub(super) fn faces(
         &self,
         mesh: &Mesh,
         selection: &Selection,
-    ) -> Result<(Vec<[usize; 3]>, f64), InputError> {
+    ) -> Result<Vec<Triangle>, InputError> {
         let nodes = mesh.select(selection)?.into_iter().collect();
         let mut faces = mesh.boundary_faces();
         // the cells of a string are no walls
         faces.retain(|face| face.len() > 2);
         let faces = walls(faces, &nodes).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let corners = faces.iter().map(|face| match mesh.kind().is_quadratic() {
-            true => &face[..face.len() / 2],
-            false => &face[..],
-        });
-        check_closed(corners).map_err(|problem| self.bad_walls(selection, &problem))?;
+        let is_quadratic = mesh.kind().is_quadratic();
+        let outlines = faces.iter().map(|face| outline(face, is_quadratic));
+        let lids = self.lids(outlines).map_err(|problem| self.bad_walls(selection, &problem))?;
         let (parts, weight) = pieces(mesh.face_kind());
+        let corner = |face: &[usize], part: &[usize]| [0, 1, 2].map(|corner| face[part[corner]]);
         let triangles = faces
             .iter()
-            .flat_map(|face| parts.iter().map(|part| [0, 1, 2].map(|corner| face[part[corner]])));
-        Ok((triangles.collect(), weight))
+            .flat_map(|face| parts.iter().map(move |part| (corner(face, part), weight)));
+        Ok(triangles.chain(lids).collect())
     }
 
-    /// The triangles of a surface, nodes from 0.
+    /// The triangles of a surface, and those of lids.
     pub(super) fn triangles(
         &self,
         mesh: &Mesh,
         triangles: &[[usize; 3]],
-    ) -> Result<Vec<[usize; 3]>, InputError> {
+    ) -> Result<Vec<Triangle>, InputError> {
         for triangle in triangles {
             mesh.select(&(*triangle).into())?;
         }
         let triangles: Vec<[usize; 3]> =
             triangles.iter().map(|triangle| triangle.map(|number| number - 1)).collect();
-        check_closed(triangles.iter().map(<[usize; 3]>::as_slice)).map_err(|problem| {
+        let lids = self.lids(triangles.iter().map(|triangle| triangle.to_vec()));
+        let lids = lids.map_err(|problem| {
             InputError::new(self.input("number of triangles"), triangles.len(), problem)
         })?;
+        Ok(triangles.into_iter().map(|triangle| (triangle, 1.0)).chain(lids).collect())
+    }
+
+    /// The lids on the rims of faces with these outlines. A lid goes from the mean of the nodes of its rim to each of its
+    /// edges. Volumes are linear in that mean, so it is the mean of fans from each of the nodes.
+    fn lids(&self, outlines: impl Iterator<Item = Vec<usize>>) -> Result<Vec<Triangle>, String> {
+        let open = open_edges(outlines)?;
+        let mut next = BTreeMap::new();
+        for &[a, b] in &open {
+            if next.insert(a, b).is_some() && self.is_closed_by_lid {
+                return Err(format!(
+                    "two rims meet at {}: a lid closes a rim that is by itself",
+                    list(&[a])
+                ));
+            }
+        }
+        if !open.is_empty() && !self.is_closed_by_lid {
+            let rim: BTreeSet<usize> = open.into_iter().flatten().collect();
+            let rim: Vec<usize> = rim.into_iter().collect();
+            return Err(format!(
+                "the surface must be closed, but has a rim at {}: add the walls that are missing, or say \
+                 closed_by_lid if a lid is to close it",
+                list(&rim)
+            ));
+        }
+        let mut triangles = Vec::new();
+        while let Some((start, second)) = next.pop_first() {
+            let mut rim = vec![start];
+            let mut node = second;
+            while node != start {
+                rim.push(node);
+                node = next.remove(&node).ok_or_else(|| {
+                    format!("the rim ends at {}: a lid closes a rim that runs round", list(&[node]))
+                })?;
+            }
+            let share = 1.0 / rim.len() as f64;
+            for (k, &a) in rim.iter().enumerate() {
+                let b = rim[(k + 1) % rim.len()];
+                let apexes = rim.iter().filter(|apex| **apex != a && **apex != b);
+                triangles.extend(apexes.map(|apex| ([*apex, b, a], share)));
+            }
+        }
         Ok(triangles)
     }
 
@@ -138,10 +179,21 @@ fn closed(mut edges: Vec<[usize; 2]>, by_line: bool) -> Result<Vec<[usize; 2]>, 
     }
 }
 
-/// Checks that each edge of the faces is met by another face, running the other way.
-fn check_closed<'a>(faces: impl Iterator<Item = &'a [usize]>) -> Result<(), String> {
+/// The nodes around a face, mid nodes between the corners.
+fn outline(face: &[usize], is_quadratic: bool) -> Vec<usize> {
+    match is_quadratic {
+        false => face.to_vec(),
+        true => {
+            let (corners, middles) = face.split_at(face.len() / 2);
+            corners.iter().zip(middles).flat_map(|(corner, middle)| [*corner, *middle]).collect()
+        }
+    }
+}
+
+/// The edges of faces with these outlines that no other face runs along the other way.
+fn open_edges(outlines: impl Iterator<Item = Vec<usize>>) -> Result<Vec<[usize; 2]>, String> {
     let mut edges = BTreeSet::new();
-    for face in faces {
+    for face in outlines {
         for (k, &a) in face.iter().enumerate() {
             let b = face[(k + 1) % face.len()];
             if !edges.insert([a, b]) {
@@ -153,11 +205,5 @@ fn check_closed<'a>(faces: impl Iterator<Item = &'a [usize]>) -> Result<(), Stri
             }
         }
     }
-    let open = edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a]));
-    let rim: BTreeSet<usize> = open.flatten().copied().collect();
-    if rim.is_empty() {
-        return Ok(());
-    }
-    let rim: Vec<usize> = rim.into_iter().collect();
-    Err(format!("the surface must be closed, but has a rim at {}", list(&rim)))
+    Ok(edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a])).copied().collect())
 }
