@@ -54,9 +54,17 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         let gravity = gravity.vector(scene.body().dimension())?;
         scene = scene.gravity(gravity);
     }
-    if let Some(initial) = top.get("initial") {
-        scene = initial::add_initial(scene, &initial)?;
-    }
+    // a state to start from is of the mesh as it is given, or of the finer one that the scene moves to
+    let initial = top.get("initial");
+    let started = initial.as_ref().map(|initial| initial::add_initial(scene.clone(), initial));
+    let starts_finer = match started {
+        Some(Ok(started)) => {
+            scene = started;
+            None
+        }
+        Some(Err(_)) => initial,
+        None => None,
+    };
     let parts: [(&str, Add); 4] = [
         ("spring", surroundings::add_spring),
         ("chamber", surroundings::add_chamber),
@@ -72,6 +80,9 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
     }
     scene = top.required("body", |body| body::on_finer_mesh(scene, body))?;
+    if let Some(initial) = starts_finer {
+        scene = initial::add_initial(scene, &initial)?;
+    }
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
     let statics = top.optional("statics", |value| settings::statics(value, &scene))?;

@@ -700,6 +700,12 @@ fn a_scene_starts_from_what_another_has_left() {
     place.scene(&other);
     let output = place.run(&["check", "scene.toml"]);
     says(&stderr(&output), &["scene.toml:7: initial.from", "16 nodes", "20"]);
+    // a scene that moves to a finer mesh starts from states of either mesh
+    let finer = |left: &str| {
+        scene(&from(left), rest).replace("nodes = [4, 4]", "nodes = [4, 4], halved = 1")
+    };
+    ran(&["run", "--out", "fine"], &finer("half"));
+    ran(&["run", "--out", "finer"], &finer("fine"));
     // an equilibrium may be thrown
     place.scene(&scene(&thrown.replace("half", "out/scene-static"), rest));
     assert_eq!(place.run(&["check", "scene.toml"]).status.code(), Some(0));
