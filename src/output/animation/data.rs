@@ -219,6 +219,7 @@ fn sensors(trajectory: &Trajectory, frames: &[&Sample]) -> Value {
 }
 
 /// Shapes of the obstacles, unions part by part, and how they move.
+#[cfg(feature = "play")]
 pub(super) fn obstacles(scene: &Scene) -> Value {
     let mut shapes = Vec::new();
     for obstacle in scene.obstacles() {

@@ -37,6 +37,8 @@ pub struct Adviser<'a> {
 
 /// Of the time until which a motion is known, this part is advised for.
 const KNOWN: f64 = 0.9;
+/// Less of a scene is not worth advice.
+const LEAST_KNOWN: f64 = 0.01;
 
 impl<'a> Adviser<'a> {
     /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
@@ -90,7 +92,8 @@ impl<'a> Adviser<'a> {
         };
         let mut found = Found::default();
         let mut stop = search.climb(&mut found).err();
-        if let (None, Some(until)) = (stop, found.known_until) {
+        let long_enough = |until: &f64| *until > LEAST_KNOWN * self.scene.end();
+        if let (None, Some(until)) = (stop, found.known_until.filter(long_enough)) {
             // what can be known, once more
             search.scene = self.scene.clone().ended_at(KNOWN * until);
             let known_until = found.known_until;

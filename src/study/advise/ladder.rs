@@ -93,12 +93,17 @@ impl Search<'_> {
                 if apart <= OF_TIGHT * self.request.accuracy {
                     return Ok(Some(solved));
                 }
+                if rtol <= 2.0 * TIGHTEST && apart <= self.request.accuracy {
+                    return Ok(Some(solved));
+                }
                 if rtol <= 2.0 * TIGHTEST {
                     let limit = self.request.accuracy * solved.seen.scale;
                     let distances = solved.seen.distances(&before.seen);
                     let parted = distances.iter().position(|distance| *distance > limit);
-                    let part = parted.map(|at| at as f64 / distances.len() as f64);
-                    found.known_until = part.map(|part| part * self.scene.end());
+                    // of a number that follows from the motion it is not known since when
+                    let parted = parted.filter(|_| self.request.quantity.is_over_time());
+                    let part = parted.map_or(0.0, |at| at as f64 / distances.len() as f64);
+                    found.known_until = Some(part * self.scene.end());
                     return Ok(None);
                 }
             }
