@@ -42,7 +42,8 @@ fn it_is_played_by_hand() -> Outcome {
         return Err(told.into());
     };
     assert!(tip.starts_with("tip ") && tip.ends_with(" mm"), "{told}");
-    assert!(inside.starts_with("inside 0") && inside.ends_with(" Pa"), "{told}");
+    // 0 at first, and 500 Pa from some time on
+    assert!(inside.starts_with("inside ") && inside.ends_with(" Pa"), "{told}");
     assert!(clamp.starts_with("clamp ") && clamp.ends_with('N'), "{told}");
     assert_eq!(browser.number("document.querySelectorAll('#sensors canvas').length")?, 3.0);
 
