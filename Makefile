@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench charts stability peers pictures docs valgrind clean
+.PHONY: help setup demo test bench advice charts stability peers pictures docs valgrind clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -29,6 +29,9 @@ bench: setup ## Benchmarks: one table of what the parts of a step cost; all othe
 
 charts: setup ## The gallery in docs/charts, some 20 minutes; out/charts keeps what was run
 	cargo run --release --example gallery -- --out docs/charts
+
+advice: setup ## docs/advice.md, the adviser on trial, half an hour
+	cargo run --release --example advice
 
 stability: setup ## docs/stability.md with its pictures, some minutes
 	cargo run --release --example stability

@@ -53,11 +53,12 @@ mod quantity;
 mod row;
 mod runner;
 mod scenes;
+mod tightening;
 mod timing;
 mod truth;
 mod verification;
 
-pub use advise::{Advice, Adviser, Candidate, Choice};
+pub use advise::{Advice, Adviser, Candidate, Choice, Freedom, Parts};
 pub use fastest::{Accuracy, Fastest, time_text};
 pub use findings::{Findings, LineFindings};
 pub use general::General;

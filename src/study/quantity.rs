@@ -3,6 +3,8 @@
 use std::f64::consts::PI;
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
 use crate::input::{InputError, unknown_among};
 use crate::scene::Scene;
 use crate::simulate::{Component, Reading, Sampling};
@@ -316,7 +318,7 @@ fn swings(times: &[f64], values: impl Iterator<Item = f64>) -> Option<(f64, f64)
 }
 
 /// A quantity as it was in a motion.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Seen {
     /// Components of a point.
     dimension: usize,
@@ -338,6 +340,12 @@ pub(super) struct Distance {
 impl Seen {
     pub(super) fn distance(&self, other: &Self) -> Distance {
         self.size(|time, k, x| x - other.values[time][k])
+    }
+
+    /// Distances of another motion from this one, relative to its scale.
+    pub(super) fn error(&self, of: &Self) -> Distance {
+        let Distance { mean, largest } = self.distance(of);
+        Distance { mean: mean / self.scale, largest: largest / self.scale }
     }
 
     /// Root mean square distance at each time.

@@ -144,14 +144,13 @@ impl Truth {
 
     fn of(best: &Way, other: &Way) -> Self {
         let seen = best.seen.clone();
-        let resolution = seen.distance(&other.seen).mean / seen.scale;
+        let resolution = seen.error(&other.seen).mean;
         Self { seen, resolution: resolution.max(f64::EPSILON) }
     }
 
     /// Distances from the true motion, relative to it.
     pub(super) fn error(&self, seen: &Seen) -> Distance {
-        let Distance { mean, largest } = self.seen.distance(seen);
-        Distance { mean: mean / self.seen.scale, largest: largest / self.seen.scale }
+        self.seen.error(seen)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::quantity::{Quantity, Seen};
+use super::tightening;
 use crate::error::Error;
 use crate::input::{Fraction, InputError};
 use crate::output::{DIFFERENCE, OF_SENSOR};
@@ -58,18 +59,12 @@ struct Run {
     is_bounded: bool,
 }
 
-/// The tolerance of the first run, as part of the accuracy, and the loosest there is.
-const FIRST: f64 = 0.1;
-const LOOSEST: f64 = 1e-3;
-/// What each run's tolerance is of the one before.
-const TIGHTER: f64 = 0.1;
-/// No tolerance below: round-off rules there.
-const TIGHTEST: f64 = 1e-12;
 /// A tolerance that has a run take less than so many times the steps of the one before is not what bounds them:
 /// stability is. Then the steps are bounded themselves, by half of what they were in the mean.
 const FINER: f64 = 1.3;
 /// Runs are compared at so many times at least, evenly spread: at few, they may agree by chance.
 const LOOKS: usize = 100;
+
 impl<'a> Verification<'a> {
     /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
     pub fn new(scene: &'a Scene, accuracy: f64) -> Self {
@@ -139,7 +134,7 @@ impl<'a> Verification<'a> {
         let mut run =
             Run { settings, trajectory, looks, asked, motion, sensors, is_bounded: false };
         let difference = self.last.as_ref().map(|before| self.compare(before, &mut run));
-        let is_tightest = run.settings.rtol < 2.0 * TIGHTEST;
+        let is_tightest = tightening::is_tightest(run.settings.rtol);
         self.last = Some(run);
         Ok(difference.is_none_or(|difference| difference > self.accuracy) && !is_tightest)
     }
@@ -176,14 +171,14 @@ impl<'a> Verification<'a> {
             ContactEvents::Auto => ContactEvents::Locate,
             asked => asked,
         };
-        let rtol = (FIRST * self.accuracy).clamp(TIGHTEST, LOOSEST);
+        let rtol = tightening::first(self.accuracy);
         Ok(Settings { rtol, contact_events, ..self.settings.clone() })
     }
 
     /// The settings of the run after `last`.
     fn tighter(&self, last: &Run) -> Settings {
         let mut settings = last.settings.clone();
-        settings.rtol = (TIGHTER * settings.rtol).max(TIGHTEST);
+        settings.rtol = tightening::tighter(settings.rtol);
         if last.is_bounded {
             let steps = last.trajectory.report().steps() as f64;
             let mean = self.scene.end() / steps;
@@ -195,7 +190,7 @@ impl<'a> Verification<'a> {
     /// Puts what a run differs by from the one before into its trajectory. Gives the relative difference.
     fn compare(&self, before: &Run, run: &mut Run) -> f64 {
         let scale = run.asked.scale;
-        let difference = run.asked.distance(&before.asked).mean / scale;
+        let difference = run.asked.error(&before.asked).mean;
         let steps = [before, run].map(|run| run.trajectory.report().steps() as f64);
         run.is_bounded = steps[1] < FINER * steps[0];
         let apart = run.motion.distances(&before.motion);

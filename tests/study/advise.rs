@@ -4,7 +4,8 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use pliant::study::{Advice, Adviser};
+use pliant::samples::{ClampedBeam, clamped_beam};
+use pliant::study::{Advice, Adviser, Parts};
 use pliant::{
     Body, Cells, Error, Inertia, Material, Mesh, Obstacle, Phase, Sampling, Scene, SceneFile,
     Settings, Strain, Term,
@@ -92,19 +93,71 @@ fn choices_can_be_written_into_scene_files() -> Outcome {
             if candidate.failure.is_some() || choice.halved > 1 || number % 3 == 1 {
                 continue;
             }
-            let read = SceneFile::read_with(&path, &choice.overrides(&file.scene))?;
-            let settings = Settings {
-                method: choice.settings.method,
-                rtol: choice.settings.rtol,
-                ..file.settings.clone()
-            };
+            let read = SceneFile::read_with(&path, &choice.overrides(&file.scene, &file.settings))?;
             let sampling = Sampling::phase_ends();
-            let ends = [read.scene.ended_at(until), choice.scene(&scene)?].map(|scene| {
-                scene.simulate(&settings, &sampling).map(|motion| motion.last().u.clone())
-            });
+            let own = (choice.scene(&scene)?, &choice.settings);
+            let ends =
+                [(read.scene.ended_at(until), &read.settings), own].map(|(scene, settings)| {
+                    scene.simulate(settings, &sampling).map(|motion| motion.last().u.clone())
+                });
             let [Ok(read), Ok(own)] = ends else { panic!("{name}: {choice}: {ends:?}") };
             assert_eq!(read, own, "{name}: {choice}");
         }
+    }
+    Ok(())
+}
+
+/// A search that was ended after some runs goes on from what it has kept, and comes to the same as one in one go.
+#[test]
+fn a_search_goes_on_where_it_was_ended() -> Outcome {
+    let scene = clamped_beam([6, 2], 100.0)?.ended_at(0.2);
+    let directory = tempfile::tempdir().unwrap();
+    let file = directory.path().join("of the search/runs.jsonl");
+    let (mut looks, mut runs) = (0, Vec::<String>::new());
+    let cut = Adviser::new(&scene, 0.05).keep(&file).run(&mut |what| {
+        if runs.last().is_none_or(|last| last != what) {
+            runs.push(what.into());
+        }
+        looks += 1;
+        if runs.len() > 4 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    assert!(cut.is_cut_short && cut.known == 0 && looks > 4);
+    // a kill in the middle of a line
+    let mut text = std::fs::read_to_string(&file).unwrap();
+    assert_eq!(text.lines().count(), 4);
+    text.truncate(text.len() - 100);
+    std::fs::write(&file, text).unwrap();
+    let rest = Adviser::new(&scene, 0.05).keep(&file).run(&mut |_| ControlFlow::Continue(()))?;
+    assert_eq!(rest.known, 3);
+    let whole = advise(&scene, 0.05)?;
+    let errors = |advice: &Advice| {
+        let tight = advice.candidates.iter().filter(|candidate| !candidate.choice.quadratic);
+        tight.map(|candidate| candidate.error.map(f64::to_bits)).collect::<Vec<_>>()
+    };
+    assert_eq!(errors(&rest)[..4], errors(&whole)[..4]);
+    // nothing is left to do
+    let known = Adviser::new(&scene, 0.05).keep(&file).run(&mut |_| ControlFlow::Continue(()))?;
+    assert_eq!((known.runs, known.known), (0, rest.candidates.len()));
+    Ok(())
+}
+
+/// What an error is made of adds up to it, but for signs: the triangle inequality.
+#[test]
+fn errors_are_split_into_model_mesh_and_time() -> Outcome {
+    // bends far, by Cauchy strain, on few cells, by a loose tolerance
+    let scene =
+        ClampedBeam { nodes: [6, 2], viscosity: 100.0, ..ClampedBeam::default() }.scene()?;
+    let scene = scene.ended_at(0.3);
+    let settings = Settings { rtol: 1e-2, ..Settings::default() };
+    let advice =
+        Adviser::new(&scene, 0.02).settings(settings).run(&mut |_| ControlFlow::Continue(()))?;
+    println!("{advice}");
+    for candidate in [&advice.written, advice.enough.as_ref().unwrap()] {
+        let (parts, error) = (candidate.parts.unwrap(), candidate.error.unwrap());
+        let Parts { model, mesh, time } = parts;
+        assert!(error <= (model + mesh + time) * (1.0 + 1e-12), "{error} {parts:?}");
+        let largest = model.max(mesh).max(time);
+        assert!(error >= 2.0 * largest - (model + mesh + time) - 1e-12, "{error} {parts:?}");
     }
     Ok(())
 }

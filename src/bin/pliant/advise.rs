@@ -41,7 +41,8 @@ pub struct Arguments {
     /// End the scene at this time (s)
     #[arg(long, value_name = "SECONDS")]
     until: Option<f64>,
-    /// Directory for advice.json (all that was found) and candidates.csv [default: none]
+    /// Directory for advice.json (all that was found), candidates.csv, and runs.jsonl, which keeps all runs: another search
+    /// with the same directory, after Ctrl-C or with a larger budget, goes on from there [default: none]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write the scene file with what is enough, and why, to this new file
@@ -64,10 +65,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     settings.apply(&mut file.settings)?;
     file.scene = ended(file.scene, *until)?;
     let quantity = Quantity::named(quantity, &file.scene, &file.output.sensors)?;
-    let adviser = Adviser::new(&file.scene, within.0)
+    let mut adviser = Adviser::new(&file.scene, within.0)
         .settings(file.settings.clone())
         .quantity(quantity)
         .budget(*budget);
+    if let Some(directory) = &directory {
+        adviser = adviser.keep(directory.beside("runs.jsonl"));
+    }
     let interrupted = Arc::new(AtomicBool::new(false));
     let asked = interrupted.clone();
     ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
@@ -84,7 +88,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let advice = advice?;
     print(&advice)?;
     if let Some(directory) = &mut directory {
-        directory.write("advice.json", |path| advice.write_json(&file.scene, path))?;
+        directory
+            .write("advice.json", |path| advice.write_json(&file.scene, &file.settings, path))?;
         directory.write("candidates.csv", |path| advice.write_csv(path))?;
         directory.tell()?;
     }
@@ -107,7 +112,7 @@ fn write_scene(
 ) -> Result<(), Failure> {
     let comment = |line: &str| format!("# {line}").trim_end().to_owned() + "\n";
     let reasons: String = advice.to_string().lines().map(comment).collect();
-    let text = scene.text(&enough.choice.overrides(&file.scene))?;
+    let text = scene.text(&enough.choice.overrides(&file.scene, &file.settings))?;
     // a schema stands on the first line
     let (first, rest) = match text.starts_with("#:schema") {
         true => text.split_at(text.find('\n').map_or(text.len(), |end| end + 1)),

@@ -138,6 +138,11 @@ impl Directory {
         Ok(())
     }
 
+    /// The path of a file that is kept beside the results.
+    pub fn beside(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
     /// A `trajectory.csv` that grows during the run of `simulation`.
     pub fn growing_table(
         &self,

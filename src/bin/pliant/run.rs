@@ -7,7 +7,7 @@ use clap::Args;
 use pliant::output::{GrowingTable, write_report};
 use pliant::simulate::Simulation;
 use pliant::study::{Quantity, Verification};
-use pliant::{Error, Fraction, IntegrationFailure, OutputRequest, SceneFile, Trajectory};
+use pliant::{Error, Fraction, IntegrationFailure, SceneFile, Trajectory};
 
 use crate::accuracy::AccuracyArguments;
 use crate::failure::{Failure, print};
@@ -148,15 +148,10 @@ fn once(
         Err(_) => return result.map(|_| ()).map_err(Failure::from),
     };
     let trajectory = outcome.unwrap_or_else(|failure| &failure.trajectory);
-    match resume {
-        true => {
-            directory.claim()?;
-            directory.write("report.json", |path| write_report(outcome, path))?;
-            directory.write("trajectory.csv", |_| table.catch_up(trajectory))?;
-        }
-        false => keep(outcome, &mut directory, request)?,
-    }
-    directory.write_state(trajectory)?;
+    keep(outcome, &mut directory, |directory| match resume {
+        true => directory.write("trajectory.csv", |_| table.catch_up(trajectory)),
+        false => directory.write_table(trajectory, request),
+    })?;
     directory.write_formats(&trajectory.since(began), title, request)?;
     if outcome.is_ok() {
         directory.forget_checkpoint();
@@ -168,16 +163,16 @@ fn once(
     result.map(|_| ()).map_err(Failure::from)
 }
 
-/// Writes the report and the table of a motion, or of the part of it that there is.
+/// Writes the report, the table and the last state of a motion, or of the part of it that there is.
 fn keep(
     outcome: Result<&Trajectory, &IntegrationFailure>,
     directory: &mut Directory,
-    request: &OutputRequest,
+    write_table: impl FnOnce(&mut Directory) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     directory.claim()?;
     directory.write("report.json", |path| write_report(outcome, path))?;
-    let trajectory = outcome.unwrap_or_else(|failure| &failure.trajectory);
-    directory.write_table(trajectory, request)
+    write_table(directory)?;
+    directory.write_state(outcome.unwrap_or_else(|failure| &failure.trajectory))
 }
 
 /// Prints how a motion was computed, and what was written.
@@ -208,7 +203,9 @@ fn verified(
     mut watch: Watch,
     quiet: bool,
 ) -> Result<(), Failure> {
-    file.output.step.get_or_insert(file.scene.end() / SAMPLES);
+    if file.output.times.is_none() {
+        file.output.step.get_or_insert(file.scene.end() / SAMPLES);
+    }
     let SceneFile { title, scene, settings, accuracy, output: request, .. } = file;
     let quantity = accuracy.quantity.as_deref().unwrap_or("motion");
     let quantity = Quantity::named(quantity, scene, &request.sensors)?;
@@ -228,7 +225,9 @@ fn verified(
         refused.take().map_or(Ok(()), Err)?;
         match (refined, verification.trajectory()) {
             (Ok(goes_on), Some(trajectory)) => {
-                keep(Ok(trajectory), &mut directory, request)?;
+                keep(Ok(trajectory), &mut directory, |directory| {
+                    directory.write_table(trajectory, request)
+                })?;
                 if !goes_on {
                     break None;
                 }
@@ -241,8 +240,11 @@ fn verified(
     let trajectory = match (verification.trajectory(), &cut_short) {
         (Some(trajectory), _) => trajectory,
         (None, Some(failure)) => {
-            keep(Err(failure), &mut directory, request)?;
-            &failure.trajectory
+            let trajectory = &failure.trajectory;
+            keep(Err(failure), &mut directory, |directory| {
+                directory.write_table(trajectory, request)
+            })?;
+            trajectory
         }
         (None, None) => return Ok(()), // there is no end without a run
     };

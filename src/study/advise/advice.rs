@@ -1,6 +1,7 @@
 //! What was found out.
 
 use super::choice::Choice;
+use super::parts::Parts;
 use crate::scene::Term;
 
 /// What is enough for a scene, and what that was found from.
@@ -23,7 +24,9 @@ pub struct Advice {
     pub truth: Option<Candidate>,
     /// See `truth`.
     pub resolution: f64,
-    /// What the other measure of strain changes (relative).
+    /// Values of alpha (1/s), each with what ten times as much changes (relative).
+    pub alphas: Vec<(f64, f64)>,
+    /// What the other measure of strain changes.
     pub law: Option<f64>,
     /// What the other inertia changes.
     pub inertia: Option<f64>,
@@ -31,9 +34,10 @@ pub struct Advice {
     pub terms: Vec<(Term, f64)>,
     /// All that were run, in their order.
     pub candidates: Vec<Candidate>,
-    /// Time (s) until which the motion can be known, if small errors grow too large before its end: then all else is
-    /// about the motion until some time before that.
+    /// Time (s) until which the motion can be known, if small errors grow too large before its end.
     pub known_until: Option<f64>,
+    /// Time (s) at which the motion ends that all else is about: the end of the scene, or some time before `known_until`.
+    pub end: f64,
     /// What was not tried, and why.
     pub not_tried: Vec<String>,
     /// Whether the budget was spent, or the observer has ended the search, before all was tried.
@@ -42,6 +46,8 @@ pub struct Advice {
     pub runs: usize,
     /// See `runs`.
     pub seconds: f64,
+    /// Runs that were known from an earlier search.
+    pub known: usize,
 }
 
 /// A choice, and how good it is.
@@ -51,6 +57,8 @@ pub struct Candidate {
     pub choice: Choice,
     /// Its relative error; none without a motion, or without anything to compare with.
     pub error: Option<f64>,
+    /// What that is made of, where the runs between it and the truth were made, too.
+    pub parts: Option<Parts>,
     /// Wall-clock time (s) of one run.
     pub seconds: f64,
     /// Unknowns of the integrator.
@@ -61,6 +69,6 @@ pub struct Candidate {
 
 impl Candidate {
     pub(super) fn new(choice: Choice) -> Self {
-        Self { choice, error: None, seconds: 0.0, unknowns: 0, failure: None }
+        Self { choice, error: None, parts: None, seconds: 0.0, unknowns: 0, failure: None }
     }
 }

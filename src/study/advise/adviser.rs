@@ -1,10 +1,12 @@
 //! The adviser as it is asked.
 
 use std::ops::ControlFlow;
-use std::time::Instant;
+use std::path::PathBuf;
 
 use super::advice::{Advice, Candidate};
-use super::ladder::Found;
+use super::found::Found;
+use super::freedom::Freedom;
+use super::runs::Runs;
 use super::search::{Request, Search, Solved, Stop};
 use crate::error::Error;
 use crate::input::{Fraction, InputError, positive};
@@ -33,6 +35,7 @@ use crate::study::quantity::Quantity;
 pub struct Adviser<'a> {
     scene: &'a Scene,
     request: Request,
+    file: Option<PathBuf>,
 }
 
 /// Of the time until which a motion is known, this part is advised for.
@@ -44,7 +47,12 @@ impl<'a> Adviser<'a> {
     /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
     pub fn new(scene: &'a Scene, accuracy: f64) -> Self {
         let (settings, quantity) = (Settings::default(), Quantity::motion());
-        Self { scene, request: Request { accuracy, settings, quantity, budget: 60.0 } }
+        let freedom = Freedom::default();
+        Self {
+            scene,
+            request: Request { accuracy, settings, quantity, budget: 60.0, freedom },
+            file: None,
+        }
     }
 
     /// How the scene is integrated as it was written; other candidates have its alpha. Default: [`Settings::default`].
@@ -68,85 +76,100 @@ impl<'a> Adviser<'a> {
         self
     }
 
+    /// What may be chosen. Default: everything.
+    #[must_use]
+    pub fn freedom(mut self, freedom: Freedom) -> Self {
+        self.request.freedom = freedom;
+        self
+    }
+
+    /// A file that keeps all runs. What it holds already is not run again, so that a search that was cut short can go
+    /// on, within a new budget; runs of other scenes stay in it. It knows the version of this library: after changes of
+    /// the code within a version, or on another machine, begin a new file.
+    #[must_use]
+    pub fn keep(mut self, file: impl Into<PathBuf>) -> Self {
+        self.file = Some(file.into());
+        self
+    }
+
     /// Runs candidates until it is known what is enough, or the budget is spent. `observer` is told what is run, after
     /// each step, and ends the search by [`ControlFlow::Break`]; the advice is what is known by then.
     ///
     /// # Errors
-    /// Bad input; a scene that gives no motion at all.
+    /// Bad input; a scene that gives no motion at all; [`Error::Output`] if the file of the runs cannot be read or written.
     pub fn run(&self, observer: &mut dyn FnMut(&str) -> ControlFlow<()>) -> Result<Advice, Error> {
-        let Request { accuracy, settings, quantity, budget } = &self.request;
+        let Request { accuracy, settings, quantity, budget, .. } = &self.request;
         Fraction::check("accuracy", *accuracy)?;
         positive("budget", *budget, "s")?;
         settings.validate()?;
         self.scene.validate()?;
         quantity.check(self.scene)?;
-        let mut search = Search {
-            request: &self.request,
-            scene: self.scene.clone(),
-            nodes: self.scene.body().to_builder().own_mesh().node_count(),
-            observer,
-            began: Instant::now(),
-            failures: Vec::new(),
-            runs: 0,
-            is_interrupted: false,
+        let runs = Runs::open(self.file.as_deref())?;
+        let mut search = Search::new(&self.request, self.scene, runs, observer);
+        let (mut found, mut is_cut_short) = (Found::default(), false);
+        let mut climb = |search: &mut Search, found: &mut Found| match search.climb(found) {
+            Ok(()) => Ok(()),
+            Err(Stop::Trouble(error)) => Err(error),
+            Err(Stop::Budget | Stop::Interrupted) => {
+                is_cut_short = true;
+                Ok(())
+            }
         };
-        let mut found = Found::default();
-        let mut stop = search.climb(&mut found).err();
+        climb(&mut search, &mut found)?;
         let long_enough = |until: &f64| *until > LEAST_KNOWN * self.scene.end();
-        if let (None, Some(until)) = (stop, found.known_until.filter(long_enough)) {
+        if let Some(until) = found.known_until.filter(long_enough) {
             // what can be known, once more
             search.scene = self.scene.clone().ended_at(KNOWN * until);
             let known_until = found.known_until;
-            found = Found { known_until, ..Found::default() };
-            stop = search.climb(&mut found).err();
+            found = Found::default();
+            climb(&mut search, &mut found)?;
             found.known_until = known_until;
         }
-        self.advice(search, found, stop)
+        self.advice(search, found, is_cut_short)
     }
 
-    fn advice(&self, search: Search, found: Found, stop: Option<Stop>) -> Result<Advice, Error> {
-        let truth = found.meshes.last();
+    fn advice(&self, search: Search, found: Found, is_cut_short: bool) -> Result<Advice, Error> {
+        let truth = found.truth();
         let candidate = |solved: &Solved| {
-            let error =
-                truth.map(|truth| truth.seen.distance(&solved.seen).mean / truth.seen.scale);
             let Solved { choice, seconds, unknowns, .. } = solved.clone();
-            Candidate { error, seconds, unknowns, ..Candidate::new(choice) }
+            Candidate {
+                error: truth.map(|truth| solved.error(truth)),
+                parts: found.parts(solved),
+                seconds,
+                unknowns,
+                ..Candidate::new(choice)
+            }
         };
         let written = found.written.as_ref().map(candidate);
-        let written = written.or_else(|| search.failures.first().cloned());
-        let Some(written) = written else {
+        let Some(written) = written.or_else(|| search.failures.first().cloned()) else {
             let mend = "not one run came to its end: allow more time";
             return Err(
                 InputError::new("budget", format!("{} s", self.request.budget), mend).into()
             );
         };
-        let runs = found.written.iter().chain(&found.models);
-        let all = runs.chain(found.meshes.iter().skip(1)).chain(&found.sweep).map(candidate);
-        let mut candidates: Vec<Candidate> = all.collect();
+        let mut candidates: Vec<Candidate> = found.all().map(candidate).collect();
         candidates.extend(search.failures.iter().cloned());
-        let (resolution, allowed) = (search.resolution(&found), search.allowed(&found));
-        let is_right =
-            |candidate: &&Candidate| candidate.error.is_some_and(|error| error <= allowed);
-        let right = candidates.iter().filter(is_right);
-        let enough = right.min_by(|a, b| a.seconds.total_cmp(&b.seconds)).cloned();
         Ok(Advice {
             quantity: self.request.quantity.to_string(),
             accuracy: self.request.accuracy,
             scale: truth.map_or(f64::NAN, |truth| truth.seen.scale),
             unit: self.request.quantity.unit().into(),
             written,
-            enough: enough.filter(|_| truth.is_some()),
+            enough: found.best(&self.request).map(candidate),
             truth: truth.map(candidate),
-            resolution,
+            resolution: found.resolution(),
+            candidates,
+            runs: search.runs,
+            known: search.known,
+            seconds: search.began.elapsed().as_secs_f64(),
+            alphas: found.alphas,
             law: found.law,
             inertia: found.inertia,
             terms: found.terms,
-            candidates,
             known_until: found.known_until,
+            end: search.scene.end(),
             not_tried: found.not_tried,
-            is_cut_short: stop.is_some(),
-            runs: search.runs,
-            seconds: search.began.elapsed().as_secs_f64(),
+            is_cut_short,
         })
     }
 }

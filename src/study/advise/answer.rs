@@ -4,26 +4,22 @@ use std::fmt;
 
 use super::advice::{Advice, Candidate};
 use super::choice::Choice;
+use super::words::{percent, short};
 use crate::body::{Inertia, Strain};
 use crate::input::told;
 use crate::study::time_text;
-
-/// A relative number in percent.
-fn percent(part: f64) -> String {
-    format!("{} %", told_short(100.0 * part))
-}
-
-/// A number with two digits.
-fn told_short(value: f64) -> String {
-    let rounded = format!("{value:.1e}").parse().unwrap_or(value);
-    told(rounded)
-}
 
 impl Advice {
     /// What was found, reason by reason.
     pub fn reasons(&self) -> Vec<String> {
         let mut reasons = Vec::new();
         let rich = self.truth.as_ref().map(|truth| &truth.choice);
+        for (alpha, change) in &self.alphas {
+            reasons.push(format!(
+                "alpha = {alpha:e} 1/s: ten times as much changes it by {}",
+                percent(*change)
+            ));
+        }
         if let (Some(law), Some(rich)) = (self.law, rich) {
             let other = match rich.strain {
                 Strain::Green => "Cauchy strain in place of Green strain",
@@ -75,21 +71,27 @@ impl fmt::Display for Advice {
             f,
             "{quantity} to {}, which is {} {unit}",
             percent(*accuracy),
-            told_short(accuracy * scale)
+            short(accuracy * scale)
         )?;
         if let Some(until) = self.known_until {
             writeln!(
                 f,
                 "It can be known until t = {} s only: small errors grow there, as after impacts. What follows is about \
-                 the motion before; rely on energies and means later on.",
-                told(until)
+                 the motion until t = {} s; rely on energies and means later on.",
+                told(until),
+                told(self.end)
             )?;
         }
+        let made_of = |candidate: &Candidate| match candidate.parts {
+            Some(parts) => format!(" ({parts})"),
+            None => String::new(),
+        };
         let run = |candidate: &Candidate| match (candidate.error, &candidate.failure) {
             (_, Some(failure)) => format!("{}: {failure}", candidate.choice),
             (Some(error), None) => {
                 let time = time_text(candidate.seconds);
-                format!("{}: {} off in {time}", candidate.choice, percent(error))
+                let made_of = made_of(candidate);
+                format!("{}: {} off{made_of} in {time}", candidate.choice, percent(error))
             }
             (None, None) => format!("{}: {}", candidate.choice, time_text(candidate.seconds)),
         };
@@ -129,6 +131,10 @@ impl fmt::Display for Advice {
         if self.is_cut_short {
             writeln!(f, "- cut short: allow more time (--budget)")?;
         }
-        write!(f, "\n{} runs in {}", self.runs, time_text(self.seconds))
+        write!(f, "\n{} runs in {}", self.runs, time_text(self.seconds))?;
+        match self.known {
+            0 => Ok(()),
+            known => write!(f, ", and {known} that were known"),
+        }
     }
 }

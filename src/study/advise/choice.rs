@@ -6,7 +6,7 @@ use crate::body::{Inertia, Strain};
 use crate::input::InputError;
 use crate::mesh::CellKind;
 use crate::scene::{Scene, Term};
-use crate::settings::Settings;
+use crate::settings::{ContactEvents, Settings};
 
 /// What of a scene is modelled, by what measure of strain, on what mesh, and how it is integrated.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,8 +58,20 @@ impl Choice {
         self.without.iter().try_fold(scene, |scene, term| scene.without(term))
     }
 
-    /// What has to be set in a scene file for it, as `--set` takes it; `written` is what the file makes.
-    pub fn overrides(&self, written: &Scene) -> Vec<String> {
+    /// Whether both are the same model on the same mesh, however they are integrated.
+    pub(super) fn is_model_of(&self, other: &Self) -> bool {
+        let settings = other.settings.clone();
+        let alpha = self.settings.alpha == other.settings.alpha;
+        alpha && Self { settings, ..self.clone() } == *other
+    }
+
+    /// Whether both are on the same mesh.
+    pub(super) fn is_mesh_of(&self, other: &Self) -> bool {
+        (self.quadratic, self.halved) == (other.quadratic, other.halved)
+    }
+
+    /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written` with `settings`.
+    pub fn overrides(&self, written: &Scene, settings: &Settings) -> Vec<String> {
         let mut sets = Vec::new();
         let body = written.body();
         if self.strain != body.strain() {
@@ -122,6 +134,19 @@ impl Choice {
         }
         sets.push(format!("solver.method={}", self.settings.method));
         sets.push(format!("solver.rtol={:e}", self.settings.rtol));
+        let own = self.settings.tolerances(written);
+        if settings.atol_position.is_some() && self.settings.atol_position.is_none() {
+            sets.push(format!("solver.atol_position={:e}", own.position));
+        }
+        if settings.atol_velocity.is_some() && self.settings.atol_velocity.is_none() {
+            sets.push(format!("solver.atol_velocity={:e}", own.velocity));
+        }
+        if self.settings.alpha != settings.alpha {
+            sets.push(format!("solver.alpha={:e}", self.settings.alpha));
+        }
+        if self.settings.contact_events != settings.contact_events {
+            sets.push(format!("solver.contact_events={}", self.settings.contact_events));
+        }
         sets
     }
 
@@ -160,6 +185,15 @@ impl fmt::Display for Choice {
         for term in &self.without {
             write!(f, ", no {term}")?;
         }
-        write!(f, ", {} at rtol {:.0e}", self.settings.method, self.settings.rtol)
+        let Settings { method, rtol, alpha, contact_events, .. } = self.settings;
+        write!(f, ", {method} at rtol {rtol:.0e}")?;
+        if alpha != Settings::default().alpha {
+            write!(f, ", alpha {alpha:e}")?;
+        }
+        match contact_events {
+            ContactEvents::Auto => Ok(()),
+            ContactEvents::Locate => f.write_str(", contact events located"),
+            ContactEvents::StepOver => f.write_str(", contact events stepped over"),
+        }
     }
 }

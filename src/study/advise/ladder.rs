@@ -1,53 +1,29 @@
-//! The ladder, one rung at a time: tolerance, law, mesh, what may be left out, method.
+//! The ladder, one rung at a time: tolerance, alpha, law, mesh, what may be left out, method.
 
 use super::choice::Choice;
-use super::search::{Search, Solved, Stop};
+use super::found::Found;
+use super::search::{Cut, Search, Solved, Stop};
 use crate::body::{Inertia, Strain};
 use crate::mesh::CellKind;
-use crate::scene::Term;
 use crate::settings::{ContactEvents, Method, Settings};
-
-/// What was found on the way.
-#[derive(Debug, Default)]
-pub(super) struct Found {
-    /// The scene as it was written, by its own settings.
-    pub(super) written: Option<Solved>,
-    /// Models with hardly any error of the integration, the mesh as it was written.
-    pub(super) models: Vec<Solved>,
-    /// The richest law on meshes from coarse to fine; the last one is what all is compared with.
-    pub(super) meshes: Vec<Solved>,
-    /// What was left out, and what that changes (relative).
-    pub(super) terms: Vec<(Term, f64)>,
-    /// By how much the other measure of strain changes it, and the other inertia.
-    pub(super) law: Option<f64>,
-    pub(super) inertia: Option<f64>,
-    /// What is enough, by several methods and tolerances.
-    pub(super) sweep: Vec<Solved>,
-    /// Time (s) until which two tight runs agree, if that is before the end.
-    pub(super) known_until: Option<f64>,
-    pub(super) not_tried: Vec<String>,
-}
+use crate::study::tightening;
 
 /// Parts of the accuracy that errors of a kind may take: of the integration of those runs that models are compared
-/// by, of the law, of each term that is left out, and of the mesh.
+/// by, of alpha, of the law, of each term that is left out, and of the mesh.
 const OF_TIGHT: f64 = 0.05;
+const OF_ALPHA: f64 = 0.05;
 const OF_LAW: f64 = 0.3;
 const OF_TERM: f64 = 0.05;
 const OF_MESH: f64 = 0.6;
 /// The finest mesh is fine enough if it may be off by this part of the accuracy itself.
 const OF_TRUTH: f64 = 0.3;
-/// Tolerances of the runs that models are compared by: the first, as part of the accuracy, what each is of the one before, and the
-/// tightest.
-const FIRST: f64 = 0.1;
-const TIGHTER: f64 = 0.1;
-const TIGHTEST: f64 = 1e-11;
-const LOOSEST: f64 = 1e-3;
+/// What alpha is multiplied by, and the largest (1/s) that is tried.
+const FIRMER: f64 = 10.0;
+const FIRMEST: f64 = 1e6;
 /// Tolerances that are swept.
 const TOLERANCES: [f64; 10] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8];
 /// A sweep ends where runs take so many times as long as the fastest that is right.
 const PATIENCE: f64 = 2.0;
-/// What halving the cells leaves of the error: linear cells have order 2, and less at corners.
-pub(super) const HALVING: f64 = 1.0 / 3.0;
 
 impl Search<'_> {
     /// Climbs until all is known, or there is no more time.
@@ -55,49 +31,44 @@ impl Search<'_> {
         let written = Choice::written(&self.scene, &self.request.settings);
         found.written = self.run(&written)?;
         let Some(tight) = self.tight(&written, found)? else { return Ok(()) };
-        found.models.push(tight.clone());
-        let rich = self.law(&tight, found)?;
-        self.refine(&rich, found)?;
-        self.leave_out(&rich, found)?;
-        match self.enough(&rich, found) {
-            // no method makes up for a mesh that is too coarse
-            Some(enough) if self.allowed(found) > 0.0 => self.sweep(&enough, found),
-            _ => Ok(()),
+        found.tight = Some(tight.clone());
+        let freedom = self.request.freedom;
+        let firm = if freedom.others { self.alpha(tight, found)? } else { tight };
+        let rich = if freedom.strain { self.law(firm, found)? } else { firm };
+        found.meshes.push(rich.clone());
+        if freedom.cells {
+            self.refine(&rich, found)?;
         }
-    }
-
-    fn error(&self, one: &Solved, truth: &Solved) -> f64 {
-        truth.seen.distance(&one.seen).mean / truth.seen.scale
+        if freedom.others {
+            self.leave_out(&rich, found)?;
+        }
+        let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
+        // no method makes up for a mesh that is too coarse
+        if found.allowed(self.request.accuracy) <= 0.0 {
+            return Ok(());
+        }
+        self.sweep(&enough, found)?;
+        self.by_itself(&rich, found)
     }
 
     /// The model as it was written with hardly any error of the integration. `None` if it has no such motion.
     fn tight(&mut self, written: &Choice, found: &mut Found) -> Result<Option<Solved>, Stop> {
-        let mut rtol = (FIRST * self.request.accuracy).clamp(TIGHTEST, LOOSEST);
+        let accuracy = self.request.accuracy;
+        let mut rtol = tightening::first(accuracy);
         let mut before: Option<Solved> = None;
         loop {
-            let contact_events = ContactEvents::Locate;
-            let Settings { alpha, max_step, max_steps, .. } = self.request.settings;
-            let own = Settings {
-                rtol,
-                contact_events,
-                alpha,
-                max_step,
-                max_steps,
-                ..Settings::default()
-            };
-            let Some(solved) = self.run(&Choice { settings: own, ..written.clone() })? else {
+            let settings = self.request.settings(Method::Auto, rtol, ContactEvents::Locate);
+            let Some(solved) = self.run(&Choice { settings, ..written.clone() })? else {
                 return Ok(before);
             };
             if let Some(before) = &before {
-                let apart = self.error(before, &solved);
-                if apart <= OF_TIGHT * self.request.accuracy {
+                let apart = before.error(&solved);
+                let is_last = tightening::is_tightest(rtol);
+                if apart <= OF_TIGHT * accuracy || (is_last && apart <= accuracy) {
                     return Ok(Some(solved));
                 }
-                if rtol <= 2.0 * TIGHTEST && apart <= self.request.accuracy {
-                    return Ok(Some(solved));
-                }
-                if rtol <= 2.0 * TIGHTEST {
-                    let limit = self.request.accuracy * solved.seen.scale;
+                if is_last {
+                    let limit = accuracy * solved.seen.scale;
                     let distances = solved.seen.distances(&before.seen);
                     let parted = distances.iter().position(|distance| *distance > limit);
                     // of a number that follows from the motion it is not known since when
@@ -108,32 +79,51 @@ impl Search<'_> {
                 }
             }
             before = Some(solved);
-            rtol = (TIGHTER * rtol).max(TIGHTEST);
+            rtol = tightening::tighter(rtol);
         }
     }
 
+    /// An alpha of which ten times as much changes nothing that counts.
+    fn alpha(&mut self, tight: Solved, found: &mut Found) -> Result<Solved, Stop> {
+        let has_rows = self.scene.phases().iter().any(|phase| !phase.constraints.is_empty());
+        let mut firm = tight;
+        while has_rows && firm.choice.settings.alpha < FIRMEST {
+            let alpha = firm.choice.settings.alpha;
+            let settings = Settings { alpha: FIRMER * alpha, ..firm.choice.settings.clone() };
+            let Some(firmer) = self.run(&Choice { settings, ..firm.choice.clone() })? else {
+                break;
+            };
+            let change = firm.error(&firmer);
+            found.alphas.push((alpha, change));
+            found.models.push(firmer.clone());
+            if change <= OF_ALPHA * self.request.accuracy {
+                break;
+            }
+            firm = firmer;
+        }
+        Ok(firm)
+    }
+
     /// The measure of strain that is right however far cells turn, and what the other one changes.
-    fn law(&mut self, tight: &Solved, found: &mut Found) -> Result<Solved, Stop> {
-        let other = match tight.choice.strain {
+    fn law(&mut self, firm: Solved, found: &mut Found) -> Result<Solved, Stop> {
+        let strain = match firm.choice.strain {
             Strain::Cauchy => Strain::Green,
             Strain::Green => Strain::Cauchy,
         };
-        let Some(other) = self.run(&Choice { strain: other, ..tight.choice.clone() })? else {
-            return Ok(tight.clone());
+        let Some(other) = self.run(&Choice { strain, ..firm.choice.clone() })? else {
+            return Ok(firm);
         };
-        let [rich, poor] = match other.choice.strain {
-            Strain::Green => [&other, tight],
-            Strain::Cauchy => [tight, &other],
+        found.models.push(other.clone());
+        let [rich, poor] = match strain {
+            Strain::Green => [other, firm],
+            Strain::Cauchy => [firm, other],
         };
-        found.law = Some(self.error(poor, rich));
-        let rich = rich.clone();
-        found.models.push(other);
+        found.law = Some(poor.error(&rich));
         Ok(rich)
     }
 
     /// Finer meshes, until the finest two tell how good they are.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
-        found.meshes.push(rich.clone());
         let kind = self.scene.body().mesh().kind();
         let has_quadratic =
             matches!(kind, CellKind::Triangle | CellKind::Quadrilateral | CellKind::Tetrahedron);
@@ -146,7 +136,7 @@ impl Search<'_> {
         ]);
         steps.dedup();
         for choice in steps {
-            let Some(last) = found.meshes.last() else { return Ok(()) };
+            let Some(last) = found.truth() else { return Ok(()) };
             let scene = match choice.scene(&self.scene) {
                 Ok(scene) => scene,
                 Err(error) => {
@@ -165,7 +155,7 @@ impl Search<'_> {
             // two steps that agree need no third
             if choice.halved == 2
                 && has_quadratic
-                && self.resolution(found) < OF_TRUTH * self.request.accuracy
+                && found.resolution() < OF_TRUTH * self.request.accuracy
             {
                 return Ok(());
             }
@@ -176,27 +166,12 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// The error that the finest mesh may have itself, as the one before tells.
-    pub(super) fn resolution(&self, found: &Found) -> f64 {
-        match &found.meshes[..] {
-            [.., before, truth] => HALVING * self.error(before, truth),
-            _ => f64::NAN,
-        }
-    }
-
-    /// The error that a candidate may have: the accuracy less what its measure may be off by. A mesh that was compared with
-    /// none is taken as it is.
-    pub(super) fn allowed(&self, found: &Found) -> f64 {
-        let resolution = self.resolution(found);
-        self.request.accuracy - if resolution.is_nan() { 0.0 } else { resolution }
-    }
-
     /// Tries what may be left out.
     fn leave_out(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
         for term in self.scene.terms() {
             let choice = Choice { without: vec![term.clone()], ..rich.choice.clone() };
             if let Some(solved) = self.run(&choice)? {
-                found.terms.push((term, self.error(&solved, rich)));
+                found.terms.push((term, solved.error(rich)));
                 found.models.push(solved);
             }
         }
@@ -205,17 +180,17 @@ impl Search<'_> {
             Inertia::Lumped => Inertia::Consistent,
         };
         if let Some(solved) = self.run(&Choice { inertia, ..rich.choice.clone() })? {
-            found.inertia = Some(self.error(&solved, rich));
+            found.inertia = Some(solved.error(rich));
             found.models.push(solved);
         }
         Ok(())
     }
 
     /// The cheapest model on the cheapest mesh that is right, but for the integration.
-    pub(super) fn enough(&self, rich: &Solved, found: &Found) -> Option<Choice> {
+    fn enough(&self, rich: &Solved, found: &Found) -> Option<Choice> {
         let accuracy = self.request.accuracy;
-        let truth = found.meshes.last()?;
-        let is_fine = |mesh: &&Solved| self.error(mesh, truth) <= OF_MESH * accuracy;
+        let truth = found.truth()?;
+        let is_fine = |mesh: &&Solved| mesh.error(truth) <= OF_MESH * accuracy;
         let fine = found.meshes.iter().filter(is_fine);
         let mesh = fine.min_by(|a, b| a.seconds.total_cmp(&b.seconds)).unwrap_or(truth);
         let strain = match found.law {
@@ -227,38 +202,79 @@ impl Search<'_> {
         Some(Choice { strain, without, ..mesh.choice.clone() })
     }
 
-    /// Methods and tolerances for a model that is enough.
+    /// Methods and tolerances for a model that is enough, and how contact events are met by the fastest of them.
     fn sweep(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
-        let Some(truth) = found.meshes.last().cloned() else { return Ok(()) };
-        let mut fastest = f64::INFINITY;
-        let lumped_is_enough =
-            found.inertia.is_some_and(|error| error <= OF_LAW * self.request.accuracy);
-        let mut ways = vec![
-            (Method::Auto, enough.inertia),
-            (Method::Arkode, enough.inertia),
-            (Method::CvodeBdf, enough.inertia),
-        ];
-        if lumped_is_enough || enough.inertia == Inertia::Lumped {
-            ways.push((Method::CentralDifference, Inertia::Lumped));
+        let Some(truth) = found.truth().cloned() else { return Ok(()) };
+        let (accuracy, freedom) = (self.request.accuracy, self.request.freedom);
+        let allowed = found.allowed(accuracy);
+        let written = &self.request.settings;
+        let (own_method, own_rtol) = (written.method, [written.rtol]);
+        let mut ways = vec![(own_method, enough.inertia)];
+        if freedom.others {
+            let implicit = [Method::Auto, Method::Arkode, Method::CvodeBdf];
+            ways = implicit.map(|method| (method, enough.inertia)).into();
+            let lumped_is_enough = found.inertia.is_some_and(|error| error <= OF_LAW * accuracy);
+            if lumped_is_enough || enough.inertia == Inertia::Lumped {
+                ways.push((Method::CentralDifference, Inertia::Lumped));
+            }
         }
+        let tolerances = if freedom.rtol { &TOLERANCES[..] } else { &own_rtol };
+        let mut fastest: Option<Solved> = None;
         for (method, inertia) in ways {
-            for rtol in TOLERANCES {
-                let Settings { alpha, max_step, max_steps, .. } = self.request.settings;
-                let own =
-                    Settings { method, rtol, alpha, max_step, max_steps, ..Settings::default() };
-                let choice = Choice { settings: own, inertia, ..enough.clone() };
-                let Some(solved) = self.run(&choice)? else { continue };
-                let is_right = self.error(&solved, &truth) <= self.allowed(found);
-                let seconds = solved.seconds;
-                found.sweep.push(solved);
-                if is_right {
-                    fastest = fastest.min(seconds);
-                    break;
+            for &rtol in tolerances {
+                let settings = match freedom.others {
+                    true => Settings {
+                        alpha: enough.settings.alpha,
+                        ..self.request.settings(method, rtol, ContactEvents::Auto)
+                    },
+                    false => Settings { rtol, ..self.request.settings.clone() },
+                };
+                let choice = Choice { settings, inertia, ..enough.clone() };
+                let limit = fastest.as_ref().map_or(f64::INFINITY, |fastest| fastest.seconds);
+                self.patience = PATIENCE * limit;
+                let solved = self.run(&choice);
+                self.patience = f64::INFINITY;
+                let Some(solved) = solved? else {
+                    if self.cut == Some(Cut::Late) {
+                        let late = "it takes more than twice as long as the fastest that is right";
+                        found
+                            .not_tried
+                            .push(format!("{method} at rtol {rtol:.0e} to its end: {late}"));
+                        break;
+                    }
+                    continue;
+                };
+                found.sweep.push(solved.clone());
+                let is_right = solved.error(&truth) <= allowed;
+                let is_late = solved.seconds > PATIENCE * limit;
+                if is_right && solved.seconds < limit {
+                    fastest = Some(solved);
                 }
-                if seconds > PATIENCE * fastest {
+                if is_right || is_late {
                     break;
                 }
             }
+        }
+        let Some(fastest) = fastest.filter(|_| freedom.others) else { return Ok(()) };
+        let has_contact =
+            !fastest.choice.scene(&self.scene).is_ok_and(|s| s.obstacles().is_empty());
+        for contact_events in [ContactEvents::StepOver, ContactEvents::Locate] {
+            let settings = Settings { contact_events, ..fastest.choice.settings.clone() };
+            if has_contact
+                && let Some(solved) = self.run(&Choice { settings, ..fastest.choice.clone() })?
+            {
+                found.sweep.push(solved);
+            }
+        }
+        Ok(())
+    }
+
+    /// The model that is enough with hardly any error of the integration: what of its error is the model's, and what the mesh's.
+    fn by_itself(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
+        let Some(best) = found.best(self.request) else { return Ok(()) };
+        let choice = Choice { settings: rich.choice.settings.clone(), ..best.choice.clone() };
+        if found.all().all(|solved| solved.choice != choice) {
+            found.enough = self.run(&choice)?;
         }
         Ok(())
     }

@@ -4,10 +4,17 @@ mod advice;
 mod adviser;
 mod answer;
 mod choice;
+mod found;
+mod freedom;
 mod ladder;
+mod parts;
 mod record;
+mod runs;
 mod search;
+mod words;
 
 pub use advice::{Advice, Candidate};
 pub use adviser::Adviser;
 pub use choice::Choice;
+pub use freedom::Freedom;
+pub use parts::Parts;

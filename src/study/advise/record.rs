@@ -5,24 +5,34 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::advice::{Advice, Candidate};
+use super::parts::Parts;
 use crate::error::Error;
 use crate::output::write_file;
 use crate::scene::Scene;
+use crate::settings::Settings;
 
 impl Advice {
-    /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `law`,
-    /// `inertia`, `terms`, `candidates`, `known_until`, `not_tried`, `is_cut_short`, `runs`, `seconds`, as the fields are; `null` is
-    /// not known. A candidate has `model` and `set`, what has to be set in the file of the scene `written` for it.
+    /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `alphas`,
+    /// `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` is
+    /// not known. A candidate has `model` and `set`, what has to be set for it in the file of the scene `written` with `settings`.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
-    pub fn write_json(&self, written: &Scene, path: impl AsRef<Path>) -> Result<(), Error> {
+    pub fn write_json(
+        &self,
+        written: &Scene,
+        settings: &Settings,
+        path: impl AsRef<Path>,
+    ) -> Result<(), Error> {
         let candidate = |candidate: &Candidate| -> Value {
-            let Candidate { choice, error, seconds, unknowns, failure } = candidate;
+            let Candidate { choice, error, parts, seconds, unknowns, failure } = candidate;
             json!({
                 "model": choice.to_string(),
-                "set": choice.overrides(written),
+                "set": choice.overrides(written, settings),
                 "error": error,
+                "parts": parts.map(|Parts { model, mesh, time }| {
+                    json!({ "model": model, "mesh": mesh, "time": time })
+                }),
                 "seconds": seconds,
                 "unknowns": unknowns,
                 "failure": failure,
@@ -40,15 +50,20 @@ impl Advice {
             "enough": self.enough.as_ref().map(candidate),
             "truth": self.truth.as_ref().map(candidate),
             "resolution": self.resolution,
+            "alphas": self.alphas.iter().map(|(alpha, change)| {
+                json!({ "alpha": alpha, "ten_times_as_much_changes": change })
+            }).collect::<Vec<_>>(),
             "law": self.law,
             "inertia": self.inertia,
             "terms": terms.collect::<Vec<_>>(),
             "candidates": self.candidates.iter().map(candidate).collect::<Vec<_>>(),
             "known_until": self.known_until,
+            "end": self.end,
             "not_tried": self.not_tried,
             "is_cut_short": self.is_cut_short,
             "runs": self.runs,
             "seconds": self.seconds,
+            "known": self.known,
         });
         write_file(path.as_ref(), |file| writeln!(file, "{document:#}"))
     }
@@ -61,7 +76,7 @@ impl Advice {
         write_file(path.as_ref(), |file| {
             let mut table = csv::Writer::from_writer(file);
             table.write_record(["model", "error", "seconds", "unknowns", "failure"])?;
-            for Candidate { choice, error, seconds, unknowns, failure } in &self.candidates {
+            for Candidate { choice, error, seconds, unknowns, failure, .. } in &self.candidates {
                 table.write_record([
                     choice.to_string(),
                     error.map(|error| format!("{error:e}")).unwrap_or_default(),

@@ -5,9 +5,11 @@ use std::time::Instant;
 
 use super::advice::Candidate;
 use super::choice::Choice;
+use super::freedom::Freedom;
+use super::runs::{Outcome, Runs};
 use crate::error::Error;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::settings::{ContactEvents, Method, Settings};
 use crate::study::quantity::{Quantity, Seen};
 use crate::study::truth::{Probe, reason};
 use crate::trajectory::Trajectory;
@@ -20,6 +22,21 @@ pub(super) struct Request {
     pub(super) quantity: Quantity,
     /// Time (s) for all runs.
     pub(super) budget: f64,
+    pub(super) freedom: Freedom,
+}
+
+impl Request {
+    /// Those of the request, by another method and tolerance.
+    pub(super) fn settings(
+        &self,
+        method: Method,
+        rtol: f64,
+        contact_events: ContactEvents,
+    ) -> Settings {
+        let (atol_position, atol_velocity) = (None, None);
+        let own = self.settings.clone();
+        Settings { method, rtol, contact_events, atol_position, atol_velocity, ..own }
+    }
 }
 
 /// A run that has come to its end.
@@ -31,11 +48,19 @@ pub(super) struct Solved {
     pub(super) unknowns: usize,
 }
 
-/// Why the search ends before its time: the budget is spent, or the observer says so.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+impl Solved {
+    /// Its relative error, if `truth` is right.
+    pub(super) fn error(&self, truth: &Self) -> f64 {
+        truth.seen.error(&self.seen).mean
+    }
+}
+
+/// Why the search ends before its time: the budget is spent, the observer says so, or runs cannot be kept.
+#[derive(Debug)]
 pub(super) enum Stop {
     Budget,
     Interrupted,
+    Trouble(Error),
 }
 
 /// Runs candidates within the budget.
@@ -47,10 +72,26 @@ pub(super) struct Search<'a> {
     pub(super) nodes: usize,
     pub(super) observer: &'a mut dyn FnMut(&str) -> ControlFlow<()>,
     pub(super) began: Instant,
+    pub(super) kept: Runs,
     pub(super) failures: Vec<Candidate>,
+    /// Runs that were made, and that were known already.
     pub(super) runs: usize,
-    /// Whether the observer has ended it.
-    pub(super) is_interrupted: bool,
+    pub(super) known: usize,
+    /// The longest time (s) that a run may take.
+    pub(super) patience: f64,
+    /// Why the last run was cut short, if it was.
+    pub(super) cut: Option<Cut>,
+}
+
+/// Why a run is cut short.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cut {
+    /// The observer says so.
+    Interrupted,
+    /// Its share of the time that is left is spent.
+    Share,
+    /// It takes longer than the search has patience for.
+    Late,
 }
 
 /// A run this short (s) is timed again, so many times in all.
@@ -63,9 +104,31 @@ const LEAST: f64 = 0.02;
 /// How run time grows with the unknowns: between the plane and space.
 const GROWTH: f64 = 1.5;
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    /// Of `scene`, within the budget from now on.
+    pub(super) fn new(
+        request: &'a Request,
+        scene: &Scene,
+        kept: Runs,
+        observer: &'a mut dyn FnMut(&str) -> ControlFlow<()>,
+    ) -> Self {
+        Self {
+            request,
+            scene: scene.clone(),
+            nodes: scene.body().to_builder().own_mesh().node_count(),
+            observer,
+            began: Instant::now(),
+            kept,
+            failures: Vec::new(),
+            runs: 0,
+            known: 0,
+            patience: f64::INFINITY,
+            cut: None,
+        }
+    }
+
     /// Seconds left.
-    pub(super) fn left(&self) -> f64 {
+    fn left(&self) -> f64 {
         self.request.budget - self.began.elapsed().as_secs_f64()
     }
 
@@ -74,34 +137,58 @@ impl Search<'_> {
         self.left() < LEAST * self.request.budget
     }
 
-    /// Runs the scene by a choice. `None` if that gives no motion, which is noted.
+    /// Runs the scene by a choice, if it was not run before. `None` if that gives no motion, which is noted, or if it takes
+    /// longer than there is patience for.
     pub(super) fn run(&mut self, choice: &Choice) -> Result<Option<Solved>, Stop> {
-        match self.attempt(choice) {
-            Ok(solved) => Ok(Some(solved)),
-            Err(Error::Integration(failure))
-                if failure.is_interruption() && self.is_interrupted =>
-            {
-                Err(Stop::Interrupted)
+        self.cut = None;
+        let name = self.kept.name(&self.scene, &self.request.quantity, choice);
+        let outcome = match self.kept.get(&name) {
+            Some(known) => {
+                self.known += 1;
+                known.clone()
             }
-            Err(Error::Integration(failure)) if failure.is_interruption() && self.is_spent() => {
-                Err(Stop::Budget)
+            None => {
+                let outcome = self.attempt(choice, name);
+                match (outcome, self.cut) {
+                    (Ok(outcome), _) => {
+                        self.kept.keep(&outcome).map_err(Stop::Trouble)?;
+                        outcome
+                    }
+                    (Err(_), Some(Cut::Interrupted)) => return Err(Stop::Interrupted),
+                    (Err(_), Some(Cut::Share)) if self.is_spent() => return Err(Stop::Budget),
+                    (Err(_), Some(Cut::Late)) => return Ok(None),
+                    (Err(outcome), _) => outcome,
+                }
             }
-            Err(error) => {
-                let failure = Some(reason(error).to_string());
-                let candidate = Candidate { failure, ..Candidate::new(choice.clone()) };
-                self.failures.push(candidate);
+        };
+        let (choice, Outcome { seen, seconds, unknowns, failure, .. }) = (choice.clone(), outcome);
+        match seen {
+            Some(seen) => Ok(Some(Solved { choice, seen, seconds, unknowns })),
+            None => {
+                self.failures.push(Candidate { failure, ..Candidate::new(choice) });
                 Ok(None)
             }
         }
     }
 
-    fn attempt(&mut self, choice: &Choice) -> Result<Solved, Error> {
+    /// What comes of a run: to be kept, or not as it was cut short.
+    fn attempt(&mut self, choice: &Choice, name: String) -> Result<Outcome, Outcome> {
+        match self.solve(choice) {
+            Ok((seen, seconds, unknowns)) => Ok(Outcome::new(name, Some(seen), seconds, unknowns)),
+            Err(error) => {
+                let outcome = Outcome::failed(name, reason(error).to_string());
+                if self.cut.is_some() { Err(outcome) } else { Ok(outcome) }
+            }
+        }
+    }
+
+    /// What is seen in a run, its time (s) and its unknowns.
+    fn solve(&mut self, choice: &Choice) -> Result<(Seen, f64, usize), Error> {
         let scene = choice.scene(&self.scene)?;
         let what = format!("{choice}: {} nodes", scene.body().mesh().node_count());
         let nodes = (0..self.nodes).collect();
         let probe = Probe::new(&scene, self.request.quantity.clone(), nodes);
         let first = self.once(&scene, &probe, &choice.settings, &what)?;
-        let (seen, unknowns) = (probe.seen(&first), first.report().states);
         let mut seconds = first.report().wall_seconds;
         for _ in 1..REPETITIONS {
             if seconds > SHORT {
@@ -110,7 +197,7 @@ impl Search<'_> {
             let again = self.once(&scene, &probe, &choice.settings, &what)?;
             seconds = seconds.min(again.report().wall_seconds);
         }
-        Ok(Solved { choice: choice.clone(), seen, seconds, unknowns })
+        Ok((probe.seen(&first), seconds, first.report().states))
     }
 
     fn once(
@@ -121,15 +208,18 @@ impl Search<'_> {
         what: &str,
     ) -> Result<Trajectory, Error> {
         self.runs += 1;
-        let least = (1.0 - SHARE) * self.left();
+        let share = SHARE * self.left();
+        let clock = Instant::now();
         // a look at the clock costs nothing beside a step
         scene.simulate_with(settings, &probe.sampling(), |_| {
-            if self.left() < least {
-                return ControlFlow::Break(());
-            }
-            let goes_on = (self.observer)(what);
-            self.is_interrupted = goes_on.is_break();
-            goes_on
+            let seconds = clock.elapsed().as_secs_f64();
+            self.cut = match (self.observer)(what) {
+                ControlFlow::Break(()) => Some(Cut::Interrupted),
+                ControlFlow::Continue(()) if seconds > self.patience => Some(Cut::Late),
+                ControlFlow::Continue(()) if seconds > share => Some(Cut::Share),
+                ControlFlow::Continue(()) => None,
+            };
+            self.cut.map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
         })
     }
 

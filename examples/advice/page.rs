@@ -1,0 +1,65 @@
+//! The page.
+
+use crate::trial::Trial;
+
+const ABOUT: &str = "\
+# The adviser on trial
+
+`pliant advise` says what model of a scene is enough, and how far off it is. Here it is asked about the whole motion of
+scenes, and what it says is compared with a run that it knows nothing of: the richest model that it found, on cells half as
+large as its finest, by ARKODE at a tenth of its tightest tolerance. Errors are root mean square distances of the nodes over 101 times,
+relative to the root mean square displacement. All numbers are results of `cargo run --release --example advice`.
+";
+
+const COLUMNS: &str = "\
+*Promised*: its error as the adviser measured it, with what the adviser's own measure may be off by. *True*: against the run that it
+knows nothing of. *As written*: what it says of the scene file as it stands, and what is true. *Faster*: time of the scene as written over
+that of what is enough. *Advice*: what the advice took, and how many times the run that it is compared with.
+
+| scene | what is enough | promised | true | as written, told | true | faster | advice | in such runs |
+| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |
+";
+
+/// The page on all `trials`, for an accuracy and a budget (s).
+pub fn page(trials: &[Trial], within: f64, budget: f64) -> String {
+    let mut page = ABOUT.to_owned();
+    let right = trials.iter().filter_map(Trial::is_right);
+    let (right, judged) =
+        right.fold((0, 0), |(right, all), is_right| (right + usize::from(is_right), all + 1));
+    let cheap = |trial: &&Trial| {
+        trial.converged.as_ref().is_some_and(|(_, seconds)| trial.advice.seconds <= 3.0 * seconds)
+    };
+    let cheap = trials.iter().filter(cheap).count();
+    page += &format!(
+        "\nAsked for {} % within {budget} s: of {} scenes {judged} were given a model that is enough, and {right} of these are right. \
+         For {cheap} the advice took at most three times the run that it is compared with.\n\n",
+        100.0 * within,
+        trials.len()
+    );
+    page += COLUMNS;
+    trials.iter().for_each(|trial| page += &(trial.row() + "\n"));
+    let unsure = trials.iter().filter_map(|trial| Some((&trial.name, trial.not_finer.as_ref()?)));
+    let unsure: Vec<String> = unsure
+        .map(|(name, why)| {
+            let why = why.lines().next().unwrap_or_default();
+            format!("- **{name}**: {why}\n")
+        })
+        .collect();
+    if !unsure.is_empty() {
+        page += "\nNo run on cells half as large as the adviser's finest (compared on those instead, if at all):\n\n";
+        unsure.iter().for_each(|line| page += line);
+    }
+    let silent = trials.iter().filter(|trial| trial.advice.enough.is_none());
+    let silent: Vec<String> = silent
+        .map(|trial| {
+            let advice = trial.advice.to_string();
+            let line = advice.lines().find(|line| line.starts_with("Nothing"));
+            format!("- **{}**: {}\n", trial.name, line.unwrap_or("no motion to compare with"))
+        })
+        .collect();
+    if !silent.is_empty() {
+        page += "\nNothing was promised:\n\n";
+        silent.iter().for_each(|line| page += line);
+    }
+    page
+}

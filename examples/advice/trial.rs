@@ -1,0 +1,156 @@
+//! One scene: what is promised, and what is true.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use pliant::study::{Advice, Adviser, Candidate, Choice, time_text};
+use pliant::{Error, Method, Sampling, Scene, Settings};
+
+/// An advice and what it is compared with.
+pub struct Trial {
+    pub name: String,
+    pub advice: Advice,
+    /// True relative errors of what is enough and of what was written, if both gave a motion again.
+    pub enough: Option<f64>,
+    pub written: Option<f64>,
+    /// The run that they are compared with, and its time (s).
+    pub converged: Option<(Choice, f64)>,
+    /// Why there is none on a finer mesh.
+    pub not_finer: Option<String>,
+}
+
+/// Times at which motions are compared.
+const TIMES: usize = 101;
+/// What the tolerance of the run that all is compared with is of the adviser's tightest.
+const TIGHTER: f64 = 0.1;
+
+impl Trial {
+    /// Asks about the whole motion of `scene` to an accuracy, within a budget (s); no run that it is compared with may take longer
+    /// than a limit (s).
+    pub fn run(
+        name: String,
+        scene: &Scene,
+        settings: &Settings,
+        [accuracy, budget, limit]: [f64; 3],
+    ) -> Result<Self, Error> {
+        let adviser = Adviser::new(scene, accuracy).settings(settings.clone()).budget(budget);
+        let advice = adviser.run(&mut |_| ControlFlow::Continue(()))?;
+        let scene = scene.clone().ended_at(advice.end);
+        let mut trial =
+            Self { name, advice, enough: None, written: None, converged: None, not_finer: None };
+        let Some(truth) = &trial.advice.truth else { return Ok(trial) };
+        // another method, a tighter tolerance, a finer mesh
+        let rtol = TIGHTER * truth.choice.settings.rtol;
+        let own = &truth.choice.settings;
+        let settings = Settings { method: Method::Arkode, rtol, ..own.clone() };
+        let same = Choice { settings, ..truth.choice.clone() };
+        let finer = Choice { halved: same.halved + 1, ..same.clone() };
+        let (converged, choice) = match motion(&finer, &scene, limit) {
+            Ok(converged) => (converged, finer),
+            Err(reason) => {
+                trial.not_finer = Some(reason);
+                match motion(&same, &scene, limit) {
+                    Ok(converged) => (converged, same),
+                    Err(_) => return Ok(trial),
+                }
+            }
+        };
+        let error = |candidate: &Candidate| {
+            let Motion { places, .. } = motion(&candidate.choice, &scene, limit).ok()?;
+            Some(distance(&places, &converged.places) / size(&converged.places))
+        };
+        trial.enough = trial.advice.enough.as_ref().and_then(error);
+        trial.written = error(&trial.advice.written);
+        trial.converged = Some((choice, converged.seconds));
+        Ok(trial)
+    }
+
+    /// Whether what was promised is true; none where nothing was promised, or nothing is known.
+    pub fn is_right(&self) -> Option<bool> {
+        self.enough.map(|error| error <= self.advice.accuracy)
+    }
+
+    /// A row of the table.
+    pub fn row(&self) -> String {
+        let Self { name, advice, enough, written, converged, .. } = self;
+        let percent = |error: Option<f64>| match error {
+            Some(error) => format!("{:.2} %", 100.0 * error),
+            None => "–".into(),
+        };
+        let (needs, promised) = match &advice.enough {
+            Some(enough) => {
+                let known = !advice.resolution.is_nan();
+                let sure = if known { "" } else { " on this mesh" };
+                let promised = enough.error.map(|error| error + advice.resolution.max(0.0));
+                (enough.choice.to_string(), percent(promised) + sure)
+            }
+            None => ("nothing known".into(), "–".into()),
+        };
+        let known = match advice.known_until {
+            Some(_) => format!(" until {:.2} s", advice.end),
+            None => String::new(),
+        };
+        let (cost, faster) = match converged {
+            Some((_, seconds)) => (
+                format!("{:.1}", advice.seconds / seconds),
+                advice.enough.as_ref().map(|enough| advice.written.seconds / enough.seconds),
+            ),
+            None => ("–".into(), None),
+        };
+        let faster = faster.map_or("–".into(), |ratio| format!("{ratio:.1}"));
+        let time = time_text(advice.seconds);
+        let [told, wrote, true_] = [advice.written.error, *written, *enough].map(percent);
+        format!(
+            "| {name}{known} | {needs} | {promised} | {true_} | {told} | {wrote} | {faster} | {time} | {cost} |"
+        )
+    }
+}
+
+/// Where the nodes of the mesh as it was written are, time by time.
+struct Motion {
+    places: Vec<Vec<f64>>,
+    seconds: f64,
+}
+
+/// That of `scene` by a choice, or why there is none.
+fn motion(choice: &Choice, scene: &Scene, limit: f64) -> Result<Motion, String> {
+    let dofs = scene.body().mesh().node_count() * scene.body().dimension();
+    let finer = choice.scene(scene).map_err(|error| error.to_string())?;
+    let times: Vec<f64> = (1..=TIMES).map(|k| scene.end() * (k as f64 / TIMES as f64)).collect();
+    let clock = Instant::now();
+    let result = finer.simulate_with(&choice.settings, &Sampling::at(&*times), |_| {
+        match clock.elapsed().as_secs_f64() > limit {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    let seconds = clock.elapsed().as_secs_f64();
+    let trajectory = result.map_err(|error| match error {
+        Error::Integration(failure) if failure.is_interruption() => {
+            format!("not done in {limit} s")
+        }
+        error => error.to_string(),
+    })?;
+    // samples at ends of phases are more
+    let is_asked = |time: f64| times.iter().any(|asked| (asked - time).abs() <= 1e-9 * scene.end());
+    let mut samples: Vec<_> = trajectory.samples().iter().skip(1).collect();
+    samples.retain(|sample| is_asked(sample.time));
+    samples.dedup_by(|a, b| (a.time - b.time).abs() <= 1e-9 * scene.end());
+    let places = samples.iter().map(|sample| sample.u[..dofs].to_vec()).collect();
+    Ok(Motion { places, seconds })
+}
+
+/// Root mean square over all times and components.
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), x| (sum + x * x, count + 1.0));
+    f64::sqrt(sum / count)
+}
+
+fn distance(one: &[Vec<f64>], other: &[Vec<f64>]) -> f64 {
+    assert_eq!(one.len(), other.len(), "motions are seen at the same times");
+    mean(one.iter().flatten().zip(other.iter().flatten()).map(|(a, b)| a - b))
+}
+
+fn size(one: &[Vec<f64>]) -> f64 {
+    mean(one.iter().flatten().copied())
+}

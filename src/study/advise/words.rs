@@ -1,0 +1,14 @@
+//! Numbers in words.
+
+use crate::input::told;
+
+/// A relative number in percent.
+pub(super) fn percent(part: f64) -> String {
+    format!("{} %", short(100.0 * part))
+}
+
+/// A number with two digits.
+pub(super) fn short(value: f64) -> String {
+    let rounded = format!("{value:.1e}").parse().unwrap_or(value);
+    told(rounded)
+}
