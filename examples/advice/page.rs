@@ -46,7 +46,7 @@ pub fn page(trials: &[Trial], within: f64, budget: f64) -> String {
         })
         .collect();
     if !unsure.is_empty() {
-        page += "\nNo run on cells half as large as the adviser's finest (compared on those instead, if at all):\n\n";
+        page += "\nCompared on the adviser's own finest mesh, and not on a finer one, as there was none:\n\n";
         unsure.iter().for_each(|line| page += line);
     }
     let silent = trials.iter().filter(|trial| trial.advice.enough.is_none());

@@ -45,7 +45,12 @@ impl Trial {
         let settings = Settings { method: Method::Arkode, rtol, ..own.clone() };
         let same = Choice { settings, ..truth.choice.clone() };
         let finer = Choice { halved: same.halved + 1, ..same.clone() };
-        let (converged, choice) = match motion(&finer, &scene, limit) {
+        // what is said of the mesh as it was written is true or not on that
+        let found = match trial.advice.mesh {
+            None => motion(&finer, &scene, limit),
+            Some(apart) => Err(format!("the mesh as written, of which a finer one is {:.0} % away", 100.0 * apart)),
+        };
+        let (converged, choice) = match found {
             Ok(converged) => (converged, finer),
             Err(reason) => {
                 trial.not_finer = Some(reason);

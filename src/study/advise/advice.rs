@@ -24,6 +24,9 @@ pub struct Advice {
     pub truth: Option<Candidate>,
     /// See `truth`.
     pub resolution: f64,
+    /// Where no finer mesh is fine enough to compare with, so that the mesh is taken as it was written: by how much the finest
+    /// that was tried differs from it (relative).
+    pub mesh: Option<f64>,
     /// Values of alpha (1/s), each with what ten times as much changes (relative).
     pub alphas: Vec<(f64, f64)>,
     /// What the other measure of strain changes.

@@ -158,6 +158,7 @@ impl<'a> Adviser<'a> {
             enough: found.best(&self.request).map(candidate),
             truth: truth.map(candidate),
             resolution: found.resolution(),
+            mesh: found.mesh(),
             candidates,
             runs: search.runs,
             known: search.known,

@@ -44,9 +44,10 @@ impl Advice {
                     (true, times) => format!("quadratic cells, halved {times} time(s)"),
                 };
                 let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
+                let differs = if self.mesh.is_some() { "away" } else { "off" };
                 reasons.push(match error {
                     0.0 => format!("{mesh}: {unknowns} unknowns; what all are compared with"),
-                    _ => format!("{mesh}: {unknowns} unknowns, {} off, {time}", percent(error)),
+                    _ => format!("{mesh}: {unknowns} unknowns, {} {differs}, {time}", percent(error)),
                 });
             }
         }
@@ -100,23 +101,24 @@ impl fmt::Display for Advice {
                 writeln!(f, "\nEnough on this mesh: {}", run(enough))?;
             }
             Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
-            None if self.resolution > self.accuracy => writeln!(
-                f,
-                "\nNothing is known to be enough: even the finest mesh may be off by {}. Allow more time (--budget), or ask \
-                 for less.",
-                percent(self.resolution)
-            )?,
             None => writeln!(f, "\nNothing that was tried is enough.")?,
         }
         writeln!(f, "As written:  {}", run(&self.written))?;
-        if self.resolution.is_nan() {
-            writeln!(
+        match self.mesh {
+            Some(apart) => writeln!(
+                f,
+                "This mesh is not fine enough itself: the finest that was tried differs from it by {}, and may not be either. \
+                 Allow more time (--budget); loads on single nodes and sharp corners may leave no limit.",
+                percent(apart)
+            )?,
+            None if self.resolution.is_nan() => writeln!(
                 f,
                 "What the mesh lacks is not known: no finer one gave a motion to compare with."
-            )?;
-        } else {
-            let resolution = percent(self.resolution);
-            writeln!(f, "What they are compared with may itself be off by {resolution}.")?;
+            )?,
+            None => {
+                let resolution = percent(self.resolution);
+                writeln!(f, "What they are compared with may itself be off by {resolution}.")?;
+            }
         }
         writeln!(f)?;
         for reason in self.reasons() {

@@ -15,6 +15,8 @@ pub(super) struct Found {
     pub(super) models: Vec<Solved>,
     /// The richest model on meshes from coarse to fine; the last one is what all is compared with.
     pub(super) meshes: Vec<Solved>,
+    /// Finer ones that are not fine enough either: then the mesh is taken as it was written, and stands alone above.
+    pub(super) finer: Vec<Solved>,
     /// Values of alpha (1/s), each with what ten times as much changes (relative).
     pub(super) alphas: Vec<(f64, f64)>,
     /// What the other measure of strain changes, and the other inertia.
@@ -31,8 +33,10 @@ pub(super) struct Found {
     pub(super) not_tried: Vec<String>,
 }
 
-/// What halving the cells leaves of the error: linear cells have order 2, and less at corners.
-const HALVING: f64 = 1.0 / 3.0;
+/// What the error of the finer of two meshes is of their distance, if halving the cells leaves a quarter of it; ...
+const ORDER_2: f64 = 1.0 / 3.0;
+/// ... and the most that it counts as if halving leaves nearly all of it, as under loads on single nodes.
+const LEAST_ORDER: f64 = 10.0;
 
 impl Found {
     /// What all is compared with.
@@ -40,12 +44,26 @@ impl Found {
         self.meshes.last()
     }
 
-    /// The error that the finest mesh may have itself, as the one before tells. Not a number where there is but one.
+    /// The error that the finest mesh may have itself, as those before tell: two by their distance and order 2, three by what
+    /// the last step has left of the distance. Not a number where there is but one.
     pub(super) fn resolution(&self) -> f64 {
-        match &self.meshes[..] {
-            [.., before, truth] => HALVING * before.error(truth),
-            _ => f64::NAN,
-        }
+        let (Some(truth), [.., before, _]) = (self.truth(), &self.meshes[..]) else {
+            return f64::NAN;
+        };
+        let apart = |a: &Solved, b: &Solved| a.seen.distance(&b.seen).mean / truth.seen.scale;
+        let last = apart(before, truth);
+        let left = match &self.meshes[..] {
+            [.., first, second, third] if first.choice.quadratic == third.choice.quadratic => {
+                let rate = apart(second, third) / apart(first, second);
+                if rate < 1.0 {
+                    (rate / (1.0 - rate)).clamp(ORDER_2, LEAST_ORDER)
+                } else {
+                    LEAST_ORDER
+                }
+            }
+            _ => ORDER_2,
+        };
+        left * last
     }
 
     /// The error that a candidate may have for an `accuracy`: that less what its measure may be off by. A mesh that was compared with
@@ -58,7 +76,20 @@ impl Found {
     /// All runs, in the order in which they were made.
     pub(super) fn all(&self) -> impl Iterator<Item = &Solved> {
         let models = self.written.iter().chain(&self.tight).chain(&self.models);
-        models.chain(self.meshes.iter().skip(1)).chain(&self.enough).chain(&self.sweep)
+        let meshes = self.meshes.iter().skip(1).chain(&self.finer);
+        models.chain(meshes).chain(&self.enough).chain(&self.sweep)
+    }
+
+    /// Takes the mesh as it was written, if even the finest is not fine enough for an `accuracy`.
+    pub(super) fn settle(&mut self, accuracy: f64) {
+        if self.allowed(accuracy) <= 0.0 {
+            self.finer = self.meshes.split_off(1);
+        }
+    }
+
+    /// By how much the finest mesh differs from the one as it was written, if that is taken as it is.
+    pub(super) fn mesh(&self) -> Option<f64> {
+        Some(self.finer.last()?.error(self.truth()?))
     }
 
     /// The fastest of those that are right, and that leave as it was written what is not to be chosen.

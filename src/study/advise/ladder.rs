@@ -1,5 +1,7 @@
 //! The ladder, one rung at a time: tolerance, alpha, law, mesh, what may be left out, method.
 
+use std::iter;
+
 use super::choice::Choice;
 use super::found::Found;
 use super::search::{Cut, Search, Solved, Stop};
@@ -17,6 +19,8 @@ const OF_TERM: f64 = 0.05;
 const OF_MESH: f64 = 0.6;
 /// The finest mesh is fine enough if it may be off by this part of the accuracy itself.
 const OF_TRUTH: f64 = 0.3;
+/// Cells are halved less often than that.
+const FINEST: usize = 6;
 /// What alpha is multiplied by, and the largest (1/s) that is tried.
 const FIRMER: f64 = 10.0;
 const FIRMEST: f64 = 1e6;
@@ -37,16 +41,14 @@ impl Search<'_> {
         let rich = if freedom.strain { self.law(firm, found)? } else { firm };
         found.meshes.push(rich.clone());
         if freedom.cells {
-            self.refine(&rich, found)?;
+            let refined = self.refine(&rich, found);
+            found.settle(self.request.accuracy);
+            refined?;
         }
         if freedom.others {
             self.leave_out(&rich, found)?;
         }
         let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
-        // no method makes up for a mesh that is too coarse
-        if found.allowed(self.request.accuracy) <= 0.0 {
-            return Ok(());
-        }
         self.sweep(&enough, found)?;
         self.by_itself(&rich, found)
     }
@@ -122,20 +124,15 @@ impl Search<'_> {
         Ok(rich)
     }
 
-    /// Finer meshes, until the finest two tell how good they are.
+    /// Finer meshes, until the finest tell that they are fine enough, or take too long.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
         let kind = self.scene.body().mesh().kind();
         let has_quadratic =
             matches!(kind, CellKind::Triangle | CellKind::Quadrilateral | CellKind::Tetrahedron);
         let finer = |quadratic, halved| Choice { quadratic, halved, ..rich.choice.clone() };
-        let mut steps = vec![finer(false, 1), finer(has_quadratic, usize::from(!has_quadratic))];
-        steps.dedup();
-        steps.extend([
-            finer(has_quadratic, 1 + usize::from(!has_quadratic)),
-            finer(has_quadratic, 2),
-        ]);
-        steps.dedup();
-        for choice in steps {
+        let first = if has_quadratic { 0 } else { 2 };
+        let steps = (first..FINEST).map(|halved| finer(has_quadratic, halved));
+        for choice in iter::once(finer(false, 1)).chain(steps) {
             let Some(last) = found.truth() else { return Ok(()) };
             let scene = match choice.scene(&self.scene) {
                 Ok(scene) => scene,
@@ -152,15 +149,13 @@ impl Search<'_> {
                     .push(format!("{cells}: {unknowns} unknowns take longer than the budget"));
                 return Ok(());
             }
-            // two steps that agree need no third
-            if choice.halved == 2
-                && has_quadratic
-                && found.resolution() < OF_TRUTH * self.request.accuracy
-            {
-                return Ok(());
-            }
             if let Some(solved) = self.run(&choice)? {
                 found.meshes.push(solved);
+            }
+            // linear cells that lock may agree with each other
+            let may_tell = choice.quadratic == has_quadratic;
+            if may_tell && found.resolution() < OF_TRUTH * self.request.accuracy {
+                return Ok(());
             }
         }
         Ok(())

@@ -12,7 +12,7 @@ use crate::scene::Scene;
 use crate::settings::Settings;
 
 impl Advice {
-    /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `alphas`,
+    /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `mesh`, `alphas`,
     /// `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` is
     /// not known. A candidate has `model` and `set`, what has to be set for it in the file of the scene `written` with `settings`.
     ///
@@ -50,6 +50,7 @@ impl Advice {
             "enough": self.enough.as_ref().map(candidate),
             "truth": self.truth.as_ref().map(candidate),
             "resolution": self.resolution,
+            "mesh": self.mesh,
             "alphas": self.alphas.iter().map(|(alpha, change)| {
                 json!({ "alpha": alpha, "ten_times_as_much_changes": change })
             }).collect::<Vec<_>>(),
