@@ -82,7 +82,7 @@ pub use input::{Fraction, InputError};
 pub use integrate::Integrator;
 pub use material::{Lame, Material, Plane};
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
-pub use report::{Achieved, Counts, PhaseReport, Report, SlipEvent};
+pub use report::{Achieved, Counts, Indicator, PhaseReport, Report, SlipEvent, Verdict};
 pub use scene::{BodyState, Phase, Scene, Term};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};

@@ -1,6 +1,11 @@
 //! How a motion was computed, phase by phase, and at what cost.
 
+mod indicator;
+
 use std::fmt;
+
+pub(crate) use indicator::warnings;
+pub use indicator::{Indicator, Verdict};
 
 use crate::input::told;
 use crate::settings::Method;
@@ -26,9 +31,9 @@ pub struct Report {
     pub energy_scale: f64,
     /// Wall-clock time of the whole run (s).
     pub wall_seconds: f64,
-    /// What indicators measured beyond their limits once the run had ended, each with what to change: see
-    /// [`warnings`](Self::warnings).
-    pub doubts: Vec<String>,
+    /// What was measured on the scene and on the motion once the run had ended; what is beyond its limit is among the
+    /// [`warnings`](Self::warnings). [`Trajectory::indicators`](crate::Trajectory::indicators) measures more.
+    pub indicators: Vec<Indicator>,
     /// To what the motion is known, if it was [verified](crate::study::Verification).
     pub achieved: Option<Achieved>,
     /// Phase by phase.
@@ -147,6 +152,11 @@ impl Report {
         self.phases.iter().map(|phase| phase.counts.convergence_failures).sum()
     }
 
+    /// What [`indicators`](Self::indicators) are in doubt about, each with what to change.
+    pub fn doubts(&self) -> Vec<String> {
+        warnings(&self.indicators)
+    }
+
     /// What makes the result doubtful or the run needlessly long: what the integrators noticed, an
     /// energy balance that is off by more than a hundredth of the largest energy and, once the run has ended, what
     /// indicators measured beyond their limits on the scene ([`Scene::warnings`](crate::Scene::warnings)), the
@@ -179,7 +189,7 @@ impl Report {
                 told(known.known_until),
             )
         }));
-        warnings.extend_from_slice(&self.doubts);
+        warnings.extend(self.doubts());
         warnings
     }
 }

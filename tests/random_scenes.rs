@@ -183,7 +183,7 @@ enum Verdict {
 fn doubts(motion: &Trajectory) -> Vec<String> {
     let report = motion.report();
     let mut warnings = report.warnings();
-    warnings.retain(|warning| !report.doubts.contains(warning));
+    warnings.retain(|warning| !report.doubts().contains(warning));
     warnings
 }
 

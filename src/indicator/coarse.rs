@@ -2,6 +2,7 @@
 
 use super::mesh::quadratic_cells;
 use crate::input::told;
+use crate::report::Indicator;
 use crate::trajectory::{Sample, Trajectory};
 
 /// How many times too stiff a body may be for its cells.
@@ -15,7 +16,7 @@ const LEAST_STRAIN: f64 = 1e-8;
 
 /// Linear cells of which too few stand where the strain changes, as through the thickness of a beam that bends. The
 /// strain energy of what jumps between cells is stored in the mesh and not in the body, which is that much too stiff.
-pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<String> {
+pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let body = trajectory.body();
     let mend = quadratic_cells(body.mesh().kind())?;
     let young = body.materials().iter().map(|material| material.young).fold(0.0, f64::max);
@@ -30,7 +31,12 @@ pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Str
     let (jumps, time) = jumps.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
     // the same displacements, without jumps, would take the rest of the energy
     let stiff = 1.0 / (1.0 - jumps.min(0.99));
-    (stiff > MOST_STIFF).then(|| {
+    let within = || {
+        format!(
+            "cells are fine enough for their strains: the body is some {stiff:.2} times too stiff (limit: {MOST_STIFF} times)"
+        )
+    };
+    let beyond = || {
         let finer = ((stiff - 1.0) / (MOST_STIFF - 1.0)).sqrt();
         format!(
             "cells are too coarse for their strains: at t = {} s {:.0} % of the strain energy is in jumps between \
@@ -40,5 +46,7 @@ pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Str
             100.0 * jumps,
             finer.max(1.1)
         )
-    })
+    };
+    let value = (stiff, "1");
+    Some(Indicator::trusted("stiffness-of-cells", value, [1.0, MOST_STIFF], within, beyond))
 }

@@ -5,6 +5,7 @@ use crate::constraint::PhaseStart;
 use crate::force::Force;
 use crate::material::Plane;
 use crate::mesh::CellKind;
+use crate::report::Indicator;
 use crate::scene::Scene;
 
 /// Largest size (m) and mass (kg) of a soft body.
@@ -16,28 +17,40 @@ const SPEEDS: [f64; 2] = [0.1, 1e4];
 const MOST_POISSON: f64 = 0.45;
 
 /// A body in other units than metres, kilograms and pascals.
-pub(super) fn units(body: &Body) -> Vec<String> {
+pub(super) fn units(body: &Body) -> Vec<Indicator> {
     let (size, mass) = (body.mesh().size(), body.mass());
     let mend = "is the mesh in mm? Coordinates are metres: divide them by 1000 (in Gmsh: \
                 Mesh.ScalingFactor = 0.001)";
-    let size = (size > LARGEST)
-        .then(|| format!("the body is {size:.3} m across (limit: {LARGEST} m): {mend}"));
-    let mass = (mass > HEAVIEST)
-        .then(|| format!("the body weighs {mass:.3e} kg (limit: {HEAVIEST} kg): {mend}"));
-    let speeds = body.materials().iter().map(|material| material.wave_speed());
-    let strange = speeds.filter(|speed| !(SPEEDS[0]..=SPEEDS[1]).contains(speed)).map(|speed| {
-        format!(
-            "waves run through the body at {speed:.2e} m/s (limits: {} to {} m/s): young is in Pa, density \
-             in kg/m^3",
+    let size_told = format!("the body is {size:.3} m across (limit: {LARGEST} m)");
+    let size_beyond = || format!("{size_told}: {mend}");
+    let size =
+        Indicator::trusted("size", (size, "m"), [0.0, LARGEST], || size_told.clone(), size_beyond);
+    let mass_told = format!("the body weighs {mass:.3e} kg (limit: {HEAVIEST} kg)");
+    let mass_beyond = || format!("{mass_told}: {mend}");
+    let mass = Indicator::trusted(
+        "mass",
+        (mass, "kg"),
+        [0.0, HEAVIEST],
+        || mass_told.clone(),
+        mass_beyond,
+    );
+    // one mend for both
+    let mass = Some(mass).filter(|_| !size.is_beyond());
+    let speeds = body.materials().iter().map(|material| {
+        let speed = material.wave_speed();
+        let told = format!(
+            "waves run through the body at {speed:.2e} m/s (limits: {} to {} m/s)",
             SPEEDS[0], SPEEDS[1]
-        )
+        );
+        let beyond = || format!("{told}: young is in Pa, density in kg/m^3");
+        Indicator::trusted("wave-speed", (speed, "m/s"), SPEEDS, || told.clone(), beyond)
     });
-    size.or(mass).into_iter().chain(strange).collect()
+    [size].into_iter().chain(mass).chain(speeds).collect()
 }
 
 /// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
 /// several times too stiff.
-pub(super) fn locking(body: &Body) -> Option<String> {
+pub(super) fn locking(body: &Body) -> Option<Indicator> {
     let crossed = match body.mesh().kind() {
         CellKind::Triangle if is_crossed(body) => return None,
         CellKind::Triangle => " or \"crossed\" ones",
@@ -49,13 +62,15 @@ pub(super) fn locking(body: &Body) -> Option<String> {
         return None;
     }
     let most = body.materials().iter().map(|material| material.poisson).fold(-1.0, f64::max);
-    (most > MOST_POISSON).then(|| {
-        let cells = body.mesh().kind().name();
+    let cells = body.mesh().kind().name();
+    let told = format!("Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON})");
+    let beyond = || {
         format!(
-            "Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON}): they lock, and may be several \
-             times too stiff in bending; take {mend}{crossed}, or a smaller ratio"
+            "{told}: they lock, and may be several times too stiff in bending; take {mend}{crossed}, or a smaller ratio"
         )
-    })
+    };
+    let limits = [-1.0, MOST_POISSON];
+    Some(Indicator::trusted("poisson", (most, "1"), limits, || told.clone(), beyond))
 }
 
 /// Quadratic cells to take for linear ones that fill a plane or space.
@@ -85,10 +100,11 @@ fn is_crossed(body: &Body) -> bool {
 }
 
 /// Pieces of the body that neither cells nor springs, other forces or constraints of several nodes join.
-pub(super) fn pieces(scene: &Scene) -> Option<String> {
+pub(super) fn pieces(scene: &Scene) -> Option<Indicator> {
     let pattern = scene.body().inertia().pattern();
+    let whole = || "the body is of one piece (limit: 1 piece)".to_owned();
     if pattern.pieces().iter().all(|&piece| piece == 0) {
-        return None;
+        return Some(Indicator::trusted("pieces", (1.0, ""), [1.0, 1.0], whole, String::new));
     }
     let pieces = pattern.with_pairs(&joints(scene)).pieces();
     let count = pieces.iter().max().map_or(1, |last| last + 1);
@@ -97,7 +113,7 @@ pub(super) fn pieces(scene: &Scene) -> Option<String> {
     // a point mass comes after all others, so that the smallest piece is told by its first node
     let (smallest, nodes) = sizes.iter().enumerate().min_by_key(|(_, nodes)| **nodes)?;
     let first = pieces.iter().position(|&piece| piece == smallest)?;
-    (count > 1).then(|| {
+    let beyond = || {
         format!(
             "the body consists of {count} pieces that nothing joins and that pass through each other (limit: \
              1 piece); the smallest, with node {}, has {nodes} of {} nodes: merge nodes in the same place (in \
@@ -105,7 +121,8 @@ pub(super) fn pieces(scene: &Scene) -> Option<String> {
             first + 1,
             pieces.len()
         )
-    })
+    };
+    Some(Indicator::trusted("pieces", (count as f64, ""), [1.0, 1.0], whole, beyond))
 }
 
 /// Pairs of nodes that are joined, but not by cells.

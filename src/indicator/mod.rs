@@ -14,10 +14,24 @@
 //! | [`touch`]: obstacles that act and are never met | none |
 
 mod coarse;
+mod deformed;
+mod felt;
 mod mesh;
+mod pace;
+mod points;
+mod rigid;
+mod shape;
+mod size;
 mod strain;
+mod symmetry;
 mod touch;
+mod waves;
+mod words;
 
+use deformed::Deformed;
+use shape::Extent;
+
+use crate::report::{Indicator, warnings};
 use crate::scene::Scene;
 use crate::trajectory::{Sample, Trajectory};
 
@@ -36,44 +50,78 @@ impl Scene {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn warnings(&self) -> Vec<String> {
+        warnings(&self.indicators())
+    }
+
+    /// What can be measured before a run, with limits: the size, mass and speed of waves of the body, its cells, its
+    /// pieces. Those beyond their limits are the [`warnings`](Self::warnings).
+    pub fn indicators(&self) -> Vec<Indicator> {
         let body = self.body();
         mesh::units(body).into_iter().chain(mesh::locking(body)).chain(mesh::pieces(self)).collect()
     }
 }
 
-/// What makes a motion doubtful, or the part of it that there is.
-pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<String> {
+impl Trajectory {
+    /// What tells how far the motion can be trusted, and what of the model it needs: what the end of the run
+    /// [measured](crate::Report::indicators), and what takes longer to measure. The limits stand in the
+    /// [guide](https://docs.rs/pliant).
+    pub fn indicators(&self) -> Vec<Indicator> {
+        let (body, samples) = (self.body(), looked_at(self));
+        let deformed = Deformed::of(body, &samples);
+        let extent = Extent::of(body);
+        let mut all = self.report().indicators.clone();
+        all.extend(deformed.indicators(self, extent.as_ref()));
+        all.extend(
+            extent
+                .iter()
+                .flat_map(|extent| extent.indicators(body, deformed.own_turn, deformed.strain)),
+        );
+        all.extend(waves::resolution(self, &samples));
+        all.extend(points::single(self, &samples));
+        all.extend(felt::depth(self, &samples, &touch::meetings(self, &samples)));
+        all.extend(felt::friction(self, &samples));
+        all.extend(pace::drift(self, &samples));
+        all.extend(pace::inertia(&samples));
+        all.extend(pace::vibrations(self.scene()));
+        all.extend(symmetry::plane(body, &samples));
+        all.extend(symmetry::mirrors(body, &samples));
+        all
+    }
+}
+
+/// What tells how far a motion can be trusted, or the part of it that there is.
+pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let samples = looked_at(trajectory);
     let scene = trajectory.scene();
     let is_whole = samples[0].time <= 0.0 && trajectory.last().time >= scene.end();
     let meetings = touch::meetings(trajectory, &samples);
     let missed = || touch::missed(&meetings, touch::Reach::between(scene, &samples));
-    let warnings = scene.warnings().into_iter().chain(of_cells(trajectory, &samples));
-    let warnings = warnings.chain(touch::depths(&meetings));
-    warnings.chain(is_whole.then(missed).into_iter().flatten()).collect()
+    let measured = scene.indicators().into_iter().chain(of_cells(trajectory, &samples));
+    let measured = measured.chain(touch::depths(&meetings));
+    measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
 
-/// What makes an equilibrium doubtful, or the last one on the way to it.
-pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<String> {
+/// What tells how far an equilibrium can be trusted, or the last one on the way to it.
+pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Indicator> {
     let samples = [trajectory.last()];
     let meetings = touch::meetings(trajectory, &samples);
-    let warnings = trajectory.scene().warnings().into_iter();
-    let warnings = warnings.chain(of_cells(trajectory, &samples));
-    let warnings = warnings.chain(touch::depths(&meetings));
-    let warnings = warnings.chain(touch::slippery(trajectory, &meetings));
-    warnings
+    let measured = trajectory.scene().indicators().into_iter();
+    let measured = measured.chain(of_cells(trajectory, &samples));
+    let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(touch::slippery(trajectory, &meetings));
+    measured
         .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())
         .collect()
 }
 
 /// What cells cannot follow.
-fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item = String> {
-    let warnings = [
+fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item = Indicator> {
+    let measured = [
         strain::turning(trajectory, samples),
         strain::inversion(trajectory, samples),
         coarse::coarse(trajectory, samples),
     ];
-    warnings.into_iter().flatten()
+    measured.into_iter().flatten()
 }
 
 /// Most samples that are looked at, and most cells in all of them; but so many samples always are.

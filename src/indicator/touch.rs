@@ -2,8 +2,10 @@
 
 use std::ptr;
 
+use super::size::cell_sizes;
 use crate::body::Body;
 use crate::external::Contact;
+use crate::report::Indicator;
 use crate::scene::{Phase, Scene};
 use crate::trajectory::{Sample, Trajectory};
 use crate::vector::norm;
@@ -21,6 +23,17 @@ pub(super) struct Meeting {
     nearest: f64,
     /// The largest depth (m) for its limit (m), and the node there, counted from 0.
     deepest: Deepest,
+}
+
+impl Meeting {
+    pub(super) fn obstacle(&self) -> &str {
+        &self.obstacle
+    }
+
+    /// How deep (m) nodes were inside.
+    pub(super) fn depth(&self) -> f64 {
+        self.deepest.depth
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -75,34 +88,25 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
     meetings
 }
 
-/// For each node the depth (m) up to which it may be inside an obstacle, by the smallest of its cells. The size of
-/// a cell is the edge of a square or cube that is cut into such cells, or that is such a cell.
+/// For each node the depth (m) up to which it may be inside an obstacle, by the smallest of its cells.
 fn depth_limits(body: &Body) -> Vec<f64> {
-    let mesh = body.mesh();
-    let dimension = mesh.kind().dimension();
-    // a simplex fills the parallelepiped of its edges to this part
-    let is_simplex = mesh.kind().faces().len() == dimension + 1;
-    let parts = if is_simplex { [1.0, 1.0, 2.0, 6.0][dimension] } else { 1.0 };
-    let mut limits = vec![f64::INFINITY; mesh.node_count()];
-    for (cell, volume) in mesh.cells().zip(body.cell_volumes()) {
-        let size = (parts * volume / body.section()).powf(1.0 / dimension as f64);
-        let limit = f64::max(MOST_OF_CELL * size, MOST_OF_BODY * mesh.size());
-        cell.iter().for_each(|&node| limits[node] = limits[node].min(limit));
-    }
-    limits
+    let least = MOST_OF_BODY * body.mesh().size();
+    cell_sizes(body).into_iter().map(|size| f64::max(MOST_OF_CELL * size, least)).collect()
 }
 
-/// Nodes deep inside obstacles.
-pub(super) fn depths(meetings: &[Meeting]) -> impl Iterator<Item = String> {
-    let is_deep = |meeting: &&Meeting| meeting.deepest.depth > meeting.deepest.limit;
-    meetings.iter().filter(is_deep).map(|meeting| {
+/// Nodes inside obstacles.
+pub(super) fn depths(meetings: &[Meeting]) -> impl Iterator<Item = Indicator> {
+    let is_inside = |meeting: &&Meeting| meeting.deepest.depth > 0.0;
+    meetings.iter().filter(is_inside).map(|meeting| {
         let Deepest { depth, limit, node } = meeting.deepest;
-        format!(
+        let told = format!(
             "node {} is {depth:.2e} m inside obstacle \"{}\" (limit: {limit:.2e} m, half a cell or 2 % of the \
-             body): raise the stiffness of the obstacle",
+             body)",
             node + 1,
             meeting.obstacle
-        )
+        );
+        let beyond = || format!("{told}: raise the stiffness of the obstacle");
+        Indicator::trusted("depth", (depth, "m"), [0.0, limit], || told.clone(), beyond)
     })
 }
 
@@ -110,27 +114,42 @@ pub(super) fn depths(meetings: &[Meeting]) -> impl Iterator<Item = String> {
 pub(super) fn slippery(
     trajectory: &Trajectory,
     meetings: &[Meeting],
-) -> impl Iterator<Item = String> {
+) -> impl Iterator<Item = Indicator> {
     let obstacles = trajectory.scene().obstacles().iter();
     let is_met = |name: &str| meetings.iter().any(|met| met.obstacle == name && met.nearest <= 0.0);
-    obstacles.filter(move |obstacle| obstacle.has_friction() && is_met(obstacle.name())).map(|obstacle| {
-        format!(
+    obstacles.filter(|obstacle| obstacle.has_friction()).map(move |obstacle| {
+        let within = || {
+            let name = obstacle.name();
+            format!("obstacle \"{name}\" has friction, but does not touch (limit: none)")
+        };
+        let beyond = || format!(
             "obstacle \"{}\" has friction, which does not act in statics (limit: none): the body slides as if there were \
              none; run the scene until it is at rest instead",
             obstacle.name()
-        )
+        );
+        let value = if is_met(obstacle.name()) { 1.0 } else { 0.0 };
+        Indicator::trusted("friction-in-statics", (value, ""), [0.0, 0.0], within, beyond)
     })
 }
 
 /// Obstacles that acted and were further from the body at all times than it may come nearer unseen.
-pub(super) fn missed(meetings: &[Meeting], reach: Reach) -> impl Iterator<Item = String> {
-    let is_missed = move |meeting: &&Meeting| meeting.nearest > reach.towards(meeting.speed);
-    meetings.iter().filter(is_missed).map(|meeting| {
-        format!(
-            "obstacle \"{}\" was never touched, though it acts: the body came as near as {:.2e} m (limit: 0 \
-             m); move one of them, or leave the obstacle out",
-            meeting.obstacle, meeting.nearest
-        )
+pub(super) fn missed(meetings: &[Meeting], reach: Reach) -> impl Iterator<Item = Indicator> {
+    meetings.iter().map(move |Meeting { obstacle, speed, nearest, .. }| {
+        let within = || match *nearest <= 0.0 {
+            true => format!("obstacle \"{obstacle}\" was touched"),
+            false => format!(
+                "obstacle \"{obstacle}\" may have been touched: the body came as near as {nearest:.2e} m, and nearer between \
+                 samples"
+            ),
+        };
+        let beyond = || {
+            format!(
+                "obstacle \"{obstacle}\" was never touched, though it acts: the body came as near as {nearest:.2e} m (limit: 0 \
+                 m); move one of them, or leave the obstacle out"
+            )
+        };
+        let limits = [f64::NEG_INFINITY, reach.towards(*speed)];
+        Indicator::trusted("distance", (*nearest, "m"), limits, within, beyond)
     })
 }
 

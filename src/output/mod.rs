@@ -42,6 +42,8 @@ pub use self::plot::{Plot, Table};
 #[cfg(feature = "study")]
 pub(crate) use self::png::png;
 pub use self::reference::reference;
+#[cfg(feature = "study")]
+pub(crate) use self::report::of_indicator;
 pub use self::report::{write_report, write_static_report};
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;

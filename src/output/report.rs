@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::write_file;
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
-use crate::report::{Achieved, PhaseReport, Report, SlipEvent};
+use crate::report::{Achieved, Indicator, PhaseReport, Report, SlipEvent};
 use crate::sundials;
 use crate::trajectory::{IntegrationFailure, Quantity, Trajectory};
 
@@ -86,6 +86,21 @@ pub(super) const OF_RUN: &[ReportKey] = &[
     ("sensors[].name", "", "name of the column"),
     ("sensors[].unit", "", "its unit"),
     ("warnings", "", "what makes the result doubtful, in words"),
+    ("indicators", "", "what was measured once the run had ended, beyond its limits or not"),
+    ("indicators[].name", "", "what was measured"),
+    ("indicators[].value", "its own", "the number"),
+    (
+        "indicators[].limits",
+        "its own",
+        "least and most that are in order; `null` where there is no limit",
+    ),
+    ("indicators[].unit", "", "unit of both"),
+    (
+        "indicators[].verdict",
+        "",
+        "`\"fine\"`, `\"doubtful\"` (a warning) or `\"more-than-needed\"`",
+    ),
+    ("indicators[].text", "", "all of it in words"),
     ("versions", "", "what computed it"),
     ("versions.pliant", "", "version of `pliant`"),
     ("versions.sundials", "", "version of the linked SUNDIALS"),
@@ -124,6 +139,21 @@ pub(super) const OF_STATICS: &[ReportKey] = &[
     ("wall_seconds", "s", "wall-clock time of the search"),
     ("max_constraint_drift", "m", "largest error of a constraint"),
     ("warnings", "", "what makes the result doubtful, in words"),
+    ("indicators", "", "what was measured once the search had ended, beyond its limits or not"),
+    ("indicators[].name", "", "what was measured"),
+    ("indicators[].value", "its own", "the number"),
+    (
+        "indicators[].limits",
+        "its own",
+        "least and most that are in order; `null` where there is no limit",
+    ),
+    ("indicators[].unit", "", "unit of both"),
+    (
+        "indicators[].verdict",
+        "",
+        "`\"fine\"`, `\"doubtful\"` (a warning) or `\"more-than-needed\"`",
+    ),
+    ("indicators[].text", "", "all of it in words"),
     ("versions", "", "what computed it"),
     ("versions.pliant", "", "version of `pliant`"),
     ("versions.sundials", "", "version of the linked SUNDIALS"),
@@ -195,6 +225,7 @@ pub fn write_report(
             "achieved": report.achieved.as_ref().map(of_achieved),
             "sensors": sensors,
             "warnings": report.warnings(),
+            "indicators": report.indicators.iter().map(of_indicator).collect::<Vec<_>>(),
             "versions": versions(),
         }),
     )
@@ -212,6 +243,19 @@ fn of_achieved(achieved: &Achieved) -> Value {
         "known_until": known_until,
         "runs": runs,
         "rtol": rtol,
+    })
+}
+
+/// An indicator as data; what is not finite is `null`.
+pub(crate) fn of_indicator(indicator: &Indicator) -> Value {
+    let Indicator { name, value, limits, unit, verdict, text } = indicator;
+    json!({
+        "name": name,
+        "value": value,
+        "limits": limits,
+        "unit": unit,
+        "verdict": verdict.name(),
+        "text": text,
     })
 }
 
@@ -286,6 +330,7 @@ pub fn write_static_report(
             "wall_seconds": trajectory.report().wall_seconds,
             "max_constraint_drift": trajectory.samples().last().map(|sample| sample.constraint_drift),
             "warnings": trajectory.report().warnings(),
+            "indicators": trajectory.report().indicators.iter().map(of_indicator).collect::<Vec<_>>(),
             "versions": versions(),
         }),
     )

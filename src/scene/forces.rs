@@ -75,6 +75,23 @@ impl Scene {
         Ok(())
     }
 
+    /// Forces (N) of the loads of `phase` at time `t` (s), node by node as they are named.
+    pub(crate) fn loads_at(
+        &self,
+        phase: &Phase,
+        t: f64,
+    ) -> Result<Vec<(usize, Vec<f64>)>, InputError> {
+        let mut forces = Vec::new();
+        for (selection, load) in &phase.loads {
+            let nodes = self.body.mesh().select(selection)?;
+            let parts = self.parts(load.kind, selection, &nodes)?;
+            let value = load.value.components(t, self.body.dimension());
+            let on = |part: f64| value.iter().map(|value| part * value).collect();
+            forces.extend(nodes.into_iter().zip(parts.into_iter().map(on)));
+        }
+        Ok(forces)
+    }
+
     /// How many times the value of a load of this `kind` each of the `nodes` gets, which `selection` has named.
     fn parts(
         &self,

@@ -432,7 +432,7 @@ impl Run {
     /// The motion, at the end of the run.
     pub(super) fn into_trajectory(mut self) -> Trajectory {
         self.trajectory.report = self.report();
-        self.trajectory.report.doubts = indicator::of_motion(&self.trajectory);
+        self.trajectory.report.indicators = indicator::of_motion(&self.trajectory);
         self.trajectory
     }
 
@@ -475,7 +475,7 @@ impl Run {
     pub(super) fn failure(&self, source: Failed, step: f64) -> Error {
         let mut trajectory = self.trajectory.clone();
         trajectory.report = self.report();
-        trajectory.report.doubts = indicator::of_motion(&trajectory);
+        trajectory.report.indicators = indicator::of_motion(&trajectory);
         Box::new(IntegrationFailure {
             phase: self.phase.name.clone(),
             method: self.settings.method,

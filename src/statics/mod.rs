@@ -130,7 +130,7 @@ impl Scene {
         let result = if statics.arc_steps > 0 { search.trace() } else { search.all() };
         let mut trajectory = self.load_curve(number, &mut search);
         trajectory.report.wall_seconds = clock.elapsed().as_secs_f64();
-        trajectory.report.doubts = indicator::of_equilibrium(&trajectory, result.is_ok());
+        trajectory.report.indicators = indicator::of_equilibrium(&trajectory, result.is_ok());
         if let Err(Stuck { mut cause, residual }) = result {
             if !free.is_empty() {
                 cause += &format!("; the constraints leave the body free for {words}");

@@ -102,7 +102,7 @@ fn a_finished_run() {
     // the square is Hirai's, whose few cells lock and turn under Cauchy strain, on a floor as soft as foam
     let warnings: Vec<&str> =
         report["warnings"].as_array().unwrap().iter().map(|text| text.as_str().unwrap()).collect();
-    assert_eq!(warnings, run.report().doubts);
+    assert_eq!(warnings, run.report().doubts());
     for (warning, part) in
         warnings.iter().zip(["Poisson's ratio", "Cauchy", "too coarse", "inside obstacle"])
     {

@@ -3,7 +3,7 @@
 use pliant::mesh::CellKind;
 use pliant::{
     Axis, Body, Cells, Material, Mesh, Obstacle, Phase, Plane, Sampling, Scene, Settings,
-    SolidCells, Spring, Statics, Strain,
+    SolidCells, Spring, Statics, Strain, Verdict,
 };
 
 const SOFT: Material = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
@@ -51,6 +51,30 @@ fn rotations_under_cauchy_strain() {
     only(&turned(60.0, Strain::Cauchy), &parts);
     only(&turned(-10.1, Strain::Cauchy), &["10.1 degrees"]);
     assert_eq!(turned(60.0, Strain::Green), NONE);
+}
+
+/// What is within its limit is kept as a number, and no warning.
+#[test]
+fn indicators_within_their_limits() {
+    let (sin, cos) = 3.1_f64.to_radians().sin_cos();
+    let scene = Scene::new(square(Cells::Triangles, SOFT).build().unwrap())
+        .initial_displacement(move |x| {
+            vec![(cos - 1.0) * x[0] - sin * x[1], sin * x[0] + (cos - 1.0) * x[1]]
+        })
+        .phase(Phase::until(1e-7));
+    let before = scene.indicators();
+    let names: Vec<&str> = before.iter().map(|indicator| indicator.name).collect();
+    assert_eq!(names, ["size", "mass", "wave-speed", "poisson", "pieces"]);
+    // E 5e4 over density 1000
+    assert!((before[2].value - 50_f64.sqrt()).abs() < 1e-12);
+    let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap();
+    let measured = &motion.report().indicators;
+    assert_eq!(measured[..5], before);
+    let turn = measured.iter().find(|indicator| indicator.name == "turn").unwrap();
+    assert!((turn.value - 3.1).abs() < 1e-3, "{turn}");
+    assert_eq!((turn.limits, turn.unit, turn.verdict), ([0.0, 10.0], "degrees", Verdict::Fine));
+    assert!(turn.text.contains("3.1 degrees"), "{turn}");
+    assert_eq!(motion.report().warnings(), NONE);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use pliant::scene_file::Format;
+use pliant::study::Look;
 use pliant::{PhaseSummary, Scene, SceneFile, Settings};
 
 use crate::failure::{Failure, print};
@@ -17,6 +18,13 @@ use crate::scene::SceneArguments;
 pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
+
+    /// Run the scene coarsely, for 2 seconds at most, and print what it tells of the model
+    ///
+    /// One line for each number that is measured, on the scene and on its motion: `fine`, `doubtful`, or
+    /// `more-than-needed`, where less would do.
+    #[arg(long)]
+    look: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
@@ -30,6 +38,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     solver(&file)?;
     timeline(&phases)?;
     file.notes.iter().try_for_each(|note| print(format_args!("note: {note}")))?;
+    if arguments.look {
+        let look = Look::of(&file.scene, &file.settings, Look::SECONDS)?;
+        return print(format_args!("\n{look}"));
+    }
     file.scene.warnings().iter().try_for_each(|warning| print(format_args!("WARNING: {warning}")))
 }
 

@@ -1,0 +1,120 @@
+//! How much cells are strained and turned, and what that says of the law.
+
+use nalgebra::Matrix3;
+
+use super::rigid::without_turn;
+use super::shape::Extent;
+use super::words::percent;
+use crate::body::{Body, Strain};
+use crate::input::told;
+use crate::report::Indicator;
+use crate::trajectory::{Sample, Trajectory};
+
+/// How far the stress of a law may be from that of rubber (incompressible and neo-Hookean, in one direction).
+const MOST_WRONG: f64 = 0.25;
+/// By how many times the strain the stress differs from rubber's: of St. Venant and Kirchhoff's law, and of Hooke's.
+const GREEN_LAW: f64 = 2.5;
+const CAUCHY_LAW: f64 = 1.0;
+/// How far strains may be wrong under Cauchy strain for that to do.
+const MOST_NONLINEAR: f64 = 0.01;
+/// Strains below this are round-off.
+const LEAST_STRAIN: f64 = 1e-9;
+
+/// The largest deformations of cells.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Deformed {
+    /// Change of a length over the length, along any axis.
+    pub(super) strain: f64,
+    /// When (s), and the number of the cell, counted from 0.
+    at: (f64, usize),
+    /// Angles (rad): in all, and beside the turn of the body as a whole.
+    turn: f64,
+    pub(super) own_turn: f64,
+}
+
+impl Deformed {
+    /// The largest in any of the `samples`.
+    pub(super) fn of(body: &Body, samples: &[&Sample]) -> Self {
+        let mut most = Self::default();
+        let largest = |angles: Vec<f64>| angles.into_iter().fold(0.0, f64::max);
+        for sample in samples {
+            let own = without_turn(body, &sample.u);
+            for (cell, field) in body.cell_fields(&own).iter().enumerate() {
+                let strains = Matrix3::from(field.strain).symmetric_eigenvalues();
+                let strain = strains.iter().map(|&strain| stretch(body, strain).abs());
+                let strain = strain.fold(0.0, f64::max);
+                if strain > most.strain {
+                    (most.strain, most.at) = (strain, (sample.time, cell));
+                }
+            }
+            most.turn = most.turn.max(largest(body.cell_rotations(&sample.u)));
+            most.own_turn = most.own_turn.max(largest(body.cell_rotations(&own)));
+        }
+        most
+    }
+
+    /// The indicators, of a body of this `extent` if that is known.
+    pub(super) fn indicators(
+        &self,
+        trajectory: &Trajectory,
+        extent: Option<&Extent>,
+    ) -> Vec<Indicator> {
+        let strain = trajectory.body().strain();
+        let slenderness = extent.map(Extent::slenderness);
+        let nonlinear =
+            slenderness.filter(|_| strain == Strain::Green && self.strain > LEAST_STRAIN);
+        let nonlinear = nonlinear.map(|slenderness| self.nonlinearity(slenderness));
+        let turns = (trajectory.body().mesh().kind().dimension() > 1).then(|| self.turns());
+        [self.largest_strain(strain)].into_iter().chain(turns).chain(nonlinear).collect()
+    }
+
+    fn turns(&self) -> Indicator {
+        let [all, own] = [self.turn, self.own_turn].map(f64::to_degrees);
+        let told =
+            format!("cells turn by up to {all:.1} degrees, {own:.1} beside the body as a whole");
+        Indicator::told("own-turn", own, "degrees", told)
+    }
+
+    fn largest_strain(&self, law: Strain) -> Indicator {
+        let (name, factor) = match law {
+            Strain::Green => ("St. Venant and Kirchhoff's law", GREEN_LAW),
+            Strain::Cauchy => ("Hooke's law", CAUCHY_LAW),
+        };
+        let Self { strain, at: (time, cell), .. } = *self;
+        let limit = MOST_WRONG / factor;
+        let said =
+            format!("cells are strained by up to {} (limit: {})", percent(strain), percent(limit));
+        let beyond = || {
+            format!(
+                "{said}, cell {} at t = {} s: {name} is off by some {factor} times that in its stress, compared with \
+                 rubber; forces there are doubtful, shapes less so. Deform it less, or measure moduli at such strains",
+                cell + 1,
+                told(time)
+            )
+        };
+        Indicator::trusted("strain", (strain, "1"), [0.0, limit], || said.clone(), beyond)
+    }
+
+    /// What Cauchy strain would get wrong, relative to the strain: rotations count as strains, terms of second order are
+    /// lost, and so are forces that strains along a slender body exert across it, as its buckling.
+    fn nonlinearity(&self, slenderness: f64) -> Indicator {
+        let Self { strain, turn, .. } = *self;
+        let wrong =
+            ((1.0 - turn.cos()) + 0.5 * strain.powi(2)) / strain + strain * slenderness.powi(2);
+        let limit = percent(MOST_NONLINEAR);
+        let said = format!(
+            "Cauchy strain would be wrong by some {} of the strains (limit: {limit})",
+            percent(wrong)
+        );
+        let enough = || format!("{said}: strain = \"cauchy\" would do, and is faster");
+        Indicator::needed("nonlinearity", (wrong, "1"), MOST_NONLINEAR, || said.clone(), enough)
+    }
+}
+
+/// Change of length over length of a principal strain of the body's measure.
+fn stretch(body: &Body, strain: f64) -> f64 {
+    match body.strain() {
+        Strain::Cauchy => strain,
+        Strain::Green => (1.0 + 2.0 * strain).max(0.0).sqrt() - 1.0,
+    }
+}
