@@ -30,6 +30,8 @@ mod vtk;
 
 #[cfg(feature = "play")]
 pub(crate) use self::animation::Picture;
+#[cfg(feature = "study")]
+pub(crate) use self::animation::{Above, escaped, write_below};
 pub use self::animation::{join_animations, write_animation, write_animations};
 pub use self::chart::Chart;
 #[cfg(feature = "study")]

@@ -5,13 +5,13 @@ use std::io;
 use std::path::Path;
 
 use svg::Document;
-use svg::node::element::{Circle, Group, Line, Path as Outline, Polyline, Rectangle, Text};
+use svg::node::element::{Circle, Group, Path as Outline, Polyline, Rectangle};
 
-use super::fastest::time_text;
+use super::frame::{Frame, Point, round, text};
 use super::{Findings, LineFindings};
 use crate::error::Error;
 use crate::input::InputError;
-use crate::output::{COLOURS, DASHES, FONT, INK, png, power_text, ticks, write_file};
+use crate::output::{COLOURS, DASHES, FONT, INK, png, write_file};
 
 /// Left, top, right and bottom of the field in which lines are drawn (px).
 const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
@@ -22,10 +22,6 @@ const FAMILIES: [&str; 7] =
     ["cvode-bdf", "cvode-adams", "rk", "ida", "arkode", "central-difference", "auto"];
 const GRID: &str = "#dddddd";
 const FAINT_GRID: &str = "#f1f1f1";
-/// Larger relative errors are drawn as large as this: wrong is wrong.
-const WORST: f64 = 10.0;
-
-type Point = [f64; 2];
 
 impl Findings {
     /// Draws error over time, both logarithmic, one line per line of the study, to an SVG or PNG
@@ -42,10 +38,7 @@ impl Findings {
 /// Findings on a page.
 struct Chart<'a> {
     findings: &'a Findings,
-    /// Decades of time (s) from left to right.
-    times: [f64; 2],
-    /// Decades of error from bottom to top.
-    errors: [f64; 2],
+    frame: Frame,
 }
 
 /// What a line is drawn with.
@@ -65,19 +58,9 @@ impl<'a> Chart<'a> {
             let mend = "a chart needs one at least: its notes say why they failed";
             return Err(InputError::new("number of successful runs", 0, mend).into());
         }
-        let range = |values: &mut dyn Iterator<Item = f64>| {
-            let [low, high] = values
-                .fold([f64::INFINITY, -f64::INFINITY], |[l, h], x| [x.min(l), x.max(h)])
-                .map(f64::log10);
-            // a decade at least, and room for the markers
-            let more = 0.06 * (high - low) + 0.5 * (1.0 - (high - low)).max(0.0);
-            [low - more, high + more]
-        };
-        Ok(Self {
-            findings,
-            times: range(&mut points.iter().map(|point| point.1)),
-            errors: range(&mut points.iter().map(|point| point.0.min(WORST))),
-        })
+        let (times, errors) =
+            (points.iter().map(|point| point.1), points.iter().map(|point| point.0));
+        Ok(Self { findings, frame: Frame::new(FIELD, [INK, GRID, FAINT_GRID], times, errors) })
     }
 
     /// # Errors
@@ -98,6 +81,10 @@ impl<'a> Chart<'a> {
 
     fn draw(&self) -> Document {
         let [width, height] = PAGE;
+        let time = match self.findings.is_processor_time() {
+            true => "processor time of the solution",
+            false => "time of the solution",
+        };
         let styles = styles(self.findings.lines());
         let lines = || self.findings.lines().iter().zip(&styles);
         let mut document = Document::new()
@@ -114,7 +101,7 @@ impl<'a> Chart<'a> {
                     .set("font-weight", "bold"),
             )
             .add(self.unresolved())
-            .add(self.axes())
+            .add(self.frame.axes(time))
             .add(self.unresolved_label());
         for (line, style) in lines() {
             document = document.add(self.line(line, style));
@@ -125,18 +112,10 @@ impl<'a> Chart<'a> {
         })
     }
 
-    fn place(&self, error: f64, time: f64) -> Point {
-        let [left, top, right, bottom] = FIELD;
-        let part = |value: f64, [low, high]: [f64; 2]| (value.log10() - low) / (high - low);
-        let x = left + part(time, self.times) * (right - left);
-        let y = bottom - part(error.min(WORST), self.errors) * (bottom - top);
-        [x, y]
-    }
-
     /// A band over the errors that the reference itself may have.
     fn unresolved(&self) -> Group {
         let [left, top, right, bottom] = FIELD;
-        let [_, level] = self.place(10.0 * self.findings.resolution(), 1.0);
+        let [_, level] = self.frame.place(10.0 * self.findings.resolution(), 1.0);
         if level >= bottom - 1.0 {
             return Group::new();
         }
@@ -153,7 +132,7 @@ impl<'a> Chart<'a> {
     /// What the band says, where there is room for it.
     fn unresolved_label(&self) -> Group {
         let [_, _, right, bottom] = FIELD;
-        let [_, level] = self.place(10.0 * self.findings.resolution(), 1.0);
+        let [_, level] = self.frame.place(10.0 * self.findings.resolution(), 1.0);
         if level > bottom - 18.0 {
             return Group::new();
         }
@@ -169,53 +148,12 @@ impl<'a> Chart<'a> {
         )
     }
 
-    fn axes(&self) -> Group {
-        let [left, top, right, bottom] = FIELD;
-        let mut group = Group::new();
-        let (times, errors) = (ticks(self.times), ticks(self.errors));
-        for (value, is_labelled) in &times {
-            let [x, _] = self.place(1.0, *value);
-            let colour = if *is_labelled { GRID } else { FAINT_GRID };
-            group = group.add(stroke([x, top], [x, bottom], colour));
-            if *is_labelled {
-                let label = text(round_time_text(*value), [x, bottom + 18.0]);
-                group = group.add(label.set("text-anchor", "middle"));
-            }
-        }
-        for (value, is_labelled) in &errors {
-            let [_, y] = self.place(*value, 1.0);
-            let colour = if *is_labelled { GRID } else { FAINT_GRID };
-            group = group.add(stroke([left, y], [right, y], colour));
-            if *is_labelled {
-                let label = text(power_text(*value), [left - 8.0, y + 4.0]);
-                group = group.add(label.set("text-anchor", "end"));
-            }
-        }
-        let time = match self.findings.is_processor_time() {
-            true => "processor time of the solution",
-            false => "time of the solution",
-        };
-        let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
-        group
-            .add(stroke([left, bottom], [right, bottom], INK))
-            .add(stroke([left, top], [left, bottom], INK))
-            .add(
-                text(time, [middle[0], bottom + 42.0])
-                    .set("text-anchor", "middle")
-                    .set("font-size", 13),
-            )
-            .add(
-                text("relative error", [24.0, middle[1]])
-                    .set("text-anchor", "middle")
-                    .set("font-size", 13)
-                    .set("transform", format!("rotate(-90 24 {})", middle[1])),
-            )
-    }
-
     fn line(&self, line: &LineFindings, style: &Style) -> Group {
         let mut group = Group::new();
-        let points: Vec<_> =
-            line.points().map(|point| point.map(|(error, time)| self.place(error, time))).collect();
+        let points: Vec<_> = line
+            .points()
+            .map(|point| point.map(|(error, time)| self.frame.place(error, time)))
+            .collect();
         // a run that failed interrupts the line
         for stretch in points.split(Option::is_none).filter(|stretch| !stretch.is_empty()) {
             let stretch: Vec<Point> = stretch.iter().copied().flatten().collect();
@@ -296,42 +234,5 @@ fn key(line: &LineFindings, style: &Style, y: f64) -> Group {
                 .set("fill", "#777777")
                 .set("font-size", 11),
         ),
-    }
-}
-
-/// 10 ms
-fn round_time_text(seconds: f64) -> String {
-    let text = time_text(seconds);
-    match text.split_once('.') {
-        Some((whole, rest)) => format!("{whole}{}", rest.trim_start_matches('0')),
-        None => text,
-    }
-}
-
-fn text(content: impl Into<String>, [x, y]: Point) -> Text {
-    Text::new(content.into()).set("x", round(x)).set("y", round(y))
-}
-
-fn stroke([x1, y1]: Point, [x2, y2]: Point, colour: &str) -> Line {
-    Line::new()
-        .set("x1", round(x1))
-        .set("y1", round(y1))
-        .set("x2", round(x2))
-        .set("y2", round(y2))
-        .set("stroke", colour)
-}
-
-fn round(x: f64) -> f64 {
-    (100.0 * x).round() / 100.0
-}
-
-#[cfg(test)]
-mod tests {
-    use super::round_time_text;
-
-    #[test]
-    fn labels_are_short() {
-        let times = [1e-5, 2e-3, 0.1, 1.0, 100.0].map(round_time_text);
-        assert_eq!(times, ["10 \u{b5}s", "2 ms", "100 ms", "1 s", "100 s"]);
     }
 }

@@ -48,6 +48,7 @@ mod chart;
 mod fastest;
 mod findings;
 mod fingerprint;
+mod frame;
 mod general;
 mod look;
 mod quantity;

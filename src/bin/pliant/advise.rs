@@ -10,12 +10,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pliant::study::{Advice, Adviser, Candidate, Quantity};
-use pliant::{Fraction, SceneFile};
+use pliant::{Fraction, Sampling, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::Directory;
 use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
+
+/// Samples of each motion on the page.
+const FRAMES: f64 = 400.0;
 
 /// Find out what model of a scene is enough
 ///
@@ -41,8 +44,9 @@ pub struct Arguments {
     /// End the scene at this time (s)
     #[arg(long, value_name = "SECONDS")]
     until: Option<f64>,
-    /// Directory for advice.json (all that was found), candidates.csv, and runs.jsonl, which keeps all runs: another search
-    /// with the same directory, after Ctrl-C or with a larger budget, goes on from there [default: none]
+    /// Directory for advice.html (a page with the motions), advice.json (all that was found), candidates.csv, and runs.jsonl,
+    /// which keeps all runs: another search with the same directory, after Ctrl-C or with a larger budget, goes on from
+    /// there [default: none]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Write the scene file with what is enough, and why, to this new file
@@ -76,20 +80,27 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let asked = interrupted.clone();
     ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
-    let bar = bar(*quiet);
-    let advice = adviser.run(&mut |what| {
-        bar.set_message(what.to_owned());
-        match interrupted.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
-    bar.finish_and_clear();
+    let progress = bar(*quiet);
+    let advice = adviser.run(&mut |what| watch(&progress, &interrupted, what));
+    progress.finish_and_clear();
     let advice = advice?;
     print(&advice)?;
     if let Some(directory) = &mut directory {
-        directory
-            .write("advice.json", |path| advice.write_json(&file.scene, &file.settings, path))?;
+        let title = match &file.title[..] {
+            "" => scene.path.display().to_string(),
+            title => scene.title(title),
+        };
+        let progress = bar(*quiet);
+        let mut observer = |what: &str| watch(&progress, &interrupted, what);
+        let scene = &file.scene;
+        let samples = Sampling::every(scene.end() / FRAMES);
+        let sensors = file.output.sensors.iter().cloned();
+        let sampling = sensors.fold(samples, |all, (name, reading)| all.read(name, reading));
+        directory.write("advice.html", |path| {
+            advice.write_page(scene, &sampling, path, &title, &mut observer)
+        })?;
+        progress.finish_and_clear();
+        directory.write("advice.json", |path| advice.write_json(scene, &file.settings, path))?;
         directory.write("candidates.csv", |path| advice.write_csv(path))?;
         directory.tell()?;
     }
@@ -122,6 +133,15 @@ fn write_scene(
     let mut new = File::create_new(path).map_err(failed)?;
     new.write_all(format!("{first}{reasons}\n{rest}").as_bytes()).map_err(failed)?;
     print(format_args!("written: {}", path.display()))
+}
+
+/// Shows what is run, and ends it if that was asked for.
+fn watch(bar: &ProgressBar, interrupted: &AtomicBool, what: &str) -> ControlFlow<()> {
+    bar.set_message(what.to_owned());
+    match interrupted.load(Ordering::Relaxed) {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    }
 }
 
 /// What is being tried, on a terminal only.

@@ -21,6 +21,8 @@ use crate::trajectory::Trajectory;
 
 /// The page, its style and its script; `/*...*/` marks the place of the others.
 const PAGE: &str = include_str!("page/page.html");
+/// What plays motions, in place of `<!--motions-->`, if there are any.
+const MOTIONS: &str = include_str!("page/motions.html");
 /// The body and its colours, in place of `<!--picture-->`: the page of a live motion has the same.
 const PICTURE: &str = include_str!("page/picture.html");
 const STYLE: &str = include_str!("page/page.css");
@@ -153,10 +155,47 @@ fn write_page(motions: Vec<Value>, path: &Path, title: &str) -> Result<(), Error
         let mend = "name at least one motion to be shown";
         return Err(InputError::new("motions", "none", mend).into());
     }
+    let page = page(&Above::default(), motions, title);
+    write_file(path, |file| file.write_all(page.as_bytes()))
+}
+
+/// What stands on a page above its motions: HTML, in which text of users is [`escaped`], and its style.
+#[derive(Debug, Default)]
+pub(crate) struct Above<'a> {
+    pub(crate) html: &'a str,
+    pub(crate) style: &'a str,
+}
+
+/// As [`write_animations`], beneath something else; without motions that alone.
+///
+/// # Errors
+/// Those of [`write_animation`].
+#[cfg(feature = "study")]
+pub(crate) fn write_below(
+    above: &Above,
+    motions: &[(&str, &Trajectory)],
+    path: &Path,
+    title: &str,
+) -> Result<(), Error> {
+    let motions = motions.iter().map(|(name, trajectory)| data::gather(trajectory, name));
+    let page = page(above, motions.collect::<Result<_, _>>()?, title);
+    write_file(path, |file| file.write_all(page.as_bytes()))
+}
+
+fn page(above: &Above, motions: Vec<Value>, title: &str) -> String {
+    let parts = if motions.is_empty() { "" } else { MOTIONS };
     let data = json!({ "version": env!("CARGO_PKG_VERSION"), "title": title, "motions": motions });
     let script = SCRIPT.replace("/*picture*/", OF_EACH);
-    let page = filled(PAGE, STYLE, &script, &data);
-    write_file(path, |file| file.write_all(page.as_bytes()))
+    let style = [STYLE, above.style].concat();
+    let page = filled(&PAGE.replace("<!--motions-->", parts), &style, &script, &data);
+    // last what may say anything: no marker begins in escaped text, nor in data
+    page.replace("<!--title-->", &escaped(title)).replace("<!--above-->", above.html)
+}
+
+/// Text as it stands in HTML, within elements and attributes.
+pub(crate) fn escaped(text: &str) -> String {
+    let named = [('&', "&amp;"), ('<', "&lt;"), ('>', "&gt;"), ('"', "&quot;"), ('\'', "&#39;")];
+    named.iter().fold(text.to_owned(), |text, (sign, name)| text.replace(*sign, name))
 }
 
 /// The motion of the page in the file at `path`.

@@ -3,10 +3,12 @@
 mod advice;
 mod adviser;
 mod answer;
+mod chart;
 mod choice;
 mod found;
 mod freedom;
 mod ladder;
+mod page;
 mod parts;
 mod record;
 mod runs;
