@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::input::told;
 use crate::trajectory::{Sample, Trajectory};
 
 /// What a small push does to a body in equilibrium.
@@ -60,6 +61,56 @@ pub struct Equilibrium {
     pub load_steps: usize,
     /// Load steps that did not, and were made smaller.
     pub failed_steps: usize,
+    /// By how much a quantity is off by the mesh, if that was [estimated](MeshEstimate).
+    pub mesh_estimate: Option<MeshEstimate>,
+}
+
+/// By how much a quantity of an equilibrium is off because the mesh is not finer: made by
+/// [`MeshEstimate::of`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshEstimate {
+    /// What was asked for.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: String,
+    /// What it is on this mesh.
+    pub value: f64,
+    /// How much it has changed from the undeformed shape, without load, to the equilibrium.
+    pub change: f64,
+    /// What the quantity would be on the richer mesh, less the value: the error is minus that.
+    pub correction: f64,
+    /// What the nodes that the richer mesh has more contribute to the correction, by the cells of this mesh that they lie in: where it
+    /// is large, smaller cells help.
+    pub cells: Vec<f64>,
+    /// Displacement components on the richer mesh.
+    pub unknowns: usize,
+    /// Wall-clock time that the estimate took (s).
+    pub seconds: f64,
+}
+
+impl MeshEstimate {
+    /// The value with its correction.
+    pub fn corrected(&self) -> f64 {
+        self.value + self.correction
+    }
+
+    /// The size of the correction as a part of the change; infinite if the quantity has not changed.
+    pub fn relative(&self) -> f64 {
+        (self.correction / self.change).abs()
+    }
+}
+
+impl fmt::Display for MeshEstimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, unit, value, correction, unknowns, .. } = self;
+        let [shown, off, better] = [*value, correction.abs(), self.corrected()].map(told);
+        write!(f, "{quantity} is {shown} {unit}, off by about {off} {unit}")?;
+        if self.change != 0.0 {
+            let part = told(100.0 * self.relative());
+            write!(f, " ({part} % of its change) because of the mesh")?;
+        }
+        write!(f, ": {better} {unit}, by dual-weighted residuals with {unknowns} unknowns")
+    }
 }
 
 impl Equilibrium {
@@ -103,6 +154,9 @@ impl fmt::Display for Equilibrium {
                 f,
                 "; tangents of forces by finite differences: {differences} evaluations of these forces"
             )?;
+        }
+        if let Some(estimate) = &self.mesh_estimate {
+            write!(f, "\n{estimate}")?;
         }
         let warnings = self.trajectory.report().warnings();
         warnings.iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))

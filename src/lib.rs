@@ -75,7 +75,7 @@ mod vector;
 pub use body::{Body, CellField, CellSelection, Inertia, NodalField, Strain, Viscosity};
 pub use constraint::{Axis, Prescribed};
 pub use equations::Equations;
-pub use equilibrium::{Equilibrium, NoEquilibrium, Stability};
+pub use equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability};
 pub use error::{Error, Panicked};
 pub use external::*;
 pub use input::{Fraction, InputError};

@@ -289,6 +289,20 @@ impl BlockMatrix {
         with_dimension!(self.dimension, block_product(&self.pattern, &self.values, factor, x, y));
     }
 
+    /// y += factor A^T x
+    #[cfg(feature = "study")]
+    pub(crate) fn add_transposed_product(&self, factor: f64, x: &[f64], y: &mut [f64]) {
+        let d = self.dimension;
+        for (dof, x) in x.iter().enumerate() {
+            let (node, axis) = (dof / d, dof % d);
+            for (entry, column) in self.pattern.row(node) {
+                let row = &self.values[(entry * d + axis) * d..][..d];
+                let y = y[column * d..][..d].iter_mut();
+                y.zip(row).for_each(|(y, a)| *y += factor * a * x);
+            }
+        }
+    }
+
     /// |A| x, all entries taken by their size, at one degree of freedom.
     pub(crate) fn absolute_row_product(&self, dof: usize, x: &[f64]) -> f64 {
         let d = self.dimension;

@@ -181,8 +181,21 @@ impl Finer {
         run
     }
 
-    /// A field of vectors, given at the nodes of the first mesh, at all nodes.
+    /// The number (from 0) of a node of the first mesh, or of a point mass, which come last.
+    #[cfg(feature = "study")]
+    pub(crate) fn number(&self, node: usize) -> usize {
+        if node < self.old { node } else { node + self.places.len() - self.old }
+    }
+
+    /// The nodes (from 0) that the first mesh did not have.
+    #[cfg(feature = "study")]
+    pub(crate) fn new_nodes(&self) -> std::ops::Range<usize> {
+        self.old..self.places.len()
+    }
+
+    /// A field of vectors, given at the nodes of the first mesh, at all nodes. Those of point masses, which come last, still do.
     pub(crate) fn interpolated(&self, field: &[f64], dimension: usize) -> Vec<f64> {
+        let (field, points) = field.split_at((self.old * dimension).min(field.len()));
         let mut values = field.to_vec();
         for place in &self.places[self.old..] {
             let part = |axis| {
@@ -194,6 +207,7 @@ impl Finer {
             };
             values.extend((0..dimension).map(part));
         }
+        values.extend_from_slice(points);
         values
     }
 }

@@ -213,6 +213,14 @@ impl ChamberForce {
             Geometry::Surface(surface, factor) => factor * surface.volume(u),
         }
     }
+
+    /// Adds `factor` times the derivative of that volume by `u` (m^2).
+    pub(crate) fn add_gradient(&self, factor: f64, u: &[f64], gradient: &mut [f64]) {
+        match &self.geometry {
+            Geometry::Polygon(polygon, sign) => polygon.add_gradient(factor * sign, u, gradient),
+            Geometry::Surface(surface, sign) => surface.add_gradient(factor * sign, u, gradient),
+        }
+    }
 }
 
 fn position<const D: usize>(mesh: &Mesh, node: usize) -> [f64; D] {
@@ -353,14 +361,7 @@ impl Force for ChamberForce {
     ) -> Result<(), Failure> {
         let pressure = signal::sum(&self.pressure, t);
         finite_at(t, format_args!("the pressure in chamber \"{}\"", self.name), pressure)?;
-        match &self.geometry {
-            Geometry::Polygon(polygon, factor) => {
-                polygon.add_gradient(factor * pressure, u, &mut forces.applied);
-            }
-            Geometry::Surface(surface, factor) => {
-                surface.add_gradient(factor * pressure, u, &mut forces.applied);
-            }
-        }
+        self.add_gradient(pressure, u, &mut forces.applied);
         Ok(())
     }
 

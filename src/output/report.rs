@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use super::write_file;
-use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
+use crate::equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability};
 use crate::error::Error;
 use crate::report::{Achieved, Indicator, PhaseReport, Report, SlipEvent};
 use crate::sundials;
@@ -136,6 +136,27 @@ pub(super) const OF_STATICS: &[ReportKey] = &[
     ("factorizations", "", "factorizations of the tangent"),
     ("load_steps", "", "load steps that converged"),
     ("failed_steps", "", "load steps that did not, and were made smaller"),
+    (
+        "mesh_estimate",
+        "",
+        "by how much a quantity is off because of the mesh; `null` without `--quantity`",
+    ),
+    ("mesh_estimate.quantity", "", "what was asked for"),
+    ("mesh_estimate.unit", "", "its unit"),
+    ("mesh_estimate.value", "its own", "what it is on this mesh"),
+    ("mesh_estimate.change", "its own", "how much it has changed from the undeformed shape"),
+    (
+        "mesh_estimate.correction",
+        "its own",
+        "estimate of what it would be on a richer mesh, less the value",
+    ),
+    (
+        "mesh_estimate.relative",
+        "1",
+        "size of the correction as a part of the change; `null` without one",
+    ),
+    ("mesh_estimate.unknowns", "", "displacement components on the richer mesh"),
+    ("mesh_estimate.wall_seconds", "s", "wall-clock time of the estimate"),
     ("wall_seconds", "s", "wall-clock time of the search"),
     ("max_constraint_drift", "m", "largest error of a constraint"),
     ("warnings", "", "what makes the result doubtful, in words"),
@@ -327,6 +348,7 @@ pub fn write_static_report(
             "factorizations": found.ok().map(|found| found.factorizations),
             "load_steps": found.ok().map(|found| found.load_steps),
             "failed_steps": found.ok().map(|found| found.failed_steps),
+            "mesh_estimate": found.ok().and_then(|found| found.mesh_estimate.as_ref()).map(of_mesh),
             "wall_seconds": trajectory.report().wall_seconds,
             "max_constraint_drift": trajectory.samples().last().map(|sample| sample.constraint_drift),
             "warnings": trajectory.report().warnings(),
@@ -334,6 +356,21 @@ pub fn write_static_report(
             "versions": versions(),
         }),
     )
+}
+
+fn of_mesh(estimate: &MeshEstimate) -> Value {
+    let MeshEstimate { quantity, unit, value, change, correction, unknowns, seconds, .. } =
+        estimate;
+    json!({
+        "quantity": quantity,
+        "unit": unit,
+        "value": value,
+        "change": change,
+        "correction": correction,
+        "relative": estimate.relative(),
+        "unknowns": unknowns,
+        "wall_seconds": seconds,
+    })
 }
 
 fn versions() -> Value {

@@ -49,7 +49,7 @@ impl Scene {
     /// # Errors
     /// Point masses that are named by number, forces that are not of this crate: nobody knows which nodes they mean.
     pub fn halved(&self) -> Result<Self, InputError> {
-        self.on(|mesh| Ok(mesh.divided()))
+        Ok(self.on(|mesh| Ok(mesh.divided()))?.0)
     }
 
     /// The same scene with quadratic cells: see [`Mesh::quadratic`], and [`halved`](Self::halved) for what
@@ -58,13 +58,20 @@ impl Scene {
     /// # Errors
     /// As [`halved`](Self::halved); cells of which there are no quadratic ones.
     pub fn quadratic(&self) -> Result<Self, InputError> {
-        self.on(Mesh::elevated)
+        Ok(self.on(Mesh::elevated)?.0)
+    }
+
+    /// The same scene on the nearest richer mesh, and what that makes of the nodes: quadratic cells, or halves of those that are
+    /// quadratic or of which there are no quadratic ones.
+    #[cfg(feature = "study")]
+    pub(crate) fn enriched(&self) -> Result<(Self, Finer), InputError> {
+        self.on(|mesh| mesh.elevated().or_else(|_| Ok(mesh.divided())))
     }
 
     fn on(
         &self,
         make: impl FnOnce(&Mesh) -> Result<Finer, InputError>,
-    ) -> Result<Self, InputError> {
+    ) -> Result<(Self, Finer), InputError> {
         if !self.forces.is_empty() {
             let mend =
                 "they know the nodes of this mesh alone: build the scene anew on the finer one";
@@ -106,7 +113,7 @@ impl Scene {
             phase.turned = phase.turned.iter().map(shared).collect();
         }
         scene.body = Arc::new(body);
-        Ok(scene)
+        Ok((scene, finer))
     }
 }
 
@@ -188,13 +195,8 @@ impl Change<'_> {
         let mut start = scene.start.clone();
         // it was of this mesh, as it should be
         start.positions = None;
-        let (d, own) = (body.dimension(), self.coarse.node_count() * body.dimension());
         for field in [&mut start.displacements, &mut start.velocities] {
-            // point masses come last
-            let (nodes, points) = field.split_at(own.min(field.len()));
-            let mut all = self.finer.interpolated(nodes, d);
-            all.extend_from_slice(points);
-            *field = all;
+            *field = self.finer.interpolated(field, body.dimension());
         }
         for (nodes, _) in &mut start.of_nodes {
             *nodes = self.extended(nodes)?;

@@ -5,6 +5,8 @@ mod adoption;
 mod auto;
 mod checkpoint;
 mod commands;
+#[cfg(feature = "study")]
+mod derivative;
 mod events;
 mod failure;
 mod gauge;
@@ -31,6 +33,8 @@ pub(crate) use adoption::Choice;
 pub use checkpoint::Checkpoint;
 #[cfg(feature = "checkpoint")]
 pub(crate) use checkpoint::Kept;
+#[cfg(feature = "study")]
+pub(crate) use derivative::{Linearized, Moved};
 pub use progress::Progress;
 pub use reading::{Component, Reading};
 use run::Run;

@@ -63,7 +63,7 @@ impl Scene {
     /// Bad input; [`Error::Input`] if the body is held so that it can still move as a
     /// whole, and its loads move it; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
     pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
-        self.at_rest_in(0, statics)
+        self.equilibrium_in(0, statics)
     }
 
     /// As [`equilibrium`](Self::equilibrium), of the phase of that name (`"phase 2"`, say, if it was given none): under what acts
@@ -76,26 +76,32 @@ impl Scene {
     /// As [`equilibrium`](Self::equilibrium); no phase of that name.
     pub fn equilibrium_of(&self, phase: &str, statics: &Statics) -> Result<Equilibrium, Error> {
         let names = self.phases().iter().map(Phase::name);
-        self.at_rest_in(find(phase, names, "phase of statics", "phases")?, statics)
+        self.equilibrium_in(find(phase, names, "phase of statics", "phases")?, statics)
     }
 
-    fn at_rest_in(&self, number: usize, statics: &Statics) -> Result<Equilibrium, Error> {
-        let clock = Instant::now();
-        statics.validate()?;
+    /// The phase of that `number` (from 0) at rest.
+    pub(crate) fn at_rest_in(&self, number: usize) -> Result<AtRest, InputError> {
         let mut forces = self.forces()?;
         let model = self.model(&forces);
         let phase = &self.phases()[number]; // `forces` makes sure that there is one
         let (time, u) = self.left_by_phases_before(number)?;
         let start = PhaseStart { time, u: &u };
         let system = self.system(&model, phase, forces.swap_remove(number), &start, 0.0)?;
+        AtRest::new(system, phase.end(), phase.name())
+    }
+
+    fn equilibrium_in(&self, number: usize, statics: &Statics) -> Result<Equilibrium, Error> {
+        let clock = Instant::now();
+        statics.validate()?;
+        let rest = self.at_rest_in(number)?;
+        let phase = &self.phases()[number];
         let mesh = self.body().mesh();
         let (dimension, size, positions) = (mesh.dimension(), mesh.size(), mesh.positions());
         let natural = rigid::Shape { dimension, size, positions };
         let pattern = self.body().inertia().pattern();
-        let free = rigid::free_motions(natural, pattern, system.rows());
+        let free = rigid::free_motions(natural, pattern, rest.system().rows());
         let words: Vec<&str> = free.iter().map(|motion| &*motion.words).collect();
         let words = words.join(", ");
-        let rest = AtRest::new(system, phase.end(), phase.name())?;
         let loose = |freedom: &str, mend: &str| {
             let input = format!("constraints of phase \"{}\"", phase.name());
             let value = format!("leaving the body free {freedom}");
@@ -162,6 +168,7 @@ impl Scene {
             difference_evaluations: search.rest.system().difference_evaluations(),
             load_steps: search.load_steps,
             failed_steps: search.failed_steps,
+            mesh_estimate: None,
         })
     }
 

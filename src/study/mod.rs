@@ -51,6 +51,7 @@ mod fingerprint;
 mod frame;
 mod general;
 mod look;
+mod mesh_estimate;
 mod quantity;
 mod row;
 mod runner;

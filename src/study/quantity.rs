@@ -126,6 +126,32 @@ impl Quantity {
         Ok(())
     }
 
+    /// The reading of which the error of the mesh can be estimated.
+    ///
+    /// # Errors
+    /// Anything else: a motion, a part that equilibria do not have, several components, a reading without a known derivative.
+    pub(super) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
+        let refused =
+            |mend: &str| InputError::new("quantity of an equilibrium", format!("\"{self}\""), mend);
+        let Some(reading) = &self.reading else {
+            return Err(refused("the whole motion is no single number: name a reading, as tip.y"));
+        };
+        if ![Part::OverTime, Part::End].contains(&self.part) {
+            return Err(refused(
+                "an equilibrium does not move: leave out what stands after the colon",
+            ));
+        }
+        if self.columns(scene)? > 1 {
+            return Err(refused("it has several components: choose one, as in tip.y"));
+        }
+        if !reading.has_derivative() {
+            let mend = "the error of the mesh is estimated of positions, displacements, distances, angles between lines, \
+                        centres of mass, volumes of chambers and constraint forces";
+            return Err(refused(mend));
+        }
+        Ok(reading)
+    }
+
     /// Has it read beside what `sampling` reads.
     pub(super) fn read_by(&self, sampling: Sampling) -> Sampling {
         match &self.reading {

@@ -9,6 +9,8 @@
 //! the forces of actuators by a fraction of their strength, obstacles in motion along their way. The
 //! body and its springs are what they are.
 
+#[cfg(feature = "study")]
+mod dual;
 #[cfg(test)]
 mod tests;
 

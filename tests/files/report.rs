@@ -7,9 +7,10 @@ use pliant::IntegrationFailure;
 use pliant::output::{write_report, write_static_report};
 use pliant::samples::{SQUARE_MATERIAL, ring_springs, square_jump};
 use pliant::simulate::Reading;
-use pliant::study::Verification;
+use pliant::study::{Quantity, Verification};
 use pliant::{
-    Body, Cells, Error, Mesh, Method, Phase, Sampling, Scene, SceneFile, Settings, Statics, Strain,
+    Body, Cells, Error, Mesh, MeshEstimate, Method, Phase, Sampling, Scene, SceneFile, Settings,
+    Statics, Strain,
 };
 use pliant::{Trajectory, sundials};
 use serde_json::{Value, json};
@@ -205,7 +206,7 @@ fn equilibria() {
     let found = scene(Strain::Cauchy, -100.0).equilibrium(&Statics::default()).unwrap();
     write_static_report(Ok(&found), &path).unwrap();
     let report = read();
-    assert_eq!(keys(&report), without(documented("static"), "failure."));
+    assert_eq!(keys(&report), without(without(documented("static"), "failure."), "mesh_estimate."));
     assert_eq!((&report["status"], &report["method"]), (&json!("finished"), &json!("static")));
     assert_eq!(report["states"], 32);
     assert_eq!(report["stability"]["kind"], "stable");
@@ -214,13 +215,31 @@ fn equilibria() {
     // both iterations end at three digits
     assert!((std::f64::consts::TAU * frequency / lowest - 1.0).abs() < 2e-7, "{frequency}");
 
+    let mut found = found;
+    let quantity = Quantity::named("top.y", found.trajectory().scene(), &[]).unwrap();
+    found.mesh_estimate = Some(MeshEstimate::of(&found, &quantity).unwrap());
+    write_static_report(Ok(&found), &path).unwrap();
+    let report = read();
+    assert_eq!(keys(&report), without(documented("static"), "failure."));
+    let estimate = &report["mesh_estimate"];
+    assert_eq!([&estimate["quantity"], &estimate["unit"]], [&json!("top.y"), &json!("m")]);
+    // 7 x 7 nodes with those in the middles of edges
+    assert_eq!(estimate["unknowns"], 98);
+    let number = |key: &str| estimate[key].as_f64().unwrap();
+    assert!((number("value") - number("change") - 0.3).abs() < 1e-12, "{estimate}");
+    let relative = number("correction") / number("change");
+    assert!(number("value") < 0.3 && relative > 0.0 && relative == number("relative"));
+
     // pressed by ten times its stiffness, a St. Venant-Kirchhoff square collapses
     let lost = scene(Strain::Green, -5e4).equilibrium(&Statics::default());
     let Err(Error::Statics(lost)) = lost else { panic!("no failure") };
     write_static_report(Err(&lost), &path).unwrap();
     let report = read();
     assert_eq!(report["status"], "failed");
-    assert_eq!(keys(&report), without(documented("static"), "stability."));
+    assert_eq!(
+        keys(&report),
+        without(without(documented("static"), "stability."), "mesh_estimate.")
+    );
     let (fraction, tried) = (&report["failure"]["fraction"], &report["failure"]["tried"]);
     assert!(fraction.as_f64().unwrap() < tried.as_f64().unwrap());
     assert_eq!((&report["stability"], &report["load_steps"]), (&Value::Null, &Value::Null));

@@ -3,7 +3,8 @@
 use clap::Args;
 use pliant::output::write_static_report;
 use pliant::scene_file::Format;
-use pliant::{Error, OutputRequest, SceneFile};
+use pliant::study::Quantity;
+use pliant::{Error, MeshEstimate, OutputRequest, SceneFile};
 
 use crate::failure::{Failure, print};
 use crate::files::OutputArguments;
@@ -28,12 +29,16 @@ pub struct Arguments {
     /// Most steps by arc length, through snap-through and snap-back; the first is one of the load steps
     #[arg(long, value_name = "STEPS")]
     arc_steps: Option<usize>,
+    /// Estimate by how much this is off because the mesh is not finer: a sensor or node set and a component such as tip.y,
+    /// com.x
+    #[arg(long, value_name = "QUANTITY")]
+    quantity: Option<String>,
     #[command(flatten)]
     output: OutputArguments,
 }
 
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
-    let Arguments { scene, phase, load_steps, arc_steps, output } = arguments;
+    let Arguments { scene, phase, load_steps, arc_steps, quantity, output } = arguments;
     let mut file = scene.read()?;
     output.apply(&mut file)?;
     let options = &mut file.statics.options;
@@ -41,6 +46,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     options.arc_steps = arc_steps.unwrap_or(options.arc_steps);
     file.statics.phase = phase.clone().or(file.statics.phase);
     let mut directory = output.directory(&scene.path, "-static")?;
+    let quantity = quantity.as_deref();
+    let quantity = quantity.map(|name| Quantity::named(name, &file.scene, &file.output.sensors));
+    let quantity = quantity.transpose()?;
+    if let Some(quantity) = &quantity {
+        MeshEstimate::check(&file.scene, quantity)?;
+    }
     let SceneFile { title, statics, output: request, .. } = &file;
     let mut request = request.clone();
     // one state has nothing over time
@@ -51,7 +62,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let request = &request;
 
-    let result = file.equilibrium();
+    let mut result = file.equilibrium();
+    if let (Ok(equilibrium), Some(quantity)) = (&mut result, &quantity) {
+        equilibrium.mesh_estimate = Some(MeshEstimate::of(equilibrium, quantity)?);
+    }
     let outcome = match &result {
         Ok(equilibrium) => Ok(equilibrium),
         Err(Error::Statics(failure)) => Err(&**failure),

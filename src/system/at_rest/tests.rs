@@ -150,3 +150,41 @@ fn a_part_of_the_load_is_the_load_made_smaller() {
         }
     }
 }
+
+/// The dual of a tangent that is not symmetric (pressure on a face that others do not close), of nodes that are held and of those
+/// on a plane askew: its equations, row by row, by the dense matrix.
+#[cfg(feature = "study")]
+#[test]
+fn duals_solve_the_transposed_system() {
+    let mesh = Mesh::rectangle([0.1, 0.04], [4, 3], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+    let scene = Scene::new(body.build().unwrap()).phase(
+        Phase::until(1.0).hold("left").symmetry("right", [1.0, 2.0]).pressure_on("top", 2e5),
+    );
+    let mut rest = scene.at_rest_in(0).unwrap();
+    let dofs = rest.system().dofs();
+    let rows = rest.system().rows().to_vec();
+    let some = |count: usize, step: f64| -> Vec<f64> {
+        (0..count).map(|i| (step * (i + 1) as f64).sin()).collect()
+    };
+    let (u, j, g) = (some(dofs, 0.7), some(dofs, 1.3), some(rows.len(), 2.1));
+    let u: Vec<f64> = u.iter().map(|u| 1e-4 * u).collect();
+    rest.update_tangent(1.0, &u);
+    assert!(rest.factorize_any());
+    let (mut z, mut nu) = (vec![0.0; dofs], vec![0.0; rows.len()]);
+    assert!(rest.solve_dual([&j, &g], &mut z, &mut nu));
+    let k = rest.tangent().to_dense();
+    let skew = (0..dofs * dofs).map(|i| (k[(i / dofs, i % dofs)] - k[(i % dofs, i / dofs)]).abs());
+    assert!(skew.fold(0.0, f64::max) > 100.0);
+    let mut left = j.clone();
+    for i in 0..dofs {
+        left[i] -= (0..dofs).map(|row| k[(row, i)] * z[row]).sum::<f64>();
+    }
+    for ((row, nu), g) in rows.iter().zip(&nu).zip(&g) {
+        row.terms.iter().for_each(|&(dof, c)| left[dof] += c * nu);
+        assert!((row.apply(&z) + g).abs() < 1e-12, "{}", row.apply(&z));
+    }
+    println!("{:e}", largest(&left) / largest(&nu));
+    // refined until z has nine digits
+    assert!(largest(&left) < 1e-7 * largest(&nu), "{:e} {:e}", largest(&left), largest(&nu));
+}
