@@ -48,7 +48,10 @@ impl Trial {
         // what is said of the mesh as it was written is true or not on that
         let found = match trial.advice.mesh {
             None => motion(&finer, &scene, limit),
-            Some(apart) => Err(format!("the mesh as written, of which a finer one is {:.0} % away", 100.0 * apart)),
+            Some(apart) => Err(format!(
+                "the mesh as written, of which a finer one is {:.0} % away",
+                100.0 * apart
+            )),
         };
         let (converged, choice) = match found {
             Ok(converged) => (converged, finer),

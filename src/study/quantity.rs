@@ -5,6 +5,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
+use crate::equilibrium::Equilibrium;
 use crate::input::{InputError, unknown_among};
 use crate::scene::Scene;
 use crate::simulate::{Component, Reading, Sampling};
@@ -150,6 +151,23 @@ impl Quantity {
             return Err(refused(mend));
         }
         Ok(reading)
+    }
+
+    /// What it is in an equilibrium, beside what it is [seen](Self::seen) at the end of a motion.
+    ///
+    /// # Errors
+    /// As [`of_equilibrium`](Self::of_equilibrium).
+    pub(super) fn seen_at_rest(&self, found: &Equilibrium) -> Result<Seen, InputError> {
+        let scene = found.trajectory().scene();
+        let reading = self.of_equilibrium(scene)?;
+        let value = reading.at(scene, found.sample())?;
+        let change = value - reading.at(scene, &found.trajectory().samples()[0])?;
+        Ok(Seen { dimension: 1, values: vec![vec![value]], scale: change.abs() })
+    }
+
+    /// Whether it is what an equilibrium may give: a number at the end.
+    pub(super) fn is_at_end(&self) -> bool {
+        self.part == Part::End
     }
 
     /// Has it read beside what `sampling` reads.

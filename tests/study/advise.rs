@@ -93,7 +93,7 @@ fn choices_can_be_written_into_scene_files() -> Outcome {
             if candidate.failure.is_some() || choice.halved > 1 || number % 3 == 1 {
                 continue;
             }
-            let read = SceneFile::read_with(&path, &choice.overrides(&file.scene, &file.settings))?;
+            let read = SceneFile::read_with(&path, &candidate.set)?;
             let sampling = Sampling::phase_ends();
             let own = (choice.scene(&scene)?, &choice.settings);
             let ends =

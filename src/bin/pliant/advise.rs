@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pliant::study::{Advice, Adviser, Candidate, Quantity};
-use pliant::{Fraction, Sampling, SceneFile};
+use pliant::{Fraction, Sampling};
 
 use crate::failure::{Failure, print};
 use crate::files::Directory;
@@ -86,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let advice = advice?;
     print(&advice)?;
     if let Some(directory) = &mut directory {
+        directory.claim()?;
         let title = match &file.title[..] {
             "" => scene.path.display().to_string(),
             title => scene.title(title),
@@ -100,12 +101,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             advice.write_page(scene, &sampling, path, &title, &mut observer)
         })?;
         progress.finish_and_clear();
-        directory.write("advice.json", |path| advice.write_json(scene, &file.settings, path))?;
+        directory.write("advice.json", |path| advice.write_json(path))?;
         directory.write("candidates.csv", |path| advice.write_csv(path))?;
         directory.tell()?;
     }
     match (write, &advice.enough) {
-        (Some(path), Some(enough)) => write_scene(scene, &file, &advice, enough, path),
+        (Some(path), Some(enough)) => write_scene(scene, &advice, enough, path),
         (Some(_), None) => {
             Err(Failure::failed("nothing is known to be enough: no scene file is written"))
         }
@@ -116,14 +117,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Writes the scene file with what is enough, beneath the reasons as comments.
 fn write_scene(
     scene: &SceneArguments,
-    file: &SceneFile,
     advice: &Advice,
     enough: &Candidate,
     path: &Path,
 ) -> Result<(), Failure> {
     let comment = |line: &str| format!("# {line}").trim_end().to_owned() + "\n";
     let reasons: String = advice.to_string().lines().map(comment).collect();
-    let text = scene.text(&enough.choice.overrides(&file.scene, &file.settings))?;
+    let text = scene.text(&enough.set)?;
     // a schema stands on the first line
     let (first, rest) = match text.starts_with("#:schema") {
         true => text.split_at(text.find('\n').map_or(text.len(), |end| end + 1)),

@@ -2,7 +2,9 @@
 
 use super::choice::Choice;
 use super::parts::Parts;
+use crate::equilibrium::MeshEstimate;
 use crate::scene::Term;
+use crate::study::look::Look;
 
 /// What is enough for a scene, and what that was found from.
 #[derive(Debug, Clone)]
@@ -41,6 +43,11 @@ pub struct Advice {
     pub known_until: Option<f64>,
     /// Time (s) at which the motion ends that all else is about: the end of the scene, or some time before `known_until`.
     pub end: f64,
+    /// By how much a number that an equilibrium gives is off because of the mesh as it was written, as adjoint-weighted residuals
+    /// tell; only where an equilibrium is enough. `errors` of meshes are what paired runs tell.
+    pub mesh_estimate: Option<MeshEstimate>,
+    /// What a coarse run told before all others.
+    pub look: Option<Look>,
     /// What was not tried, and why.
     pub not_tried: Vec<String>,
     /// Whether the budget was spent, or the observer has ended the search, before all was tried.
@@ -58,6 +65,8 @@ pub struct Advice {
 pub struct Candidate {
     /// The choice.
     pub choice: Choice,
+    /// What has to be set for it in the file of the scene, as `--set` takes it.
+    pub set: Vec<String>,
     /// Its relative error; none without a motion, or without anything to compare with.
     pub error: Option<f64>,
     /// What that is made of, where the runs between it and the truth were made, too.
@@ -72,6 +81,7 @@ pub struct Candidate {
 
 impl Candidate {
     pub(super) fn new(choice: Choice) -> Self {
-        Self { choice, error: None, parts: None, seconds: 0.0, unknowns: 0, failure: None }
+        let set = Vec::new();
+        Self { choice, set, error: None, parts: None, seconds: 0.0, unknowns: 0, failure: None }
     }
 }

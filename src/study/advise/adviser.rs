@@ -12,6 +12,7 @@ use crate::error::Error;
 use crate::input::{Fraction, InputError, positive};
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::study::look::Look;
 use crate::study::quantity::Quantity;
 
 /// Finds out what of a scene has to be modelled for a [`Quantity`] to be right to an accuracy: it runs the scene by a
@@ -40,6 +41,9 @@ pub struct Adviser<'a> {
 
 /// Of the time until which a motion is known, this part is advised for.
 const KNOWN: f64 = 0.9;
+/// The first look takes so many seconds at most, and this part of the budget.
+const LOOK: f64 = Look::SECONDS;
+const LOOK_SHARE: f64 = 0.05;
 /// Less of a scene is not worth advice.
 const LEAST_KNOWN: f64 = 0.01;
 
@@ -105,6 +109,7 @@ impl<'a> Adviser<'a> {
         self.scene.validate()?;
         quantity.check(self.scene)?;
         let runs = Runs::open(self.file.as_deref())?;
+        let look = Look::of(self.scene, settings, LOOK.min(LOOK_SHARE * budget))?;
         let mut search = Search::new(&self.request, self.scene, runs, observer);
         let (mut found, mut is_cut_short) = (Found::default(), false);
         let mut climb = |search: &mut Search, found: &mut Found| match search.climb(found) {
@@ -125,30 +130,34 @@ impl<'a> Adviser<'a> {
             climb(&mut search, &mut found)?;
             found.known_until = known_until;
         }
-        self.advice(search, found, is_cut_short)
+        Ok(Advice { look: Some(look), ..self.advice(search, found, is_cut_short)? })
     }
 
     fn advice(&self, search: Search, found: Found, is_cut_short: bool) -> Result<Advice, Error> {
         let truth = found.truth();
+        let named = |candidate: Candidate| {
+            let set = candidate.choice.overrides(self.scene, &self.request.settings);
+            Candidate { set, ..candidate }
+        };
         let candidate = |solved: &Solved| {
             let Solved { choice, seconds, unknowns, .. } = solved.clone();
-            Candidate {
+            named(Candidate {
                 error: truth.map(|truth| solved.error(truth)),
                 parts: found.parts(solved),
                 seconds,
                 unknowns,
                 ..Candidate::new(choice)
-            }
+            })
         };
         let written = found.written.as_ref().map(candidate);
-        let Some(written) = written.or_else(|| search.failures.first().cloned()) else {
+        let Some(written) = written.or_else(|| search.failures.first().cloned().map(named)) else {
             let mend = "not one run came to its end: allow more time";
             return Err(
                 InputError::new("budget", format!("{} s", self.request.budget), mend).into()
             );
         };
         let mut candidates: Vec<Candidate> = found.all().map(candidate).collect();
-        candidates.extend(search.failures.iter().cloned());
+        candidates.extend(search.failures.iter().cloned().map(named));
         Ok(Advice {
             quantity: self.request.quantity.to_string(),
             accuracy: self.request.accuracy,
@@ -167,6 +176,8 @@ impl<'a> Adviser<'a> {
             law: found.law,
             inertia: found.inertia,
             terms: found.terms,
+            mesh_estimate: found.mesh_estimate,
+            look: None,
             known_until: found.known_until,
             end: search.scene.end(),
             not_tried: found.not_tried,

@@ -7,6 +7,8 @@ use super::choice::Choice;
 use super::words::{percent, short};
 use crate::body::{Inertia, Strain};
 use crate::input::told;
+use crate::report::Verdict;
+use crate::study::look::Look;
 use crate::study::time_text;
 
 impl Advice {
@@ -47,7 +49,9 @@ impl Advice {
                 let differs = if self.mesh.is_some() { "away" } else { "off" };
                 reasons.push(match error {
                     0.0 => format!("{mesh}: {unknowns} unknowns; what all are compared with"),
-                    _ => format!("{mesh}: {unknowns} unknowns, {} {differs}, {time}", percent(error)),
+                    _ => {
+                        format!("{mesh}: {unknowns} unknowns, {} {differs}, {time}", percent(error))
+                    }
                 });
             }
         }
@@ -61,6 +65,16 @@ impl Advice {
             };
             reasons.push(format!("{other} changes it by {}", percent(error)));
         }
+        if let Some(estimate) = &self.mesh_estimate {
+            let apart =
+                self.candidates.iter().find(|candidate| candidate.choice.is_mesh_as_written());
+            let paired = apart.and_then(|candidate| Some(percent(candidate.parts?.mesh)));
+            reasons.push(format!(
+                "the mesh as written is {} off at rest, as adjoint-weighted residuals tell{}",
+                percent(estimate.correction.abs() / self.scale),
+                paired.map_or_else(String::new, |paired| format!(" (by paired runs: {paired})"))
+            ));
+        }
         reasons
     }
 }
@@ -68,12 +82,11 @@ impl Advice {
 impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { quantity, accuracy, scale, unit, .. } = self;
-        writeln!(
-            f,
-            "{quantity} to {}, which is {} {unit}",
-            percent(*accuracy),
-            short(accuracy * scale)
-        )?;
+        write!(f, "{quantity} to {}", percent(*accuracy))?;
+        match scale.is_nan() {
+            true => writeln!(f)?,
+            false => writeln!(f, ", which is {} {unit}", short(accuracy * scale))?,
+        }
         if let Some(until) = self.known_until {
             writeln!(
                 f,
@@ -123,6 +136,10 @@ impl fmt::Display for Advice {
         writeln!(f)?;
         for reason in self.reasons() {
             writeln!(f, "- {reason}")?;
+        }
+        let looked = self.look.iter().flat_map(Look::indicators);
+        for indicator in looked.filter(|indicator| indicator.verdict != Verdict::Fine) {
+            writeln!(f, "- {indicator}")?;
         }
         for failed in self.candidates.iter().filter(|candidate| candidate.failure.is_some()) {
             writeln!(f, "- failed: {}", run(failed))?;

@@ -21,6 +21,8 @@ pub struct Choice {
     pub inertia: Inertia,
     /// What is left out.
     pub without: Vec<Term>,
+    /// Whether the equilibrium of the last phase stands for the end of the motion, as `pliant static` finds it.
+    pub is_static: bool,
     /// How it is integrated.
     pub settings: Settings,
 }
@@ -35,6 +37,7 @@ impl Choice {
             halved: 0,
             inertia: body.inertia_kind(),
             without: Vec::new(),
+            is_static: false,
             settings: settings.clone(),
         }
     }
@@ -65,13 +68,18 @@ impl Choice {
         alpha && Self { settings, ..self.clone() } == *other
     }
 
+    /// Whether it is on the mesh as it was written.
+    pub(super) fn is_mesh_as_written(&self) -> bool {
+        (self.quadratic, self.halved) == (false, 0)
+    }
+
     /// Whether both are on the same mesh.
     pub(super) fn is_mesh_of(&self, other: &Self) -> bool {
         (self.quadratic, self.halved) == (other.quadratic, other.halved)
     }
 
     /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written` with `settings`.
-    pub fn overrides(&self, written: &Scene, settings: &Settings) -> Vec<String> {
+    pub(super) fn overrides(&self, written: &Scene, settings: &Settings) -> Vec<String> {
         let mut sets = Vec::new();
         let body = written.body();
         if self.strain != body.strain() {
@@ -132,6 +140,9 @@ impl Choice {
                 }
             }
         }
+        if self.is_static {
+            return sets;
+        }
         sets.push(format!("solver.method={}", self.settings.method));
         sets.push(format!("solver.rtol={:e}", self.settings.rtol));
         let own = self.settings.tolerances(written);
@@ -184,6 +195,9 @@ impl fmt::Display for Choice {
         }
         for term in &self.without {
             write!(f, ", no {term}")?;
+        }
+        if self.is_static {
+            return f.write_str(", in equilibrium (pliant static)");
         }
         let Settings { method, rtol, alpha, contact_events, .. } = self.settings;
         write!(f, ", {method} at rtol {rtol:.0e}")?;

@@ -2,6 +2,7 @@
 
 use super::parts::Parts;
 use super::search::{Request, Solved};
+use crate::equilibrium::MeshEstimate;
 use crate::scene::Term;
 
 /// Runs, by what they were made for, and what they tell.
@@ -28,6 +29,8 @@ pub(super) struct Found {
     pub(super) sweep: Vec<Solved>,
     /// ... and with hardly any error of the integration.
     pub(super) enough: Option<Solved>,
+    /// By how much an equilibrium is off on the mesh as it was written.
+    pub(super) mesh_estimate: Option<MeshEstimate>,
     /// Time (s) until which two tight runs agree, if that is before the end.
     pub(super) known_until: Option<f64>,
     pub(super) not_tried: Vec<String>,

@@ -6,6 +6,7 @@ use super::choice::Choice;
 use super::found::Found;
 use super::search::{Cut, Search, Solved, Stop};
 use crate::body::{Inertia, Strain};
+use crate::equilibrium::MeshEstimate;
 use crate::mesh::CellKind;
 use crate::settings::{ContactEvents, Method, Settings};
 use crate::study::tightening;
@@ -19,6 +20,10 @@ const OF_TERM: f64 = 0.05;
 const OF_MESH: f64 = 0.6;
 /// The finest mesh is fine enough if it may be off by this part of the accuracy itself.
 const OF_TRUTH: f64 = 0.3;
+/// Runs that locate contact events may take so many times as long as the scene as it was written, or so long (s) more; then they are
+/// left out.
+const LOCATING: f64 = 10.0;
+const LOCATING_SHORT: f64 = 0.5;
 /// Cells are halved less often than that.
 const FINEST: usize = 6;
 /// What alpha is multiplied by, and the largest (1/s) that is tried.
@@ -49,6 +54,9 @@ impl Search<'_> {
             self.leave_out(&rich, found)?;
         }
         let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
+        if freedom.others && self.request.quantity.is_at_end() {
+            self.rest(&enough, found)?;
+        }
         self.sweep(&enough, found)?;
         self.by_itself(&rich, found)
     }
@@ -58,9 +66,21 @@ impl Search<'_> {
         let accuracy = self.request.accuracy;
         let mut rtol = tightening::first(accuracy);
         let mut before: Option<Solved> = None;
+        let mut contact_events = ContactEvents::Locate;
+        let usual = found.written.as_ref().map_or(f64::INFINITY, |written| written.seconds);
         loop {
-            let settings = self.request.settings(Method::Auto, rtol, ContactEvents::Locate);
-            let Some(solved) = self.run(&Choice { settings, ..written.clone() })? else {
+            let settings = self.request.settings(Method::Auto, rtol, contact_events);
+            // events that follow each other closely may take longer than all the rest
+            if contact_events == ContactEvents::Locate && before.is_none() {
+                self.patience = LOCATING * usual + LOCATING_SHORT;
+            }
+            let solved = self.run(&Choice { settings, ..written.clone() });
+            self.patience = f64::INFINITY;
+            let Some(solved) = solved? else {
+                if self.cut == Some(Cut::Late) {
+                    contact_events = ContactEvents::Auto;
+                    continue;
+                }
                 return Ok(before);
             };
             if let Some(before) = &before {
@@ -195,6 +215,25 @@ impl Search<'_> {
         let small = found.terms.iter().filter(|(_, error)| *error <= OF_TERM * accuracy);
         let without = small.map(|(term, _)| term.clone()).collect();
         Some(Choice { strain, without, ..mesh.choice.clone() })
+    }
+
+    /// The equilibrium in place of the motion, and by how much that is off on the mesh as it was written.
+    fn rest(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
+        // what damps a motion has nothing to do at rest
+        let choice = Choice { is_static: true, ..enough.clone() };
+        let Some(solved) = self.run(&choice)? else { return Ok(()) };
+        let allowed = found.allowed(self.request.accuracy);
+        let is_right = found.truth().is_some_and(|truth| solved.error(truth) <= allowed);
+        found.sweep.push(solved);
+        if is_right {
+            let coarse = Choice { quadratic: false, halved: 0, ..choice };
+            let scene = coarse.scene(&self.scene).ok();
+            let equilibrium = scene.and_then(|scene| self.at_rest(&scene).ok());
+            let estimate =
+                |equilibrium| MeshEstimate::of(&equilibrium, &self.request.quantity).ok();
+            found.mesh_estimate = equilibrium.and_then(estimate);
+        }
+        Ok(())
     }
 
     /// Methods and tolerances for a model that is enough, and how contact events are met by the fastest of them.

@@ -5,8 +5,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::advice::{Advice, Candidate};
+use super::words::percent;
 use crate::error::Error;
-use crate::input::told;
 use crate::output::{Above, escaped, write_below};
 use crate::scene::Scene;
 use crate::simulate::Sampling;
@@ -22,12 +22,6 @@ const KEY: &str = include_str!("page/key.html");
 const LONGEST: Duration = Duration::from_secs(20);
 /// What begins a line that tells of one candidate, in the words of the advice.
 const NAMES: [&str; 2] = ["Enough", "As written"];
-
-/// A relative number in percent, with two digits.
-pub(super) fn percent(part: f64) -> String {
-    let rounded = format!("{:.1e}", 100.0 * part).parse().unwrap_or(part);
-    format!("{} %", told(rounded))
-}
 
 impl Advice {
     /// Writes the advice as one HTML file for a web browser, without a network: what it says, the errors of all candidates over
@@ -63,16 +57,16 @@ impl Advice {
                 Err(why) => left_out.push(format!("{name}: {why}")),
             }
         }
-        let html = self.html(written, &motions, &left_out);
+        let html = self.html(&motions, &left_out);
         let motions: Vec<(&str, &Trajectory)> =
             motions.iter().map(|(name, motion)| (*name, motion)).collect();
         write_below(&Above { html: &html, style: STYLE }, &motions, path.as_ref(), title)
     }
 
-    fn html(&self, written: &Scene, motions: &[(&str, Trajectory)], left_out: &[String]) -> String {
+    fn html(&self, motions: &[(&str, Trajectory)], left_out: &[String]) -> String {
         let answer = paragraphs(&self.to_string());
         let sets = self.enough.as_ref().map_or_else(String::new, |enough| {
-            let lines = escaped(&enough.choice.overrides(written).join("\n"));
+            let lines = escaped(&enough.set.join("\n"));
             format!("<h3>What is enough, as <code>--set</code> takes it</h3>\n<pre>{lines}</pre>\n")
         });
         let chart = self.chart().map_or_else(String::new, |chart| {
@@ -114,7 +108,7 @@ impl Advice {
     }
 
     fn row(&self, candidate: &Candidate) -> String {
-        let Candidate { choice, error, seconds, unknowns, failure } = candidate;
+        let Candidate { choice, error, seconds, unknowns, failure, .. } = candidate;
         let mut notes = self.parts_of(candidate);
         let is_on_front = self.is_on_front(candidate);
         notes.extend(is_on_front.then_some("front"));
@@ -149,6 +143,9 @@ fn motion(
 ) -> Result<Trajectory, String> {
     if let Some(failure) = &candidate.failure {
         return Err(failure.clone());
+    }
+    if candidate.choice.is_static {
+        return Err("an equilibrium, without a motion".into());
     }
     let scene = candidate.choice.scene(written).map_err(|error| error.to_string())?;
     let mut budget = Budget::new(LONGEST);

@@ -8,27 +8,22 @@ use super::advice::{Advice, Candidate};
 use super::parts::Parts;
 use crate::error::Error;
 use crate::output::write_file;
-use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::study::look::Look;
 
 impl Advice {
     /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `mesh`, `alphas`,
-    /// `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` is
-    /// not known. A candidate has `model` and `set`, what has to be set for it in the file of the scene `written` with `settings`.
+    /// `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `mesh_estimate`,
+    /// `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` is
+    /// not known. A candidate has `model` and `set`, what has to be set for it in the file of the scene.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
-    pub fn write_json(
-        &self,
-        written: &Scene,
-        settings: &Settings,
-        path: impl AsRef<Path>,
-    ) -> Result<(), Error> {
+    pub fn write_json(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let candidate = |candidate: &Candidate| -> Value {
-            let Candidate { choice, error, parts, seconds, unknowns, failure } = candidate;
+            let Candidate { choice, set, error, parts, seconds, unknowns, failure } = candidate;
             json!({
                 "model": choice.to_string(),
-                "set": choice.overrides(written, settings),
+                "set": set,
                 "error": error,
                 "parts": parts.map(|Parts { model, mesh, time }| {
                     json!({ "model": model, "mesh": mesh, "time": time })
@@ -60,6 +55,10 @@ impl Advice {
             "candidates": self.candidates.iter().map(candidate).collect::<Vec<_>>(),
             "known_until": self.known_until,
             "end": self.end,
+            "mesh_estimate": self.mesh_estimate.as_ref().map(|estimate| {
+                json!({ "value": estimate.value, "change": estimate.change, "correction": estimate.correction })
+            }),
+            "look": self.look.as_ref().map(Look::to_json),
             "not_tried": self.not_tried,
             "is_cut_short": self.is_cut_short,
             "runs": self.runs,

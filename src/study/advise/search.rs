@@ -7,9 +7,11 @@ use super::advice::Candidate;
 use super::choice::Choice;
 use super::freedom::Freedom;
 use super::runs::{Outcome, Runs};
+use crate::equilibrium::Equilibrium;
 use crate::error::Error;
-use crate::scene::Scene;
+use crate::scene::{Phase, Scene};
 use crate::settings::{ContactEvents, Method, Settings};
+use crate::statics::Statics;
 use crate::study::quantity::{Quantity, Seen};
 use crate::study::truth::{Probe, reason};
 use crate::trajectory::Trajectory;
@@ -186,6 +188,15 @@ impl<'a> Search<'a> {
     fn solve(&mut self, choice: &Choice) -> Result<(Seen, f64, usize), Error> {
         let scene = choice.scene(&self.scene)?;
         let what = format!("{choice}: {} nodes", scene.body().mesh().node_count());
+        if choice.is_static {
+            self.runs += 1;
+            if (self.observer)(&what).is_break() {
+                self.cut = Some(Cut::Interrupted);
+            }
+            let clock = Instant::now();
+            let seen = self.request.quantity.seen_at_rest(&self.at_rest(&scene)?)?;
+            return Ok((seen, clock.elapsed().as_secs_f64(), scene.body().dofs()));
+        }
         let nodes = (0..self.nodes).collect();
         let probe = Probe::new(&scene, self.request.quantity.clone(), nodes);
         let first = self.once(&scene, &probe, &choice.settings, &what)?;
@@ -198,6 +209,12 @@ impl<'a> Search<'a> {
             seconds = seconds.min(again.report().wall_seconds);
         }
         Ok((probe.seen(&first), seconds, first.report().states))
+    }
+
+    /// What a scene comes to rest in, if it ever does.
+    pub(super) fn at_rest(&self, scene: &Scene) -> Result<Equilibrium, Error> {
+        let last = scene.phases().last().map_or("", Phase::name);
+        scene.equilibrium_of(last, &Statics::default())
     }
 
     fn once(
