@@ -46,12 +46,12 @@ impl Trial {
         let same = Choice { settings, ..truth.choice.clone() };
         let finer = Choice { halved: same.halved + 1, ..same.clone() };
         // what is said of the mesh as it was written is true or not on that
-        let found = match trial.advice.mesh {
-            None => motion(&finer, &scene, limit),
-            Some(apart) => Err(format!(
-                "the mesh as written, of which a finer one is {:.0} % away",
-                100.0 * apart
-            )),
+        let found = match (trial.advice.mesh, trial.advice.resolution.is_nan()) {
+            (None, false) => motion(&finer, &scene, limit),
+            (None, true) => Err("no finer mesh gave a motion within the budget".into()),
+            (Some(apart), _) => {
+                Err(format!("the mesh as written; a finer one is {:.0} % away", 100.0 * apart))
+            }
         };
         let (converged, choice) = match found {
             Ok(converged) => (converged, finer),

@@ -76,18 +76,23 @@ impl Deformed {
     }
 
     fn largest_strain(&self, law: Strain) -> Indicator {
-        let (name, factor) = match law {
-            Strain::Green => ("St. Venant and Kirchhoff's law", GREEN_LAW),
-            Strain::Cauchy => ("Hooke's law", CAUCHY_LAW),
+        let (factor, off) = match law {
+            Strain::Green => {
+                (GREEN_LAW, "St. Venant and Kirchhoff's law is off by some 2.5 times that")
+            }
+            Strain::Cauchy => (CAUCHY_LAW, "Hooke's law is off by about as much"),
         };
         let Self { strain, at: (time, cell), .. } = *self;
         let limit = MOST_WRONG / factor;
-        let said =
-            format!("cells are strained by up to {} (limit: {})", percent(strain), percent(limit));
+        let said = format!(
+            "cells are strained by up to {} % (limit: {})",
+            told(100.0 * strain),
+            percent(limit)
+        );
         let beyond = || {
             format!(
-                "{said}, cell {} at t = {} s: {name} is off by some {factor} times that in its stress, compared with \
-                 rubber; forces there are doubtful, shapes less so. Deform it less, or measure moduli at such strains",
+                "{said}, cell {} at t = {} s: {off} in its stress, compared with that of rubber; forces there are \
+                 doubtful, shapes less so. Deform it less, or measure moduli at such strains",
                 cell + 1,
                 told(time)
             )
@@ -102,10 +107,9 @@ impl Deformed {
         let wrong =
             ((1.0 - turn.cos()) + 0.5 * strain.powi(2)) / strain + strain * slenderness.powi(2);
         let limit = percent(MOST_NONLINEAR);
-        let said = format!(
-            "Cauchy strain would be wrong by some {} of the strains (limit: {limit})",
-            percent(wrong)
-        );
+        let by =
+            if wrong < 1.0 { format!("some {}", percent(wrong)) } else { "more than 100 %".into() };
+        let said = format!("Cauchy strain would be wrong by {by} of the strains (limit: {limit})");
         let enough = || format!("{said}: strain = \"cauchy\" would do, and is faster");
         Indicator::needed("nonlinearity", (wrong, "1"), MOST_NONLINEAR, || said.clone(), enough)
     }

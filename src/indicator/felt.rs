@@ -79,11 +79,7 @@ pub(super) fn depth(
         percent(part),
         percent(MOST_DEPTH)
     );
-    let beyond = || {
-        format!(
-            "{said}: the motion is largely that of the penalty; raise the stiffness of the obstacle"
-        )
-    };
+    let beyond = || format!("{said}: it gives way where it should not; raise its stiffness");
     let limits = [0.0, MOST_DEPTH];
     Some(Indicator::trusted("depth-of-way", (part, "1"), limits, || said.clone(), beyond))
 }

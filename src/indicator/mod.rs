@@ -12,6 +12,25 @@
 //! | [`touch`]: how deep nodes are inside obstacles | half a cell, 2 % of the body |
 //! | [`touch`]: obstacles with friction that are met in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never met | none |
+//!
+//! Those are measured at the end of each run, and before it as far as they need none. Others take longer, or are no cause
+//! for a warning by themselves: [`Trajectory::indicators`], `pliant check --look`. (+) means that less would do below the limit.
+//!
+//! | indicator | limit |
+//! | --- | --- |
+//! | [`deformed`]: largest strain, by which the stress of a law differs from rubber's | 10 % (Green), 25 % (Cauchy) |
+//! | [`deformed`]: what Cauchy strain would get wrong in a body with Green's (+) | 1 % of the strains |
+//! | [`deformed`]: turn of cells beside that of the body; [`shape`]: slenderness | |
+//! | [`shape`]: layers of cells through a slender body that bends | 4 of simplices, 2 of others, 1 quadratic |
+//! | [`waves`]: cells in a wavelength of the motion | 6 linear, 3 quadratic |
+//! | [`points`]: single nodes that are loaded or held so much that the mesh matters | none |
+//! | [`felt`]: depth in obstacles | 10 % of the way that nodes go |
+//! | [`felt`]: forces of friction (+) | 1 % of what presses |
+//! | [`pace`]: drift of constraints | 0.1 % of the way that nodes go |
+//! | [`pace`]: kinetic energy (+) | 1 % of the stored energy |
+//! | [`pace`]: damping of the lowest vibration, and how much faster the mesh can move | |
+//! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
+//! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
 mod coarse;
 mod deformed;
@@ -63,8 +82,18 @@ impl Scene {
 
 impl Trajectory {
     /// What tells how far the motion can be trusted, and what of the model it needs: what the end of the run
-    /// [measured](crate::Report::indicators), and what takes longer to measure. The limits stand in the
-    /// [guide](https://docs.rs/pliant).
+    /// [measured](crate::Report::indicators), and what takes longer to measure, on the same samples. Of what has a limit
+    /// the value is kept on either side of it.
+    ///
+    /// ```
+    /// use pliant::{Sampling, Settings, samples};
+    ///
+    /// let motion = samples::square_jump(4)?.simulate(&Settings::default(), &Sampling::every(0.01))?;
+    /// for indicator in motion.indicators() {
+    ///     println!("{indicator}"); // fine, doubtful or more-than-needed, and why
+    /// }
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
     pub fn indicators(&self) -> Vec<Indicator> {
         let (body, samples) = (self.body(), looked_at(self));
         let deformed = Deformed::of(body, &samples);
@@ -76,12 +105,14 @@ impl Trajectory {
                 .iter()
                 .flat_map(|extent| extent.indicators(body, deformed.own_turn, deformed.strain)),
         );
-        all.extend(waves::resolution(self, &samples));
+        let inertia = pace::inertia(&samples);
+        let is_static = inertia.as_ref().is_some_and(Indicator::is_beyond);
+        all.extend(waves::resolution(self, &samples, is_static));
         all.extend(points::single(self, &samples));
         all.extend(felt::depth(self, &samples, &touch::meetings(self, &samples)));
         all.extend(felt::friction(self, &samples));
         all.extend(pace::drift(self, &samples));
-        all.extend(pace::inertia(&samples));
+        all.extend(inertia);
         all.extend(pace::vibrations(self.scene()));
         all.extend(symmetry::plane(body, &samples));
         all.extend(symmetry::mirrors(body, &samples));

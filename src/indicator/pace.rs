@@ -78,7 +78,8 @@ pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indi
     }
     let part = drift / way;
     let said = format!(
-        "constraints are off by up to {drift:.1e} m, {} of the way that nodes go (limit: {})",
+        "constraints are off by up to {} m, {} of the way that nodes go (limit: {})",
+        short(drift),
         percent(part),
         percent(MOST_DRIFT)
     );

@@ -12,7 +12,8 @@ const SLENDER: f64 = 3.0;
 /// A body bends if cells turn by more than so many times their strain.
 const BENDS: f64 = 2.0;
 
-/// The box with the volume and the surface of a body: exact for boxes, and for rings and arcs their length and thickness.
+/// The box with the volume and the surface of a body: exact for boxes, and nearly the length and thickness of thin
+/// rings and arcs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extent {
     length: f64,
@@ -64,12 +65,12 @@ impl Extent {
         let count = layers(body.mesh());
         let bends = slenderness >= SLENDER && turn > BENDS * strain;
         let kind = body.mesh().kind();
-        let (wanted, what) = match kind {
-            CellKind::Quadrilateral | CellKind::Hexahedron => (2, "linear"),
-            kind if kind.is_quadratic() => (1, "quadratic"),
-            _ => (4, "linear"),
+        let wanted = match kind {
+            CellKind::Quadrilateral | CellKind::Hexahedron => 2,
+            kind if kind.is_quadratic() => 1,
+            _ => 4,
         };
-        let told = format!("{count} {what} {} lie through the thickness", kind.name());
+        let told = format!("{count} layer(s) of {} lie through the thickness", kind.name());
         if !bends {
             return [slender, Indicator::told("cells-through", count as f64, "", told)];
         }

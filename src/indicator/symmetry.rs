@@ -30,7 +30,7 @@ pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     let (axis, part) = across.min_by(|a, b| a.1.total_cmp(&b.1))?;
     let said = format!(
         "the motion is {} off one in a plane across {} (limit: {})",
-        percent(part),
+        off(part),
         AXES[axis],
         percent(PLANE)
     );
@@ -59,13 +59,18 @@ pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
         let (name, across) = (["mirror-x", "mirror-y", "mirror-z"][axis], AXES[axis]);
         let said = format!(
             "the motion is {} off its mirror image across {across} (limit: {})",
-            percent(part),
+            off(part),
             percent(MIRRORED)
         );
         let enough = || format!("{said}: half of the body would do, its middle held by `symmetry`");
         Indicator::needed(name, (part, "1"), MIRRORED, || said.clone(), enough)
     };
     parts.map(indicator).collect()
+}
+
+/// A distance from a motion, over the motion.
+fn off(part: f64) -> String {
+    if part < 0.5 { percent(part) } else { "far".into() }
 }
 
 /// Root of the sum of squares (m) of all displacements from their mean over nodes, if there are any.

@@ -16,7 +16,12 @@ const SEEN: f64 = 1e-4;
 
 /// Cells in a wavelength of the motion: 2 pi over the root of the mean square of its velocity and of how much that changes
 /// along the edges of a cell. That of a single wave is its own; of several, one between theirs, nearer to the short ones.
-pub(super) fn resolution(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+/// Where inertia hardly acts, `is_static`, nothing follows from it.
+pub(super) fn resolution(
+    trajectory: &Trajectory,
+    samples: &[&Sample],
+    is_static: bool,
+) -> Option<Indicator> {
     let body = trajectory.body();
     let (mesh, d) = (body.mesh(), body.dimension());
     let (kind, volumes) = (mesh.kind(), body.cell_volumes());
@@ -48,6 +53,10 @@ pub(super) fn resolution(trajectory: &Trajectory, samples: &[&Sample]) -> Option
         return None;
     }
     let cells = TAU * (squares / changes).sqrt();
+    if is_static {
+        let told = format!("a wavelength of the slow motion has some {} cells", short(cells));
+        return Some(Indicator::told("cells-in-a-wave", cells, "", told));
+    }
     let quadratic = kind.is_quadratic();
     let limit = if quadratic { QUADRATIC } else { LINEAR };
     let said =

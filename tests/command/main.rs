@@ -215,6 +215,14 @@ fn wrong_motions_are_told() {
     assert_eq!(checked.status.code(), Some(0));
     says(&stdout(&checked), &[&format!("WARNING: {}", warnings[0])]);
     assert!(!stdout(&checked).contains("cells turn"));
+    let looked = place.run(&["check", scene, "--look"]);
+    assert_eq!(looked.status.code(), Some(0));
+    let told = [
+        "doubtful          Poisson's ratio 0.48",
+        "doubtful          cells turn",
+        "fine              ",
+    ];
+    says(&stdout(&looked), &told);
 
     let output = place.run(&["static", &shipped("beam-static-cauchy.toml"), "-q"]);
     says(&stdout(&output), &["WARNING: cells turn by up to"]);

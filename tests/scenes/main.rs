@@ -15,6 +15,7 @@ mod driving;
 mod forces;
 mod friction;
 mod index_two;
+mod indicators;
 mod moving_obstacles;
 mod observer;
 mod oscillating;

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use pliant::samples::{ClampedBeam, clamped_beam};
-use pliant::study::{Advice, Adviser, Parts};
+use pliant::study::{Advice, Adviser, Parts, Quantity};
 use pliant::{
     Body, Cells, Error, Inertia, Material, Mesh, Obstacle, Phase, Sampling, Scene, SceneFile,
     Settings, Strain, Term,
@@ -159,5 +159,36 @@ fn errors_are_split_into_model_mesh_and_time() -> Outcome {
         let largest = model.max(mesh).max(time);
         assert!(error >= 2.0 * largest - (model + mesh + time) - 1e-12, "{error} {parts:?}");
     }
+    Ok(())
+}
+
+/// A beam that sinks under its weight, and is damped so much that it comes to rest: where it ends, statics tells.
+#[test]
+fn what_has_come_to_rest_needs_statics_alone() -> Outcome {
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 1e5 };
+    let mesh = Mesh::rectangle([0.1, 0.02], [11, 3], Cells::Triangles)?;
+    let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).strain(Strain::Cauchy).build()?)
+        .gravity([0.0, -9.8])
+        .phase(Phase::until(10.0).hold("left"));
+    let quantity = Quantity::named("right.y:end", &scene, &[])?;
+    let advice =
+        Adviser::new(&scene, 0.02).quantity(quantity).run(&mut |_| ControlFlow::Continue(()))?;
+    println!("{advice}");
+    let enough = advice.enough.as_ref().unwrap();
+    assert!(enough.choice.is_static, "{}", enough.choice);
+    // the same as the motion's end, which has come to rest to exp(-t/tau) with tau = viscosity/young = 0.1 s
+    let same = advice.candidates.iter().find(|candidate| {
+        let choice = &candidate.choice;
+        let is_mesh =
+            (choice.quadratic, choice.halved) == (enough.choice.quadratic, enough.choice.halved);
+        is_mesh && !choice.is_static && choice.settings.rtol < 1e-3
+    });
+    let same = same.unwrap().error.unwrap();
+    assert!((enough.error.unwrap() - same).abs() < 1e-3, "{:?} {same}", enough.error);
+    // what the mesh lacks, by adjoint-weighted residuals and by the runs
+    let estimate = advice.mesh_estimate.as_ref().unwrap();
+    let told = estimate.correction.abs() / advice.scale;
+    let paired = advice.written.parts.unwrap().mesh;
+    assert!((told / paired - 1.0).abs() < 0.15, "{told} {paired}");
     Ok(())
 }

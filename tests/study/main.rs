@@ -2,6 +2,7 @@
 
 mod advise;
 mod mesh_estimate;
+mod look;
 mod verified;
 
 use std::f64::consts::PI;
