@@ -34,6 +34,8 @@ pub struct Report {
     /// What was measured on the scene and on the motion once the run had ended; what is beyond its limit is among the
     /// [`warnings`](Self::warnings). [`Trajectory::indicators`](crate::Trajectory::indicators) measures more.
     pub indicators: Vec<Indicator>,
+    /// What was chosen where a scene file says `auto`, and why.
+    pub chosen: Vec<String>,
     /// To what the motion is known, if it was [verified](crate::study::Verification).
     pub achieved: Option<Achieved>,
     /// Phase by phase.
@@ -269,6 +271,7 @@ impl fmt::Display for Report {
                 write!(f, "\nphase \"{name}\": {}", remarks.join("; "))?;
             }
         }
+        self.chosen.iter().try_for_each(|chosen| write!(f, "\nchosen: {chosen}"))?;
         if let Some(achieved) = &self.achieved {
             write!(f, "\n{achieved}")?;
         }

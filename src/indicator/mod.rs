@@ -145,6 +145,11 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
         .collect()
 }
 
+/// The largest angle (rad) by which a cell turns.
+pub(crate) fn largest_turn(trajectory: &Trajectory) -> f64 {
+    strain::largest_turn(trajectory.body(), &looked_at(trajectory))
+}
+
 /// What cells cannot follow.
 fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item = Indicator> {
     let measured = [

@@ -1,6 +1,6 @@
 //! Whether the strain of the body fits its motion.
 
-use crate::body::Strain;
+use crate::body::{Body, Strain};
 use crate::input::told;
 use crate::report::Indicator;
 use crate::trajectory::{Sample, Trajectory};
@@ -14,8 +14,7 @@ pub(super) fn turning(trajectory: &Trajectory, samples: &[&Sample]) -> Option<In
     if trajectory.body().strain() != Strain::Cauchy {
         return None;
     }
-    let turns = samples.iter().flat_map(|sample| trajectory.body().cell_rotations(&sample.u));
-    let most = turns.fold(0.0, f64::max);
+    let most = largest_turn(trajectory.body(), samples);
     let false_strain = |angle: f64| 100.0 * (1.0 - angle.cos());
     let told = format!(
         "cells turn by up to {:.1} degrees, which Cauchy strain takes for a strain of {:.1} % (limit: \
@@ -27,6 +26,11 @@ pub(super) fn turning(trajectory: &Trajectory, samples: &[&Sample]) -> Option<In
     let beyond = || format!("{told}: use strain = \"green\"");
     let value = (most.to_degrees(), "degrees");
     Some(Indicator::trusted("turn", value, [0.0, MOST_TURN], || told.clone(), beyond))
+}
+
+/// The largest angle (rad) by which a cell turns.
+pub(super) fn largest_turn(body: &Body, samples: &[&Sample]) -> f64 {
+    samples.iter().flat_map(|sample| body.cell_rotations(&sample.u)).fold(0.0, f64::max)
 }
 
 /// Cells that are turned inside out, which linear forces do not resist.

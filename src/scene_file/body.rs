@@ -1,6 +1,7 @@
 //! `[body]`, `[[body.region]]` and `[[point]]`.
 
-use super::keys::{Holds, Key, TableKeys};
+use super::contents::AutoRequest;
+use super::keys::{AUTO, Holds, Key, TableKeys};
 use super::mesh::{self, MESH};
 use super::selection::{CORNERS, corners};
 use super::value::Value;
@@ -27,7 +28,7 @@ pub(super) const BODY: TableKeys = TableKeys::new(
         )
         .law(
             "Cauchy's is linear, right while no cell turns by more than some degrees; Green's follows any rotation \
-             (St. Venant-Kirchhoff); `auto` is Green's.",
+             (St. Venant-Kirchhoff); `auto` is Green's, and the report tells whether Cauchy's would do.",
         )
         .default("auto"),
         Key::new(
@@ -62,7 +63,7 @@ pub(super) const BODY: TableKeys = TableKeys::new(
 
 /// `auto` is Green: it is right however far a body turns, at a small cost.
 const STRAINS: [(&str, Strain); 3] =
-    [("cauchy", Strain::Cauchy), ("green", Strain::Green), ("auto", Strain::Green)];
+    [("cauchy", Strain::Cauchy), ("green", Strain::Green), (AUTO, Strain::Green)];
 const VISCOUS: [(&str, Viscosity); 2] =
     [("natural", Viscosity::Natural), ("objective", Viscosity::Objective)];
 const INERTIA: [(&str, Inertia); 2] =
@@ -148,6 +149,13 @@ pub(super) fn body(
         body = add_points(body, points, &mut mesh)?;
     }
     body.build().map_err(|error| table.blame(error))
+}
+
+/// What the table `[body]` leaves to be chosen.
+pub(super) fn auto(value: &Value) -> Result<AutoRequest, Error> {
+    let table = value.table(&BODY)?;
+    let strain = table.optional("strain", Value::string)? == Some(AUTO);
+    Ok(AutoRequest { strain, cells: table.required("mesh", mesh::has_auto_cells)? })
 }
 
 /// The scene on the mesh that is finer than the one its numbers are of, if the table `[body]` asks for that.

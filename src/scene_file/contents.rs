@@ -20,6 +20,8 @@ pub struct SceneFile {
     pub settings: Settings,
     /// How accurate its motion has to be.
     pub accuracy: AccuracyRequest,
+    /// What is left to be chosen.
+    pub auto: AutoRequest,
     /// How its equilibrium is sought.
     pub statics: StaticsRequest,
     /// What is to be written.
@@ -35,6 +37,15 @@ pub struct AccuracyRequest {
     pub within: Option<Fraction>,
     /// The text that names a `study::Quantity`; the whole motion without it.
     pub quantity: Option<String>,
+}
+
+/// What a scene file leaves to be chosen, by the word `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct AutoRequest {
+    /// The measure of strain: Green's.
+    pub strain: bool,
+    /// The cells of a generated mesh: quadratic ones.
+    pub cells: bool,
 }
 
 /// Which equilibrium is sought, and how.

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+/// The word by which a file leaves a choice to `pliant`.
+pub(super) const AUTO: &str = "auto";
+
 /// A table of a scene file.
 #[derive(Debug)]
 pub(super) struct TableKeys {

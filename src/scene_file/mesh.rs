@@ -1,6 +1,6 @@
 //! `mesh` of `[body]`: generators and files.
 
-use super::keys::{Holds, Key, Kind, TableKeys};
+use super::keys::{AUTO, Holds, Key, Kind, TableKeys};
 use super::table::Table;
 use super::value::Value;
 use crate::error::Error;
@@ -52,6 +52,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
                 Holds::Word(|| SOLID_CELLS.map(|(word, _)| word).into()),
                 "how the grid is divided",
             )
+            .law("`auto` is `tetrahedra10`, quadratic.")
             .required(),
         ],
     },
@@ -73,10 +74,11 @@ const NODES: Key =
     Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes along x and y").required();
 const CELLS: Key = Key::new(
     "cells",
-    Holds::Word(|| Cells::ALL.map(Cells::name).into()),
+    Holds::Word(|| plane_cells().into_iter().map(|(word, _)| word).collect()),
     "how the grid is divided",
 )
-.law("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well.")
+.law("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well, and \
+      `auto` is those.")
 .required();
 const ROUND: &[Key] = &[
     Key::number("inner", "the inner radius", "m").required(),
@@ -86,10 +88,16 @@ const ROUND: &[Key] = &[
     CELLS,
 ];
 
-const SOLID_CELLS: [(&str, SolidCells); 3] = [
+/// Words for cells of the plane, and of space; `auto` stands for quadratic ones, which neither lock nor are too stiff in bending.
+fn plane_cells() -> Vec<(&'static str, Cells)> {
+    let named = Cells::ALL.map(|cells| (cells.name(), cells));
+    named.into_iter().chain([(AUTO, Cells::Triangles6)]).collect()
+}
+const SOLID_CELLS: [(&str, SolidCells); 4] = [
     ("tetrahedra", SolidCells::Tetrahedra),
     ("hexahedra", SolidCells::Hexahedra),
     ("tetrahedra10", SolidCells::Tetrahedra10),
+    (AUTO, SolidCells::Tetrahedra10),
 ];
 
 /// The mesh that `value` describes, in a space of `dimension` (default: its own).
@@ -119,9 +127,14 @@ pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error>
     (0..times).try_fold(scene, |scene, _| scene.halved().map_err(blame))
 }
 
+/// Whether the cells of a generated mesh are left to be chosen.
+pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
+    Ok(value.table(&MESH)?.optional("cells", Value::string)? == Some(AUTO))
+}
+
 fn generate(table: &Table) -> Result<Mesh, Error> {
     let number = |key: &str| table.required(key, Value::number);
-    let cells = |value: &Value| value.word(&Cells::ALL.map(|cells| (cells.name(), cells)));
+    let cells = |value: &Value| value.word(&plane_cells());
     Ok(match table.kind() {
         "bar" => Mesh::bar(number("length")?, table.required("nodes", Value::count)?)?,
         "rectangle" => Mesh::rectangle(

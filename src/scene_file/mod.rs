@@ -36,6 +36,7 @@
 //!
 #![doc = include_str!("../../docs/reference.md")]
 
+mod auto;
 mod body;
 mod contents;
 mod initial;
@@ -65,7 +66,9 @@ use std::path::Path;
 
 use toml::de::DeTable;
 
-pub use self::contents::{AccuracyRequest, Format, OutputRequest, SceneFile, StaticsRequest};
+pub use self::contents::{
+    AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
+};
 use self::overrides::{as_toml, merge};
 pub use self::reference::reference;
 #[cfg(feature = "play")]

@@ -83,6 +83,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     if let Some(initial) = starts_finer {
         scene = initial::add_initial(scene, &initial)?;
     }
+    let auto = top.required("body", body::auto)?;
     let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
     let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
     let statics = top.optional("statics", |value| settings::statics(value, &scene))?;
@@ -99,6 +100,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         scene,
         settings,
         accuracy,
+        auto,
         statics,
         output,
         notes: Vec::new(),

@@ -6,8 +6,8 @@ use std::path::Path;
 use pliant::scene_file::Format;
 use pliant::{
     Axis, Body, CellSelection, Cells, Chamber, ContactEvents, Material, Mesh, Method, Obstacle,
-    OutputRequest, Phase, Prescribed, Scene, SceneFile, Selection, Settings, Shape, Signal,
-    SolidCells, Spring, Strain,
+    OutputRequest, Phase, Prescribed, Sampling, Scene, SceneFile, Selection, Settings, Shape,
+    Signal, SolidCells, Spring, Strain,
 };
 
 fn read(name: &str) -> SceneFile {
@@ -344,4 +344,42 @@ fn of_numbers() {
     let bag = Chamber::surface("bag", [[1, 2, 3], [1, 3, 5], [2, 1, 5], [2, 5, 3]]);
     let scene = Scene::new(body.build().unwrap()).chamber(bag);
     agree(&file.unwrap(), &scene.phase(Phase::until(0.01).pressure("bag", 100.0)));
+}
+
+fn parse(text: &str) -> SceneFile {
+    SceneFile::parse(text, Path::new("scene.toml")).unwrap()
+}
+
+/// What a file leaves to be chosen is chosen, and the report says why.
+#[test]
+fn what_is_left_to_be_chosen_is_said() {
+    let text = |strain: &str, cells: &str| {
+        format!(
+            "[body]\nmesh = {{ kind = \"rectangle\", size = [0.1, 0.02], nodes = [6, 2], cells = \"{cells}\" }}\n\
+             thickness = 0.01\nstrain = \"{strain}\"\n\
+             material = {{ density = 1000.0, young = 1e6, poisson = 0.3, viscosity = 100.0 }}\n\
+             [initial]\nspin = 0.5\n[[phase]]\nuntil = 0.4\n"
+        )
+    };
+    let run = |text: &str, spin: &str| {
+        let file = parse(&text.replace("spin = 0.5", spin));
+        let mut motion = file.scene.simulate(&file.settings, &Sampling::every(0.1)).unwrap();
+        file.explain(&mut motion);
+        motion.report().clone()
+    };
+    let auto = text("auto", "auto");
+    // turned by 0.4 * 0.5 rad: 11.5 degrees, and 1 - cos of that is 2.0 %
+    let turned = run(&auto, "spin = 0.5").chosen;
+    assert!(turned[0].contains("11 degrees") && turned[0].contains("strain of 2 %"), "{turned:?}");
+    assert!(turned[1].starts_with("cells: triangles of 6 nodes"), "{turned:?}");
+    // by 0.004 rad: Cauchy strain would do
+    let still = run(&auto, "spin = 0.01");
+    assert!(still.chosen[0].contains("Cauchy strain would do"), "{:?}", still.chosen);
+    assert!(still.to_string().contains("\nchosen: strain: Green"));
+    // the same scene, said in full
+    assert_eq!(
+        format!("{:?}", parse(&auto).scene),
+        format!("{:?}", parse(&text("green", "triangles6")).scene)
+    );
+    assert_eq!(run(&text("green", "triangles6"), "spin = 0.5").chosen, [""; 0]);
 }

@@ -1,8 +1,8 @@
 //! Studies: errors against closed forms, the reference, files, failures, charts.
 
 mod advise;
-mod mesh_estimate;
 mod look;
+mod mesh_estimate;
 mod verified;
 
 use std::f64::consts::PI;

@@ -135,13 +135,18 @@ fn once(
     simulation.record(&request.sampling())?;
     let table = directory.growing_table(&simulation, request)?;
     let mut keeper = Keeper::new(&mut directory, table);
-    let result = simulation.finish(|simulation| {
+    let mut result = simulation.finish(|simulation| {
         keeper.see(simulation)?;
         watch.see(simulation).map_break(|()| keeper.keep(simulation))
     });
     watch.finish();
     let Keeper { refused, mut table, .. } = keeper;
     refused.map_or(Ok(()), Err)?;
+    match &mut result {
+        Ok(trajectory) => file.explain(trajectory),
+        Err(Error::Integration(failure)) => file.explain(&mut failure.trajectory),
+        Err(_) => {}
+    }
     let outcome = match &result {
         Ok(trajectory) => Ok(trajectory),
         Err(Error::Integration(failure)) => Err(&**failure),
@@ -206,7 +211,13 @@ fn verified(
     if file.output.times.is_none() {
         file.output.step.get_or_insert(file.scene.end() / SAMPLES);
     }
+    let file = &*file;
     let SceneFile { title, scene, settings, accuracy, output: request, .. } = file;
+    let explained = |motion: &Trajectory| {
+        let mut motion = motion.clone();
+        file.explain(&mut motion);
+        motion
+    };
     let quantity = accuracy.quantity.as_deref().unwrap_or("motion");
     let quantity = Quantity::named(quantity, scene, &request.sensors)?;
     let mut verification = Verification::new(scene, within.0)
@@ -225,7 +236,7 @@ fn verified(
         refused.take().map_or(Ok(()), Err)?;
         match (refined, verification.trajectory()) {
             (Ok(goes_on), Some(trajectory)) => {
-                keep(Ok(trajectory), &mut directory, |directory| {
+                keep(Ok(&explained(trajectory)), &mut directory, |directory| {
                     directory.write_table(trajectory, request)
                 })?;
                 if !goes_on {
@@ -249,6 +260,6 @@ fn verified(
         (None, None) => return Ok(()), // there is no end without a run
     };
     directory.write_formats(trajectory, title, request)?;
-    tell(title, trajectory, &directory, quiet)?;
+    tell(title, &explained(trajectory), &directory, quiet)?;
     cut_short.map_or(Ok(()), |failure| Err(Error::Integration(failure).into()))
 }
