@@ -13,7 +13,7 @@ use crate::vector::norm;
 /// How much of the motion the displacement under a force may be that comes with each halving of the cells.
 const MOST_GROWTH: f64 = 0.01;
 
-/// Nodes that are loaded or held while none of their neighbours is. In the plane the displacement under a force F on one
+/// Nodes that are loaded or held while no other node of their cells is. In the plane the displacement under a force F on one
 /// node grows with each halving of the cells by 2 F ln 2 / (pi E h) (Flamant), h the thickness; in space by some F / (E a), a
 /// the size of a cell (Boussinesq). Nodes where that is little beside the motion do not count.
 pub(super) fn single(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
@@ -30,25 +30,19 @@ pub(super) fn single(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Ind
         2 => 2.0 * force * LN_2 / (PI * young * body.section()),
         _ => force / (young * sizes[node]),
     };
-    let mut neighbours = vec![Vec::new(); mesh.node_count()];
-    for cell in mesh.cells() {
-        for edge in mesh.kind().edges() {
-            // corners in order, with the middle node of a quadratic edge between them
-            let path = [edge[0], *edge.get(2).unwrap_or(&edge[1]), edge[1]].map(|k| cell[k]);
-            for pair in path.windows(2).filter(|pair| pair[0] != pair[1]) {
-                neighbours[pair[0]].push(pair[1]);
-                neighbours[pair[1]].push(pair[0]);
-            }
-        }
-    }
+    // nodes of common cells
+    let pattern = body.inertia().pattern();
     let mut found = BTreeSet::new();
     let mut most: f64 = 0.0;
     for sample in samples {
         let Ok(forces) = forces(trajectory, sample) else { continue };
         for (node, &force) in forces.iter().enumerate() {
-            let is_alone = neighbours[node].iter().all(|&other| forces[other] == 0.0);
+            let mut others =
+                pattern.row(node).map(|(_, other)| other).filter(|other| *other != node).peekable();
+            let has_cells = others.peek().is_some();
+            let is_alone = has_cells && others.all(|other| forces[other] == 0.0);
             let part = growth(force, node) / way;
-            if is_alone && !neighbours[node].is_empty() && part > MOST_GROWTH {
+            if part > MOST_GROWTH && is_alone {
                 found.insert(node);
                 most = most.max(part);
             }
