@@ -129,7 +129,11 @@ pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error>
 
 /// Whether the cells of a generated mesh are left to be chosen.
 pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
-    Ok(value.table(&MESH)?.optional("cells", Value::string)? == Some(AUTO))
+    let table = value.table(&MESH)?;
+    match table.kind() {
+        "bar" | "gmsh" => Ok(false),
+        _ => Ok(table.optional("cells", Value::string)? == Some(AUTO)),
+    }
 }
 
 fn generate(table: &Table) -> Result<Mesh, Error> {
