@@ -310,9 +310,11 @@ fn motions_in_a_plane() {
     assert_eq!(find(&rest_of_a_square(0.0), "plane"), None);
 }
 
-/// A square under a load on its top, with a part of it to the side.
+/// A square that bulges under a load on its top, with a part of it to the side.
 fn rest_of_a_square(side: f64) -> Trajectory {
-    let body = rectangle([0.1, 0.1], [5, 5], Cells::Rectangles, Strain::Cauchy);
+    let mesh = Mesh::rectangle([0.1, 0.1], [5, 5], Cells::Rectangles).unwrap();
+    let body = Body::new(mesh, Material { poisson: 0.3, ..SOFT }).strain(Strain::Cauchy);
+    let body = body.thickness(0.01).build().unwrap();
     let load = Phase::until(1.0).hold("bottom").load_total("top", [side, -1.0]);
     rest(&Scene::new(body).phase(load))
 }
