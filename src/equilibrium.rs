@@ -79,6 +79,9 @@ pub struct MeshEstimate {
     pub change: f64,
     /// What the quantity would be on the richer mesh, less the value: the error is minus that.
     pub correction: f64,
+    /// What the forces that the step to the corrected displacements leaves unbalanced would add to the correction: its leading
+    /// remainder, 0 in linear problems, infinite if forces have no meaning there.
+    pub remainder: f64,
     /// What the nodes that the richer mesh has more contribute to the correction, by the cells of this mesh that they lie in: where it
     /// is large, smaller cells help.
     pub cells: Vec<f64>,
@@ -92,6 +95,12 @@ impl MeshEstimate {
     /// The value with its correction.
     pub fn corrected(&self) -> f64 {
         self.value + self.correction
+    }
+
+    /// Whether the remainder is no larger than the correction, but for round-off: if it is, the correction may be far off.
+    pub fn is_reliable(&self) -> bool {
+        let round_off = 1e-9 * self.value.abs().max(self.change.abs());
+        self.remainder.abs() <= self.correction.abs().max(round_off)
     }
 
     /// The size of the correction as a part of the change; infinite if the quantity has not changed.
@@ -109,7 +118,19 @@ impl fmt::Display for MeshEstimate {
             let part = told(100.0 * self.relative());
             write!(f, " ({part} % of its change) because of the mesh")?;
         }
-        write!(f, ": {better} {unit}, by dual-weighted residuals with {unknowns} unknowns")
+        write!(f, ": {better} {unit}, by dual-weighted residuals with {unknowns} unknowns")?;
+        if !self.is_reliable() {
+            let left = match self.remainder.is_finite() {
+                true => format!("is {} {unit}", told(self.remainder.abs())),
+                false => "cannot be told".into(),
+            };
+            write!(
+                f,
+                "\nWARNING: the estimate may be far off, as what it leaves out {left}: the mesh is so coarse that the body \
+                 would move far on a better one; take quadratic or finer cells"
+            )?;
+        }
+        Ok(())
     }
 }
 

@@ -152,6 +152,11 @@ pub(super) const OF_STATICS: &[ReportKey] = &[
         "estimate of what it would be on a richer mesh, less the value",
     ),
     (
+        "mesh_estimate.remainder",
+        "its own",
+        "leading remainder of the correction, which may be far off where that is larger than itself; `null` if forces have no meaning there",
+    ),
+    (
         "mesh_estimate.relative",
         "1",
         "size of the correction as a part of the change; `null` without one",
@@ -361,14 +366,24 @@ pub fn write_static_report(
 }
 
 fn of_mesh(estimate: &MeshEstimate) -> Value {
-    let MeshEstimate { quantity, unit, value, change, correction, unknowns, seconds, .. } =
-        estimate;
+    let MeshEstimate {
+        quantity,
+        unit,
+        value,
+        change,
+        correction,
+        remainder,
+        unknowns,
+        seconds,
+        ..
+    } = estimate;
     json!({
         "quantity": quantity,
         "unit": unit,
         "value": value,
         "change": change,
         "correction": correction,
+        "remainder": remainder,
         "relative": estimate.relative(),
         "unknowns": unknowns,
         "wall_seconds": seconds,

@@ -304,6 +304,7 @@ fn bad_input_writes_nothing() {
         (&["run", good, "--track", "7"], &["pliant: node = 7", "1 to 6"]),
         (&["run", good, "--track", "lid"], &["pliant: node set = \"lid\"", "right"]),
         (&["static", good, "--track", "lid"], &["pliant: node set = \"lid\"", "right"]),
+        (&["static", good, "--quantity", "motion"], &["pliant: quantity of", "name a reading"]),
         (&["run", good, "--out", "file"], &["pliant: cannot write to file"]),
         (&["run", good, "--out", "file/below"], &["pliant: cannot write to file/below"]),
         (&["run", good, "--method", "euler"], &["euler", "cvode-bdf, cvode-adams"]),
@@ -330,9 +331,11 @@ fn bad_input_writes_nothing() {
 fn static_finds_the_equilibrium() {
     let place = Place::new();
     let scene = shipped("static-square.toml");
-    let output = place.run(&["static", &scene, "--track", "all", "--formats", "csv"]);
+    let asked = ["--track", "all", "--formats", "csv", "--quantity", "com.y"];
+    let output = place.run(&[&["static", &scene], &asked[..]].concat());
     assert_eq!((output.status.code(), stderr(&output)), (Some(0), String::new()));
     says(&stdout(&output), &["Static square", "stable, lowest natural frequency", "-static"]);
+    says(&stdout(&output), &["com.y is", "off by about", "% of its change) because of the mesh"]);
     assert_eq!(
         place.files("out/static-square-static"),
         ["report.json", "state.json", "trajectory.csv"]
@@ -340,6 +343,7 @@ fn static_finds_the_equilibrium() {
     let report = place.report("out/static-square-static");
     assert_eq!((&report["status"], &report["method"]), (&json!("finished"), &json!("static")));
     assert_eq!(report["stability"]["kind"], "stable");
+    assert_eq!(report["mesh_estimate"]["quantity"], "com.y");
     let (header, rows) = place.table("out/static-square-static");
     assert_eq!((rows.len(), rows[0][0]), (1, 1.0));
     let value =

@@ -229,6 +229,8 @@ fn equilibria() {
     assert!((number("value") - number("change") - 0.3).abs() < 1e-12, "{estimate}");
     let relative = number("correction") / number("change");
     assert!(number("value") < 0.3 && relative > 0.0 && relative == number("relative"));
+    // a linear problem leaves round-off
+    assert!(number("remainder").abs() < 1e-9 * number("correction").abs(), "{estimate}");
 
     // pressed by ten times its stiffness, a St. Venant-Kirchhoff square collapses
     let lost = scene(Strain::Green, -5e4).equilibrium(&Statics::default());

@@ -6,7 +6,7 @@ use pliant::simulate::{Component, Reading};
 use pliant::study::Quantity;
 use pliant::{
     Axis, Body, Cells, Chamber, Equilibrium, Error, Material, Mesh, MeshEstimate, Obstacle, Phase,
-    Scene, Selection, SolidCells, Statics, Strain,
+    Scene, Selection, SolidCells, Statics, Strain, samples,
 };
 
 type Outcome = Result<(), Error>;
@@ -89,7 +89,11 @@ fn effectivities(scene: &Scene, truth: f64) -> Result<[f64; 2], Error> {
     let (found, next) = (estimate(scene, "com.y")?, solve(&richer(scene)?)?);
     let there = next.trajectory().centre_of_mass(next.sample())[1];
     let error = truth - found.value;
-    Ok([found.correction / error, (there - found.value) / error])
+    let [effectivity, of_pair] = [found.correction / error, (there - found.value) / error];
+    // found: 0.96 to 1.09, where the remainder is as large as that of beams bent far on coarse meshes or smaller
+    let off = effectivity / of_pair - 1.0;
+    assert!(!found.is_reliable() || off.abs() < 0.1, "{found}: {effectivity} {of_pair}");
+    Ok([effectivity, of_pair])
 }
 
 fn assert_within(found: f64, range: &RangeInclusive<f64>, what: &str) {
@@ -133,6 +137,19 @@ fn beams_in_the_plane() -> Outcome {
     Ok(())
 }
 
+/// The slides' beam of triangles that lock, bent by 5 cm: on halved cells it sinks by more than half as much again, of which the linear
+/// problem sees less than a tenth. It is told.
+#[test]
+fn an_estimate_that_misses_is_not_reliable() -> Outcome {
+    let scene = samples::beam_static(Strain::Green)?;
+    let (found, next) = (solve(&scene)?, solve(&scene.halved()?)?);
+    let sinks = |found: &Equilibrium| found.displacements()[2 * 21 + 1];
+    let estimate = of(&found, &Reading::position([22]).component(Component::Y))?;
+    assert!(estimate.correction / (sinks(&next) - sinks(&found)) < 0.1, "{estimate}");
+    assert!(!estimate.is_reliable() && estimate.to_string().contains("WARNING"), "{estimate}");
+    Ok(())
+}
+
 /// Bent beams in space against quadratic tetrahedra: their tetrahedra are off by up to three times the motion. Halved
 /// hexahedra see up to three quarters.
 #[test]
@@ -158,14 +175,21 @@ fn of(found: &Equilibrium, reading: &Reading) -> Result<MeshEstimate, Error> {
     MeshEstimate::of(found, &Quantity::reading("it", reading.clone()))
 }
 
-/// In a linear problem, held, moved, and on a plane askew, the correction is what the equilibrium on the richer mesh says, and the
-/// contributions of the cells add up to it (Galerkin orthogonality).
+/// In a linear problem, held, moved, and on a plane askew, the correction is what the equilibrium on the richer mesh says. The
+/// contributions of the cells add up to it (Galerkin orthogonality) unless more of the edge is moved there: a box from 0.03 to 0.07 has
+/// nodes at 0.04 and 0.06 on the first mesh, and those on its sides on the richer one.
 #[test]
 fn linear_problems_leave_no_remainder() -> Outcome {
-    for cells in [Cells::Triangles, Cells::Rectangles, Cells::Triangles6] {
+    for (cells, from, is_nested) in [
+        (Cells::Triangles, 0.036, true),
+        (Cells::Rectangles, 0.036, true),
+        (Cells::Triangles6, 0.036, true),
+        (Cells::Triangles, 0.03, false),
+    ] {
         let mesh = Mesh::rectangle([0.1, 0.04], [6, 3], cells)?;
         let body = Body::new(mesh, SOFT).thickness(0.01).strain(Strain::Cauchy).build()?;
-        let top = Selection::Box { min: vec![0.03, 0.039], max: vec![0.07, 0.05] };
+        let max = vec![0.1 - from + 1e-9, 0.05];
+        let top = Selection::Box { min: vec![from - 1e-9, 0.039], max };
         let scene = Scene::new(body).gravity([0.0, -9.8]).phase(
             Phase::until(1.0)
                 .hold("left")
@@ -174,21 +198,24 @@ fn linear_problems_leave_no_remainder() -> Outcome {
                 .load_total("bottom", [0.1, -0.2]),
         );
         let (found, next) = (solve(&scene)?, solve(&richer(&scene)?)?);
-        for reading in [
+        let mut readings = vec![
             Reading::position([6]).component(Component::X),
             Reading::displacement([6, 2]).component(Component::Y),
             Reading::centre_of_mass().component(Component::X),
             Reading::constraint_force("left").component(Component::X),
             Reading::constraint_force("right").component(Component::Y),
-            Reading::constraint_force(top).component(Component::Y),
-        ] {
+        ];
+        if is_nested {
+            readings.push(Reading::constraint_force(top).component(Component::Y));
+        }
+        for reading in readings {
             let (coarse, fine) = (of(&found, &reading)?, of(&next, &reading)?);
             let remainder = (fine.value - coarse.value) / coarse.correction - 1.0;
-            let sum = coarse.cells.iter().sum::<f64>() / coarse.correction;
-            println!("{cells:?}, {reading:?}: {remainder:.1e} {:.1e}", sum - 1.0);
-            // found: 1e-9, round-off
-            assert!(remainder.abs() < 1e-8, "{cells:?}, {reading:?}: {remainder:.1e}");
-            assert!((sum - 1.0).abs() < 1e-8, "{cells:?}, {reading:?}: {sum}");
+            let sum = coarse.cells.iter().sum::<f64>() / coarse.correction - 1.0;
+            // found: 1.5e-11, round-off
+            assert!(remainder.abs() < 1e-10, "{cells:?}, {reading:?}: {remainder:.1e}");
+            assert!(coarse.remainder.abs() < 1e-9 * coarse.correction.abs(), "{coarse}");
+            assert_eq!(sum.abs() < 1e-10, is_nested, "{cells:?}, {reading:?}: {sum:.1e}");
             assert_eq!(coarse.cells.len(), scene.body().mesh().cell_count());
         }
     }
@@ -205,7 +232,7 @@ fn derivatives_of_readings() -> Outcome {
     let ring = Scene::new(body)
         .chamber(Chamber::within("hole", "inner"))
         .phase(phase.pressure("hole", 1e3 * load));
-    let block = block(SolidCells::Tetrahedra, 1, Strain::Cauchy, load)?;
+    let block = block(SolidCells::Tetrahedra, 1, Strain::Cauchy, 0.01 * load)?;
     for (scene, reading) in [
         (&ring, Reading::position([20]).component(Component::Norm)),
         (&ring, Reading::distance([7, 8], [20])),
@@ -216,7 +243,6 @@ fn derivatives_of_readings() -> Outcome {
         let (found, next) = (solve(scene)?, solve(&richer(scene)?)?);
         let (coarse, fine) = (of(&found, &reading)?, of(&next, &reading)?);
         let remainder = (fine.value - coarse.value) / coarse.correction - 1.0;
-        println!("{reading:?}: {remainder:.1e}");
         // found: 9e-6 at most, and a hundred times that at a hundred times the load
         assert!(remainder.abs() < 2e-5, "{reading:?}: {remainder:.1e}");
     }
