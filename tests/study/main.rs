@@ -3,6 +3,7 @@
 mod advise;
 mod look;
 mod mesh_estimate;
+mod page;
 mod verified;
 
 use std::f64::consts::PI;

@@ -32,7 +32,7 @@ impl Candidate {
 
 impl Advice {
     /// What a candidate is, beside one of many.
-    pub(super) fn parts_of(&self, candidate: &Candidate) -> Vec<&'static str> {
+    pub(super) fn roles_of(&self, candidate: &Candidate) -> Vec<&'static str> {
         let parts = [
             (Some(&self.written), "as written"),
             (self.enough.as_ref(), "enough"),
@@ -104,7 +104,7 @@ impl Advice {
         let mut points = Group::new().set("class", "points");
         // what matters is drawn over the rest
         let mut known = known;
-        known.sort_by_key(|(_, one)| (self.parts_of(one).len(), self.is_on_front(one)));
+        known.sort_by_key(|(_, one)| (self.roles_of(one).len(), self.is_on_front(one)));
         for (error, candidate) in known {
             points = points.add(self.point(candidate, frame.place(error, candidate.seconds)));
         }
@@ -149,7 +149,7 @@ impl Advice {
     }
 
     fn point(&self, candidate: &Candidate, [x, y]: Point) -> Group {
-        let parts = self.parts_of(candidate);
+        let parts = self.roles_of(candidate);
         let told = percent(candidate.error.unwrap_or(f64::NAN));
         let time = time_text(candidate.seconds);
         let mut title = format!("{}: {told} off in {time}", candidate.choice);

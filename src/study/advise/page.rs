@@ -109,7 +109,7 @@ impl Advice {
 
     fn row(&self, candidate: &Candidate) -> String {
         let Candidate { choice, error, seconds, unknowns, failure, .. } = candidate;
-        let mut notes = self.parts_of(candidate);
+        let mut notes = self.roles_of(candidate);
         let is_on_front = self.is_on_front(candidate);
         notes.extend(is_on_front.then_some("front"));
         let notes: String =
