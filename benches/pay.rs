@@ -24,8 +24,10 @@ const STEPS: usize = 300;
 /// Rooms of the library whose instructions are listed by themselves.
 const ROOMS: [&str; 2] = ["pliant::external", "pliant::constraint"];
 
-/// A scene, by what it has more than the bare one.
-const SCENES: [(&str, fn(Soft) -> Soft); 10] = [
+/// What a scene has more than the bare one.
+type More = fn(Soft) -> Soft;
+
+const SCENES: [(&str, More); 10] = [
     ("bare", |soft| soft),
     ("viscosity", |soft| Soft { viscosity: 10.0, ..soft }),
     ("Green strain", |soft| Soft { strain: Strain::Green, ..soft }),

@@ -61,7 +61,7 @@ mod timing;
 mod truth;
 mod verification;
 
-pub use advise::{Advice, Adviser, Candidate, Choice, Freedom, Parts};
+pub use advise::{Advice, Adviser, Candidate, Choice, Parts};
 pub use fastest::{Accuracy, Fastest, time_text};
 pub use findings::{Findings, LineFindings};
 pub use general::General;

@@ -43,8 +43,9 @@ fn points_stand_where_the_numbers_are() -> Outcome {
         .map(|point| {
             let title = point.children().find(|node| node.has_tag_name("title")).unwrap();
             let circle = point.children().find(|node| node.has_tag_name("circle"));
-            let place = circle
-                .map(|circle| ["cx", "cy"].map(|at| circle.attribute(at).unwrap().parse().unwrap()));
+            let place = circle.map(|circle| {
+                ["cx", "cy"].map(|at| circle.attribute(at).unwrap().parse().unwrap())
+            });
             (title.text().unwrap().to_owned(), place)
         })
         .collect();

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use super::advice::{Advice, Candidate};
 use super::found::Found;
-use super::freedom::Freedom;
 use super::runs::Runs;
 use super::search::{Request, Search, Solved, Stop};
 use crate::error::Error;
@@ -51,12 +50,7 @@ impl<'a> Adviser<'a> {
     /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
     pub fn new(scene: &'a Scene, accuracy: f64) -> Self {
         let (settings, quantity) = (Settings::default(), Quantity::motion());
-        let freedom = Freedom::default();
-        Self {
-            scene,
-            request: Request { accuracy, settings, quantity, budget: 60.0, freedom },
-            file: None,
-        }
+        Self { scene, request: Request { accuracy, settings, quantity, budget: 60.0 }, file: None }
     }
 
     /// How the scene is integrated as it was written; other candidates have its alpha. Default: [`Settings::default`].
@@ -80,13 +74,6 @@ impl<'a> Adviser<'a> {
         self
     }
 
-    /// What may be chosen. Default: everything.
-    #[must_use]
-    pub fn freedom(mut self, freedom: Freedom) -> Self {
-        self.request.freedom = freedom;
-        self
-    }
-
     /// A file that keeps all runs. What it holds already is not run again, so that a search that was cut short can go
     /// on, within a new budget; runs of other scenes stay in it. It knows the version of this library: after changes of
     /// the code within a version, or on another machine, begin a new file.
@@ -102,7 +89,7 @@ impl<'a> Adviser<'a> {
     /// # Errors
     /// Bad input; a scene that gives no motion at all; [`Error::Output`] if the file of the runs cannot be read or written.
     pub fn run(&self, observer: &mut dyn FnMut(&str) -> ControlFlow<()>) -> Result<Advice, Error> {
-        let Request { accuracy, settings, quantity, budget, .. } = &self.request;
+        let Request { accuracy, settings, quantity, budget } = &self.request;
         Fraction::check("accuracy", *accuracy)?;
         positive("budget", *budget, "s")?;
         settings.validate()?;
@@ -164,7 +151,7 @@ impl<'a> Adviser<'a> {
             scale: truth.map_or(f64::NAN, |truth| truth.seen.scale),
             unit: self.request.quantity.unit().into(),
             written,
-            enough: found.best(&self.request).map(candidate),
+            enough: found.best(self.request.accuracy).map(candidate),
             truth: truth.map(candidate),
             resolution: found.resolution(),
             mesh: found.mesh(),

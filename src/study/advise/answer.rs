@@ -70,8 +70,9 @@ impl Advice {
                 self.candidates.iter().find(|candidate| candidate.choice.is_mesh_as_written());
             let paired = apart.and_then(|candidate| Some(percent(candidate.parts?.mesh)));
             reasons.push(format!(
-                "the mesh as written is {} off at rest, as adjoint-weighted residuals tell{}",
+                "the mesh as written is {} off at rest, as adjoint-weighted residuals tell{}{}",
                 percent(estimate.correction.abs() / self.scale),
+                if estimate.is_reliable() { "" } else { " roughly" },
                 paired.map_or_else(String::new, |paired| format!(" (by paired runs: {paired})"))
             ));
         }
@@ -139,7 +140,11 @@ impl fmt::Display for Advice {
         }
         let looked = self.look.iter().flat_map(Look::indicators);
         for indicator in looked.filter(|indicator| indicator.verdict != Verdict::Fine) {
-            writeln!(f, "- {indicator}")?;
+            let less = match indicator.verdict {
+                Verdict::MoreThanNeeded => "less would do: ",
+                _ => "",
+            };
+            writeln!(f, "- {less}{}", indicator.text)?;
         }
         for failed in self.candidates.iter().filter(|candidate| candidate.failure.is_some()) {
             writeln!(f, "- failed: {}", run(failed))?;

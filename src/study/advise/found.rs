@@ -1,7 +1,7 @@
 //! What was found on the way.
 
 use super::parts::Parts;
-use super::search::{Request, Solved};
+use super::search::Solved;
 use crate::equilibrium::MeshEstimate;
 use crate::scene::Term;
 
@@ -95,14 +95,10 @@ impl Found {
         Some(self.finer.last()?.error(self.truth()?))
     }
 
-    /// The fastest of those that are right, and that leave as it was written what is not to be chosen.
-    pub(super) fn best(&self, request: &Request) -> Option<&Solved> {
-        let (truth, allowed) = (self.truth()?, self.allowed(request.accuracy));
-        let written = &self.written.as_ref().or(self.tight.as_ref())?.choice;
-        let is_right = |solved: &&Solved| {
-            solved.error(truth) <= allowed
-                && request.freedom.allows(&solved.choice, written, &request.settings)
-        };
+    /// The fastest of those that are right.
+    pub(super) fn best(&self, accuracy: f64) -> Option<&Solved> {
+        let (truth, allowed) = (self.truth()?, self.allowed(accuracy));
+        let is_right = |solved: &&Solved| solved.error(truth) <= allowed;
         self.all().filter(is_right).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 

@@ -41,20 +41,15 @@ impl Search<'_> {
         found.written = self.run(&written)?;
         let Some(tight) = self.tight(&written, found)? else { return Ok(()) };
         found.tight = Some(tight.clone());
-        let freedom = self.request.freedom;
-        let firm = if freedom.others { self.alpha(tight, found)? } else { tight };
-        let rich = if freedom.strain { self.law(firm, found)? } else { firm };
+        let firm = self.alpha(tight, found)?;
+        let rich = self.law(firm, found)?;
         found.meshes.push(rich.clone());
-        if freedom.cells {
-            let refined = self.refine(&rich, found);
-            found.settle(self.request.accuracy);
-            refined?;
-        }
-        if freedom.others {
-            self.leave_out(&rich, found)?;
-        }
+        let refined = self.refine(&rich, found);
+        found.settle(self.request.accuracy);
+        refined?;
+        self.leave_out(&rich, found)?;
         let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
-        if freedom.others && self.request.quantity.is_at_end() {
+        if self.request.quantity.is_at_end() {
             self.rest(&enough, found)?;
         }
         self.sweep(&enough, found)?;
@@ -239,29 +234,20 @@ impl Search<'_> {
     /// Methods and tolerances for a model that is enough, and how contact events are met by the fastest of them.
     fn sweep(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
         let Some(truth) = found.truth().cloned() else { return Ok(()) };
-        let (accuracy, freedom) = (self.request.accuracy, self.request.freedom);
+        let accuracy = self.request.accuracy;
         let allowed = found.allowed(accuracy);
-        let written = &self.request.settings;
-        let (own_method, own_rtol) = (written.method, [written.rtol]);
-        let mut ways = vec![(own_method, enough.inertia)];
-        if freedom.others {
-            let implicit = [Method::Auto, Method::Arkode, Method::CvodeBdf];
-            ways = implicit.map(|method| (method, enough.inertia)).into();
-            let lumped_is_enough = found.inertia.is_some_and(|error| error <= OF_LAW * accuracy);
-            if lumped_is_enough || enough.inertia == Inertia::Lumped {
-                ways.push((Method::CentralDifference, Inertia::Lumped));
-            }
+        let implicit = [Method::Auto, Method::Arkode, Method::CvodeBdf];
+        let mut ways = implicit.map(|method| (method, enough.inertia)).to_vec();
+        let lumped_is_enough = found.inertia.is_some_and(|error| error <= OF_LAW * accuracy);
+        if lumped_is_enough || enough.inertia == Inertia::Lumped {
+            ways.push((Method::CentralDifference, Inertia::Lumped));
         }
-        let tolerances = if freedom.rtol { &TOLERANCES[..] } else { &own_rtol };
         let mut fastest: Option<Solved> = None;
         for (method, inertia) in ways {
-            for &rtol in tolerances {
-                let settings = match freedom.others {
-                    true => Settings {
-                        alpha: enough.settings.alpha,
-                        ..self.request.settings(method, rtol, ContactEvents::Auto)
-                    },
-                    false => Settings { rtol, ..self.request.settings.clone() },
+            for rtol in TOLERANCES {
+                let settings = Settings {
+                    alpha: enough.settings.alpha,
+                    ..self.request.settings(method, rtol, ContactEvents::Auto)
                 };
                 let choice = Choice { settings, inertia, ..enough.clone() };
                 let limit = fastest.as_ref().map_or(f64::INFINITY, |fastest| fastest.seconds);
@@ -289,7 +275,7 @@ impl Search<'_> {
                 }
             }
         }
-        let Some(fastest) = fastest.filter(|_| freedom.others) else { return Ok(()) };
+        let Some(fastest) = fastest else { return Ok(()) };
         let has_contact =
             !fastest.choice.scene(&self.scene).is_ok_and(|s| s.obstacles().is_empty());
         for contact_events in [ContactEvents::StepOver, ContactEvents::Locate] {
@@ -305,7 +291,7 @@ impl Search<'_> {
 
     /// The model that is enough with hardly any error of the integration: what of its error is the model's, and what the mesh's.
     fn by_itself(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
-        let Some(best) = found.best(self.request) else { return Ok(()) };
+        let Some(best) = found.best(self.request.accuracy) else { return Ok(()) };
         let choice = Choice { settings: rich.choice.settings.clone(), ..best.choice.clone() };
         if found.all().all(|solved| solved.choice != choice) {
             found.enough = self.run(&choice)?;

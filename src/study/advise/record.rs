@@ -56,7 +56,7 @@ impl Advice {
             "known_until": self.known_until,
             "end": self.end,
             "mesh_estimate": self.mesh_estimate.as_ref().map(|estimate| {
-                json!({ "value": estimate.value, "change": estimate.change, "correction": estimate.correction })
+                json!({ "value": estimate.value, "change": estimate.change, "correction": estimate.correction, "is_reliable": estimate.is_reliable() })
             }),
             "look": self.look.as_ref().map(Look::to_json),
             "not_tried": self.not_tried,

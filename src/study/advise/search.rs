@@ -5,7 +5,6 @@ use std::time::Instant;
 
 use super::advice::Candidate;
 use super::choice::Choice;
-use super::freedom::Freedom;
 use super::runs::{Outcome, Runs};
 use crate::equilibrium::Equilibrium;
 use crate::error::Error;
@@ -24,7 +23,6 @@ pub(super) struct Request {
     pub(super) quantity: Quantity,
     /// Time (s) for all runs.
     pub(super) budget: f64,
-    pub(super) freedom: Freedom,
 }
 
 impl Request {
