@@ -1,40 +1,49 @@
-//! The page of the adviser: its chart, and the motions below.
+//! The page of the adviser.
 
 use std::ops::ControlFlow;
 
 use pliant::Sampling;
-use pliant::samples::clamped_beam;
+use pliant::samples::beam_jump;
 use pliant::study::Adviser;
 
 use super::Outcome;
 use super::browser::Browser;
 
-/// The chart has a point for each candidate with an error, within it; what was written and what is enough are played by one clock.
-pub fn the_advice_has_its_motions(browser: &mut Browser) -> Outcome {
-    let scene = clamped_beam([6, 2], 100.0)?.ended_at(0.1);
-    let advice = Adviser::new(&scene, 0.05).run(&mut |_| ControlFlow::Continue(()))?;
+/// The answer stands above the motions, the chart has a point for each candidate that has an error, with its name, and both
+/// motions play. On a phone nothing but the chart and the table is wider than the window.
+pub fn advice_is_read_and_both_motions_play(browser: &mut Browser) -> Outcome {
+    let scene = beam_jump()?;
+    let go_on = &mut |_: &str| ControlFlow::Continue(());
+    let advice = Adviser::new(&scene, 0.05).budget(5.0).run(go_on)?;
     let directory = tempfile::tempdir()?;
     let path = directory.path().join("advice.html");
-    let sampling = Sampling::every(0.02);
-    advice.write_page(&scene, &sampling, &path, "Beam", &mut |_| ControlFlow::Continue(()))?;
+    advice.write_page(&scene, &Sampling::every(0.01), &path, "A <b>beam</b>", go_on)?;
     browser.open(&path)?;
-    assert_eq!(browser.text("document.querySelector('h1').textContent")?, "Beam");
-    let measured = advice.candidates.iter().filter(|candidate| candidate.error.is_some()).count();
-    let points = "document.querySelectorAll('.pareto .points > g').length";
-    assert_eq!(browser.number(points)?, measured as f64);
-    let outside = "[...document.querySelectorAll('.pareto .points > g')].filter((point) => { \
-                   const [chart, own] = [point.ownerSVGElement, point].map((one) => one.getBoundingClientRect()); \
-                   return own.left < chart.left || own.right > chart.right || own.top < chart.top || \
-                   own.bottom > chart.bottom; }).length";
-    assert_eq!(browser.number(outside)?, 0.0);
-    let rows = "document.querySelectorAll('tbody tr').length";
-    assert_eq!(browser.number(rows)?, advice.candidates.len() as f64);
-    let names =
-        "[...document.querySelectorAll('figcaption')].map((name) => name.textContent).join()";
-    assert_eq!(browser.text(names)?, "As written,Enough");
-    let clock = "Number(document.querySelector('#time').value)";
-    assert_eq!(browser.number(clock)?, 0.0);
-    browser.press("ArrowRight", false)?;
-    assert!(browser.number(clock)? > 0.0);
+    assert_eq!(browser.text("document.querySelector('h1').textContent")?, "A <b>beam</b>");
+    let answer = browser.text("document.querySelector('.advice dd').textContent")?;
+    let enough = advice.enough.as_ref().ok_or("nothing is enough")?;
+    assert!(answer.starts_with(&enough.choice.to_string()), "{answer}");
+
+    let measured = advice.candidates.iter().filter(|one| one.error.is_some()).count();
+    let points = "[...document.querySelectorAll('.points > *')]";
+    assert_eq!(browser.number(&format!("{points}.length"))?, measured as f64);
+    let titles = format!("{points}.every((point) => point.querySelector('title').textContent)");
+    assert_eq!(browser.evaluate(&titles)?, true);
+    let rows = browser.number("document.querySelectorAll('tbody tr').length")?;
+    assert_eq!(rows, advice.candidates.len() as f64);
+
+    let pictures =
+        "['#stage', '#stage-2'].map((id) => document.querySelector(id).toDataURL()).join()";
+    let before = browser.text(pictures)?;
+    browser.evaluate("document.querySelector('#play').scrollIntoView({ block: 'center' })")?;
+    browser.click("#play")?;
+    browser.wait_until("Number(document.querySelector('#time').value) > 0.02")?;
+    browser.press(" ", false)?;
+    let after = browser.text(pictures)?;
+    assert_eq!(before.split(',').zip(after.split(',')).filter(|(a, b)| a != b).count(), 2);
+
+    browser.resize([360, 740], true)?;
+    browser.wait_until("innerWidth === 360")?;
+    assert_eq!(browser.number("document.documentElement.scrollWidth")?, 360.0);
     Ok(())
 }

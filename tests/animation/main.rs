@@ -64,6 +64,7 @@ fn motions_stand_side_by_side() -> Outcome {
         ("in space", beside::bodies_in_space_are_as_large_and_turn_together),
         ("plane and space", beside::a_plane_and_a_space_have_one_scale),
         ("saving both", beside::all_of_them_are_saved),
+        ("advice", advice::advice_is_read_and_both_motions_play),
         ("phone", beside::they_stand_one_below_the_other_on_a_phone),
     ])
 }

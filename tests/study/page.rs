@@ -1,100 +1,235 @@
-//! The adviser's page.
+//! The page of the adviser, of advice with numbers that are known.
 
+use std::fs;
 use std::ops::ControlFlow;
 
-use pliant::samples::clamped_beam;
-use pliant::study::{Advice, Adviser, Candidate};
-use pliant::{Error, Sampling, Scene};
-use roxmltree::{Document, Node};
+use pliant::samples::beam_jump;
+use pliant::study::{Advice, Candidate, Choice};
+use pliant::{Inertia, Sampling, Scene, Settings, Strain};
+use serde_json::Value;
 
-type Outcome = Result<(), Error>;
+type Outcome = Result<(), Box<dyn std::error::Error>>;
 
-fn beam() -> Result<Scene, Error> {
-    Ok(clamped_beam([6, 2], 100.0)?.ended_at(0.1))
+const HOSTILE: &str = "<script>alert(\"1\")</script><!--motions-->/*data*/";
+
+fn candidate(rtol: f64, seconds: f64, error: Option<f64>) -> Candidate {
+    let choice = Choice {
+        strain: Strain::Cauchy,
+        quadratic: false,
+        halved: 0,
+        inertia: Inertia::Consistent,
+        without: Vec::new(),
+        is_static: false,
+        settings: Settings { rtol, ..Settings::default() },
+    };
+    let set = vec![format!("solver.rtol={rtol:e}")];
+    Candidate { choice, set, error, parts: None, seconds, unknowns: 14, failure: None }
 }
 
-fn advise(scene: &Scene) -> Result<Advice, Error> {
-    Adviser::new(scene, 0.05).run(&mut |_| ControlFlow::Continue(()))
+/// Six candidates: one that is enough, one that is slower and worse, one that all are compared with, and a failure.
+fn advice() -> Advice {
+    let written = candidate(1e-3, 0.01, Some(0.1));
+    let enough = candidate(1e-5, 0.1, Some(0.005));
+    let truth = candidate(1e-9, 10.0, Some(0.0));
+    let failed = Candidate { failure: Some(HOSTILE.into()), ..candidate(1e-2, f64::NAN, None) };
+    let others = [candidate(1e-1, 1e-3, Some(0.5)), candidate(1e-6, 1.0, Some(0.02)), failed];
+    let candidates = [&[written.clone(), enough.clone(), truth.clone()][..], &others].concat();
+    Advice {
+        quantity: HOSTILE.into(),
+        accuracy: 0.01,
+        scale: 0.2,
+        unit: "m".into(),
+        written,
+        enough: Some(enough),
+        truth: Some(truth),
+        resolution: 0.001,
+        mesh: None,
+        alphas: Vec::new(),
+        law: None,
+        inertia: None,
+        terms: Vec::new(),
+        candidates,
+        known_until: None,
+        end: 0.6,
+        mesh_estimate: None,
+        look: None,
+        not_tried: vec![HOSTILE.into()],
+        is_cut_short: false,
+        runs: 6,
+        seconds: 12.0,
+        known: 0,
+    }
 }
 
-fn written(advice: &Advice, scene: &Scene, goes_on: ControlFlow<()>) -> Result<String, Error> {
-    let directory = tempfile::tempdir().unwrap();
+/// The text of the page, with motions unless they are given up at once.
+fn page(
+    advice: &Advice,
+    scene: &Scene,
+    goes_on: bool,
+) -> Result<String, Box<dyn std::error::Error>> {
+    let directory = tempfile::tempdir()?;
     let path = directory.path().join("advice.html");
-    let sampling = Sampling::every(0.02);
-    advice.write_page(scene, &sampling, &path, "<script>alert(1)</script>", &mut |_| goes_on)?;
-    Ok(std::fs::read_to_string(path).unwrap())
+    let mut observer = |_: &str| match goes_on {
+        true => ControlFlow::Continue(()),
+        false => ControlFlow::Break(()),
+    };
+    advice.write_page(scene, &Sampling::every(0.1), &path, HOSTILE, &mut observer)?;
+    Ok(fs::read_to_string(path)?)
 }
 
-/// Each candidate with an error is a point where its time and its error are, by two scales in decades that three points fix and
-/// all others follow; names tell what they are.
+/// The part of a text from one mark to another.
+fn between<'a>(text: &'a str, from: &str, to: &str) -> Option<&'a str> {
+    let begin = text.find(from)?;
+    let end = text[begin..].find(to)?;
+    Some(&text[begin..begin + end + to.len()])
+}
+
+/// Places of points follow from the axes: logarithmic, six hundredths of the decades more at both ends.
 #[test]
-fn points_stand_where_the_numbers_are() -> Outcome {
-    let scene = beam()?;
-    let advice = advise(&scene)?;
-    let page = written(&advice, &scene, ControlFlow::Continue(()))?;
-    let start = page.find("<svg").unwrap();
-    let end = start + page[start..].find("</svg>").unwrap() + "</svg>".len();
-    let chart = Document::parse(&page[start..end]).unwrap();
-    let is_group = |node: &Node| node.attribute("class") == Some("points");
-    let points = chart.descendants().find(is_group).unwrap();
-    let points: Vec<(String, Option<[f64; 2]>)> = points
-        .children()
-        .filter(Node::is_element)
-        .map(|point| {
-            let title = point.children().find(|node| node.has_tag_name("title")).unwrap();
-            let circle = point.children().find(|node| node.has_tag_name("circle"));
-            let place = circle.map(|circle| {
-                ["cx", "cy"].map(|at| circle.attribute(at).unwrap().parse().unwrap())
-            });
-            (title.text().unwrap().to_owned(), place)
-        })
-        .collect();
-    let measured: Vec<&Candidate> =
-        advice.candidates.iter().filter(|candidate| candidate.error.is_some()).collect();
-    assert_eq!(points.len(), measured.len());
-    // errors of nearly 0 are drawn at the lower edge
-    let mut seen = Vec::new();
-    for candidate in &measured {
-        let name = candidate.choice.to_string();
-        let mut named = points.iter().filter(|(title, _)| title.starts_with(&format!("{name}: ")));
-        let (Some((_, Some(place))), None) = (named.next(), named.next()) else { continue };
-        if candidate.error.unwrap() > 1e-4 {
-            seen.push((*place, [candidate.seconds, candidate.error.unwrap()].map(f64::log10)));
-        }
+fn points_stand_where_error_and_time_are() -> Outcome {
+    let page = page(&advice(), &beam_jump()?, false)?;
+    let chart = between(&page, "<svg", "</svg>").ok_or("no chart")?;
+    let chart = roxmltree::Document::parse(chart)?;
+    let [left, top, right, bottom] = [74.0, 14.0, 586.0, 404.0];
+    let place = |error: f64, seconds: f64| {
+        let (lowest, highest) = (0.001_f64.log10(), 0.5_f64.log10());
+        let more = 0.06 * (highest - lowest);
+        let part = (error.log10() - lowest + more) / (highest - lowest + 2.0 * more);
+        let x = left + (seconds.log10() + 3.24) / 4.48 * (right - left);
+        [x, bottom - part * (bottom - top)]
+    };
+    let number = |node: roxmltree::Node, name: &str| {
+        node.attribute(name).and_then(|text| text.parse::<f64>().ok()).unwrap_or(f64::NAN)
+    };
+    let points = chart.descendants().find(|node| node.attribute("class") == Some("points"));
+    let points: Vec<_> = points.ok_or("no points")?.children().filter(|n| n.is_element()).collect();
+    // all but the failure
+    assert_eq!(points.len(), 5);
+    let named = |rtol: &str| {
+        let title = |node: &roxmltree::Node| {
+            node.descendants().any(|n| n.text().is_some_and(|text| text.contains(rtol)))
+        };
+        points.iter().copied().find(title).ok_or(rtol.to_owned())
+    };
+    let known =
+        [("1e-1", 0.5, 1e-3), ("1e-3", 0.1, 0.01), ("1e-5", 0.005, 0.1), ("1e-6", 0.02, 1.0)];
+    for (rtol, error, seconds) in known {
+        let [x, y] = place(error, seconds);
+        let circle = named(rtol)?.descendants().find(|node| node.has_tag_name("circle"));
+        let circle = circle.ok_or("no circle")?;
+        // places are written to a hundredth of a pixel
+        let apart = (number(circle, "cx") - x).abs().max((number(circle, "cy") - y).abs());
+        assert!(apart < 0.006, "{rtol}: {apart}");
     }
-    assert!(seen.len() > 5, "{}", seen.len());
-    for axis in 0..2 {
-        let numbers = |k: usize| (seen[k].0[axis], seen[k].1[axis]);
-        let far = |a: &usize, b: &usize| numbers(*a).1.total_cmp(&numbers(*b).1);
-        let least = (0..seen.len()).min_by(far).unwrap();
-        let most = (0..seen.len()).max_by(far).unwrap();
-        let ((p, x), (q, y)) = (numbers(least), numbers(most));
-        for k in 0..seen.len() {
-            let (place, value) = numbers(k);
-            let expected = p + (q - p) * (value - x) / (y - x);
-            // hundredths of a pixel are written
-            assert!((place - expected).abs() < 0.02, "{axis}: {place} {expected}");
-        }
-    }
-    let roles = ["as written", "what all are compared with"];
-    for role in roles {
-        assert_eq!(points.iter().filter(|(title, _)| title.contains(role)).count(), 1, "{role}");
+    // without an error of its own, at the bottom
+    let truth = named("1e-9")?.descendants().find_map(|node| node.attribute("d"));
+    assert!(truth.is_some_and(|d| d.contains(&format!(" {bottom:.2} "))), "{truth:?}");
+
+    let asked = chart.descendants().find(|node| node.attribute("class") == Some("asked"));
+    assert!((number(asked.ok_or("no line")?, "y1") - place(0.01, 1.0)[1]).abs() < 0.006);
+    let band = chart.descendants().find(|node| node.has_tag_name("rect")).ok_or("no band")?;
+    assert!((number(band, "y") - place(0.001, 1.0)[1]).abs() < 0.006);
+    let front = chart.descendants().find(|node| node.has_tag_name("polyline"));
+    let front = front.and_then(|line| line.attribute("points")).ok_or("no front")?;
+    let corners = [&known[0], &known[1], &known[2]].map(|(_, error, seconds)| {
+        let [x, y] = place(*error, *seconds);
+        format!("{x:.2},{y:.2}")
+    });
+    assert_eq!(front, corners.join(" "));
+    Ok(())
+}
+
+/// The table has all candidates, the fastest first, with the marks of the chart.
+#[test]
+fn the_table_has_all_candidates() -> Outcome {
+    let page = page(&advice(), &beam_jump()?, false)?;
+    let table = between(&page, "<table", "</table>").ok_or("no table")?;
+    let table = roxmltree::Document::parse(table)?;
+    let rows = table.descendants().filter(|node| node.has_tag_name("tr")).skip(1);
+    let cells = |row: roxmltree::Node| -> Vec<String> {
+        let cells = row.children().filter(|node| node.is_element());
+        let text = |cell: roxmltree::Node| {
+            cell.descendants().filter(|n| n.is_text()).filter_map(|n| n.text()).collect::<String>()
+        };
+        cells.map(|cell| text(cell).trim().to_owned()).collect()
+    };
+    let rows: Vec<Vec<String>> = rows.map(cells).collect();
+    let failed = format!("failed: {HOSTILE}");
+    let expected = [
+        ["1e-1", "50 %", "1.00 ms", "14", "front"],
+        ["1e-3", "10 %", "10.0 ms", "14", "as written front"],
+        ["1e-5", "0.5 %", "100 ms", "14", "enough front"],
+        ["1e-6", "2 %", "1.00 s", "14", ""],
+        ["1e-9", "", "10.0 s", "14", "what all are compared with"],
+        ["1e-2", "", "", "", &failed],
+    ];
+    assert_eq!(rows.len(), expected.len());
+    for (row, expected) in rows.iter().zip(expected) {
+        assert!(row[0].ends_with(&format!("rtol {}", expected[0])), "{row:?}");
+        assert_eq!(row[1..], expected[1..]);
     }
     Ok(())
 }
 
-/// Text is text, whatever it is; a page whose motions were not run says so.
+/// A page whose runs are given up has no script at all, says why, and has text of users as text.
 #[test]
-fn a_page_without_motions() -> Outcome {
-    let scene = beam()?;
-    let advice = advise(&scene)?;
-    let page = written(&advice, &scene, ControlFlow::Break(()))?;
-    assert!(!page.contains("<script>alert") && page.contains("&lt;script&gt;alert"));
-    assert!(page.contains("No motion is shown") && page.contains("given up after"));
+fn it_stands_without_motions() -> Outcome {
+    let advice = advice();
+    let page = page(&advice, &beam_jump()?, false)?;
+    assert!(!page.contains("<script") && !page.contains("<canvas"), "{page}");
+    assert!(page.contains("No motion is shown") && page.contains("As written: given up after"));
     assert!(page.contains("default-src 'none'"));
-    for reason in advice.reasons() {
-        let escaped = reason.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-        assert!(page.contains(&reason) || page.contains(&escaped), "{reason}");
+    let text = "&lt;script&gt;alert(&quot;1&quot;)&lt;/script&gt;&lt;!--motions--&gt;/*data*/";
+    // title, heading, quantity, failure in words and in the table, and what was not tried
+    assert_eq!(page.matches(text).count(), 6, "{page}");
+    // all that the terminal says, line by line
+    for line in advice.to_string().lines() {
+        let line = line.trim_start_matches("- ").rsplit(": ").next().unwrap_or_default().trim();
+        let line = line.replace(HOSTILE, text);
+        assert!(page.contains(&line), "{line}");
     }
+    assert!(page.contains("solver.rtol=1e-5"));
+
+    // without errors there is no chart
+    let strip = |candidate: &Candidate| Candidate { error: None, ..candidate.clone() };
+    let bare = Advice {
+        candidates: advice.candidates.iter().map(strip).collect(),
+        written: strip(&advice.written),
+        enough: None,
+        truth: None,
+        resolution: f64::NAN,
+        ..advice
+    };
+    let page = self::page(&bare, &beam_jump()?, false)?;
+    assert!(!page.contains("id=\"pareto\"") && page.contains("<table>"));
+    Ok(())
+}
+
+/// Both motions are those of the choices; where what was written is enough there is one.
+#[test]
+fn motions_of_both_are_shown() -> Outcome {
+    let scene = beam_jump()?.ended_at(0.3);
+    let names = |advice: &Advice| -> Result<Vec<(String, f64)>, Box<dyn std::error::Error>> {
+        let page = page(advice, &scene, true)?;
+        let data = between(&page, "id=\"data\">", "</script>").ok_or("no data")?;
+        let data = data.trim_start_matches("id=\"data\">").trim_end_matches("</script>");
+        let data: Value = serde_json::from_str(data)?;
+        assert_eq!(data["title"], HOSTILE);
+        let motions = data["motions"].as_array().ok_or("no motions")?;
+        let told = |motion: &Value| {
+            let name = motion["name"].as_str().unwrap_or_default().to_owned();
+            let rtol = motion["run"]["rtol"].as_str().and_then(|text| text.parse().ok());
+            (name, rtol.unwrap_or(f64::NAN))
+        };
+        Ok(motions.iter().map(told).collect())
+    };
+    let both = advice();
+    let [written, enough] = [("As written".to_owned(), 1e-3), ("Enough".to_owned(), 1e-5)];
+    assert_eq!(names(&both)?, [written.clone(), enough]);
+    let same = Advice { enough: Some(both.written.clone()), ..both.clone() };
+    assert_eq!(names(&same)?, [("As written, which is enough".to_owned(), 1e-3)]);
+    let failed = both.candidates.last().cloned();
+    let one = Advice { enough: failed, ..both };
+    assert_eq!(names(&one)?, [written]);
     Ok(())
 }

@@ -14,7 +14,7 @@ const FIELD: [f64; 4] = [74.0, 14.0, 586.0, 404.0];
 /// Width and height of the chart (px), with room for what levels mean on its right.
 const SIZE: [f64; 2] = [720.0, 456.0];
 /// Errors below this part of the accuracy are drawn at the bottom: they are good enough for anything.
-const LEAST: f64 = 1e-4;
+const LEAST: f64 = 1e-3;
 /// Between the lines of two labels (px).
 const APART: f64 = 17.0;
 
@@ -38,11 +38,11 @@ impl Advice {
             (self.enough.as_ref(), "enough"),
             (self.truth.as_ref(), "what all are compared with"),
         ];
-        let played = parts.iter().filter(|(one, _)| one.is_some_and(|one| one.is(candidate)));
-        played.map(|(_, name)| *name).collect()
+        let own = parts.iter().filter(|(one, _)| one.is_some_and(|one| one.is(candidate)));
+        own.map(|(_, name)| *name).collect()
     }
 
-    fn is_truth(&self, candidate: &Candidate) -> bool {
+    pub(super) fn is_truth(&self, candidate: &Candidate) -> bool {
         self.truth.as_ref().is_some_and(|truth| truth.is(candidate))
     }
 
@@ -74,7 +74,7 @@ impl Advice {
         if known.is_empty() {
             return None;
         }
-        let errors = known.iter().map(|(error, _)| error.max(LEAST * self.accuracy));
+        let errors = known.iter().map(|(error, _)| *error).chain([self.resolution]);
         let errors = errors.filter(|error| *error > LEAST * self.accuracy).chain([self.accuracy]);
         let times = known.iter().map(|(_, candidate)| candidate.seconds);
         let colours = ["var(--muted)", "var(--line)", "var(--grid)"];
@@ -150,12 +150,11 @@ impl Advice {
 
     fn point(&self, candidate: &Candidate, [x, y]: Point) -> Group {
         let parts = self.roles_of(candidate);
-        let told = percent(candidate.error.unwrap_or(f64::NAN));
         let time = time_text(candidate.seconds);
-        let mut title = format!("{}: {told} off in {time}", candidate.choice);
-        if !parts.is_empty() {
-            title = format!("{title} ({})", parts.join(", "));
-        }
+        let off = candidate.measured().filter(|_| !self.is_truth(candidate)).map(percent);
+        let off = off.map_or_else(String::new, |off| format!("{off} off in "));
+        let name = parts.iter().map(|part| format!(" ({part})")).collect::<String>();
+        let title = format!("{}{name}: {off}{time}", candidate.choice);
         let (colour, radius) = match &parts[..] {
             parts if parts.contains(&"enough") => ("var(--gravity)", 6.5),
             parts if parts.contains(&"as written") => ("var(--push)", 6.5),

@@ -67,8 +67,12 @@ impl Advice {
         let answer = paragraphs(&self.to_string());
         let sets = self.enough.as_ref().map_or_else(String::new, |enough| {
             let lines = escaped(&enough.set.join("\n"));
-            format!("<h3>What is enough, as <code>--set</code> takes it</h3>\n<pre>{lines}</pre>\n")
+            format!(
+                "<h3>What is enough, as <code>--set</code> takes it:</h3>\n<pre>{lines}</pre>\n"
+            )
         });
+        // beneath the names of what is enough and of what was written
+        let answer = answer.replacen("</dl>\n", &format!("</dl>\n{sets}"), 1);
         let chart = self.chart().map_or_else(String::new, |chart| {
             let head = "<section class=\"card\" aria-labelledby=\"pareto\">\n<h2 id=\"pareto\">Error and time</h2>";
             format!("{head}\n<div class=\"pareto\">{chart}</div>\n{KEY}</section>\n")
@@ -84,7 +88,7 @@ impl Advice {
             left_out.iter().map(|why| format!("<li>{}</li>\n", escaped(why))).collect();
         format!(
             "<div class=\"advice\">\n<section class=\"card\" aria-labelledby=\"needs\">\n\
-             <h2 id=\"needs\">What it needs</h2>\n{answer}{sets}</section>\n{chart}</div>\n\
+             <h2 id=\"needs\">What it needs</h2>\n{answer}</section>\n{chart}</div>\n\
              <section class=\"card\" aria-labelledby=\"candidates\">\n\
              <h2 id=\"candidates\">All that was run, the fastest first</h2>\n{}</section>\n\
              <section class=\"shown\">\n<p>{shown}</p>\n<ul>\n{left_out}</ul>\n</section>",
@@ -119,7 +123,7 @@ impl Advice {
             (None, true) => " class=\"front\"",
             (None, false) => "",
         };
-        let error = error.map_or_else(String::new, percent);
+        let error = error.filter(|_| !self.is_truth(candidate)).map_or_else(String::new, percent);
         let [time, unknowns] = match failure {
             Some(_) => Default::default(),
             None => [time_text(*seconds), unknowns.to_string()],
@@ -157,40 +161,54 @@ fn motion(
     run.map_err(|error| reason(error).to_string())
 }
 
-/// Text as HTML: empty lines part paragraphs, lines that begin with "- " are points of a list, and those that tell of one
-/// candidate stand out.
+/// The words of the advice as HTML: empty lines part paragraphs, lines that begin with "- " are points of a list, those that
+/// tell of one candidate stand out, and those of failures are folded.
 fn paragraphs(text: &str) -> String {
     let mut html = String::new();
-    let mut open = "";
+    let mut open = Block::Text;
     for line in text.lines() {
-        let named = line
-            .split_once(':')
-            .filter(|(name, _)| NAMES.iter().any(|known| name.starts_with(known)));
-        let (element, line) = match (line.strip_prefix("- "), named) {
-            (Some(point), _) => ("ul", format!("<li>{}</li>", escaped(point))),
+        let named =
+            line.split_once(':').filter(|(name, _)| NAMES.iter().any(|own| name.starts_with(own)));
+        let (block, line) = match (line.strip_prefix("- "), named) {
+            (Some(point), _) if point.starts_with("failed: ") => {
+                (Block::Failures, format!("<li>{}</li>\n", escaped(point)))
+            }
+            (Some(point), _) => (Block::List, format!("<li>{}</li>\n", escaped(point))),
             (None, Some((name, rest))) => {
                 let [name, rest] = [name, rest.trim()].map(escaped);
-                ("dl", format!("<dt>{name}</dt><dd>{rest}</dd>"))
+                (Block::Names, format!("<dt>{name}</dt><dd>{rest}</dd>\n"))
             }
-            (None, None) if line.is_empty() => ("", String::new()),
-            (None, None) => ("", format!("<p>{}</p>", escaped(line))),
+            (None, None) if line.is_empty() => (Block::Text, String::new()),
+            (None, None) => (Block::Text, format!("<p>{}</p>\n", escaped(line))),
         };
-        if element != open {
-            if !open.is_empty() {
-                html += &format!("</{open}>\n");
-            }
-            if !element.is_empty() {
-                html += &format!("<{element}>\n");
-            }
-            open = element;
+        if block != open {
+            html = html + open.tags()[1] + block.tags()[0];
+            open = block;
         }
-        if !line.is_empty() {
-            html += &line;
-            html.push('\n');
+        html += &line;
+    }
+    html + open.tags()[1]
+}
+
+/// Lines that belong together.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Block {
+    Text,
+    Names,
+    List,
+    Failures,
+}
+
+impl Block {
+    /// What stands before and after its lines.
+    fn tags(self) -> [&'static str; 2] {
+        match self {
+            Self::Text => ["", ""],
+            Self::Names => ["<dl>\n", "</dl>\n"],
+            Self::List => ["<ul>\n", "</ul>\n"],
+            Self::Failures => {
+                ["<details>\n<summary>Runs that failed</summary>\n<ul>\n", "</ul>\n</details>\n"]
+            }
         }
     }
-    if !open.is_empty() {
-        html += &format!("</{open}>\n");
-    }
-    html
 }
