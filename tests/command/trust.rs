@@ -55,7 +55,8 @@ fn advice_is_written_into_a_scene_that_runs() {
     let parts =
         ["right.x to 5 %", "Enough:", "As written:", "Cauchy strain in place of Green strain"];
     says(&stdout(&output), &parts);
-    assert_eq!(place.files("advice"), ["advice.html", "advice.json", "candidates.csv"]);
+    let files = ["advice.html", "advice.json", "candidates.csv", "runs.jsonl"];
+    assert_eq!(place.files("advice"), files);
     let advice = fs::read_to_string(place.path("advice/advice.json")).unwrap();
     let advice: Value = serde_json::from_str(&advice).unwrap();
     assert!(advice["enough"]["error"].as_f64().unwrap() <= 0.05, "{advice}");
