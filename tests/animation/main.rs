@@ -59,7 +59,6 @@ fn it_is_used() -> Outcome {
 fn motions_stand_side_by_side() -> Outcome {
     in_browser(&[
         ("two in the plane", beside::two_are_played_by_one_clock),
-        ("an advice", advice::the_advice_has_its_motions),
         ("same colours", beside::colours_mean_the_same),
         ("in space", beside::bodies_in_space_are_as_large_and_turn_together),
         ("plane and space", beside::a_plane_and_a_space_have_one_scale),
