@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::advice::{Advice, Candidate};
 use super::choice::Choice;
-use super::words::{percent, short};
+use super::words::{percent, short, times};
 use crate::body::{Inertia, Strain};
 use crate::input::told;
 use crate::report::Verdict;
@@ -41,9 +41,9 @@ impl Advice {
                 let choice = &candidate.choice;
                 let mesh = match (choice.quadratic, choice.halved) {
                     (false, 0) => "the mesh as written".to_owned(),
-                    (false, times) => format!("cells halved {times} time(s)"),
+                    (false, count) => format!("cells halved {}", times(count)),
                     (true, 0) => "quadratic cells".to_owned(),
-                    (true, times) => format!("quadratic cells, halved {times} time(s)"),
+                    (true, count) => format!("quadratic cells, halved {}", times(count)),
                 };
                 let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
                 let differs = if self.mesh.is_some() { "away" } else { "off" };

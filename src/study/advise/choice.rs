@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::words::times;
 use crate::body::{Inertia, Strain};
 use crate::input::InputError;
 use crate::mesh::CellKind;
@@ -188,7 +189,7 @@ impl fmt::Display for Choice {
             f.write_str(", quadratic cells")?;
         }
         if self.halved > 0 {
-            write!(f, ", cells halved {} time(s)", self.halved)?;
+            write!(f, ", cells halved {}", times(self.halved))?;
         }
         if self.inertia == Inertia::Lumped {
             f.write_str(", lumped inertia")?;

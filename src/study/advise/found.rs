@@ -48,15 +48,16 @@ impl Found {
     }
 
     /// The error that the finest mesh may have itself, as those before tell: two by their distance and order 2, three by what
-    /// the last step has left of the distance. Not a number where there is but one.
+    /// the last step has left of the distance; all of the distance where the cells are not of one kind. Not a number where
+    /// there is but one.
     pub(super) fn resolution(&self) -> f64 {
         let (Some(truth), [.., before, _]) = (self.truth(), &self.meshes[..]) else {
             return f64::NAN;
         };
         let apart = |a: &Solved, b: &Solved| a.seen.distance(&b.seen).mean / truth.seen.scale;
-        let last = apart(before, truth);
+        let is_of_kind = |mesh: &Solved| mesh.choice.quadratic == truth.choice.quadratic;
         let left = match &self.meshes[..] {
-            [.., first, second, third] if first.choice.quadratic == third.choice.quadratic => {
+            [.., first, second, third] if is_of_kind(first) => {
                 let rate = apart(second, third) / apart(first, second);
                 if rate < 1.0 {
                     (rate / (1.0 - rate)).clamp(ORDER_2, LEAST_ORDER)
@@ -64,9 +65,10 @@ impl Found {
                     LEAST_ORDER
                 }
             }
-            _ => ORDER_2,
+            [.., second, _] if is_of_kind(second) => ORDER_2,
+            _ => 1.0,
         };
-        left * last
+        left * apart(before, truth)
     }
 
     /// The error that a candidate may have for an `accuracy`: that less what its measure may be off by. A mesh that was compared with
