@@ -23,16 +23,15 @@ that of what is enough. *Advice*: what the advice took, and how many times the r
 /// The page on all `trials`, for an accuracy and a budget (s).
 pub fn page(trials: &[Trial], within: f64, budget: f64) -> String {
     let mut page = ABOUT.to_owned();
-    let right = trials.iter().filter_map(Trial::is_right);
-    let (right, judged) =
-        right.fold((0, 0), |(right, all), is_right| (right + usize::from(is_right), all + 1));
-    let cheap = |trial: &&Trial| {
-        trial.converged.as_ref().is_some_and(|(_, seconds)| trial.advice.seconds <= 3.0 * seconds)
-    };
-    let cheap = trials.iter().filter(cheap).count();
+    let count = |is: fn(&Trial) -> bool| trials.iter().filter(|trial| is(trial)).count();
+    let judged = count(|trial| trial.is_right().is_some());
+    let right = count(|trial| trial.is_right() == Some(true));
+    let finer = count(Trial::is_against_finer);
+    let cheap = count(|trial| trial.is_against_finer() && trial.cost() <= Some(3.0));
     page += &format!(
         "\nAsked for {} % within {budget} s: of {} scenes {judged} were given a model that is enough, and {right} of these are right. \
-         For {cheap} the advice took at most three times the run that it is compared with.\n\n",
+         {finer} of them are compared with a run on a finer mesh, the others with one on their own; of those {finer} \
+         the advice took at most three times that run for {cheap}.\n\n",
         100.0 * within,
         trials.len()
     );

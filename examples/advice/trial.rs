@@ -78,9 +78,19 @@ impl Trial {
         self.enough.map(|error| error <= self.advice.accuracy)
     }
 
+    /// Whether what is enough was compared with a run on a finer mesh than the adviser's own.
+    pub fn is_against_finer(&self) -> bool {
+        self.enough.is_some() && self.not_finer.is_none()
+    }
+
+    /// Time of the advice over that of the run that it is compared with.
+    pub fn cost(&self) -> Option<f64> {
+        Some(self.advice.seconds / self.converged.as_ref()?.1)
+    }
+
     /// A row of the table.
     pub fn row(&self) -> String {
-        let Self { name, advice, enough, written, converged, .. } = self;
+        let Self { name, advice, enough, written, .. } = self;
         let percent = |error: Option<f64>| match error {
             Some(error) => format!("{:.2} %", 100.0 * error),
             None => "–".into(),
@@ -98,14 +108,13 @@ impl Trial {
             Some(_) => format!(" until {:.2} s", advice.end),
             None => String::new(),
         };
-        let (cost, faster) = match converged {
-            Some((_, seconds)) => (
-                format!("{:.1}", advice.seconds / seconds),
-                advice.enough.as_ref().map(|enough| advice.written.seconds / enough.seconds),
-            ),
-            None => ("–".into(), None),
+        let ratio = |ratio: Option<f64>| match ratio {
+            Some(ratio) => format!("{ratio:.2}"),
+            None => "–".into(),
         };
-        let faster = faster.map_or("–".into(), |ratio| format!("{ratio:.1}"));
+        let enough_seconds = advice.enough.as_ref().map(|enough| enough.seconds);
+        let faster = ratio(enough_seconds.map(|seconds| advice.written.seconds / seconds));
+        let cost = ratio(self.cost());
         let time = time_text(advice.seconds);
         let [told, wrote, true_] = [advice.written.error, *written, *enough].map(percent);
         format!(

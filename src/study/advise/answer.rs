@@ -36,6 +36,7 @@ impl Advice {
                     && same.inertia == rich.inertia
                     && same.without == rich.without
                     && same.settings == rich.settings
+                    && !same.is_static
             };
             if let (Some(error), true) = (candidate.error, rich.is_some_and(is_mesh)) {
                 let choice = &candidate.choice;
