@@ -30,7 +30,7 @@ bench: setup ## Benchmarks: one table of what the parts of a step cost; all othe
 charts: setup ## The gallery in docs/charts, some 20 minutes; out/charts keeps what was run
 	cargo run --release --example gallery -- --out docs/charts
 
-advice: setup ## docs/advice.md, the adviser on trial, half an hour
+advice: setup ## docs/advice.md, the adviser on trial, some 10 minutes
 	cargo run --release --example advice
 
 stability: setup ## docs/stability.md with its pictures, some minutes

@@ -1,6 +1,6 @@
 //! The adviser on trial: what it promises for each scene of `scenes/` and some more, against a run that it knows nothing of.
 //!
-//! `cargo run --release --example advice` writes `docs/advice.md`, in an hour or so.
+//! `cargo run --release --example advice` writes `docs/advice.md`, in some 10 minutes.
 //!
 //! What to look for: the column "true". It should be below the accuracy that was asked for, and is compared with a mesh finer
 //! than any that the adviser has seen, by another method at a tighter tolerance.

@@ -20,6 +20,8 @@ fn an_accuracy_is_reached_and_told() {
     assert_eq!(achieved["quantity"], "right.x");
     let table = fs::read_to_string(place.path("out/scene/trajectory.csv")).unwrap();
     assert!(table.lines().next().unwrap().contains(",difference,"), "{table}");
+    // from which another scene can start
+    assert!(place.path("out/scene/state.json").exists());
 }
 
 #[test]

@@ -117,3 +117,60 @@ impl Found {
         Some(Parts { time: apart(of, own), model: apart(own, mesh), mesh: apart(mesh, truth) })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::samples::beam_jump;
+    use crate::settings::Settings;
+    use crate::study::advise::Choice;
+
+    /// Meshes on which a number is off by `errors` of its scale.
+    fn meshes(errors: &[(bool, f64)]) -> Found {
+        let scene = beam_jump().unwrap();
+        let meshes = errors.iter().zip(0..).map(|(&(quadratic, error), halved)| {
+            let values = [[1.0 + error]];
+            let seen = json!({ "dimension": 1, "values": values, "scale": 1.0 });
+            let choice = Choice::written(&scene, &Settings::default());
+            Solved {
+                choice: Choice { quadratic, halved, ..choice },
+                seen: serde_json::from_value(seen).unwrap(),
+                seconds: 1.0,
+                unknowns: 1,
+            }
+        });
+        Found { meshes: meshes.collect(), ..Found::default() }
+    }
+
+    #[test]
+    fn the_finest_mesh_is_as_good_as_the_order_of_the_others_says() {
+        let known = |errors: &[(bool, f64)]| meshes(errors).resolution();
+        let near = |told: f64, error: f64| assert!((told - error).abs() < 1e-12, "{told} {error}");
+        // order 2, by two meshes and by three
+        near(known(&[(true, 0.16), (true, 0.04)]), 0.04);
+        near(known(&[(true, 0.64), (true, 0.16), (true, 0.04)]), 0.04);
+        // order 1
+        near(known(&[(true, 0.16), (true, 0.08), (true, 0.04)]), 0.04);
+        // no limit: each step is as large as the one before
+        near(known(&[(true, 0.3), (true, 0.2), (true, 0.1)]), LEAST_ORDER * 0.1);
+        // order 4 counts as order 2
+        near(known(&[(true, 0.0257), (true, 0.0017), (true, 0.0002)]), 0.0005);
+        // cells of two kinds
+        near(known(&[(false, 0.5), (false, 0.05), (true, 0.02)]), 0.03);
+        near(known(&[(false, 0.05), (true, 0.02), (true, 0.005)]), 0.005);
+        assert!(known(&[(false, 0.05)]).is_nan());
+    }
+
+    #[test]
+    fn a_mesh_that_no_other_confirms_is_taken_as_it_was_written() {
+        let mut found = meshes(&[(false, 0.5), (false, 0.05), (true, 0.02)]);
+        found.settle(0.04);
+        assert!(found.mesh().is_none() && (found.allowed(0.04) - 0.01).abs() < 1e-12);
+        found.settle(0.02);
+        // 0.48 away, of a scale that is 1
+        assert!((found.mesh().unwrap() - 0.48).abs() < 1e-12 && found.meshes.len() == 1);
+        assert_eq!(found.allowed(0.02), 0.02);
+    }
+}
