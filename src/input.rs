@@ -5,6 +5,7 @@ mod file;
 mod fraction;
 mod memory;
 mod nearest;
+mod words;
 
 use std::fmt::Display;
 
@@ -17,6 +18,7 @@ pub(crate) use memory::check_memory;
 #[cfg(feature = "scene-file")]
 pub(crate) use nearest::list;
 pub(crate) use nearest::{unknown, unknown_among};
+pub(crate) use words::{percent, short, told};
 
 /// An input that cannot be used: which one, its value, and how to mend it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -96,12 +98,6 @@ pub(crate) fn finite(input: &str, values: &[f64]) -> Result<(), InputError> {
             Err(InputError::new(name, shown(values[at]), mend))
         }
     }
-}
-
-/// A number with four digits, as messages tell times.
-pub(crate) fn told(value: f64) -> String {
-    let rounded = format!("{value:.3e}").parse().unwrap_or(value);
-    format!("{rounded:?}").trim_end_matches(".0").to_owned()
 }
 
 /// A number as one would write it: 1e200 without two hundred zeros.

@@ -4,9 +4,8 @@ use nalgebra::Matrix3;
 
 use super::rigid::without_turn;
 use super::shape::Extent;
-use super::words::percent;
 use crate::body::{Body, Strain};
-use crate::input::told;
+use crate::input::{percent, told};
 use crate::report::Indicator;
 use crate::trajectory::{Sample, Trajectory};
 

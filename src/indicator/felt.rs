@@ -2,9 +2,8 @@
 
 use super::rigid::travel;
 use super::touch::Meeting;
-use super::words::percent;
 use crate::external::Contact;
-use crate::input::InputError;
+use crate::input::{InputError, percent};
 use crate::report::Indicator;
 use crate::trajectory::{Sample, Trajectory};
 use crate::vector::norm;

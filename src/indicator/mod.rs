@@ -45,7 +45,6 @@ mod strain;
 mod symmetry;
 mod touch;
 mod waves;
-mod words;
 
 use deformed::Deformed;
 use shape::Extent;
@@ -146,6 +145,7 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
 }
 
 /// The largest angle (rad) by which a cell turns.
+#[cfg(feature = "scene-file")]
 pub(crate) fn largest_turn(trajectory: &Trajectory) -> f64 {
     strain::largest_turn(trajectory.body(), &looked_at(trajectory))
 }

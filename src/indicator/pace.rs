@@ -1,8 +1,7 @@
 //! How fast a motion is: whether statics would do, and what its vibrations say for a method.
 
 use super::rigid::travel;
-use super::words::{percent, short};
-use crate::input::told;
+use crate::input::{percent, short, told};
 use crate::report::Indicator;
 use crate::scene::Scene;
 use crate::trajectory::{Sample, Trajectory};

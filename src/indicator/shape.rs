@@ -2,8 +2,8 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::words::short;
 use crate::body::Body;
+use crate::input::short;
 use crate::mesh::{CellKind, Mesh};
 use crate::report::Indicator;
 

@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::words::percent;
 use crate::body::Body;
+use crate::input::percent;
 use crate::mesh::Mesh;
 use crate::report::Indicator;
 use crate::trajectory::Sample;

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::rigid::without_spin;
-use super::words::short;
+use crate::input::short;
 use crate::report::Indicator;
 use crate::trajectory::{Sample, Trajectory};
 use crate::vector::dot;

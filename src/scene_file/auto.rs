@@ -3,7 +3,7 @@
 use super::contents::{AutoRequest, SceneFile};
 use crate::body::Strain;
 use crate::indicator::largest_turn;
-use crate::input::told;
+use crate::input::{percent, short};
 use crate::trajectory::Trajectory;
 
 /// Degrees below which cells turn so little that Cauchy strain would do: they count as a strain of 0.01 %.
@@ -17,16 +17,15 @@ impl SceneFile {
         let mut chosen = Vec::new();
         if strain && motion.body().strain() == Strain::Green {
             let turn = largest_turn(motion);
-            let (degrees, false_strain) = (turn.to_degrees(), 100.0 * (1.0 - turn.cos()));
+            let (degrees, false_strain) = (turn.to_degrees(), 1.0 - turn.cos());
             let why = match degrees < FEW_DEGREES {
                 true => "Cauchy strain would do as well, at less cost per step",
                 false => "pliant advise measures what that changes",
             };
-            let digits = |value: f64| told(format!("{value:.1e}").parse().unwrap_or(value));
             chosen.push(format!(
-                "strain: Green; cells turn by up to {} degrees, which Cauchy strain would take for a strain of {} %: {why}",
-                digits(degrees),
-                digits(false_strain)
+                "strain: Green; cells turn by up to {} degrees, which Cauchy strain would take for a strain of {}: {why}",
+                short(degrees),
+                percent(false_strain)
             ));
         }
         if cells {

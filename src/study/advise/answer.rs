@@ -3,10 +3,9 @@
 use std::fmt;
 
 use super::advice::{Advice, Candidate};
-use super::choice::Choice;
-use super::words::{percent, short, times};
+use super::choice::{Choice, times};
 use crate::body::{Inertia, Strain};
-use crate::input::told;
+use crate::input::{percent, short, told};
 use crate::report::Verdict;
 use crate::study::look::Look;
 use crate::study::time_text;

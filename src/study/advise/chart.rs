@@ -4,7 +4,7 @@ use svg::Document;
 use svg::node::element::{Circle, Group, Path as Outline, Polyline, Rectangle, Title};
 
 use super::advice::{Advice, Candidate};
-use super::words::percent;
+use crate::input::percent;
 use crate::output::FONT;
 use crate::study::fastest::time_text;
 use crate::study::frame::{Frame, Point, round, stroke, text};

@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use super::words::times;
 use crate::body::{Inertia, Strain};
 use crate::input::InputError;
 use crate::mesh::CellKind;
@@ -210,5 +209,14 @@ impl fmt::Display for Choice {
             ContactEvents::Locate => f.write_str(", contact events located"),
             ContactEvents::StepOver => f.write_str(", contact events stepped over"),
         }
+    }
+}
+
+/// How often.
+pub(super) fn times(count: usize) -> String {
+    match count {
+        1 => "once".into(),
+        2 => "twice".into(),
+        count => format!("{count} times"),
     }
 }

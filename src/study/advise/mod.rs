@@ -12,7 +12,6 @@ mod parts;
 mod record;
 mod runs;
 mod search;
-mod words;
 
 pub use advice::{Advice, Candidate};
 pub use adviser::Adviser;

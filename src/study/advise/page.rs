@@ -5,8 +5,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use super::advice::{Advice, Candidate};
-use super::words::percent;
 use crate::error::Error;
+use crate::input::percent;
 use crate::output::{Above, escaped, write_below};
 use crate::scene::Scene;
 use crate::simulate::Sampling;

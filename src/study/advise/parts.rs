@@ -1,8 +1,7 @@
 //! What an error is made of.
 
+use crate::input::percent;
 use std::fmt;
-
-use super::words::percent;
 
 /// What the error of a run is made of (relative): the distances between runs that differ in one thing each. What the error
 /// lacks is the largest of them: nothing is gained by making another one smaller.
