@@ -8,7 +8,7 @@ const ABOUT: &str = "\
 `pliant advise` says what model of a scene is enough, and how far off it is. Here it is asked about the whole motion of
 scenes, and what it says is compared with a run that it knows nothing of: the richest model that it found, on cells half as
 large as its finest, by ARKODE at a tenth of its tightest tolerance. Errors are root mean square distances of the nodes over 101 times,
-relative to the root mean square displacement. All numbers are results of `cargo run --release --example advice`.
+relative to the root mean square displacement. Where Green strain gave the adviser no motion, all is said of Cauchy strain. All numbers are results of `cargo run --release --example advice`.
 ";
 
 const COLUMNS: &str = "\

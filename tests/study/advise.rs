@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-use pliant::samples::{ClampedBeam, clamped_beam};
+use pliant::samples::{ClampedBeam, beam_jump, clamped_beam};
 use pliant::study::{Advice, Adviser, Parts, Quantity};
 use pliant::{
     Body, Cells, Error, Inertia, Material, Mesh, Obstacle, Phase, Sampling, Scene, SceneFile,
@@ -191,5 +191,16 @@ fn what_has_come_to_rest_needs_statics_alone() -> Outcome {
     let told = estimate.correction.abs() / advice.scale;
     let paired = advice.written.parts.unwrap().mesh;
     assert!((told / paired - 1.0).abs() < 0.15, "{told} {paired}");
+    Ok(())
+}
+
+/// The jumping beam is pressed until its first segment has no length left under Green strain: what that would change is not known,
+/// and that is said.
+#[test]
+fn a_law_without_a_motion_is_told() -> Outcome {
+    let advice = advise(&beam_jump()?, 0.05)?;
+    assert!(advice.law.is_none());
+    let told = "what Green strain changes is not known: it gave no motion";
+    assert!(advice.reasons().iter().any(|reason| reason == told), "{advice}");
     Ok(())
 }

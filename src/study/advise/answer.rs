@@ -28,6 +28,9 @@ impl Advice {
             };
             reasons.push(format!("{other} changes it by {}", percent(law)));
         }
+        if self.law.is_none() && rich.is_some_and(|rich| rich.strain == Strain::Cauchy) {
+            reasons.push("what Green strain changes is not known: it gave no motion".into());
+        }
         for candidate in &self.candidates {
             let is_mesh = |rich: &Choice| {
                 let same = &candidate.choice;
