@@ -86,7 +86,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let advice = advice?;
     print(&advice)?;
     if let Some(directory) = &mut directory {
-        directory.claim()?;
         let title = match &file.title[..] {
             "" => scene.path.display().to_string(),
             title => scene.title(title),
