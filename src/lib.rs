@@ -26,72 +26,113 @@
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
 //! brackets are its equations.
 
+// The rooms of bodies use more of the lowest rooms than the integrators do.
+#![cfg_attr(not(feature = "bodies"), allow(dead_code, unused_imports))]
+
+#[cfg(feature = "bodies")]
 pub mod body;
 pub mod central_difference;
 #[cfg(feature = "checkpoint")]
 mod checkpoint_file;
+#[cfg(feature = "bodies")]
 pub mod constraint;
+#[cfg(feature = "bodies")]
 mod element;
+#[cfg(feature = "bodies")]
 pub mod equations;
+#[cfg(feature = "bodies")]
 mod equilibrium;
+#[cfg(feature = "bodies")]
 pub mod error;
+#[cfg(feature = "bodies")]
 mod external;
 #[cfg(any(feature = "checkpoint", feature = "output"))]
 mod file;
+#[cfg(feature = "bodies")]
 pub mod force;
+#[cfg(feature = "bodies")]
 mod formula;
+#[cfg(feature = "bodies")]
 mod indicator;
 mod input;
 pub mod integrate;
+#[cfg(feature = "bodies")]
 pub mod material;
+#[cfg(feature = "bodies")]
 pub mod mesh;
+#[cfg(feature = "bodies")]
 mod model;
 pub mod ode;
 #[cfg(feature = "output")]
 pub mod output;
 #[cfg(feature = "play")]
 pub mod play;
+#[cfg(feature = "bodies")]
 mod report;
 pub mod rk;
 pub mod samples;
+#[cfg(feature = "bodies")]
 pub mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
+#[cfg(feature = "bodies")]
 mod settings;
+#[cfg(feature = "bodies")]
 pub mod simulate;
+#[cfg(feature = "bodies")]
 pub mod sparse;
+#[cfg(feature = "bodies")]
 mod state;
 #[cfg(feature = "checkpoint")]
 mod state_file;
+#[cfg(feature = "bodies")]
 pub mod statics;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod sundials;
+#[cfg(feature = "bodies")]
 mod system;
+#[cfg(feature = "bodies")]
 mod tensor;
+#[cfg(feature = "bodies")]
 pub mod trajectory;
 mod vector;
 
+#[cfg(feature = "bodies")]
 pub use body::{Body, CellField, CellSelection, Inertia, NodalField, Strain, Viscosity};
+#[cfg(feature = "bodies")]
 pub use constraint::{Axis, Prescribed};
+#[cfg(feature = "bodies")]
 pub use equations::Equations;
+#[cfg(feature = "bodies")]
 pub use equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability};
+#[cfg(feature = "bodies")]
 pub use error::{Error, Panicked};
+#[cfg(feature = "bodies")]
 pub use external::*;
 pub use input::{Fraction, InputError};
 pub use integrate::Integrator;
+#[cfg(feature = "bodies")]
 pub use material::{Lame, Material, Plane};
+#[cfg(feature = "bodies")]
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
+#[cfg(feature = "bodies")]
 pub use report::{Achieved, Counts, Indicator, PhaseReport, Report, SlipEvent, Verdict};
+#[cfg(feature = "bodies")]
 pub use scene::{BodyState, Phase, Scene, Term};
 #[cfg(feature = "scene-file")]
 pub use scene_file::{OutputRequest, SceneFile};
+#[cfg(feature = "bodies")]
 pub use settings::{
     AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,
 };
+#[cfg(feature = "bodies")]
 pub use simulate::{Checkpoint, Sampling, Simulation, View};
+#[cfg(feature = "bodies")]
 pub use statics::Statics;
+#[cfg(feature = "bodies")]
 pub use system::{Energy, PhaseSummary, Spectrum};
+#[cfg(feature = "bodies")]
 pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
 /// Compiles the code blocks of the README.

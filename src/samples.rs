@@ -2,19 +2,25 @@
 //!
 //! Errors are meant relative to the reference, componentwise: [`Reference::error`].
 
+#[cfg(feature = "bodies")]
 mod actuated;
 mod equations;
+#[cfg(feature = "bodies")]
 mod scenes;
+#[cfg(feature = "bodies")]
 mod statics;
 
+#[cfg(feature = "bodies")]
 pub use actuated::{
     MEMBRANE_MATERIAL, bending_actuator, membrane, membrane_arch, report_8, ring_jump,
     ring_springs, spring_ring,
 };
 pub use equations::{Hires, Pendulum, Reference, Robertson, VanDerPol};
+#[cfg(feature = "bodies")]
 pub use scenes::{
     BEAM_MATERIAL, BENT_BEAM_MATERIAL, BeamJump, ClampedBeam, FLAG_MATERIAL, RingRoll,
     SQUARE_MATERIAL, SquareJump, beam_bend, beam_jump, clamped_beam, pushed_nodes, square_jump,
     square_press,
 };
+#[cfg(feature = "bodies")]
 pub use statics::{beam_static, static_square};

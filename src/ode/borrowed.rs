@@ -75,6 +75,14 @@ impl<S: Ode + ?Sized> Ode for Borrowed<'_, S> {
     fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
         self.0.roots(t, y, g)
     }
+
+    fn parameters(&self) -> &[f64] {
+        self.0.parameters()
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) {
+        self.0.set_parameters(values);
+    }
 }
 
 impl<S: Dae + ?Sized> Dae for Borrowed<'_, S> {
@@ -135,5 +143,13 @@ impl<S: Dae + ?Sized> Dae for Borrowed<'_, S> {
 
     fn roots(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
         self.0.roots(t, y, yp, g)
+    }
+
+    fn parameters(&self) -> &[f64] {
+        self.0.parameters()
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) {
+        self.0.set_parameters(values);
     }
 }

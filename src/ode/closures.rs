@@ -1,7 +1,8 @@
-//! Systems made of two closures: equations and Jacobian.
+//! Systems made of closures: equations with their Jacobian, equations with parameters.
 
 use faer::MatMut;
 
+use super::dae::Dae;
 use super::failure::Failure;
 use super::first_order::Ode;
 
@@ -91,5 +92,81 @@ where
         values: &mut [f64],
     ) -> Result<(), Failure> {
         (self.jacobian)(t, y, ydot, values)
+    }
+}
+
+/// Equations with parameters, made by [`with_parameters`] or [`dae_with_parameters`].
+#[derive(Clone, Debug)]
+pub struct WithParameters<F> {
+    equations: F,
+    parameters: Vec<f64>,
+}
+
+/// The ODE y' = rhs(t, y, p) with the parameters p. The closure takes (t, y, p, ydot).
+///
+/// ```
+/// use pliant::ode::with_parameters;
+///
+/// let decay = with_parameters(
+///     |_t, y, p, ydot| {
+///         ydot[0] = -p[0] * y[0];
+///         Ok(())
+///     },
+///     [50.0],
+/// );
+/// # let _: &dyn pliant::ode::Ode = &decay;
+/// ```
+pub fn with_parameters<F>(rhs: F, parameters: impl Into<Vec<f64>>) -> WithParameters<F>
+where
+    F: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    WithParameters { equations: rhs, parameters: parameters.into() }
+}
+
+/// The DAE residual(t, y, y', p) = 0 with the parameters p. The closure takes (t, y, yp, p, residual).
+pub fn dae_with_parameters<F>(residual: F, parameters: impl Into<Vec<f64>>) -> WithParameters<F>
+where
+    F: FnMut(f64, &[f64], &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    WithParameters { equations: residual, parameters: parameters.into() }
+}
+
+impl<F> Ode for WithParameters<F>
+where
+    F: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        (self.equations)(t, y, &self.parameters, ydot)
+    }
+
+    fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) {
+        self.parameters.copy_from_slice(values);
+    }
+}
+
+impl<F> Dae for WithParameters<F>
+where
+    F: FnMut(f64, &[f64], &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        (self.equations)(t, y, yp, &self.parameters, residual)
+    }
+
+    fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) {
+        self.parameters.copy_from_slice(values);
     }
 }

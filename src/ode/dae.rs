@@ -74,6 +74,15 @@ pub trait Dae {
     fn roots(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _g: &mut [f64]) -> Result<(), Failure> {
         Err(missing("roots"))
     }
+
+    /// The parameters that the equations depend on, for what changes them or asks for derivatives with
+    /// respect to them. Default: none.
+    fn parameters(&self) -> &[f64] {
+        &[]
+    }
+
+    /// Gives the [`parameters`](Self::parameters) these values; there are as many.
+    fn set_parameters(&mut self, _values: &[f64]) {}
 }
 
 impl<F> Dae for F

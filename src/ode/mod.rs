@@ -3,7 +3,7 @@
 //!
 //! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method `rk`.
 //! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
-//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian; a struct implements
+//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with parameters; a struct implements
 //! the trait when it wants to hand over root functions or a linear solver of its own. An
 //! integrator owns its system; [`Borrowed`] lends it one instead.
 
@@ -17,7 +17,10 @@ mod second_order;
 
 pub use band::BandMut;
 pub use borrowed::Borrowed;
-pub use closures::{WithJacobian, WithSparseJacobian, with_jacobian, with_sparse_jacobian};
+pub use closures::{
+    WithJacobian, WithParameters, WithSparseJacobian, dae_with_parameters, with_jacobian,
+    with_parameters, with_sparse_jacobian,
+};
 pub use dae::Dae;
 pub use failure::Failure;
 pub use first_order::Ode;
