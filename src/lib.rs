@@ -79,6 +79,7 @@ pub mod scene_file;
 mod settings;
 #[cfg(feature = "bodies")]
 pub mod simulate;
+pub mod solve;
 #[cfg(feature = "bodies")]
 pub mod sparse;
 #[cfg(feature = "bodies")]

@@ -277,6 +277,11 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
         ORDER
     }
 
+    /// Hermite's cubic polynomials; what a constraint prescribes is taken at its time.
+    fn interpolant_degree(&self) -> u32 {
+        3
+    }
+
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
         check_length("length of out", out.len(), self.y.len())?;
         if derivative > 0 {

@@ -47,6 +47,9 @@ pub trait Integrator {
     /// Order of the last step. Before the first it is 0 in methods of variable order.
     fn last_order(&self) -> u32;
 
+    /// Degree in time of what [`interpolate`](Self::interpolate) gives within the last step.
+    fn interpolant_degree(&self) -> u32;
+
     /// Writes the `derivative`-th time derivative of the solution at time `t`, within the
     /// [last step](Self::last_step), into `out`: 0 for the state itself.
     ///

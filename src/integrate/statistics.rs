@@ -52,3 +52,33 @@ pub struct Statistics {
     /// (SUNDIALS).
     pub tolerance_scale: f64,
 }
+
+impl Statistics {
+    /// The counters of both of two runs, the second of which started where the first ended; steps, orders and times are those
+    /// of the second.
+    #[must_use]
+    pub(crate) fn followed_by(&self, later: &Self) -> Self {
+        let mut sum = later.clone();
+        for (sum, earlier) in sum.counters().into_iter().zip(self.clone().counters()) {
+            *sum += *earlier;
+        }
+        sum
+    }
+
+    fn counters(&mut self) -> [&mut u64; 12] {
+        [
+            &mut self.steps,
+            &mut self.evaluations,
+            &mut self.difference_quotient_evaluations,
+            &mut self.jacobian_evaluations,
+            &mut self.linear_setups,
+            &mut self.nonlinear_iterations,
+            &mut self.nonlinear_failures,
+            &mut self.step_failures,
+            &mut self.refused_steps,
+            &mut self.error_test_failures,
+            &mut self.root_evaluations,
+            &mut self.stability_reductions,
+        ]
+    }
+}

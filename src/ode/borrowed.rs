@@ -1,4 +1,4 @@
-//! Systems that are lent to an integrator.
+//! Systems that are lent to an integrator, or behind a pointer.
 
 use faer::MatMut;
 
@@ -14,142 +14,170 @@ use super::first_order::Ode;
 #[derive(Debug)]
 pub struct Borrowed<'a, S: ?Sized>(pub &'a mut S);
 
+/// A system behind a box, such as a `dyn Ode` of a type that is known at run time alone.
+///
+/// (A `Box` can not be a system by itself, for the same reason.)
+#[derive(Debug)]
+pub struct Boxed<S: ?Sized>(pub Box<S>);
+
+/// Implements [`Ode`] by the system in field 0.
+macro_rules! ode_within {
+    () => {
+        fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+            self.0.rhs(t, y, ydot)
+        }
+
+        fn dense_jacobian(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            jacobian: MatMut<'_, f64>,
+        ) -> Result<(), Failure> {
+            self.0.dense_jacobian(t, y, ydot, jacobian)
+        }
+
+        fn banded_jacobian(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            jacobian: BandMut<'_>,
+        ) -> Result<(), Failure> {
+            self.0.banded_jacobian(t, y, ydot, jacobian)
+        }
+
+        fn sparse_jacobian(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            values: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.sparse_jacobian(t, y, ydot, values)
+        }
+
+        fn newton_setup(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            gamma: f64,
+            reuse: bool,
+        ) -> Result<bool, Failure> {
+            self.0.newton_setup(t, y, ydot, gamma, reuse)
+        }
+
+        fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
+            self.0.newton_solve(gamma, r)
+        }
+
+        fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+            self.0.newton_rhs(t, y, ydot)
+        }
+
+        fn root_count(&self) -> usize {
+            self.0.root_count()
+        }
+
+        fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+            self.0.roots(t, y, g)
+        }
+
+        fn parameters(&self) -> &[f64] {
+            self.0.parameters()
+        }
+
+        fn set_parameters(&mut self, values: &[f64]) {
+            self.0.set_parameters(values);
+        }
+    };
+}
+
+/// Implements [`Dae`] by the system in field 0.
+macro_rules! dae_within {
+    () => {
+        fn residual(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            yp: &[f64],
+            residual: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.residual(t, y, yp, residual)
+        }
+
+        fn dense_jacobian(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            jacobian: MatMut<'_, f64>,
+        ) -> Result<(), Failure> {
+            self.0.dense_jacobian(t, cj, y, yp, jacobian)
+        }
+
+        fn banded_jacobian(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            jacobian: BandMut<'_>,
+        ) -> Result<(), Failure> {
+            self.0.banded_jacobian(t, cj, y, yp, jacobian)
+        }
+
+        fn sparse_jacobian(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            values: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.sparse_jacobian(t, cj, y, yp, values)
+        }
+
+        fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
+            self.0.newton_setup(t, cj, y, yp)
+        }
+
+        fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
+            self.0.newton_solve(r)
+        }
+
+        fn root_count(&self) -> usize {
+            self.0.root_count()
+        }
+
+        fn roots(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+            self.0.roots(t, y, yp, g)
+        }
+
+        fn parameters(&self) -> &[f64] {
+            self.0.parameters()
+        }
+
+        fn set_parameters(&mut self, values: &[f64]) {
+            self.0.set_parameters(values);
+        }
+    };
+}
+
 impl<S: Ode + ?Sized> Ode for Borrowed<'_, S> {
-    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.0.rhs(t, y, ydot)
-    }
+    ode_within!();
+}
 
-    fn dense_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        jacobian: MatMut<'_, f64>,
-    ) -> Result<(), Failure> {
-        self.0.dense_jacobian(t, y, ydot, jacobian)
-    }
-
-    fn banded_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        jacobian: BandMut<'_>,
-    ) -> Result<(), Failure> {
-        self.0.banded_jacobian(t, y, ydot, jacobian)
-    }
-
-    fn sparse_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.0.sparse_jacobian(t, y, ydot, values)
-    }
-
-    fn newton_setup(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        gamma: f64,
-        reuse: bool,
-    ) -> Result<bool, Failure> {
-        self.0.newton_setup(t, y, ydot, gamma, reuse)
-    }
-
-    fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
-        self.0.newton_solve(gamma, r)
-    }
-
-    fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.0.newton_rhs(t, y, ydot)
-    }
-
-    fn root_count(&self) -> usize {
-        self.0.root_count()
-    }
-
-    fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
-        self.0.roots(t, y, g)
-    }
-
-    fn parameters(&self) -> &[f64] {
-        self.0.parameters()
-    }
-
-    fn set_parameters(&mut self, values: &[f64]) {
-        self.0.set_parameters(values);
-    }
+impl<S: Ode + ?Sized> Ode for Boxed<S> {
+    ode_within!();
 }
 
 impl<S: Dae + ?Sized> Dae for Borrowed<'_, S> {
-    fn residual(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        residual: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.0.residual(t, y, yp, residual)
-    }
+    dae_within!();
+}
 
-    fn dense_jacobian(
-        &mut self,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-        jacobian: MatMut<'_, f64>,
-    ) -> Result<(), Failure> {
-        self.0.dense_jacobian(t, cj, y, yp, jacobian)
-    }
-
-    fn banded_jacobian(
-        &mut self,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-        jacobian: BandMut<'_>,
-    ) -> Result<(), Failure> {
-        self.0.banded_jacobian(t, cj, y, yp, jacobian)
-    }
-
-    fn sparse_jacobian(
-        &mut self,
-        t: f64,
-        cj: f64,
-        y: &[f64],
-        yp: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.0.sparse_jacobian(t, cj, y, yp, values)
-    }
-
-    fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {
-        self.0.newton_setup(t, cj, y, yp)
-    }
-
-    fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
-        self.0.newton_solve(r)
-    }
-
-    fn root_count(&self) -> usize {
-        self.0.root_count()
-    }
-
-    fn roots(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
-        self.0.roots(t, y, yp, g)
-    }
-
-    fn parameters(&self) -> &[f64] {
-        self.0.parameters()
-    }
-
-    fn set_parameters(&mut self, values: &[f64]) {
-        self.0.set_parameters(values);
-    }
+impl<S: Dae + ?Sized> Dae for Boxed<S> {
+    dae_within!();
 }

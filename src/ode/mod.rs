@@ -16,7 +16,7 @@ mod first_order;
 mod second_order;
 
 pub use band::BandMut;
-pub use borrowed::Borrowed;
+pub use borrowed::{Borrowed, Boxed};
 pub use closures::{
     WithJacobian, WithParameters, WithSparseJacobian, dae_with_parameters, with_jacobian,
     with_parameters, with_sparse_jacobian,

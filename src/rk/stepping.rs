@@ -138,6 +138,10 @@ impl<S: Ode> Integrator for DormandPrince<S> {
         ORDER
     }
 
+    fn interpolant_degree(&self) -> u32 {
+        4
+    }
+
     /// The state of order 4, or, for `derivative` 1, its derivative of order 3, which is f(t, y) at both
     /// ends of the step (L. F. Shampine, Math. Comp. 46 (1986) 135-150; HNW I, section II.6).
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {

@@ -35,6 +35,10 @@ impl<K, S> Integrator for Solver<K, S> {
         self.step_statistics().last_order
     }
 
+    fn interpolant_degree(&self) -> u32 {
+        self.interpolant_degree.unwrap_or_else(|| self.last_order())
+    }
+
     /// `CVodeGetDky`, `ARKStepGetDky` or `IDAGetDky`.
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
         check_length("length of out", out.len(), self.y().len())?;

@@ -82,6 +82,12 @@ impl<S: Dae> Ida<S> {
         outcome
     }
 
+    /// Whether the option [`differential`](super::IdaOptions::differential) was given, which
+    /// [`InitialCondition::Algebraic`] needs.
+    pub(crate) fn knows_algebraic(&self) -> bool {
+        self.kind.knows_algebraic
+    }
+
     /// The time derivative of the state at time [`t`](Integrator::t).
     #[must_use]
     pub fn yp(&self) -> &[f64] {

@@ -1,0 +1,164 @@
+//! Events: what is looked for along a solution, and what is done where it is found.
+
+use std::fmt;
+
+use crate::input::InputError;
+
+/// Which changes of sign of an event function count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// Both.
+    #[default]
+    Either,
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+}
+
+/// g(t, y, p), whose roots are the events.
+pub(super) type Function<'a> = Box<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>;
+
+/// What an action does.
+pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
+
+/// Something to look for along the solution: a root of a function g(t, y), and what to do there.
+///
+/// By itself an event is recorded in the [`Solution`](super::Solution) and the integration goes on as if nothing had
+/// been found, with the same steps. It is located on the interpolant of the step, to rounding.
+///
+/// * Between the ends of each step g is looked at in [`samples`](Self::samples) places, and minima of |g| are followed up, so that
+///   two roots within one step are found, too.
+/// * A g that starts at zero is no event. It may become one when g returns to zero after it has left it.
+/// * A g that touches zero without a change of sign is an event only with [`touching`](Self::touching).
+/// * When an action makes g jump across zero, that is no event.
+pub struct Event<'a> {
+    pub(super) function: Function<'a>,
+    pub(super) direction: Direction,
+    pub(super) last: Option<u32>,
+    pub(super) action: Option<Action<'a>>,
+    pub(super) samples: u32,
+    pub(super) touching: Option<f64>,
+}
+
+impl fmt::Debug for Event<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Event")
+            .field("direction", &self.direction)
+            .field("last", &self.last)
+            .field("action", &self.action.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Event<'a> {
+    /// A root of `g(t, y)`.
+    pub fn new(mut g: impl FnMut(f64, &[f64]) -> f64 + 'a) -> Self {
+        Self::with_parameters(move |t, y, _| g(t, y))
+    }
+
+    /// A root of `g(t, y, p)`, with the parameters of the equations.
+    pub fn with_parameters(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
+        Self {
+            function: Box::new(g),
+            direction: Direction::Either,
+            last: None,
+            action: None,
+            samples: 4,
+            touching: None,
+        }
+    }
+
+    /// Counts roots where g becomes positive alone.
+    #[must_use]
+    pub fn rising(mut self) -> Self {
+        self.direction = Direction::Rising;
+        self
+    }
+
+    /// Counts roots where g becomes negative alone.
+    #[must_use]
+    pub fn falling(mut self) -> Self {
+        self.direction = Direction::Falling;
+        self
+    }
+
+    /// Ends the run at the first event.
+    #[must_use]
+    pub fn terminal(self) -> Self {
+        self.terminal_after(1)
+    }
+
+    /// Ends the run at the event of this number, counted from 1.
+    #[must_use]
+    pub fn terminal_after(mut self, count: u32) -> Self {
+        self.last = Some(count);
+        self
+    }
+
+    /// What to do at the event: change the state or the parameters, or end the run. The integration starts anew from there.
+    ///
+    /// In a DAE whose differential unknowns are known, the algebraic ones and the derivatives are made to fit again.
+    #[must_use]
+    pub fn action(mut self, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+        self.action = Some(Box::new(action));
+        self
+    }
+
+    /// Counts it as an event, too, where |g| has a minimum of at most `tolerance` without a change of sign.
+    #[must_use]
+    pub fn touching(mut self, tolerance: f64) -> Self {
+        self.touching = Some(tolerance);
+        self
+    }
+
+    /// In how many places of a step g is looked at: more for one that changes faster than the solution, such as a
+    /// function of time that the equations do not know. Default: 4.
+    #[must_use]
+    pub fn samples(mut self, samples: u32) -> Self {
+        self.samples = samples;
+        self
+    }
+}
+
+impl Event<'_> {
+    /// Checks the event of number `i`.
+    pub(super) fn check(&self, i: usize) -> Result<(), InputError> {
+        if !(1..=10_000).contains(&self.samples) {
+            let mend = "it lies between 1 and 10,000";
+            return Err(InputError::new(format!("samples of event {i}"), self.samples, mend));
+        }
+        if let Some(most) = self.touching
+            && !(most >= 0.0 && most.is_finite())
+        {
+            let mend = "it is a small number, not negative";
+            return Err(InputError::new(format!("touching of event {i}"), most, mend));
+        }
+        if self.last == Some(0) {
+            let mend = "events are counted from 1";
+            return Err(InputError::new(format!("terminal_after of event {i}"), 0, mend));
+        }
+        Ok(())
+    }
+}
+
+/// The state where the solution jumps: at an event or a break.
+#[derive(Debug)]
+pub struct Jump<'j> {
+    /// Time.
+    pub t: f64,
+    /// State; what is written here, the solution goes on from.
+    pub y: &'j mut [f64],
+    /// Its derivative, of a DAE; empty otherwise.
+    pub yp: &'j mut [f64],
+    /// Parameters of the equations; what is written here, they have from now on.
+    pub p: &'j mut [f64],
+    pub(super) ends: bool,
+}
+
+impl Jump<'_> {
+    /// Ends the run here.
+    pub fn end(&mut self) {
+        self.ends = true;
+    }
+}

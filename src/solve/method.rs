@@ -1,0 +1,148 @@
+//! The methods, and the integrators behind them.
+
+use super::{engine::Engine, options::Options, problem::Equations};
+use crate::{
+    input::InputError,
+    integrate::Error,
+    ode::Boxed,
+    rk,
+    sundials::{
+        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Multistep,
+    },
+};
+
+/// An integration method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Method {
+    /// CVODE, backward differentiation formulas of order 1 to 5: for stiff ODEs.
+    Bdf,
+    /// CVODE, Adams-Moulton formulas of order 1 to 12, with a Newton iteration: for smooth ODEs whose right-hand side is costly.
+    Adams,
+    /// ARKODE, the Runge-Kutta method of this table: diagonally implicit for stiff ODEs, above all those that vibrate; or explicit.
+    RungeKutta(ButcherTable),
+    /// The internal explicit method of Dormand and Prince, order 5(4): for ODEs that are not stiff. Forward in time.
+    DormandPrince,
+    /// IDA, backward differentiation formulas of order 1 to 5: for DAEs.
+    Ida,
+}
+
+impl Method {
+    /// What errors call it.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Bdf => "CVODE's BDF".into(),
+            Self::Adams => "CVODE's Adams methods".into(),
+            Self::RungeKutta(table) => format!("ARKODE's {}", table.name()),
+            Self::DormandPrince => "Dormand-Prince".into(),
+            Self::Ida => "IDA".into(),
+        }
+    }
+
+    /// Refuses options that the method does not have.
+    fn check(self, options: &Options, equations: &Equations<'_>) -> Result<(), InputError> {
+        let is_dae = matches!(equations, Equations::Dae { .. });
+        let refused = |input: &str, value: String, mend: &str| {
+            Err(InputError::new(input, value, format!("{} {mend}", self.name())))
+        };
+        if is_dae != (self == Self::Ida) {
+            let mend = match is_dae {
+                true => "integrates ODEs: take Method::Ida for a DAE",
+                false => "integrates DAEs: take another method for an ODE",
+            };
+            return refused("method", format!("{self:?}"), mend);
+        }
+        let multistep = matches!(self, Self::Bdf | Self::Adams | Self::Ida);
+        if let (Some(order), false) = (options.max_order, multistep) {
+            return refused("max_order", order.to_string(), "has one order, which its table tells");
+        }
+        let explicit = match self {
+            Self::RungeKutta(table) => !table.is_implicit(),
+            method => method == Self::DormandPrince,
+        };
+        if let (Some(solver), true) = (&options.linear_solver, explicit) {
+            return refused(
+                "linear_solver",
+                format!("{solver:?}"),
+                "is explicit and solves no linear systems",
+            );
+        }
+        if let (Some(h), Self::DormandPrince) = (options.min_step, self) {
+            return refused("min_step", h.to_string(), "has no such limit");
+        }
+        Ok(())
+    }
+
+    /// An integrator for `equations`, at rest at `t` in the state `y`, on its way in the direction `sign` of time.
+    pub(super) fn engine<'a>(
+        self,
+        equations: Equations<'a>,
+        (t, sign): (f64, f64),
+        y: &[f64],
+        options: &Options,
+    ) -> Result<Box<dyn Engine + 'a>, Error> {
+        self.check(options, &equations)?;
+        let Options { tolerances, .. } = options;
+        let (rtol, atol) = (tolerances.rtol, tolerances.atol.clone());
+        // the options of each integrator are types of their own, with builders of the same names
+        macro_rules! common {
+            ($built:expr) => {{
+                let mut built = $built;
+                if let Some(h) = options.initial_step {
+                    built = built.initial_step(h.copysign(sign));
+                }
+                if let Some(h) = options.max_step {
+                    built = built.max_step(h);
+                }
+                built
+            }};
+        }
+        macro_rules! sundials {
+            ($built:expr) => {{
+                let mut built = common!($built);
+                if let Some(h) = options.min_step {
+                    built = built.min_step(h);
+                }
+                if let Some(solver) = &options.linear_solver {
+                    built = built.newton(solver.clone());
+                }
+                built
+            }};
+        }
+        macro_rules! ordered {
+            ($built:expr) => {{
+                let mut built = sundials!($built);
+                if let Some(order) = options.max_order {
+                    built = built.max_order(order);
+                }
+                built
+            }};
+        }
+        Ok(match equations {
+            Equations::Dae { system, yp, differential } => {
+                let mut built = ordered!(IdaOptions::new(rtol, atol));
+                if let Some(differential) = differential {
+                    built = built.differential(differential);
+                }
+                Box::new(Ida::new(Boxed(system), t, y, &yp, &built)?)
+            }
+            Equations::Ode(system) => match self {
+                Self::RungeKutta(table) => {
+                    let built = sundials!(ArkodeOptions::new(rtol, atol).table(table));
+                    Box::new(Arkode::new(Boxed(system), t, y, &built)?)
+                }
+                Self::DormandPrince => {
+                    let built = common!(rk::Options::new(rtol, atol));
+                    Box::new(rk::DormandPrince::new(Boxed(system), t, y, &built)?)
+                }
+                _ => {
+                    let family =
+                        if self == Self::Adams { Multistep::Adams } else { Multistep::Bdf };
+                    let built = ordered!(CvodeOptions::new(rtol, atol).method(family));
+                    Box::new(Cvode::new(Boxed(system), t, y, &built)?)
+                }
+            },
+        })
+    }
+}

@@ -1,0 +1,138 @@
+//! How a problem is to be solved: one set of options for all methods.
+
+use std::time::Duration;
+
+use crate::{
+    input::InputError,
+    integrate::{AbsoluteTolerance, Tolerances, check_finite},
+    sundials::LinearSolver,
+};
+
+/// What a [`Solution`](super::Solution) keeps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Output {
+    /// The ends of all steps, and the polynomials between them: [`Solution::at`](super::Solution::at) any time. That takes a
+    /// multiple of the memory of the states, the order of the method at most.
+    #[default]
+    Steps,
+    /// The states at these times, in the order of the run, and at its ends.
+    Times(Vec<f64>),
+    /// The state at the end alone, and at the start.
+    End,
+}
+
+/// Tolerances, limits and what is kept, for any [`Method`](super::Method). An option that a method does not have is an error.
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Options {
+    pub(super) tolerances: Tolerances,
+    pub(super) linear_solver: Option<LinearSolver>,
+    pub(super) initial_step: Option<f64>,
+    pub(super) min_step: Option<f64>,
+    pub(super) max_step: Option<f64>,
+    pub(super) max_order: Option<u32>,
+    pub(super) max_steps: u64,
+    pub(super) max_evaluations: Option<u64>,
+    pub(super) max_wall_time: Option<Duration>,
+    pub(super) output: Output,
+}
+
+impl Options {
+    /// These tolerances: local errors are kept below `rtol |y_i| + atol_i`, in the root mean square.
+    pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
+        Self {
+            tolerances: Tolerances::new(rtol, atol),
+            linear_solver: None,
+            initial_step: None,
+            min_step: None,
+            max_step: None,
+            max_order: None,
+            max_steps: 100_000,
+            max_evaluations: None,
+            max_wall_time: None,
+            output: Output::default(),
+        }
+    }
+
+    /// How Newton's linear systems are solved, by implicit methods. Default: a dense matrix of difference quotients.
+    pub fn linear_solver(mut self, solver: LinearSolver) -> Self {
+        self.linear_solver = Some(solver);
+        self
+    }
+
+    /// Size of the first step, without sign. Default: estimated.
+    pub fn initial_step(mut self, h: f64) -> Self {
+        self.initial_step = Some(h);
+        self
+    }
+
+    /// Lower bound of the step size. Default: none.
+    pub fn min_step(mut self, h: f64) -> Self {
+        self.min_step = Some(h);
+        self
+    }
+
+    /// Upper bound of the step size. Default: none.
+    pub fn max_step(mut self, h: f64) -> Self {
+        self.max_step = Some(h);
+        self
+    }
+
+    /// Highest order of a multistep method.
+    pub fn max_order(mut self, order: u32) -> Self {
+        self.max_order = Some(order);
+        self
+    }
+
+    /// Steps of the whole run. Default: 100,000.
+    pub fn max_steps(mut self, steps: u64) -> Self {
+        self.max_steps = steps;
+        self
+    }
+
+    /// Evaluations of the right-hand side or residual in the whole run, those of difference quotients among them; looked at
+    /// after each step. Default: no limit.
+    pub fn max_evaluations(mut self, evaluations: u64) -> Self {
+        self.max_evaluations = Some(evaluations);
+        self
+    }
+
+    /// Time that the run may take on the clock, looked at after each step. Default: no limit.
+    pub fn max_wall_time(mut self, time: Duration) -> Self {
+        self.max_wall_time = Some(time);
+        self
+    }
+
+    /// What is kept. Default: [`Output::Steps`].
+    pub fn output(mut self, output: Output) -> Self {
+        self.output = output;
+        self
+    }
+
+    /// Checks what no integrator does, for a run over `span`.
+    pub(super) fn check(&self, span: (f64, f64)) -> Result<(), InputError> {
+        if self.max_steps == 0 {
+            return Err(InputError::new("max_steps", 0, "it is at least 1"));
+        }
+        if let Some(h) = self.initial_step
+            && !(h > 0.0 && h.is_finite())
+        {
+            let mend = "it is positive and finite; the span tells the direction of time";
+            return Err(InputError::new("initial_step", h, mend));
+        }
+        if let Output::Times(times) = &self.output {
+            check_finite("output times", times)?;
+            let (start, end) = span;
+            let sign = (end - start).signum();
+            let mut last = start;
+            for t in times {
+                if (t - last) * sign < 0.0 || (end - t) * sign < 0.0 {
+                    let mend = format!("they go from {start} to {end} in order");
+                    return Err(InputError::new("output times", t, mend));
+                }
+                last = *t;
+            }
+        }
+        Ok(())
+    }
+}

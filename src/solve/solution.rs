@@ -1,0 +1,243 @@
+//! What a run computed.
+
+use faer::MatRef;
+
+use crate::{
+    input::InputError,
+    integrate::{Statistics, check_length, check_time},
+};
+
+/// An event that was met.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Occurrence {
+    /// Which event, in the order of [`Problem::event`](super::Problem::event).
+    pub event: usize,
+    /// Time.
+    pub t: f64,
+    /// +1 where its function rises, -1 where it falls, 0 where it touches zero.
+    pub sign: i32,
+    /// State before any action.
+    pub y: Vec<f64>,
+}
+
+/// Why a run is at its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The end of the span is reached.
+    Span,
+    /// This event was terminal, or its action ended the run.
+    Event(usize),
+    /// The action of a break ended the run.
+    Break,
+    /// It was stopped; [`Stopped`](super::Stopped) says why.
+    Early,
+}
+
+/// Times, states and events of a run; with [`Output::Steps`](super::Output::Steps) also all that lies between.
+///
+/// States are kept one after the other: the one of time `t()[k]` is `y(k)`. Where the solution jumps, a time occurs
+/// twice, with the state before and after.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    n: usize,
+    t: Vec<f64>,
+    states: Vec<f64>,
+    /// For each time but the first, where the inner nodes of its step begin, if what lies between is kept.
+    inner: Option<Vec<usize>>,
+    /// Inner nodes: states at the [`nodes`] of each step.
+    nodes: Vec<f64>,
+    pub(super) events: Vec<Occurrence>,
+    pub(super) statistics: Statistics,
+    pub(super) end: End,
+    pub(super) parameters: Vec<f64>,
+    pub(super) yp: Vec<f64>,
+}
+
+/// Inner nodes of a step for a polynomial of this degree, as parts of it: the extrema of Chebyshev's polynomial.
+pub(super) fn nodes(degree: usize) -> impl Iterator<Item = f64> {
+    (1..degree).map(move |k| node(k, degree))
+}
+
+fn node(k: usize, degree: usize) -> f64 {
+    0.5 - 0.5 * (std::f64::consts::PI * k as f64 / degree as f64).cos()
+}
+
+impl Solution {
+    pub(super) fn new(t: f64, y: &[f64], dense: bool) -> Self {
+        Self {
+            n: y.len(),
+            t: vec![t],
+            states: y.to_vec(),
+            inner: dense.then(Vec::new),
+            nodes: Vec::new(),
+            events: Vec::new(),
+            statistics: Statistics::default(),
+            end: End::Early,
+            parameters: Vec::new(),
+            yp: Vec::new(),
+        }
+    }
+
+    /// Adds the state at `t`; `inner` writes the state at a part of the way from the last time, if that is kept.
+    pub(super) fn push<E>(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        degree: u32,
+        mut at: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if let Some(inner) = &mut self.inner {
+            let (start, last) = (self.nodes.len(), self.t[self.t.len() - 1]);
+            inner.push(start);
+            for part in nodes(degree as usize) {
+                let place = self.nodes.len();
+                self.nodes.resize(place + self.n, 0.0);
+                if let Err(error) = at(last + part * (t - last), &mut self.nodes[place..]) {
+                    inner.pop();
+                    self.nodes.truncate(start);
+                    return Err(error);
+                }
+            }
+        }
+        self.t.push(t);
+        self.states.extend_from_slice(y);
+        Ok(())
+    }
+
+    /// Adds the state after a jump.
+    pub(super) fn push_jump(&mut self, t: f64, y: &[f64]) {
+        if let Some(inner) = &mut self.inner {
+            inner.push(self.nodes.len());
+        }
+        self.t.push(t);
+        self.states.extend_from_slice(y);
+    }
+
+    /// The times, in the order of the run.
+    #[must_use]
+    pub fn t(&self) -> &[f64] {
+        &self.t
+    }
+
+    /// The state at time `t()[k]`.
+    ///
+    /// # Panics
+    /// If there is no such time.
+    #[must_use]
+    pub fn y(&self, k: usize) -> &[f64] {
+        &self.states[k * self.n..(k + 1) * self.n]
+    }
+
+    /// The last state.
+    #[must_use]
+    pub fn last(&self) -> &[f64] {
+        &self.states[self.states.len() - self.n..]
+    }
+
+    /// The time derivative of the last state, of a DAE; empty otherwise.
+    #[must_use]
+    pub fn last_yp(&self) -> &[f64] {
+        &self.yp
+    }
+
+    /// One unknown at all times.
+    pub fn component(&self, i: usize) -> impl Iterator<Item = f64> {
+        self.states.chunks_exact(self.n).filter_map(move |y| y.get(i).copied())
+    }
+
+    /// All states, one after the other: the columns of a matrix of n rows.
+    #[must_use]
+    pub fn states(&self) -> &[f64] {
+        &self.states
+    }
+
+    /// All states as the columns of a matrix.
+    #[must_use]
+    pub fn as_matrix(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.states, self.n, self.t.len())
+    }
+
+    /// The state at any time of the run, by the polynomials of the integrator; after the jump where there is one.
+    ///
+    /// # Errors
+    /// If `t` lies outside the run, or the solution was not kept between its times ([`Output`](super::Output)).
+    pub fn at(&self, t: f64) -> Result<Vec<f64>, InputError> {
+        let mut y = vec![0.0; self.n];
+        self.at_into(t, &mut y)?;
+        Ok(y)
+    }
+
+    /// As [`at`](Self::at), into `out`.
+    ///
+    /// # Errors
+    /// As there; or if `out` has another length than the state.
+    pub fn at_into(&self, t: f64, out: &mut [f64]) -> Result<(), InputError> {
+        check_length("length of out", out.len(), self.n)?;
+        check_time("t", t)?;
+        let Some(inner) = &self.inner else {
+            let mend = "what lies between the times was not kept: take Output::Steps";
+            return Err(InputError::new("output", "Times or End", mend));
+        };
+        let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
+        let sign = if end < start { -1.0 } else { 1.0 };
+        if (t - start) * sign < 0.0 || (end - t) * sign < 0.0 {
+            return Err(InputError::new("t", t, format!("the run goes from {start} to {end}")));
+        }
+        // the last time that is not behind t: that after a jump
+        let k = self.t.partition_point(|&at| (at - t) * sign <= 0.0) - 1;
+        if self.t[k] == t {
+            out.copy_from_slice(self.y(k));
+            return Ok(());
+        }
+        let last = inner.get(k + 1).copied().unwrap_or(self.nodes.len());
+        let (n, nodes) = (self.n, &self.nodes[inner[k]..last]);
+        let degree = nodes.len() / n + 1;
+        let state = |j: usize| match j {
+            0 => self.y(k),
+            j if j == degree => self.y(k + 1),
+            j => &nodes[(j - 1) * n..j * n],
+        };
+        // the barycentric formula of Chebyshev's second kind (J.-P. Berrut, L. N. Trefethen, SIAM Review 46 (2004) 501-517)
+        let part = (t - self.t[k]) / (self.t[k + 1] - self.t[k]);
+        let weight = |j: usize| {
+            let half = if j == 0 || j == degree { 0.5 } else { 1.0 };
+            let sign = if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+            sign * half / (part - node(j, degree))
+        };
+        if let Some(j) = (0..=degree).find(|&j| part == node(j, degree)) {
+            out.copy_from_slice(state(j));
+            return Ok(());
+        }
+        let total: f64 = (0..=degree).map(weight).sum();
+        out.fill(0.0);
+        for j in 0..=degree {
+            let share = weight(j) / total;
+            out.iter_mut().zip(state(j)).for_each(|(out, y)| *out += share * y);
+        }
+        Ok(())
+    }
+
+    /// The events that were met, in the order of the run.
+    #[must_use]
+    pub fn events(&self) -> &[Occurrence] {
+        &self.events
+    }
+
+    /// Why the run is at its end.
+    #[must_use]
+    pub fn end(&self) -> End {
+        self.end
+    }
+
+    /// What the run has cost.
+    #[must_use]
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// The parameters of the equations at the end.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+}

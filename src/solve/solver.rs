@@ -1,0 +1,107 @@
+//! A problem solved by one call.
+
+use super::{
+    error::{Error, Reason, Stopped},
+    method::Method,
+    options::{Options, Output},
+    problem::Problem,
+    run::Run,
+    solution::{End, Solution},
+};
+
+/// Integrates `problem` by `method` over `span`, from its start to its end, which may lie before it.
+///
+/// # Errors
+/// [`Error::Input`] if something cannot be used, nothing was computed then; [`Error::Stopped`] if the end was not reached, with the
+/// reason and the solution so far.
+///
+/// # Panics
+/// A panic of the equations, the events or the actions passes through.
+pub fn solve(
+    problem: Problem<'_>,
+    method: Method,
+    span: (f64, f64),
+    options: &Options,
+) -> Result<Solution, Error> {
+    let start = problem.y.clone();
+    let dense = options.output == Output::Steps;
+    let mut run = match Run::new(problem, method, span, options) {
+        Ok(run) => run,
+        Err(Reason::Input(error)) => return Err(Error::Input(error)),
+        Err(reason) => {
+            let solution = Solution::new(span.0, &start, dense);
+            return Err(Error::Stopped(Box::new(Stopped { reason, solution })));
+        }
+    };
+    let mut solution = Solution::new(run.t(), run.y(), dense);
+    let outcome = integrate(&mut run, &mut solution, &options.output);
+    solution.statistics = run.statistics();
+    solution.parameters = run.parameters().to_vec();
+    solution.yp = run.yp().to_vec();
+    solution.end = run.end().unwrap_or(End::Early);
+    match outcome {
+        Ok(()) => Ok(solution),
+        Err(reason) => {
+            solution.end = End::Early;
+            Err(Error::Stopped(Box::new(Stopped { reason, solution })))
+        }
+    }
+}
+
+/// Lets `run` go to its end and keeps what `output` asks for.
+fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Result<(), Reason> {
+    let mut times = match output {
+        Output::Times(times) => times.as_slice(),
+        Output::Steps | Output::End => &[],
+    };
+    // the start is there already
+    while let [first, rest @ ..] = times
+        && *first == run.t()
+    {
+        times = rest;
+    }
+    let sign = run.direction();
+    let mut y = run.y().to_vec();
+    loop {
+        let outcome = run.advance();
+        let (t, jumped) = match outcome {
+            Ok(Some(step)) => {
+                solution.events.extend_from_slice(step.events);
+                (step.t, step.before.map(|before| y.copy_from_slice(before)).is_some())
+            }
+            Ok(None) => return Ok(()),
+            Err(reason) => {
+                // where it stopped, if that is not there already
+                if *output != Output::Steps && solution.t().last() != Some(&run.t()) {
+                    solution.push_jump(run.t(), run.y());
+                }
+                return Err(reason);
+            }
+        };
+        if *output == Output::Steps {
+            if !jumped {
+                y.copy_from_slice(run.y());
+            }
+            let degree = run.interpolant_degree();
+            solution.push(t, &y, degree, |at, out| run.interpolate(at, out))?;
+            if jumped {
+                solution.push_jump(t, run.y());
+            }
+            continue;
+        }
+        while let [first, rest @ ..] = times
+            && (first - t) * sign <= 0.0
+        {
+            if *first == t {
+                y.copy_from_slice(run.y());
+            } else {
+                run.interpolate(*first, &mut y)?;
+            }
+            solution.push_jump(*first, &y);
+            times = rest;
+        }
+        if run.end().is_some() && solution.t().last() != Some(&t) {
+            solution.push_jump(t, run.y());
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! An event function followed along the steps.
+
+use super::{
+    event::{Direction, Event},
+    root::{Point, bracket, crosses, minimum},
+};
+
+/// A root of an event function.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Root {
+    pub(super) t: f64,
+    /// +1 where the function rises, -1 where it falls, 0 where it touches.
+    pub(super) sign: i32,
+    /// Values of the function up to which its sign at the root is noise.
+    pub(super) noise: f64,
+    /// Where to go on looking, and the value there.
+    behind: Point,
+}
+
+/// How far an event function was followed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Watch {
+    direction: Direction,
+    samples: u32,
+    touching: Option<f64>,
+    t: f64,
+    /// The function at `t`; 0 also if it is so near that its sign is noise: then the next sign counts.
+    g: f64,
+}
+
+impl Watch {
+    /// Follows `event` from time `t`, where its function is `g`.
+    pub(super) fn new(event: &Event<'_>, t: f64, g: f64) -> Self {
+        let Event { direction, samples, touching, .. } = *event;
+        Self { direction, samples, touching, t, g }
+    }
+
+    /// Goes on at time `t`, where the function is `g` by now and values up to `noise` mean nothing.
+    pub(super) fn restart(&mut self, t: f64, g: f64, noise: f64) {
+        (self.t, self.g) = (t, if g.abs() <= noise { 0.0 } else { g });
+    }
+
+    /// The next root up to time `to`, to within `tolerance`. The watch moves there, or to `to`.
+    ///
+    /// What is 0 at `to` is known by the next step, unless there `is_last`.
+    pub(super) fn next_root<E>(
+        &mut self,
+        (to, is_last): (f64, bool),
+        tolerance: f64,
+        g: &mut impl FnMut(f64) -> Result<f64, E>,
+    ) -> Result<Option<Root>, E> {
+        while (to - self.t).abs() > tolerance {
+            let Some(root) = self.any_root((to, is_last), tolerance, g)? else { break };
+            (self.t, self.g) = (root.behind.t, root.behind.g);
+            let counts = match self.direction {
+                Direction::Either => true,
+                Direction::Rising => root.sign >= 0,
+                Direction::Falling => root.sign <= 0,
+            };
+            if counts {
+                return Ok(Some(root));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The next root of either direction; without one the watch moves to `to`.
+    fn any_root<E>(
+        &mut self,
+        (to, is_last): (f64, bool),
+        tolerance: f64,
+        g: &mut impl FnMut(f64) -> Result<f64, E>,
+    ) -> Result<Option<Root>, E> {
+        let (from, slice) = (self.t, (to - self.t) / f64::from(self.samples));
+        let mut at = |t: f64| g(t).map(|g| Point { t, g });
+        let mut last = Point { t: from, g: self.g };
+        if last.g == 0.0 {
+            last = at(from + 1e-3 * slice)?;
+        }
+        let mut before: Option<Point> = None;
+        for k in 1..=self.samples {
+            let t = if k == self.samples { to } else { from + slice * f64::from(k) };
+            let mut next = at(t)?;
+            if last.g == 0.0 {
+                last = next;
+                continue;
+            }
+            let knows_behind = k < self.samples || !(is_last || self.touching.is_some());
+            if next.g == 0.0 && knows_behind {
+                // the sign behind decides whether it crosses; behind the end of the step the next one knows it
+                let still = f64::MIN_POSITIVE.copysign(last.g);
+                let behind = if k == self.samples { still } else { at(t + 1e-3 * slice)?.g };
+                if behind != 0.0 && !crosses(last.g, behind) {
+                    next.g = still;
+                }
+            }
+            // where |g| has a minimum: around the last sample, or near an end, as the slope there tells
+            let dip = match before {
+                Some(first) if is_lower(last, first) && !is_lower(next, last) => Some(first),
+                None if is_lower(last, next) && falls_from(last, next, &mut at)? => Some(last),
+                _ if k < self.samples => None,
+                _ => (is_lower(next, last) && falls_from(next, last, &mut at)?).then_some(last),
+            };
+            if let Some(first) = dip.filter(|_| !crosses(last.g, next.g)) {
+                let lowest =
+                    minimum(first, next, self.touching.is_some(), &mut |t| at(t).map(|p| p.g))?;
+                if crosses(first.g, lowest.g) {
+                    return Root::between(first, lowest, tolerance, &mut at).map(Some);
+                }
+                if self.touching.is_some_and(|most| lowest.g.abs() <= most) {
+                    return Ok(Some(Root { t: lowest.t, sign: 0, noise: 0.0, behind: next }));
+                }
+            }
+            if crosses(last.g, next.g) {
+                return Root::between(last, next, tolerance, &mut at).map(Some);
+            }
+            (before, last) = (Some(last), next);
+        }
+        (self.t, self.g) = (last.t, last.g);
+        Ok(None)
+    }
+}
+
+/// Whether |g| is smaller at `a` than at `b`.
+fn is_lower(a: Point, b: Point) -> bool {
+    a.g.abs() < b.g.abs()
+}
+
+/// Whether |g| falls, or crosses zero, on the way from `a` towards `b`.
+fn falls_from<E>(
+    a: Point,
+    b: Point,
+    at: &mut impl FnMut(f64) -> Result<Point, E>,
+) -> Result<bool, E> {
+    let near = at(a.t + 1e-3 * (b.t - a.t))?;
+    Ok(is_lower(near, a) || crosses(a.g, near.g))
+}
+
+impl Root {
+    fn between<E>(
+        near: Point,
+        far: Point,
+        tolerance: f64,
+        at: &mut impl FnMut(f64) -> Result<Point, E>,
+    ) -> Result<Self, E> {
+        let (near, far) = bracket(near, far, tolerance, &mut |t| at(t).map(|p| p.g))?;
+        let sign = if near.g < 0.0 { 1 } else { -1 };
+        Ok(Self { t: far.t, sign, noise: 10.0 * (near.g.abs() + far.g.abs()), behind: far })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Follows g over steps of one unit; the roots with their signs.
+    fn roots(event: Event<'_>, g: impl Fn(f64) -> f64, steps: u32) -> Vec<(f64, i32)> {
+        let mut watch = Watch::new(&event, 0.0, g(0.0));
+        let mut found = Vec::new();
+        for step in 1..=steps {
+            while let Some(root) = watch
+                .next_root((f64::from(step), step == steps), 1e-13, &mut |t| Ok::<_, ()>(g(t)))
+                .unwrap()
+            {
+                found.push((root.t, root.sign));
+            }
+        }
+        found
+    }
+
+    fn event() -> Event<'static> {
+        Event::new(|_, _| 0.0)
+    }
+
+    #[test]
+    fn two_roots_within_a_slice_are_found_wherever_they_are() {
+        for middle in [0.01, 0.1, 0.25, 0.4, 0.5, 0.77, 0.9, 0.99] {
+            let found = roots(event(), |t| (t - middle) * (t - middle) - 1e-6, 1);
+            let expected = [(middle - 1e-3, -1), (middle + 1e-3, 1)];
+            assert_eq!(found.len(), 2, "{middle}: {found:?}");
+            for ((t, sign), (t_expected, sign_expected)) in found.iter().zip(expected) {
+                assert!((t - t_expected).abs() < 1e-12 && *sign == sign_expected, "{found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn one_direction_may_count_alone() {
+        let g = |t: f64| (t * 3.0).sin();
+        let root = |k: f64| k * std::f64::consts::PI / 3.0;
+        let close = |found: Vec<(f64, i32)>, expected: &[f64]| {
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            assert!(found.iter().zip(expected).all(|((t, _), e)| (t - e).abs() < 1e-12));
+        };
+        // it starts at zero, which is no event
+        close(roots(event(), g, 4), &[root(1.0), root(2.0), root(3.0)]);
+        close(roots(event().rising(), g, 4), &[root(2.0)]);
+        close(roots(event().falling(), g, 4), &[root(1.0), root(3.0)]);
+    }
+
+    #[test]
+    fn touching_is_an_event_if_asked_for() {
+        for touch in [0.013, 0.3, 0.5, 0.98] {
+            let g = |t: f64| (t - touch) * (t - touch);
+            assert_eq!(roots(event(), g, 1), []);
+            let found = roots(event().touching(1e-12), g, 1);
+            assert_eq!(found.len(), 1, "{touch}: {found:?}");
+            assert!((found[0].0 - touch).abs() < 1e-6 && found[0].1 == 0, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn what_arrives_at_zero_and_stays_is_one_event() {
+        let found = roots(event(), |t| (0.6 - t).max(0.0), 3);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!((found[0].0 - 0.6).abs() < 1e-12 && found[0].1 == -1);
+        // also where it arrives at the end of a step, or of the run; and what leaves zero is none
+        for steps in [1, 3] {
+            let found = roots(event(), |t| (1.0 - t).max(0.0), steps);
+            assert_eq!(found.len(), 1, "{steps}: {found:?}");
+            assert!((found[0].0 - 1.0).abs() < 1e-12 && found[0].1 == -1, "{found:?}");
+        }
+        assert_eq!(roots(event(), |t| (t - 0.6).max(0.0), 3), []);
+    }
+}

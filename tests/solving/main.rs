@@ -1,0 +1,9 @@
+//! Problems solved by one call: events, breaks, interpolation, limits.
+
+mod breaks;
+mod ensembles;
+mod events;
+mod interpolation;
+mod limits;
+mod refusals;
+mod support;
