@@ -9,8 +9,8 @@ use crate::rk::{self, DormandPrince};
 use crate::settings::{AbsoluteTolerances, Method, Settings};
 use crate::state::ENERGIES;
 use crate::sundials::{
-    Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver,
-    Multistep, Pattern,
+    Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
+    LinearSolver, Multistep, Pattern,
 };
 use crate::system::{DaeForm, Form, Index, SecondOrderForm, System};
 
@@ -229,7 +229,10 @@ fn ida_options(
     let motion = 2 * equations.system.dofs();
     let differential: Vec<bool> = (0..equations.size()).map(|i| i < motion).collect();
     let linear_solver = match settings.method {
-        Method::IdaKlu => LinearSolver::Klu(jacobian_pattern(equations)?),
+        Method::IdaKlu => LinearSolver::Klu {
+            pattern: jacobian_pattern(equations)?,
+            jacobian: Jacobian::Supplied,
+        },
         _ => LinearSolver::Custom,
     };
     let options = IdaOptions::new(settings.rtol, tolerances)

@@ -56,7 +56,7 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
     cj: f64,
     y: ffi::N_Vector,
     yp: ffi::N_Vector,
-    _: ffi::N_Vector,
+    residual: ffi::N_Vector,
     jacobian: ffi::SUNMatrix,
     data: *mut c_void,
     _: ffi::N_Vector,
@@ -64,10 +64,10 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
     _: ffi::N_Vector,
 ) -> i32 {
     // SAFETY: see the module.
-    let (host, y, yp) = unsafe {
+    let (host, y, yp, residual) = unsafe {
         let host = &mut *data.cast::<Host<S>>();
         let n = host.n;
-        (host, slice(y, n), slice(yp, n))
+        (host, slice(y, n), slice(yp, n), slice(residual, n))
     };
     host.setup_time = t;
     let Some(solver) = &host.linear_solver else { return STOP };
@@ -77,12 +77,16 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
         Entries::Custom => Callback::NewtonSetup,
         _ => Callback::Jacobian,
     };
-    let outcome = host.guard(callback, t, |system| match entries {
-        Entries::Dense(matrix) => system.dense_jacobian(t, cj, y, yp, matrix),
-        Entries::Band(matrix) => system.banded_jacobian(t, cj, y, yp, matrix),
-        Entries::Sparse(values) => system.sparse_jacobian(t, cj, y, yp, values),
-        Entries::Custom => system.newton_setup(t, cj, y, yp),
-    });
+    let outcome = match entries {
+        Entries::Dense(matrix) => {
+            host.guard(callback, t, |system| system.dense_jacobian(t, cj, y, yp, matrix))
+        }
+        Entries::Band(matrix) => {
+            host.guard(callback, t, |system| system.banded_jacobian(t, cj, y, yp, matrix))
+        }
+        Entries::Sparse(values) => sparse_jacobian(host, t, (cj, y, yp), residual, values),
+        Entries::Custom => host.guard(callback, t, |system| system.newton_setup(t, cj, y, yp)),
+    };
     if outcome != 0 {
         return outcome;
     }
@@ -90,4 +94,26 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
     // SAFETY: as above; the user's access has ended.
     let values = unsafe { matrix::stored(jacobian, solver, host.n) };
     host.check_finite(callback, t, values)
+}
+
+/// The values of dF/dy + cj dF/dy' on the pattern of the linear solver: the system's own, or difference
+/// quotients.
+fn sparse_jacobian<S: Dae>(
+    host: &mut Host<S>,
+    t: f64,
+    (cj, y, yp): (f64, &[f64], &[f64]),
+    residual: &[f64],
+    values: &mut [f64],
+) -> i32 {
+    // Out of the host, which calls the system meanwhile.
+    let Some(mut differences) = host.differences.take() else {
+        let call = |system: &mut S| system.sparse_jacobian(t, cj, y, yp, values);
+        return host.guard(Callback::Jacobian, t, call);
+    };
+    let outcome = differences.of_residual((cj, y, yp), residual, values, |y, yp, residual| {
+        let call = |system: &mut S, r: &mut [f64]| system.residual(t, y, yp, r);
+        host.guard_output(Callback::Residual, t, residual, call)
+    });
+    host.differences = Some(differences);
+    outcome
 }

@@ -77,6 +77,9 @@ pub(super) struct Functions {
     pub(super) bad_derivative: i32,
     /// gamma of y - gamma f(t, y), or cj of IDA.
     pub(super) get_step_parameter: Get<f64>,
+    /// Of a multistep method in its first step, CVODE gives 0.
+    pub(super) get_current_step: Get<f64>,
+    pub(super) get_error_weights: Set<ffi::N_Vector>,
     pub(super) get_linear_flag: Get<i64>,
     pub(super) get_integrator_stats: GetIntegratorStats,
     pub(super) get_nonlinear_stats: unsafe extern "C" fn(*mut c_void, *mut i64, *mut i64) -> i32,

@@ -12,7 +12,7 @@ use std::{
     ptr::NonNull,
 };
 
-use super::{functions::Get, linear_solver::LinearSolver};
+use super::{differences::Differences, functions::Get, linear_solver::LinearSolver};
 use crate::{
     integrate::{Callback, Cause, Error},
     ode::Failure,
@@ -44,6 +44,8 @@ pub(super) struct Host<S> {
     pub(super) linear_solver: Option<LinearSolver>,
     /// None for a fixed-point iteration.
     pub(super) custom_solve: Option<CustomSolve<S>>,
+    /// For sparse Jacobians that the system does not supply.
+    pub(super) differences: Option<Differences>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
     /// Time that whole steps have reached, noted for ARKODE: it gives that of a stage after a failure.
@@ -131,6 +133,7 @@ impl<S> Host<S> {
             root_count,
             linear_solver,
             custom_solve: None,
+            differences: None,
             setup_time: f64::NAN,
             step_end: None,
             troubles,

@@ -41,7 +41,7 @@ impl Linear {
                 ("SUNLinSol_Band", unsafe { ffi::SUNLinSol_Band(y, m, c) })
             }
             // SAFETY: as above.
-            LinearSolver::Klu(_) => ("SUNLinSol_KLU", unsafe { ffi::SUNLinSol_KLU(y, m, c) }),
+            LinearSolver::Klu { .. } => ("SUNLinSol_KLU", unsafe { ffi::SUNLinSol_KLU(y, m, c) }),
             // SAFETY: the context is alive; the caller vouches for `data`.
             LinearSolver::Custom => ("SUNLinSolNewEmpty", unsafe { custom::<S>(c, data) }),
         };

@@ -7,9 +7,10 @@ use crate::input::InputError;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Jacobian {
     /// Difference quotients of the right-hand side or residual: n extra evaluations for a dense
-    /// matrix, `lower + upper + 1` for a band.
+    /// matrix, `lower + upper + 1` for a band, and for a sparse matrix one for each colour of its columns:
+    /// those that share no row have the same colour and are shifted at once.
     DifferenceQuotients,
-    /// The system's own `dense_jacobian` or `banded_jacobian`.
+    /// The system's own `dense_jacobian`, `banded_jacobian` or `sparse_jacobian`.
     Supplied,
 }
 
@@ -31,8 +32,13 @@ pub enum LinearSolver {
         /// Where the entries come from.
         jacobian: Jacobian,
     },
-    /// Sparse LU factorization by KLU with the system's own `sparse_jacobian`.
-    Klu(Pattern),
+    /// Sparse LU factorization by KLU.
+    Klu {
+        /// Where the nonzeros are. Difference quotients are wrong where the Jacobian has others.
+        pattern: Pattern,
+        /// Where the entries come from.
+        jacobian: Jacobian,
+    },
     /// The system's own `newton_setup` and `newton_solve`: the way to exploit structure that
     /// a matrix of entries hides.
     Custom,
@@ -60,7 +66,7 @@ impl LinearSolver {
                     format!("with {n} unknowns the band does not fit into any memory"),
                 ))
             }
-            Self::Klu(pattern) if pattern.dimension() != n => Err(InputError::new(
+            Self::Klu { pattern, .. } if pattern.dimension() != n => Err(InputError::new(
                 "dimension of the sparsity pattern",
                 pattern.dimension(),
                 format!("it has to be the number of unknowns, {n}"),
@@ -73,7 +79,15 @@ impl LinearSolver {
     pub(super) fn has_jacobian_callback(&self) -> bool {
         match self {
             Self::Dense(jacobian) | Self::Band { jacobian, .. } => *jacobian == Jacobian::Supplied,
-            Self::Klu(_) | Self::Custom => true,
+            Self::Klu { .. } | Self::Custom => true,
+        }
+    }
+
+    /// The pattern on which the layer itself takes difference quotients.
+    pub(super) fn pattern_of_differences(&self) -> Option<&Pattern> {
+        match self {
+            Self::Klu { pattern, jacobian: Jacobian::DifferenceQuotients } => Some(pattern),
+            _ => None,
         }
     }
 }

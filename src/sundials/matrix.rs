@@ -24,7 +24,7 @@ impl Matrix {
                 ffi::SUNBandMatrix(size, *upper as i64, *lower as i64, context)
             }),
             // SAFETY: the context is alive; the type is CSC.
-            LinearSolver::Klu(pattern) => ("SUNSparseMatrix", unsafe {
+            LinearSolver::Klu { pattern, .. } => ("SUNSparseMatrix", unsafe {
                 let entries = pattern.entry_count() as i64;
                 ffi::SUNSparseMatrix(size, size, entries, ffi::CSC_MAT as i32, context)
             }),
@@ -108,7 +108,7 @@ pub(super) unsafe fn entries<'a>(
             };
             Entries::Band(BandMut::new(data, stride, diagonal, *lower, *upper))
         }
-        LinearSolver::Klu(pattern) => {
+        LinearSolver::Klu { pattern, .. } => {
             let (pointers, rows) = (pattern.column_pointers(), pattern.row_indices());
             // SUNDIALS clears the pattern together with the values before each evaluation.
             // SAFETY: the index arrays have room for the pattern for which they were made.
@@ -142,7 +142,7 @@ pub(super) unsafe fn stored<'a>(
                 let stride = ffi::SUNBandMatrix_LDim(matrix) as usize;
                 (ffi::SUNBandMatrix_Data(matrix), n * stride)
             }
-            LinearSolver::Klu(pattern) => {
+            LinearSolver::Klu { pattern, .. } => {
                 (ffi::SUNSparseMatrix_Data(matrix), pattern.entry_count())
             }
             LinearSolver::Custom => return &mut [],

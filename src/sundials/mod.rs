@@ -29,9 +29,11 @@
 //! or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
 
 mod arkode;
+mod colouring;
 mod context;
 mod cvode;
 mod dae_callbacks;
+mod differences;
 mod ffi;
 mod functions;
 mod host;

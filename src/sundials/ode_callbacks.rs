@@ -98,12 +98,17 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode>(
     let Some(solver) = &host.linear_solver else { return STOP };
     // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
     let entries = unsafe { matrix::entries(jacobian, solver, host.n) };
-    let outcome = host.guard(Callback::Jacobian, t, |system| match entries {
-        Entries::Dense(matrix) => system.dense_jacobian(t, y, ydot, matrix),
-        Entries::Band(matrix) => system.banded_jacobian(t, y, ydot, matrix),
-        Entries::Sparse(values) => system.sparse_jacobian(t, y, ydot, values),
+    let callback = Callback::Jacobian;
+    let outcome = match entries {
+        Entries::Dense(matrix) => {
+            host.guard(callback, t, |system| system.dense_jacobian(t, y, ydot, matrix))
+        }
+        Entries::Band(matrix) => {
+            host.guard(callback, t, |system| system.banded_jacobian(t, y, ydot, matrix))
+        }
+        Entries::Sparse(values) => sparse_jacobian(host, t, y, ydot, values),
         Entries::Custom => unreachable!("a custom solver sets up its own matrix"),
-    });
+    };
     if outcome != 0 {
         return outcome;
     }
@@ -111,6 +116,26 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode>(
     // SAFETY: as above; the user's access has ended.
     let values = unsafe { matrix::stored(jacobian, solver, host.n) };
     host.check_finite(Callback::Jacobian, t, values)
+}
+
+/// The values of df/dy on the pattern of the linear solver: the system's own, or difference quotients.
+fn sparse_jacobian<S: Ode>(
+    host: &mut Host<S>,
+    t: f64,
+    y: &[f64],
+    ydot: &[f64],
+    values: &mut [f64],
+) -> i32 {
+    // Out of the host, which calls the system meanwhile.
+    let Some(mut differences) = host.differences.take() else {
+        let call = |system: &mut S| system.sparse_jacobian(t, y, ydot, values);
+        return host.guard(Callback::Jacobian, t, call);
+    };
+    let outcome = differences.of_rhs(y, ydot, values, |y, ydot| {
+        host.guard_output(Callback::Rhs, t, ydot, |system, ydot| system.rhs(t, y, ydot))
+    });
+    host.differences = Some(differences);
+    outcome
 }
 
 /// `ARKLsLinSysFn`: as [`newton_setup`], but for the mass matrix, of which there is none.

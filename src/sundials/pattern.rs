@@ -1,5 +1,7 @@
 //! Where the nonzeros of a sparse Jacobian are.
 
+use std::ops::Range;
+
 use crate::input::InputError;
 
 /// The sparsity pattern of a square matrix in compressed sparse columns (CSC).
@@ -47,6 +49,23 @@ impl Pattern {
             column_pointers.push(row_indices.len());
         }
         Self::from_csc(&column_pointers, &row_indices)
+    }
+
+    /// The pattern of an `n` x `n` band matrix: entry (i, j) is stored where `j - upper <= i <= j + lower`.
+    ///
+    /// # Errors
+    /// If `n` is 0 or a bandwidth is not smaller than `n`.
+    pub fn band(n: usize, lower: usize, upper: usize) -> Result<Self, InputError> {
+        if n > 0 && (lower >= n || upper >= n) {
+            return Err(InputError::new(
+                "bandwidths (lower, upper)",
+                format!("({lower}, {upper})"),
+                format!("both have to be smaller than the number of unknowns, {n}"),
+            ));
+        }
+        let column =
+            |j: usize| (j.saturating_sub(upper)..(j + lower + 1).min(n)).map(move |i| (i, j));
+        Self::from_entries(n, (0..n).flat_map(column))
     }
 
     /// The pattern of a matrix in CSC form: the rows of column j are
@@ -128,8 +147,14 @@ impl Pattern {
         Some(self.column_pointers[column] as usize + within)
     }
 
-    fn column(&self, j: usize) -> &[i64] {
-        &self.row_indices[self.column_pointers[j] as usize..self.column_pointers[j + 1] as usize]
+    /// Rows of the entries of column `j`.
+    pub(super) fn column(&self, j: usize) -> &[i64] {
+        &self.row_indices[self.places(j)]
+    }
+
+    /// Places of the entries of column `j` among the values.
+    pub(super) fn places(&self, j: usize) -> Range<usize> {
+        self.column_pointers[j] as usize..self.column_pointers[j + 1] as usize
     }
 }
 
@@ -145,6 +170,14 @@ mod tests {
         assert_eq!(pattern.position(0, 2), Some(4));
         assert_eq!(pattern.position(0, 1), None);
         assert_eq!(pattern.position(0, 3), None);
+    }
+
+    #[test]
+    fn bands_store_their_diagonals() {
+        let band = Pattern::band(3, 1, 0).unwrap();
+        assert_eq!(band, Pattern::from_entries(3, [(1, 0), (2, 1)]).unwrap());
+        assert_eq!(Pattern::band(5, 4, 4).unwrap().entry_count(), 25);
+        assert!(Pattern::band(0, 0, 0).is_err() && Pattern::band(3, 3, 0).is_err());
     }
 
     #[test]

@@ -29,7 +29,8 @@ impl<K, S> Solver<K, S> {
         s.nonlinear_failures = nonlinear_fails as u64;
         s.step_failures = count(functions.get_step_failures);
         s.jacobian_evaluations = count(functions.get_jacobian_evaluations);
-        s.difference_quotient_evaluations = count(functions.get_quotient_evaluations);
+        let ours = self.host.get().differences.as_ref().map_or(0, |ours| ours.evaluations);
+        s.difference_quotient_evaluations = count(functions.get_quotient_evaluations) + ours;
         s.root_evaluations = count(functions.get_root_evaluations);
         s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
         s

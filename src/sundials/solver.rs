@@ -4,6 +4,7 @@ use std::{ffi::c_void, fmt, ptr};
 
 use super::{
     context::Context,
+    differences::Differences,
     ffi,
     functions::{Functions, Set},
     host::{CustomSolve, Host, HostBox, NewtonSolve, keep_message},
@@ -235,6 +236,13 @@ impl<K, S> Solver<K, S> {
         let Memory { raw: memory, functions } = self.memory;
         let step_parameter = functions.get_step_parameter;
         self.host.get_mut().custom_solve = Some(CustomSolve { solve, step_parameter, memory });
+        if let Some(pattern) = solver.pattern_of_differences() {
+            let is_dae = self.yp.is_some();
+            // SAFETY: the memory belongs to these functions; its callbacks alone ask for differences.
+            let differences =
+                unsafe { Differences::new(pattern, (memory, functions), is_dae, &self.context)? };
+            self.host.get_mut().differences = Some(differences);
+        }
         let data = self.host.as_ptr();
         // SAFETY: the data is the host, which outlives the solver.
         let linear = unsafe { Linear::new::<S>(solver, &self.y, &self.context, data)? };

@@ -101,8 +101,9 @@ impl<K, S> Integrator for Solver<K, S> {
         self.host.accept(name, code)?;
         self.t = t;
         (self.has_step, self.failed_within) = (false, false);
-        let step_end = &mut self.host.get_mut().step_end;
-        *step_end = step_end.and(Some(t));
+        let host = self.host.get_mut();
+        host.step_end = host.step_end.and(Some(t));
+        host.differences.iter_mut().for_each(|differences| differences.evaluations = 0);
         match self.memory.functions.reinit_forgets_stop_time {
             true => self.stop_time.forget(),
             false => self.stop_time.set(None),

@@ -130,7 +130,10 @@ fn stiff_problems_by_every_order() {
 
 #[test]
 fn robertson_by_every_linear_solver() {
-    let klu = LinearSolver::Klu(Robertson::new().pattern().clone());
+    let klu = LinearSolver::Klu {
+        pattern: Robertson::new().pattern().clone(),
+        jacobian: Jacobian::Supplied,
+    };
     let quotients = LinearSolver::Dense(Jacobian::DifferenceQuotients);
     let options = ArkodeOptions::new(1e-6, [1e-10, 1e-14, 1e-8]).max_steps(100_000);
     for solver in [DENSE, quotients, klu] {

@@ -10,7 +10,7 @@ use pliant::{
     samples::{Hires, Robertson},
     sundials::{
         Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Error, Ida, IdaOptions,
-        Integrator, LinearSolver, Multistep, Reached,
+        Integrator, Jacobian, LinearSolver, Multistep, Reached,
     },
 };
 
@@ -359,7 +359,10 @@ fn restart(solver: &mut impl Restart) {
 fn solvers_move_between_threads() {
     let threads: Vec<_> = (0..4)
         .map(|i| {
-            let klu = LinearSolver::Klu(Hires::new().pattern().clone());
+            let klu = LinearSolver::Klu {
+                pattern: Hires::new().pattern().clone(),
+                jacobian: Jacobian::Supplied,
+            };
             let options = CvodeOptions::new(1e-8, 1e-12).newton(klu);
             let mut solver = Cvode::new(Hires::new(), 0.0, &Hires::Y0, &options).unwrap();
             solver.solve_to(f64::from(i) + 1.0).unwrap();

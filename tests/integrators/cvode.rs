@@ -33,7 +33,8 @@ const DENSE: LinearSolver = LinearSolver::Dense(Jacobian::Supplied);
 #[test]
 fn hires_by_every_linear_solver() {
     let options = CvodeOptions::new(1e-8, 1e-12);
-    let klu = LinearSolver::Klu(Hires::new().pattern().clone());
+    let klu =
+        LinearSolver::Klu { pattern: Hires::new().pattern().clone(), jacobian: Jacobian::Supplied };
     let band = |jacobian| LinearSolver::Band { lower: 5, upper: 3, jacobian };
     let mut setups = Vec::new();
     for solver in [
@@ -59,7 +60,10 @@ fn hires_by_every_linear_solver() {
 #[test]
 fn van_der_pol_by_dense_klu_and_its_own_solver() {
     let options = CvodeOptions::new(1e-8, 1e-12);
-    let klu = LinearSolver::Klu(VanDerPol::new().pattern().clone());
+    let klu = LinearSolver::Klu {
+        pattern: VanDerPol::new().pattern().clone(),
+        jacobian: Jacobian::Supplied,
+    };
     for solver in [DENSE, klu] {
         print!("{solver:?}: ");
         let options = options.clone().newton(solver);
@@ -87,7 +91,13 @@ fn van_der_pol_by_dense_klu_and_its_own_solver() {
 fn robertson_over_eleven_decades() {
     for (reference, solver) in [
         (Robertson::REFERENCE, DENSE),
-        (Robertson::REFERENCE, LinearSolver::Klu(Robertson::new().pattern().clone())),
+        (
+            Robertson::REFERENCE,
+            LinearSolver::Klu {
+                pattern: Robertson::new().pattern().clone(),
+                jacobian: Jacobian::Supplied,
+            },
+        ),
         (Robertson::LATE_REFERENCE, DENSE),
     ] {
         // Absolute tolerances below the smallest values: y2 ends near 1e-13.

@@ -273,7 +273,8 @@ fn nan_in_a_jacobian_is_named() {
         values[0] = f64::NAN;
         Ok(())
     });
-    let options = CvodeOptions::new(1e-6, 1e-9).newton(LinearSolver::Klu(pattern));
+    let options = CvodeOptions::new(1e-6, 1e-9)
+        .newton(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied });
     let error = integration_error(Cvode::new(system, 0.0, &[1.0], &options).unwrap().solve_to(1.0));
     assert!(matches!(error.cause, Cause::NotFinite { callback: Callback::Jacobian, .. }));
 }
@@ -349,7 +350,10 @@ fn unusable_input_is_named_before_c_sees_it() {
     assert_eq!(refused(&[1.0], &good.clone().max_steps(0)), "max_steps");
     let pattern = Pattern::from_entries(2, []).unwrap();
     assert_eq!(
-        refused(&[1.0], &good.clone().newton(LinearSolver::Klu(pattern))),
+        refused(
+            &[1.0],
+            &good.clone().newton(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
+        ),
         "dimension of the sparsity pattern"
     );
     let band = LinearSolver::Band { lower: 1, upper: 0, jacobian: Jacobian::DifferenceQuotients };

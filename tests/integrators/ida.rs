@@ -20,7 +20,10 @@ fn robertson_error(system: impl Dae, rtol: f64, solver: LinearSolver) -> f64 {
 
 #[test]
 fn robertson_by_every_linear_solver() {
-    let klu = LinearSolver::Klu(Robertson::new().pattern().clone());
+    let klu = LinearSolver::Klu {
+        pattern: Robertson::new().pattern().clone(),
+        jacobian: Jacobian::Supplied,
+    };
     let band = LinearSolver::Band { lower: 2, upper: 2, jacobian: Jacobian::DifferenceQuotients };
     for solver in [
         LinearSolver::Dense(Jacobian::Supplied),

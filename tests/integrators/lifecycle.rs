@@ -1,7 +1,7 @@
 //! Creates, uses and drops solvers of every kind, in every way a solver can end.
 //!
 //! Meant to be run under valgrind (`make valgrind`), where `PLIANT_LIFECYCLES` sets the number of
-//! rounds; each round makes 21 solvers.
+//! rounds; each round makes 24 solvers.
 
 use std::{
     hint::black_box,
@@ -20,12 +20,14 @@ use pliant::{
 
 const ATOL: [f64; 3] = [1e-8, 1e-14, 1e-6];
 
-fn linear_solvers() -> [LinearSolver; 4] {
+fn linear_solvers() -> [LinearSolver; 5] {
+    let pattern = || Robertson::new().pattern().clone();
     [
         LinearSolver::Dense(Jacobian::Supplied),
         LinearSolver::Dense(Jacobian::DifferenceQuotients),
         LinearSolver::Band { lower: 2, upper: 2, jacobian: Jacobian::DifferenceQuotients },
-        LinearSolver::Klu(Robertson::new().pattern().clone()),
+        LinearSolver::Klu { pattern: pattern(), jacobian: Jacobian::Supplied },
+        LinearSolver::Klu { pattern: pattern(), jacobian: Jacobian::DifferenceQuotients },
     ]
 }
 
@@ -103,7 +105,7 @@ fn solvers_that_fail() {
 
     // Refused by the constructor.
     let pattern = Pattern::from_entries(2, []).unwrap();
-    let options = options.newton(LinearSolver::Klu(pattern));
+    let options = options.newton(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied });
     assert!(Cvode::new(fatal, 0.0, &[1.0], &options).is_err());
 }
 

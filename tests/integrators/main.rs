@@ -13,3 +13,4 @@ mod lifecycle;
 mod mass;
 mod rk;
 mod roots;
+mod sparse;

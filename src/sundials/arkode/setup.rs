@@ -73,6 +73,8 @@ impl<S: Ode> Arkode<S> {
         bad_time: ffi::ARK_BAD_T,
         bad_derivative: ffi::ARK_BAD_K,
         get_step_parameter: ffi::ARKStepGetCurrentGamma,
+        get_current_step: ffi::ARKStepGetCurrentStep,
+        get_error_weights: ("ARKStepGetErrWeights", ffi::ARKStepGetErrWeights),
         get_linear_flag: ffi::ARKStepGetLastLinFlag,
         get_integrator_stats,
         get_nonlinear_stats: ffi::ARKStepGetNonlinSolvStats,

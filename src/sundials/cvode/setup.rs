@@ -56,6 +56,8 @@ static FUNCTIONS: Functions = Functions {
     bad_time: ffi::CV_BAD_T,
     bad_derivative: ffi::CV_BAD_K,
     get_step_parameter: ffi::CVodeGetCurrentGamma,
+    get_current_step: ffi::CVodeGetCurrentStep,
+    get_error_weights: ("CVodeGetErrWeights", ffi::CVodeGetErrWeights),
     get_linear_flag: ffi::CVodeGetLastLinFlag,
     get_integrator_stats: ffi::CVodeGetIntegratorStats,
     get_nonlinear_stats: ffi::CVodeGetNonlinSolvStats,

@@ -57,6 +57,8 @@ static FUNCTIONS: Functions = Functions {
     bad_time: ffi::IDA_BAD_T,
     bad_derivative: ffi::IDA_BAD_K,
     get_step_parameter: ffi::IDAGetCurrentCj,
+    get_current_step: ffi::IDAGetCurrentStep,
+    get_error_weights: ("IDAGetErrWeights", ffi::IDAGetErrWeights),
     get_linear_flag: ffi::IDAGetLastLinFlag,
     get_integrator_stats: ffi::IDAGetIntegratorStats,
     get_nonlinear_stats: ffi::IDAGetNonlinSolvStats,
