@@ -46,6 +46,7 @@ mod nonlinear;
 mod ode_callbacks;
 mod options;
 mod pattern;
+mod pattern_search;
 mod report;
 mod solver;
 mod stepping;

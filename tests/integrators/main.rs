@@ -11,6 +11,7 @@ mod ida;
 mod jacobians;
 mod lifecycle;
 mod mass;
+mod patterns;
 mod rk;
 mod roots;
 mod sparse;
