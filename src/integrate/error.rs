@@ -131,6 +131,14 @@ pub enum Cause {
     LinearSolver,
     /// The initial values of a DAE do not satisfy its equations, or none could be found.
     InconsistentStart,
+    /// An unknown does not keep the sign that `sign_constraints` ask for, whatever the step size, or the steps
+    /// towards its bound have become too small.
+    SignConstraint {
+        /// The unknown, or the first of several.
+        unknown: usize,
+        /// Its value at the end of a step that was tried.
+        value: f64,
+    },
     /// Anything else; see the message of the library.
     Other,
 }
@@ -155,6 +163,11 @@ impl Cause {
             }
             Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
             Self::InconsistentStart => "the initial values do not satisfy the equations".into(),
+            Self::SignConstraint { unknown, value } => {
+                format!(
+                    "unknown {unknown} became {value:e} in the last steps, against sign_constraints"
+                )
+            }
             Self::Other => "SUNDIALS gave up".into(),
         }
     }
@@ -190,6 +203,11 @@ impl Cause {
             Self::InconsistentStart => {
                 "evaluate the residual at the start, or let consistent_start find the missing \
                  values; if it is right, check a supplied Jacobian"
+            }
+            Self::SignConstraint { .. } => {
+                "look at what drives this unknown at its bound: a reaction has to end with what it \
+                 consumes; a body that passes a stop needs a root function there and new equations; \
+                 if the exact solution keeps the sign, lower atol of this unknown"
             }
             Self::Other => "see the message of SUNDIALS",
         }

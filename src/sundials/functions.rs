@@ -69,6 +69,7 @@ pub(super) struct Functions {
     pub(super) set_max_order: Option<Set<i32>>,
     pub(super) set_convergence_coefficient: Set<f64>,
     pub(super) set_stop_time: Set<f64>,
+    pub(super) set_constraints: Set<ffi::N_Vector>,
 
     pub(super) get_root_info: Set<*mut i32>,
     pub(super) get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, ffi::N_Vector) -> i32>,

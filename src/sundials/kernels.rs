@@ -7,7 +7,7 @@
 
 use std::slice;
 
-use super::ffi;
+use super::{ffi, signs};
 
 /// Gives `vector`, and all its later clones, the operations of this module.
 ///
@@ -24,6 +24,8 @@ pub(super) unsafe fn install(vector: ffi::N_Vector) {
         ops.nvabs = Some(abs);
         ops.nvinv = Some(inv);
         ops.nvaddconst = Some(add_const);
+        ops.nvconstrmask = Some(signs::mask);
+        ops.nvminquotient = Some(signs::least_part);
     }
 }
 

@@ -48,6 +48,7 @@ mod options;
 mod pattern;
 mod pattern_search;
 mod report;
+mod signs;
 mod solver;
 mod stepping;
 mod stop_time;
@@ -59,6 +60,7 @@ pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub use ida::{Ida, IdaOptions, InitialCondition};
 pub use linear_solver::{Jacobian, LinearSolver};
 pub use pattern::Pattern;
+pub use signs::Sign;
 pub use solver::Solver;
 pub use version::{suitesparse_version, version};
 

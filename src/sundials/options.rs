@@ -1,18 +1,21 @@
 //! Options that the integrators of SUNDIALS share.
 
+use super::signs::{Sign, check_signs, check_state};
 use crate::input::InputError;
 
-/// Limits of the control of step size and order, and of the nonlinear iteration.
+/// Limits of the control of step size and order, of the nonlinear iteration, and of the unknowns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Limits {
     pub(super) min_step: Option<f64>,
     /// Of multistep methods.
     pub(super) max_order: Option<u32>,
     pub(super) convergence_coefficient: Option<f64>,
+    /// One for each unknown, or none.
+    pub(super) signs: Vec<Sign>,
 }
 
 impl Limits {
-    pub(super) fn check(&self, max_step: Option<f64>) -> Result<(), InputError> {
+    pub(super) fn check(&self, max_step: Option<f64>, y0: &[f64]) -> Result<(), InputError> {
         if let Some(h) = self.min_step
             && !(h > 0.0 && h.is_finite())
         {
@@ -29,7 +32,8 @@ impl Limits {
         {
             return Err(InputError::new("convergence_coefficient", coefficient, "it is positive"));
         }
-        Ok(())
+        check_signs(&self.signs, y0.len())?;
+        check_state(&self.signs, "y0", y0)
     }
 
     /// Checks the order of a multistep method.
@@ -57,6 +61,18 @@ macro_rules! builder_methods {
         /// Default: 0.1 in CVODE and ARKODE, 0.33 in IDA.
         pub fn convergence_coefficient(mut self, coefficient: f64) -> Self {
             self.limits.convergence_coefficient = Some(coefficient);
+            self
+        }
+
+        /// Inequality constraints: for each unknown the sign that it keeps (`CVodeSetConstraints`,
+        /// `ARKStepSetConstraints`, `IDASetConstraints`). Default: none.
+        ///
+        /// A step that leaves an unknown beyond its bound is repeated with a smaller size; CVODE and IDA put it
+        /// to the bound, to rounding, where the tolerances do not tell the difference. That holds at the ends of
+        /// the steps: what is interpolated between them may be beyond by the error of the polynomials. No step
+        /// helps where the equations themselves lead across.
+        pub fn sign_constraints(mut self, signs: impl Into<Vec<$crate::sundials::Sign>>) -> Self {
+            self.limits.signs = signs.into();
             self
         }
     };

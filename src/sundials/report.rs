@@ -4,6 +4,7 @@ use std::ffi::c_void;
 
 use super::{
     ffi,
+    signs::{self, Violation},
     solver::{Memory, Solver},
 };
 use crate::integrate::{Cause, Error, IntegrationError, Statistics};
@@ -111,6 +112,14 @@ impl<K, S> Solver<K, S> {
                 (Cause::LinearSolver, true)
             }
             _ => (Cause::Other, true),
+        };
+        // many steps at a bound may have another reason, unless they hardly lead on
+        let crawls = statistics.current_step.abs() < 1e-6 * (target - self.t).abs();
+        let at_bound = !self.signs.is_empty() && (code != ffi::CV_TOO_MUCH_WORK || crawls);
+        let violation = signs::last_violation().filter(|_| at_bound);
+        let otherwise = match violation {
+            Some(Violation { unknown, value, .. }) => Cause::SignConstraint { unknown, value },
+            None => otherwise,
         };
         let troubles = &mut self.host.get_mut().troubles;
         let place = (statistics.current_time, statistics.current_step);

@@ -12,6 +12,7 @@ use super::{
     linear_solver::LinearSolver,
     nonlinear::FixedPoint,
     options::Limits,
+    signs::Sign,
     stop_time::StopTime,
     vector::Vector,
 };
@@ -45,6 +46,8 @@ pub struct Solver<K, S> {
     /// Degree of the polynomials between the steps, if it is not the order of the last step.
     pub(super) interpolant_degree: Option<u32>,
     pub(super) roots_found: Vec<i32>,
+    /// Which signs the unknowns keep, if any.
+    pub(super) signs: Vec<Sign>,
     pub(super) kind: K,
 }
 
@@ -135,6 +138,7 @@ impl<K, S> Solver<K, S> {
             failed_within: false,
             interpolant_degree: None,
             roots_found: vec![0; root_count],
+            signs: Vec::new(),
             kind,
         })
     }
@@ -202,7 +206,20 @@ impl<K, S> Solver<K, S> {
                 self.set(set, order as i32)?;
             }
         }
-        Ok(())
+        self.set_signs(&limits.signs)
+    }
+
+    /// Has the unknowns keep these signs.
+    fn set_signs(&mut self, signs: &[Sign]) -> Result<(), Error> {
+        // C takes a vector without any constraint for a mistake
+        if signs.iter().all(|sign| *sign == Sign::Free) {
+            return Ok(());
+        }
+        let values: Vec<f64> = signs.iter().map(|sign| f64::from(*sign as i8)).collect();
+        let values = Vector::from_slice(&values, &self.context)?;
+        self.signs = signs.to_vec();
+        // SAFETY: C keeps a copy of the vector, whose length was checked.
+        unsafe { self.set(self.memory.functions.set_constraints, values.raw()) }
     }
 
     /// Registers the root functions by `init`, if there are any.

@@ -1,6 +1,11 @@
 //! An integrator of SUNDIALS at work.
 
-use super::{ffi, solver::Solver};
+use super::{
+    ffi,
+    signs::{self, check_state},
+    solver::Solver,
+    vector::Vector,
+};
 use crate::integrate::{
     Error, Integrator, Reached, Statistics, check_finite, check_length, check_time,
 };
@@ -94,6 +99,7 @@ impl<K, S> Integrator for Solver<K, S> {
         check_length("length of y", y.len(), self.y().len())?;
         check_time("t", t)?;
         check_finite("y", y)?;
+        check_state(&self.signs, "y", y)?;
         self.y.as_mut_slice().copy_from_slice(y);
         let (name, reinit) = self.memory.functions.reinit;
         // SAFETY: memory and vectors are alive; the integrator copies the vectors.
@@ -117,6 +123,7 @@ impl<K, S> Integrator for Solver<K, S> {
         check_length("length of y", y.len(), self.y().len())?;
         check_time("t", t)?;
         check_finite("y", y)?;
+        check_state(&self.signs, "y", y)?;
         let Some((name, reset)) = self.memory.functions.reset else { return Ok(false) };
         self.y.as_mut_slice().copy_from_slice(y);
         // SAFETY: memory and vector are alive; the integrator copies the vector.
@@ -169,6 +176,7 @@ impl<K, S> Solver<K, S> {
         let (name, solve) = functions.solve;
         let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
         self.host.get_mut().troubles.clear();
+        signs::forget_violation();
         // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
         // keeps others away while callbacks use the host.
         let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
@@ -180,6 +188,9 @@ impl<K, S> Solver<K, S> {
             (self.has_step, self.failed_within) = (false, true);
         }
         self.host.get_mut().troubles.resume_panic();
+        if code >= 0 && !self.signs.is_empty() {
+            self.read_corrected()?;
+        }
         match code {
             ffi::CV_ROOT_RETURN => {
                 let roots = self.roots_found.as_mut_ptr();
@@ -199,6 +210,19 @@ impl<K, S> Solver<K, S> {
             }
             code => Err(self.stopped(code, target)),
         }
+    }
+
+    /// Reads y and y' of a DAE anew: single steps of IDA return them as they were before unknowns were put
+    /// to their bounds.
+    fn read_corrected(&mut self) -> Result<(), Error> {
+        let Some(yp) = self.yp.as_ref().map(Vector::raw) else { return Ok(()) };
+        let (name, get_dky) = self.memory.functions.get_dky;
+        for (order, vector) in [(0, self.y.raw()), (1, yp)] {
+            // SAFETY: memory and vector are alive; IDA calls no callback here.
+            let code = unsafe { get_dky(self.memory.raw, self.t, order, vector) };
+            self.host.accept(name, code)?;
+        }
+        Ok(())
     }
 
     /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last

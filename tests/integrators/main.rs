@@ -15,3 +15,4 @@ mod patterns;
 mod rk;
 mod roots;
 mod sparse;
+mod signs;

@@ -8,6 +8,7 @@ use crate::{
         linear_solver::LinearSolver,
         nonlinear::{NonlinearOptions, NonlinearSolver},
         options::{Limits, builder_methods},
+        signs::Sign,
     },
 };
 
@@ -127,12 +128,16 @@ impl ArkodeOptions {
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;
-        self.limits.check(self.steps.max_step)?;
+        self.limits.check(self.steps.max_step, y0)?;
         if let Some(h) = self.fixed_step
             && !(h.is_finite() && h != 0.0)
         {
             let mend = "it is finite, and negative when integrating backwards";
             return Err(InputError::new("fixed_step", h, mend));
+        }
+        if self.fixed_step.is_some() && self.limits.signs.iter().any(|sign| *sign != Sign::Free) {
+            let mend = "signs are kept by smaller steps: let the tolerances choose the steps";
+            return Err(InputError::new("sign_constraints", "given with fixed_step", mend));
         }
         for (input, value) in [
             ("max_steps_between_jacobians", self.max_steps_between_jacobians),

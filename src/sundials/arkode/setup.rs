@@ -68,6 +68,7 @@ impl<S: Ode> Arkode<S> {
         set_max_order: None,
         set_convergence_coefficient: ("ARKStepSetNonlinConvCoef", ffi::ARKStepSetNonlinConvCoef),
         set_stop_time: ("ARKStepSetStopTime", ffi::ARKStepSetStopTime),
+        set_constraints: ("ARKStepSetConstraints", ffi::ARKStepSetConstraints),
         get_root_info: ("ARKStepGetRootInfo", ffi::ARKStepGetRootInfo),
         get_dky: ("ARKStepGetDky", ffi::ARKStepGetDky),
         bad_time: ffi::ARK_BAD_T,

@@ -75,7 +75,7 @@ impl CvodeOptions {
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;
-        self.limits.check(self.steps.max_step)?;
+        self.limits.check(self.steps.max_step, y0)?;
         self.limits.check_order(match self.method {
             Multistep::Bdf => 5,
             Multistep::Adams => 12,

@@ -51,6 +51,7 @@ static FUNCTIONS: Functions = Functions {
     set_max_order: Some(("CVodeSetMaxOrd", ffi::CVodeSetMaxOrd)),
     set_convergence_coefficient: ("CVodeSetNonlinConvCoef", ffi::CVodeSetNonlinConvCoef),
     set_stop_time: ("CVodeSetStopTime", ffi::CVodeSetStopTime),
+    set_constraints: ("CVodeSetConstraints", ffi::CVodeSetConstraints),
     get_root_info: ("CVodeGetRootInfo", ffi::CVodeGetRootInfo),
     get_dky: ("CVodeGetDky", ffi::CVodeGetDky),
     bad_time: ffi::CV_BAD_T,

@@ -65,7 +65,7 @@ impl IdaOptions {
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;
-        self.limits.check(self.steps.max_step)?;
+        self.limits.check(self.steps.max_step, y0)?;
         self.limits.check_order(5)?;
         if let Some(differential) = &self.differential {
             check_length("length of differential", differential.len(), y0.len())?;

@@ -52,6 +52,7 @@ static FUNCTIONS: Functions = Functions {
     set_max_order: Some(("IDASetMaxOrd", ffi::IDASetMaxOrd)),
     set_convergence_coefficient: ("IDASetNonlinConvCoef", ffi::IDASetNonlinConvCoef),
     set_stop_time: ("IDASetStopTime", ffi::IDASetStopTime),
+    set_constraints: ("IDASetConstraints", ffi::IDASetConstraints),
     get_root_info: ("IDAGetRootInfo", ffi::IDAGetRootInfo),
     get_dky: ("IDAGetDky", ffi::IDAGetDky),
     bad_time: ffi::IDA_BAD_T,

@@ -4,7 +4,7 @@ use super::setup::Ida;
 use crate::{
     integrate::{Error, Integrator, check_finite, check_length, check_time},
     ode::Dae,
-    sundials::{ffi, vector::Vector},
+    sundials::{ffi, signs, vector::Vector},
 };
 
 /// Which initial values [`Ida::consistent_start`] may change.
@@ -52,6 +52,7 @@ impl<S: Dae> Ida<S> {
             InitialCondition::State => ffi::IDA_Y_INIT,
         };
         self.host.get_mut().troubles.clear();
+        signs::forget_violation();
         // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
         // others away while callbacks use the host.
         let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, first_output) };

@@ -1,0 +1,177 @@
+//! Unknowns that keep their sign: inequality constraints.
+
+use std::fmt::Debug;
+
+use pliant::{
+    ode::Failure,
+    samples::{Hires, Robertson},
+    sundials::{
+        Arkode, ArkodeOptions, ButcherTable, Cause, Cvode, CvodeOptions, Error, Ida, IdaOptions,
+        InitialCondition, Integrator, Sign,
+    },
+};
+
+/// Smallest value of an unknown at the ends of steps to time `end`, in units of its largest, and the
+/// time that was reached.
+fn lowest<I: Integrator>(mut solver: I, end: f64) -> (f64, f64) {
+    let mut low = vec![f64::INFINITY; solver.y().len()];
+    let mut high = vec![0.0_f64; low.len()];
+    while solver.t() < end && solver.step(end).is_ok() {
+        for ((low, high), y) in low.iter_mut().zip(&mut high).zip(solver.y()) {
+            (*low, *high) = (low.min(*y), high.max(y.abs()));
+        }
+    }
+    let lowest = low.iter().zip(&high).map(|(low, high)| low / high).fold(f64::INFINITY, f64::min);
+    (lowest, solver.t())
+}
+
+/// With an `atol` above the largest value of y2 the errors make it negative, which is where Robertson's equations
+/// are unstable: without constraints no run survives its first seconds.
+#[test]
+fn concentrations_stay_positive() {
+    let end = 1e3;
+    let (y0, yp0) = (&Robertson::Y0, &Robertson::YP0);
+    let [free, kept] = [[Sign::Free; 3], [Sign::NonNegative; 3]].map(|signs| {
+        let options = CvodeOptions::new(1e-2, 1e-3).sign_constraints(signs);
+        let cvode = Cvode::new(Robertson::new(), 0.0, y0, &options).unwrap();
+        let options = IdaOptions::new(1e-2, 1e-3).sign_constraints(signs);
+        let ida = Ida::new(Robertson::new(), 0.0, y0, yp0, &options).unwrap();
+        let options = ArkodeOptions::new(1e-2, 1e-3).sign_constraints(signs);
+        let arkode = Arkode::new(Robertson::new(), 0.0, y0, &options).unwrap();
+        [lowest(cvode, end), lowest(ida, end), lowest(arkode, end)]
+    });
+    println!("free {free:?}, kept {kept:?}");
+    for ((free, reached), (kept, kept_reached)) in free.into_iter().zip(kept) {
+        assert!(free < -0.5 && reached < 10.0);
+        // IDA puts the unknown to its bound but for rounding
+        assert!(kept > -1e-17 && kept_reached >= end);
+    }
+
+    // HIRES survives, with negative concentrations.
+    let [free, kept] = [Sign::Free, Sign::NonNegative].map(|sign| {
+        let options = CvodeOptions::new(1e-2, 1e-3).sign_constraints([sign; 8]);
+        let solver = Cvode::new(Hires::new(), 0.0, &Hires::Y0, &options).unwrap();
+        lowest(solver, Hires::REFERENCE.t).0
+    });
+    println!("free {free:e}, kept {kept:e}");
+    assert!(free < -1e-2 && kept >= 0.0);
+}
+
+/// y' = -100 y: a coarse run overshoots zero; each sign is kept in its own way.
+#[test]
+fn every_sign_is_kept() {
+    fn decay(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        ydot[0] = -100.0 * y[0];
+        Ok(())
+    }
+    let extreme = |start: f64, sign: Sign| {
+        let options = CvodeOptions::new(1e-2, 1e-3).sign_constraints([sign]);
+        let mut solver = Cvode::new(decay, 0.0, &[start], &options).unwrap();
+        let mut extreme = start;
+        while solver.t() < 1.0 {
+            solver.step(1.0).unwrap();
+            extreme =
+                if start > 0.0 { extreme.min(solver.y()[0]) } else { extreme.max(solver.y()[0]) };
+        }
+        println!("{sign:?}: {extreme:e}");
+        extreme
+    };
+    assert!(extreme(1.0, Sign::Free) < -1e-5 && extreme(-1.0, Sign::Free) > 1e-5);
+    assert!(extreme(1.0, Sign::NonNegative) >= 0.0 && extreme(-1.0, Sign::NonPositive) <= 0.0);
+    assert!(extreme(1.0, Sign::Positive) > 0.0 && extreme(-1.0, Sign::Negative) < 0.0);
+}
+
+fn cause<T: Debug>(result: Result<T, Error>) -> (Cause, f64) {
+    match result {
+        Err(Error::Integration(error)) => {
+            println!("{error}");
+            (error.cause, error.t)
+        }
+        other => panic!("{other:?} is not an integration error"),
+    }
+}
+
+/// y2 = 1 - t: no method keeps it positive beyond t = 1.
+#[test]
+fn equations_that_lead_across_the_bound_are_an_error() {
+    let signs = [Sign::Free, Sign::NonNegative];
+    let rhs = |_t: f64, _y: &[f64], ydot: &mut [f64]| {
+        ydot.copy_from_slice(&[0.0, -1.0]);
+        Ok(())
+    };
+    let y0 = [-1.0, 1.0];
+    let cvode = CvodeOptions::new(1e-6, 1e-9).sign_constraints(signs).max_steps(1000);
+    let arkode = ArkodeOptions::new(1e-6, 1e-9).sign_constraints(signs).max_steps(1000);
+    let explicit = arkode.clone().table(ButcherTable::explicit(4).unwrap());
+    let residual = |_t: f64, _y: &[f64], yp: &[f64], r: &mut [f64]| {
+        r.copy_from_slice(&[yp[0], yp[1] + 1.0]);
+        Ok(())
+    };
+    let ida = IdaOptions::new(1e-6, 1e-9).sign_constraints(signs).max_steps(1000);
+    let runs = [
+        cause(Cvode::new(rhs, 0.0, &y0, &cvode).unwrap().solve_to(2.0)),
+        cause(Arkode::new(rhs, 0.0, &y0, &arkode).unwrap().solve_to(2.0)),
+        cause(Arkode::new(rhs, 0.0, &y0, &explicit).unwrap().solve_to(2.0)),
+        cause(Ida::new(residual, 0.0, &y0, &[0.0, -1.0], &ida).unwrap().solve_to(2.0)),
+    ];
+    for (cause, t) in runs {
+        let Cause::SignConstraint { unknown: 1, value } = cause else { panic!("{cause:?}") };
+        assert!(value < 0.0 && (0.9..=1.001).contains(&t), "{value} at {t}");
+    }
+}
+
+#[test]
+fn a_start_beyond_the_bound_is_not_found() {
+    // the second equation asks for -1
+    let system = |_t: f64, y: &[f64], yp: &[f64], r: &mut [f64]| {
+        r.copy_from_slice(&[yp[0] + y[0], y[1] + 1.0]);
+        Ok(())
+    };
+    let options = IdaOptions::new(1e-6, 1e-8)
+        .differential([true, false])
+        .sign_constraints([Sign::Free, Sign::NonNegative]);
+    let mut solver = Ida::new(system, 0.0, &[1.0, 0.5], &[-1.0, 0.0], &options).unwrap();
+    let (cause, _) = cause(solver.consistent_start(InitialCondition::Algebraic, 1.0));
+    assert!(matches!(cause, Cause::SignConstraint { unknown: 1, .. }), "{cause:?}");
+}
+
+#[test]
+fn unusable_constraints_are_named() {
+    fn still(_t: f64, _y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        ydot.fill(0.0);
+        Ok(())
+    }
+    fn refused<T: Debug>(result: Result<T, Error>) -> String {
+        let Err(Error::Input(error)) = result else { panic!("{result:?} is not an input error") };
+        println!("{error}");
+        format!("{} = {}", error.input, error.value)
+    }
+    let cvode = |signs: &[Sign], y0: &[f64]| {
+        let options = CvodeOptions::new(1e-6, 1e-9).sign_constraints(signs);
+        Cvode::new(still, 0.0, y0, &options)
+    };
+    assert_eq!(refused(cvode(&[Sign::Free], &[1.0; 2])), "length of sign_constraints = 1");
+    for (sign, y) in [
+        (Sign::NonNegative, -1.0),
+        (Sign::Positive, 0.0),
+        (Sign::NonPositive, 1.0),
+        (Sign::Negative, 0.0),
+    ] {
+        let expected = format!("y0 = {y:?} in component 1");
+        assert_eq!(refused(cvode(&[Sign::Free, sign], &[-1.0, y])), expected);
+    }
+    let options = ArkodeOptions::new(1e-6, 1e-9).sign_constraints([Sign::NonNegative]);
+    let fixed = options.clone().fixed_step(0.1);
+    assert_eq!(
+        refused(Arkode::new(still, 0.0, &[1.0], &fixed)),
+        "sign_constraints = given with fixed_step"
+    );
+
+    let mut solver = cvode(&[Sign::Free, Sign::NonNegative], &[0.0; 2]).unwrap();
+    assert_eq!(refused(solver.reinit(0.0, &[0.0, -1.0])), "y = -1.0 in component 1");
+    solver.reinit(0.0, &[-1.0, 0.0]).unwrap();
+    solver.solve_to(1.0).unwrap();
+    let mut solver = Arkode::new(still, 0.0, &[1.0], &options).unwrap();
+    solver.solve_to(1.0).unwrap();
+    assert_eq!(refused(solver.resume(1.0, &[-1.0])), "y = -1.0 in component 0");
+}
