@@ -61,6 +61,8 @@ pub enum Callback {
     Residual,
     /// `dense_jacobian`, `banded_jacobian` or `sparse_jacobian`
     Jacobian,
+    /// `dense_mass`, `banded_mass` or `sparse_mass`
+    Mass,
     /// `newton_setup`
     NewtonSetup,
     /// `newton_solve`
@@ -77,6 +79,7 @@ impl fmt::Display for Callback {
             Self::Rhs => "the right-hand side",
             Self::Residual => "the residual",
             Self::Jacobian => "the Jacobian",
+            Self::Mass => "the mass matrix",
             Self::NewtonSetup => "newton_setup",
             Self::NewtonSolve => "newton_solve",
             Self::Roots => "the root functions",
@@ -129,6 +132,8 @@ pub enum Cause {
     Convergence,
     /// The Newton matrix could not be factorized.
     LinearSolver,
+    /// The mass matrix could not be factorized.
+    MassMatrix,
     /// The initial values of a DAE do not satisfy its equations, or none could be found.
     InconsistentStart,
     /// An unknown does not keep the sign that `sign_constraints` ask for, whatever the step size, or the steps
@@ -162,6 +167,7 @@ impl Cause {
                 "the nonlinear iteration does not converge at the smallest step".into()
             }
             Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
+            Self::MassMatrix => "the mass matrix cannot be factorized".into(),
             Self::InconsistentStart => "the initial values do not satisfy the equations".into(),
             Self::SignConstraint { unknown, value } => {
                 format!(
@@ -199,6 +205,10 @@ impl Cause {
             }
             Self::LinearSolver => {
                 "look for a zero row or column of the Jacobian; a DAE has to be of index 1"
+            }
+            Self::MassMatrix => {
+                "look for an unknown without mass, a zero row or column: IDA takes singular mass matrices, \
+                 by MassForm"
             }
             Self::InconsistentStart => {
                 "evaluate the residual at the start, or let consistent_start find the missing \

@@ -1,6 +1,9 @@
 //! Options that all integrators share, and the checks of their input.
 
-use crate::input::InputError;
+use crate::{
+    input::InputError,
+    ode::{MassKind, Ode},
+};
 
 /// Options of the step sizes.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +73,15 @@ pub(crate) fn check_start(t0: f64, y0: &[f64]) -> Result<(), InputError> {
 /// Checks that a time is finite.
 pub(crate) fn check_time(input: &str, t: f64) -> Result<(), InputError> {
     if t.is_finite() { Ok(()) } else { Err(InputError::new(input, t, "times are finite")) }
+}
+
+/// Checks that a system for an integrator of y' = f(t, y) has no mass matrix.
+pub(crate) fn check_no_mass(system: &impl Ode) -> Result<(), InputError> {
+    if system.mass_kind() == MassKind::Identity {
+        return Ok(());
+    }
+    let mend = "this integrator takes none: take Arkode, or Ida with MassForm";
+    Err(InputError::new("mass matrix", format!("{:?}", system.mass_kind()), mend))
 }
 
 /// Checks that every number of an input is finite.

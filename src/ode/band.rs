@@ -34,6 +34,18 @@ impl<'a> BandMut<'a> {
         Self { data, stride, diagonal, lower, upper }
     }
 
+    /// The same matrix, lent for a shorter time.
+    #[must_use]
+    pub fn reborrow(&mut self) -> BandMut<'_> {
+        BandMut { data: self.data, ..*self }
+    }
+
+    /// Number of rows, and of columns.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.data.len() / self.stride
+    }
+
     /// Diagonals below the main one.
     #[must_use]
     pub fn lower(&self) -> usize {
@@ -48,7 +60,7 @@ impl<'a> BandMut<'a> {
 
     fn place(&self, (i, j): (usize, usize)) -> usize {
         assert!(
-            i <= j + self.lower && j <= i + self.upper && i < self.data.len() / self.stride,
+            i <= j + self.lower && j <= i + self.upper && i < self.dimension(),
             "entry ({i}, {j}) lies outside the band of {} lower and {} upper diagonals",
             self.lower,
             self.upper

@@ -6,6 +6,7 @@ use super::band::BandMut;
 use super::dae::Dae;
 use super::failure::Failure;
 use super::first_order::Ode;
+use super::mass::MassKind;
 
 /// A system lent to an integrator, which otherwise owns it.
 ///
@@ -27,44 +28,19 @@ macro_rules! ode_within {
             self.0.rhs(t, y, ydot)
         }
 
-        fn dense_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            jacobian: MatMut<'_, f64>,
-        ) -> Result<(), Failure> {
+        fn dense_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], jacobian: MatMut<'_, f64>) -> Result<(), Failure> {
             self.0.dense_jacobian(t, y, ydot, jacobian)
         }
 
-        fn banded_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            jacobian: BandMut<'_>,
-        ) -> Result<(), Failure> {
+        fn banded_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], jacobian: BandMut<'_>) -> Result<(), Failure> {
             self.0.banded_jacobian(t, y, ydot, jacobian)
         }
 
-        fn sparse_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            values: &mut [f64],
-        ) -> Result<(), Failure> {
+        fn sparse_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], values: &mut [f64]) -> Result<(), Failure> {
             self.0.sparse_jacobian(t, y, ydot, values)
         }
 
-        fn newton_setup(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            gamma: f64,
-            reuse: bool,
-        ) -> Result<bool, Failure> {
+        fn newton_setup(&mut self, t: f64, y: &[f64], ydot: &[f64], gamma: f64, reuse: bool) -> Result<bool, Failure> {
             self.0.newton_setup(t, y, ydot, gamma, reuse)
         }
 
@@ -74,6 +50,22 @@ macro_rules! ode_within {
 
         fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
             self.0.newton_rhs(t, y, ydot)
+        }
+
+        fn mass_kind(&self) -> MassKind {
+            self.0.mass_kind()
+        }
+
+        fn dense_mass(&mut self, t: f64, mass: MatMut<'_, f64>) -> Result<(), Failure> {
+            self.0.dense_mass(t, mass)
+        }
+
+        fn banded_mass(&mut self, t: f64, mass: BandMut<'_>) -> Result<(), Failure> {
+            self.0.banded_mass(t, mass)
+        }
+
+        fn sparse_mass(&mut self, t: f64, values: &mut [f64]) -> Result<(), Failure> {
+            self.0.sparse_mass(t, values)
         }
 
         fn root_count(&self) -> usize {
@@ -88,7 +80,7 @@ macro_rules! ode_within {
             self.0.parameters()
         }
 
-        fn set_parameters(&mut self, values: &[f64]) {
+        fn set_parameters(&mut self, values: &[f64])  {
             self.0.set_parameters(values);
         }
     };
@@ -97,46 +89,19 @@ macro_rules! ode_within {
 /// Implements [`Dae`] by the system in field 0.
 macro_rules! dae_within {
     () => {
-        fn residual(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            yp: &[f64],
-            residual: &mut [f64],
-        ) -> Result<(), Failure> {
+        fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Failure> {
             self.0.residual(t, y, yp, residual)
         }
 
-        fn dense_jacobian(
-            &mut self,
-            t: f64,
-            cj: f64,
-            y: &[f64],
-            yp: &[f64],
-            jacobian: MatMut<'_, f64>,
-        ) -> Result<(), Failure> {
+        fn dense_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: MatMut<'_, f64>) -> Result<(), Failure> {
             self.0.dense_jacobian(t, cj, y, yp, jacobian)
         }
 
-        fn banded_jacobian(
-            &mut self,
-            t: f64,
-            cj: f64,
-            y: &[f64],
-            yp: &[f64],
-            jacobian: BandMut<'_>,
-        ) -> Result<(), Failure> {
+        fn banded_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: BandMut<'_>) -> Result<(), Failure> {
             self.0.banded_jacobian(t, cj, y, yp, jacobian)
         }
 
-        fn sparse_jacobian(
-            &mut self,
-            t: f64,
-            cj: f64,
-            y: &[f64],
-            yp: &[f64],
-            values: &mut [f64],
-        ) -> Result<(), Failure> {
+        fn sparse_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], values: &mut [f64]) -> Result<(), Failure> {
             self.0.sparse_jacobian(t, cj, y, yp, values)
         }
 
@@ -160,7 +125,7 @@ macro_rules! dae_within {
             self.0.parameters()
         }
 
-        fn set_parameters(&mut self, values: &[f64]) {
+        fn set_parameters(&mut self, values: &[f64])  {
             self.0.set_parameters(values);
         }
     };

@@ -4,8 +4,9 @@ use faer::MatMut;
 
 use super::band::BandMut;
 use super::failure::{Failure, missing};
+use super::mass::MassKind;
 
-/// y' = f(t, y).
+/// y' = f(t, y), or M y' = f(t, y) with a [mass matrix](Self::mass_kind).
 ///
 /// Only [`rhs`](Self::rhs) is required. The other methods are called when the integrator was
 /// configured to use them; their defaults fail with [`Failure::Fatal`].
@@ -78,6 +79,31 @@ pub trait Ode {
     /// of the matrix anyway. Default: all of `rhs`.
     fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.rhs(t, y, ydot)
+    }
+
+    /// Whether there is a mass matrix M, which makes the equations M y' = f(t, y). Default: there is none.
+    ///
+    /// [`rhs`](Self::rhs) and the Jacobians are those of f then, and one of the three methods below
+    /// writes M, in the form of the matrix that the linear solver works on.
+    fn mass_kind(&self) -> MassKind {
+        MassKind::Identity
+    }
+
+    /// Writes the mass matrix M(t) into the dense matrix `mass` (zero on entry).
+    fn dense_mass(&mut self, _t: f64, _mass: MatMut<'_, f64>) -> Result<(), Failure> {
+        Err(missing("dense_mass"))
+    }
+
+    /// Writes the mass matrix M(t) into the band matrix `mass` (zero on entry), whose band is that of
+    /// the linear solver.
+    fn banded_mass(&mut self, _t: f64, _mass: BandMut<'_>) -> Result<(), Failure> {
+        Err(missing("banded_mass"))
+    }
+
+    /// Writes the values of the mass matrix M(t), column by column, for the sparsity pattern that the
+    /// linear solver was given (`values` is zero on entry): it has room for M and df/dy.
+    fn sparse_mass(&mut self, _t: f64, _values: &mut [f64]) -> Result<(), Failure> {
+        Err(missing("sparse_mass"))
     }
 
     /// Number of root functions (events); 0 means none.

@@ -3,7 +3,8 @@
 //!
 //! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method `rk`.
 //! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
-//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with parameters; a struct implements
+//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with parameters,
+//! [`with_mass`] with a mass matrix; a struct implements
 //! the trait when it wants to hand over root functions or a linear solver of its own. An
 //! integrator owns its system; [`Borrowed`] lends it one instead.
 
@@ -13,7 +14,9 @@ mod closures;
 mod dae;
 mod failure;
 mod first_order;
+mod mass;
 mod second_order;
+mod with_mass;
 
 pub use band::BandMut;
 pub use borrowed::{Borrowed, Boxed};
@@ -24,4 +27,6 @@ pub use closures::{
 pub use dae::Dae;
 pub use failure::Failure;
 pub use first_order::Ode;
+pub use mass::MassKind;
 pub use second_order::{EnergyBalance, Kick, Rates, SecondOrder};
+pub use with_mass::{MassMatrix, WithMass, with_mass};

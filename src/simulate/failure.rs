@@ -56,7 +56,10 @@ pub(super) fn in_mechanics(source: Failed) -> Failed {
             "no start that satisfies the constraints was found",
             "look for constraints that contradict each other or the velocities at the start",
         ),
-        Cause::TooManySteps { .. } | Cause::SignConstraint { .. } | Cause::Other => return source,
+        Cause::TooManySteps { .. }
+        | Cause::SignConstraint { .. }
+        | Cause::MassMatrix
+        | Cause::Other => return source,
     };
     format!("{what}: {mend} ({}, order {})", error.integrator, error.order).into()
 }

@@ -54,6 +54,9 @@ pub(super) struct Functions {
     /// Codes of `solve` for a call that can not be made.
     pub(super) refusals: &'static [i32],
 
+    /// Codes of `solve` for a mass matrix that can not be factorized.
+    pub(super) mass_failures: &'static [i32],
+
     pub(super) set_error_handler: Named<SetErrorHandler>,
     pub(super) set_user_data: Set<*mut c_void>,
     pub(super) scalar_tolerances: Named<unsafe extern "C" fn(*mut c_void, f64, f64) -> i32>,

@@ -147,6 +147,26 @@ impl Pattern {
         Some(self.column_pointers[column] as usize + within)
     }
 
+    /// The values of a matrix with these (row, column, value) entries, in the order of this pattern; values
+    /// at the same place add up.
+    ///
+    /// # Errors
+    /// If an entry is not stored.
+    pub fn values(
+        &self,
+        entries: impl IntoIterator<Item = (usize, usize, f64)>,
+    ) -> Result<Vec<f64>, InputError> {
+        let mut values = vec![0.0; self.entry_count()];
+        for (row, column, value) in entries {
+            let place = self.position(row, column).ok_or_else(|| {
+                let mend = "the sparsity pattern has to have it, with those of all matrices";
+                InputError::new("entry", format!("({row}, {column})"), mend)
+            })?;
+            values[place] += value;
+        }
+        Ok(values)
+    }
+
     /// Rows of the entries of column `j`.
     pub(super) fn column(&self, j: usize) -> &[i64] {
         &self.row_indices[self.places(j)]

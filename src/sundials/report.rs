@@ -98,6 +98,9 @@ impl<K, S> Solver<K, S> {
                 let steps = u64::from(self.max_steps);
                 (Cause::TooManySteps { steps, target, notice: None }, true)
             }
+            code if self.memory.functions.mass_failures.contains(&code) => {
+                (Cause::MassMatrix, true)
+            }
             ffi::CV_TOO_MUCH_ACC => (Cause::TooMuchAccuracy, false),
             ffi::IDA_LINESEARCH_FAIL | ffi::IDA_NO_RECOVERY if is_dae => {
                 (Cause::InconsistentStart, true)

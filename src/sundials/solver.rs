@@ -29,6 +29,8 @@ pub struct Solver<K, S> {
     pub(super) memory: Memory,
     fixed_point: Option<FixedPoint>,
     linear: Option<Linear>,
+    /// Mass matrix and its linear solver, if there is one.
+    pub(super) mass: Option<Linear>,
     pub(super) y: Vector,
     /// The time derivative of `y`, of a DAE only.
     pub(super) yp: Option<Vector>,
@@ -126,6 +128,7 @@ impl<K, S> Solver<K, S> {
             memory,
             fixed_point: None,
             linear: None,
+            mass: None,
             y,
             yp,
             scratch,

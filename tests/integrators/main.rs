@@ -12,6 +12,7 @@ mod jacobians;
 mod lifecycle;
 mod mass;
 mod patterns;
+mod mass_matrix;
 mod rk;
 mod roots;
 mod sparse;

@@ -1,6 +1,7 @@
 //! ARKODE: Runge-Kutta methods, implicit and explicit.
 
 mod butcher_table;
+mod mass;
 mod options;
 mod setup;
 

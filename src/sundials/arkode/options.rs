@@ -73,7 +73,7 @@ impl ArkodeOptions {
     }
 
     /// The method. Default: [`ButcherTable::default`]. What follows about Newton's iteration is for
-    /// implicit methods; explicit ones have none.
+    /// implicit methods; explicit ones have none. (The linear solver gives a mass matrix its form, though.)
     pub fn table(mut self, table: ButcherTable) -> Self {
         self.table = table;
         self

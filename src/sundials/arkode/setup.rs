@@ -2,10 +2,10 @@
 
 use std::{ffi::c_void, ptr};
 
-use super::options::ArkodeOptions;
+use super::{mass, options::ArkodeOptions};
 use crate::{
     integrate::{Error, check_start},
-    ode::Ode,
+    ode::{MassKind, Ode},
     sundials::{
         ffi,
         functions::Functions,
@@ -18,7 +18,7 @@ use crate::{
     },
 };
 
-/// Integrates y' = f(t, y) by a Runge-Kutta method with variable step size.
+/// Integrates y' = f(t, y), or M y' = f(t, y) with a regular [mass matrix](Ode::mass_kind), by a Runge-Kutta method with variable step size.
 ///
 /// Diagonally implicit methods are for stiff systems, among them lightly damped oscillations,
 /// which multistep methods of high order can not follow; explicit ones for systems that are not
@@ -55,6 +55,7 @@ impl<S: Ode> Arkode<S> {
         reset: Some(("ARKStepReset", ffi::ARKStepReset)),
         reinit_forgets_stop_time: true,
         refusals: &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T],
+        mass_failures: &[ffi::ARK_MASSSETUP_FAIL, ffi::ARK_MASSSOLVE_FAIL],
         set_error_handler: ("ARKStepSetErrHandlerFn", ffi::ARKStepSetErrHandlerFn),
         set_user_data: ("ARKStepSetUserData", ffi::ARKStepSetUserData),
         scalar_tolerances: ("ARKStepSStolerances", ffi::ARKStepSStolerances),
@@ -156,7 +157,14 @@ impl<S: Ode> Arkode<S> {
             true => (Self::IMPLICIT, None, Some(rhs::<S> as _)),
             false => (Self::EXPLICIT, Some(rhs::<S> as _), None),
         };
-        let solver = options.nonlinear.linear_solver().filter(|_| is_implicit).cloned();
+        let mass_kind = system.mass_kind();
+        let solver = match mass_kind {
+            MassKind::Identity => {
+                options.nonlinear.linear_solver().filter(|_| is_implicit).cloned()
+            }
+            _ => Some(mass::check(options.nonlinear.linear_solver())?),
+        };
+        let mass_form = solver.clone().filter(|_| mass_kind != MassKind::Identity);
         // SAFETY: `create` gets a live context and a vector of its own, the table is that of
         // ARKODE, and the callbacks fit the host that is registered as their data.
         let mut arkode = unsafe {
@@ -191,6 +199,9 @@ impl<S: Ode> Arkode<S> {
         }
         if is_implicit {
             solve_stages(&mut arkode, options)?;
+        }
+        if let Some(form) = mass_form {
+            mass::attach(&mut arkode, &form, mass_kind)?;
         }
         Ok(arkode)
     }

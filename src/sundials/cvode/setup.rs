@@ -2,7 +2,7 @@
 
 use super::options::{CvodeOptions, Multistep};
 use crate::{
-    integrate::{Error, check_start},
+    integrate::{Error, check_no_mass, check_start},
     ode::Ode,
     sundials::{
         ffi,
@@ -38,6 +38,7 @@ static FUNCTIONS: Functions = Functions {
     reinit_forgets_stop_time: false,
     reset: None,
     refusals: &[ffi::CV_ILL_INPUT, ffi::CV_TOO_CLOSE, ffi::CV_BAD_T],
+    mass_failures: &[],
     set_error_handler: ("CVodeSetErrHandlerFn", ffi::CVodeSetErrHandlerFn),
     set_user_data: ("CVodeSetUserData", ffi::CVodeSetUserData),
     scalar_tolerances: ("CVodeSetTolerances", ffi::CVodeSStolerances),
@@ -78,6 +79,7 @@ impl<S: Ode> Cvode<S> {
     pub fn new(system: S, t0: f64, y0: &[f64], options: &CvodeOptions) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
+        check_no_mass(&system)?;
 
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
         let method = match options.method {

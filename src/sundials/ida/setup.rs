@@ -39,6 +39,7 @@ static FUNCTIONS: Functions = Functions {
     reinit_forgets_stop_time: false,
     reset: None,
     refusals: &[ffi::IDA_ILL_INPUT],
+    mass_failures: &[],
     set_error_handler: ("IDASetErrHandlerFn", ffi::IDASetErrHandlerFn),
     set_user_data: ("IDASetUserData", ffi::IDASetUserData),
     scalar_tolerances: ("IDASetTolerances", ffi::IDASStolerances),
