@@ -69,6 +69,8 @@ pub enum Callback {
     NewtonSolve,
     /// `roots`
     Roots,
+    /// `quadratures`
+    Quadratures,
     /// The forces and constraints of a [`SecondOrder`](crate::ode::SecondOrder) system.
     Forces,
 }
@@ -83,6 +85,7 @@ impl fmt::Display for Callback {
             Self::NewtonSetup => "newton_setup",
             Self::NewtonSolve => "newton_solve",
             Self::Roots => "the root functions",
+            Self::Quadratures => "the integrands",
             Self::Forces => "the equations of motion",
         })
     }

@@ -34,6 +34,8 @@ pub struct Statistics {
     pub error_test_failures: u64,
     /// Evaluations of the root functions.
     pub root_evaluations: u64,
+    /// Evaluations of the integrands of quadratures (CVODE, IDA).
+    pub quadrature_evaluations: u64,
     /// Order reductions by stability-limit detection (CVODE).
     pub stability_reductions: u64,
     /// Order of the last step.

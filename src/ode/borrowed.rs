@@ -76,6 +76,14 @@ macro_rules! ode_within {
             self.0.roots(t, y, g)
         }
 
+        fn quadrature_count(&self) -> usize {
+            self.0.quadrature_count()
+        }
+
+        fn quadratures(&mut self, t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+            self.0.quadratures(t, y, qdot)
+        }
+
         fn parameters(&self) -> &[f64] {
             self.0.parameters()
         }
@@ -119,6 +127,14 @@ macro_rules! dae_within {
 
         fn roots(&mut self, t: f64, y: &[f64], yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
             self.0.roots(t, y, yp, g)
+        }
+
+        fn quadrature_count(&self) -> usize {
+            self.0.quadrature_count()
+        }
+
+        fn quadratures(&mut self, t: f64, y: &[f64], yp: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+            self.0.quadratures(t, y, yp, qdot)
         }
 
         fn parameters(&self) -> &[f64] {

@@ -75,6 +75,22 @@ pub trait Dae {
         Err(missing("roots"))
     }
 
+    /// Number of integrals that are computed beside the run; 0 means none.
+    fn quadrature_count(&self) -> usize {
+        0
+    }
+
+    /// Writes the integrands h(t, y, y') of the integrals q' = h, as in [`Ode`](super::Ode).
+    fn quadratures(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _qdot: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("quadratures"))
+    }
+
     /// The parameters that the equations depend on, for what changes them or asks for derivatives with
     /// respect to them. Default: none.
     fn parameters(&self) -> &[f64] {

@@ -49,6 +49,25 @@ pub(super) unsafe extern "C" fn roots<S: Dae>(
     host.guard_output(Callback::Roots, t, g, |system, g| system.roots(t, y, yp, g))
 }
 
+/// `IDAQuadRhsFn`
+pub(super) unsafe extern "C" fn quadratures<S: Dae>(
+    t: f64,
+    y: ffi::N_Vector,
+    yp: ffi::N_Vector,
+    qdot: ffi::N_Vector,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module; `qdot` has as many places as integrals were declared.
+    let (host, y, yp, qdot) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let (n, count) = (host.n, host.quadrature_count);
+        (host, slice(y, n), slice(yp, n), slice_mut(qdot, count))
+    };
+    host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| {
+        system.quadratures(t, y, yp, qdot)
+    })
+}
+
 /// `IDALsJacFn`; for a user-supplied solver it sets up the matrix that the system keeps.
 #[allow(clippy::too_many_arguments)] // as C has it
 pub(super) unsafe extern "C" fn jacobian<S: Dae>(

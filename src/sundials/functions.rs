@@ -94,6 +94,20 @@ pub(super) struct Functions {
     /// CVODE alone detects stability limits.
     pub(super) get_stability_reductions: Option<Get<i64>>,
     pub(super) get_tolerance_scale: Get<f64>,
+    /// ARKODE has none.
+    pub(super) quadratures: Option<&'static QuadratureFunctions>,
+}
+
+/// What CVODES and IDAS have for quadratures.
+pub(super) struct QuadratureFunctions {
+    pub(super) reinit: Set<ffi::N_Vector>,
+    pub(super) scalar_tolerances: Named<unsafe extern "C" fn(*mut c_void, f64, f64) -> i32>,
+    pub(super) vector_tolerances:
+        Named<unsafe extern "C" fn(*mut c_void, f64, ffi::N_Vector) -> i32>,
+    pub(super) set_error_control: Set<i32>,
+    pub(super) get: Named<unsafe extern "C" fn(*mut c_void, *mut f64, ffi::N_Vector) -> i32>,
+    pub(super) get_dky: Named<unsafe extern "C" fn(*mut c_void, f64, i32, ffi::N_Vector) -> i32>,
+    pub(super) get_evaluations: Get<i64>,
 }
 
 // Tasks and codes that all integrators number alike: the shared code has CVODE's names for them.

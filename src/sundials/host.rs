@@ -40,6 +40,7 @@ pub(super) struct Host<S> {
     /// Number of unknowns: the length of every vector.
     pub(super) n: usize,
     pub(super) root_count: usize,
+    pub(super) quadrature_count: usize,
     /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
     /// None for a fixed-point iteration.
@@ -131,6 +132,7 @@ impl<S> Host<S> {
             system,
             n,
             root_count,
+            quadrature_count: 0,
             linear_solver,
             custom_solve: None,
             differences: None,

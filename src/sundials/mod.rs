@@ -30,6 +30,7 @@
 
 mod arkode;
 mod colouring;
+mod beside;
 mod context;
 mod cvode;
 mod dae_callbacks;
@@ -48,6 +49,7 @@ mod ode_callbacks;
 mod options;
 mod pattern;
 mod pattern_search;
+mod quadratures;
 mod report;
 mod signs;
 mod solver;
@@ -63,6 +65,7 @@ pub use linear_solver::{Jacobian, LinearSolver};
 pub use mass_form::MassForm;
 pub use pattern::Pattern;
 pub use signs::Sign;
+pub use quadratures::WithSensitivities;
 pub use solver::Solver;
 pub use version::{suitesparse_version, version};
 

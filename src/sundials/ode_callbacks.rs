@@ -77,6 +77,22 @@ pub(super) unsafe extern "C" fn roots<S: Ode>(
     host.guard_output(Callback::Roots, t, g, |system, g| system.roots(t, y, g))
 }
 
+/// `CVQuadRhsFn`
+pub(super) unsafe extern "C" fn quadratures<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    qdot: ffi::N_Vector,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module; `qdot` has as many places as integrals were declared.
+    let (host, y, qdot) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let (n, count) = (host.n, host.quadrature_count);
+        (host, slice(y, n), slice_mut(qdot, count))
+    };
+    host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| system.quadratures(t, y, qdot))
+}
+
 /// `CVLsJacFn`
 #[allow(clippy::too_many_arguments)] // as C has it
 pub(super) unsafe extern "C" fn jacobian<S: Ode>(

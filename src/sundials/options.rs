@@ -83,6 +83,18 @@ macro_rules! builder_methods {
             self
         }
     };
+    (quadratures) => {
+        /// Lets the errors of the integrals [`quadratures`](crate::ode::Ode::quadratures), too, decide on the step size, with
+        /// these tolerances. Default: the unknowns alone do.
+        pub fn quadrature_tolerances(
+            mut self,
+            rtol: f64,
+            atol: impl Into<AbsoluteTolerance>,
+        ) -> Self {
+            self.quadrature_tolerances = Some(Tolerances::new(rtol, atol));
+            self
+        }
+    };
     (nonlinear) => {
         /// Newton iteration with this linear solver (the default, dense with difference quotients).
         pub fn newton(mut self, solver: LinearSolver) -> Self {

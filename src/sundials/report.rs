@@ -33,6 +33,8 @@ impl<K, S> Solver<K, S> {
         let ours = self.host.get().differences.as_ref().map_or(0, |ours| ours.evaluations);
         s.difference_quotient_evaluations = count(functions.get_quotient_evaluations) + ours;
         s.root_evaluations = count(functions.get_root_evaluations);
+        s.quadrature_evaluations =
+            functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
         s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
         s
     }

@@ -3,6 +3,7 @@
 use std::{ffi::c_void, fmt, ptr};
 
 use super::{
+    beside::Quadratures,
     context::Context,
     differences::Differences,
     ffi,
@@ -35,6 +36,7 @@ pub struct Solver<K, S> {
     /// The time derivative of `y`, of a DAE only.
     pub(super) yp: Option<Vector>,
     pub(super) scratch: Vector,
+    pub(super) quadratures: Option<Quadratures>,
     pub(super) host: HostBox<S>,
     pub(super) context: Context,
     pub(super) t: f64,
@@ -132,6 +134,7 @@ impl<K, S> Solver<K, S> {
             y,
             yp,
             scratch,
+            quadratures: None,
             host,
             context,
             t: start.t,

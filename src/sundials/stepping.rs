@@ -1,5 +1,7 @@
 //! An integrator of SUNDIALS at work.
 
+use std::ffi::c_void;
+
 use super::{
     ffi,
     signs::{self, check_state},
@@ -49,33 +51,21 @@ impl<K, S> Integrator for Solver<K, S> {
         check_length("length of out", out.len(), self.y().len())?;
         check_time("t", t)?;
         if !self.has_step {
-            return self.only_state(t, derivative, out);
+            self.check_start_only(t, derivative)?;
+            out.copy_from_slice(self.y());
+            return Ok(());
         }
         if let Some(degree) = self.interpolant_degree.filter(|degree| derivative > *degree) {
             let mend = format!("the polynomials between the steps are of degree {degree}");
             return Err(Error::input("derivative", derivative, mend));
         }
-        let order = derivative.min(i32::MAX as u32) as i32;
-        let functions = self.memory.functions;
-        let (name, get_dky) = functions.get_dky;
-        let (memory, scratch) = (self.memory.raw, self.scratch.raw());
-        self.host.get_mut().troubles.clear();
+        let (name, get_dky) = self.memory.functions.get_dky;
+        let scratch = self.scratch.raw();
         // SAFETY: memory and vector are alive; `&mut self` keeps others away while ARKODE evaluates
         // the right-hand side.
-        let code = unsafe { get_dky(memory, t, order, scratch) };
-        self.host.get_mut().troubles.resume_panic();
-        if code == functions.bad_time {
-            let (start, end) = self.last_step();
-            return Err(Error::input("t", t, format!("the last step is [{start}, {end}]")));
-        }
-        if code == functions.bad_derivative {
-            let mend = format!("the last step was of order {}", self.last_order());
-            return Err(Error::input("derivative", derivative, mend));
-        }
-        if code == ffi::CV_RHSFUNC_FAIL {
-            return Err(self.stopped(code, t));
-        }
-        self.host.accept(name, code)?;
+        self.look_back(name, t, derivative, |memory, t, order| unsafe {
+            get_dky(memory, t, order, scratch)
+        })?;
         out.copy_from_slice(self.scratch.as_slice());
         Ok(())
     }
@@ -105,6 +95,7 @@ impl<K, S> Integrator for Solver<K, S> {
         // SAFETY: memory and vectors are alive; the integrator copies the vectors.
         let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
         self.host.accept(name, code)?;
+        self.restart_quadratures()?;
         self.t = t;
         (self.has_step, self.failed_within) = (false, false);
         let host = self.host.get_mut();
@@ -188,6 +179,9 @@ impl<K, S> Solver<K, S> {
             (self.has_step, self.failed_within) = (false, true);
         }
         self.host.get_mut().troubles.resume_panic();
+        if self.has_step {
+            self.read_quadratures()?;
+        }
         if code >= 0 && !self.signs.is_empty() {
             self.read_corrected()?;
         }
@@ -240,8 +234,35 @@ impl<K, S> Solver<K, S> {
         Ok(())
     }
 
-    /// Answers [`interpolate`](Integrator::interpolate) where there is no step to look into.
-    fn only_state(&self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+    /// Calls a function `get_dky` of C, of the name `name`, that interpolates within the last step.
+    pub(super) fn look_back(
+        &mut self,
+        name: &'static str,
+        t: f64,
+        derivative: u32,
+        get_dky: impl FnOnce(*mut c_void, f64, i32) -> i32,
+    ) -> Result<(), Error> {
+        let order = derivative.min(i32::MAX as u32) as i32;
+        let functions = self.memory.functions;
+        self.host.get_mut().troubles.clear();
+        let code = get_dky(self.memory.raw, t, order);
+        self.host.get_mut().troubles.resume_panic();
+        if code == functions.bad_time {
+            let (start, end) = self.last_step();
+            return Err(Error::input("t", t, format!("the last step is [{start}, {end}]")));
+        }
+        if code == functions.bad_derivative {
+            let mend = format!("the last step was of order {}", self.last_order());
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        if code == ffi::CV_RHSFUNC_FAIL {
+            return Err(self.stopped(code, t));
+        }
+        self.host.accept(name, code)
+    }
+
+    /// Checks that nothing but the present values is asked for, where there is no step to look into.
+    pub(super) fn check_start_only(&self, t: f64, derivative: u32) -> Result<(), Error> {
         if t != self.t {
             let mend =
                 format!("without a step to look into only the state at {:?} is known", self.t);
@@ -251,7 +272,6 @@ impl<K, S> Solver<K, S> {
             let mend = "it takes a step: without one only the state itself is known";
             return Err(Error::input("derivative", derivative, mend));
         }
-        out.copy_from_slice(self.y());
         Ok(())
     }
 }

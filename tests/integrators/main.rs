@@ -13,6 +13,7 @@ mod lifecycle;
 mod mass;
 mod patterns;
 mod mass_matrix;
+mod quadratures;
 mod rk;
 mod roots;
 mod sparse;

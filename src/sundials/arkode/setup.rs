@@ -85,6 +85,7 @@ impl<S: Ode> Arkode<S> {
         get_quotient_evaluations: ffi::ARKStepGetNumLinRhsEvals,
         get_root_evaluations: ffi::ARKStepGetNumGEvals,
         get_stability_reductions: None,
+        quadratures: None,
         get_tolerance_scale: ffi::ARKStepGetTolScaleFactor,
     };
 

@@ -4,4 +4,4 @@ mod options;
 mod setup;
 
 pub use options::{CvodeOptions, Multistep};
-pub use setup::Cvode;
+pub use setup::{Cvode, CvodeKind};

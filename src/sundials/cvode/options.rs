@@ -35,6 +35,7 @@ pub struct CvodeOptions {
     pub(super) tolerances: Tolerances,
     pub(super) steps: StepOptions,
     pub(super) limits: Limits,
+    pub(super) quadrature_tolerances: Option<Tolerances>,
     pub(super) method: Multistep,
     pub(super) nonlinear: NonlinearOptions,
     pub(super) stability_limit_detection: bool,
@@ -48,6 +49,7 @@ impl CvodeOptions {
             tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
             limits: Limits::default(),
+            quadrature_tolerances: None,
             method: Multistep::Bdf,
             nonlinear: NonlinearOptions::default(),
             stability_limit_detection: false,
@@ -68,6 +70,7 @@ impl CvodeOptions {
     }
 
     builder_methods!(order);
+    builder_methods!(quadratures);
     builder_methods!(nonlinear);
     step_options!();
     builder_methods!(limits);

@@ -6,10 +6,10 @@ use crate::{
     ode::Ode,
     sundials::{
         ffi,
-        functions::Functions,
+        functions::{Functions, QuadratureFunctions},
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
-        ode_callbacks::{jacobian, newton_rhs, newton_setup, rhs, roots},
+        ode_callbacks::{jacobian, newton_rhs, newton_setup, quadratures, rhs, roots},
         solver::{InitialState, Solver},
     },
 };
@@ -69,6 +69,15 @@ static FUNCTIONS: Functions = Functions {
     get_root_evaluations: ffi::CVodeGetNumGEvals,
     get_stability_reductions: Some(ffi::CVodeGetNumStabLimOrderReds),
     get_tolerance_scale: ffi::CVodeGetTolScaleFactor,
+    quadratures: Some(&QuadratureFunctions {
+        reinit: ("CVodeQuadReInit", ffi::CVodeQuadReInit),
+        scalar_tolerances: ("CVodeQuadSStolerances", ffi::CVodeQuadSStolerances),
+        vector_tolerances: ("CVodeQuadSVtolerances", ffi::CVodeQuadSVtolerances),
+        set_error_control: ("CVodeSetQuadErrCon", ffi::CVodeSetQuadErrCon),
+        get: ("CVodeGetQuad", ffi::CVodeGetQuad),
+        get_dky: ("CVodeGetQuadDky", ffi::CVodeGetQuadDky),
+        get_evaluations: ffi::CVodeGetQuadNumRhsEvals,
+    }),
 };
 
 impl<S: Ode> Cvode<S> {
@@ -81,6 +90,7 @@ impl<S: Ode> Cvode<S> {
         options.check(y0)?;
         check_no_mass(&system)?;
 
+        let count = system.quadrature_count();
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
         let method = match options.method {
             Multistep::Bdf => ffi::CV_BDF,
@@ -99,6 +109,14 @@ impl<S: Ode> Cvode<S> {
             cvode.host.accept("CVodeInit", code)?;
             cvode.configure(&options.tolerances, &options.steps, &options.limits)?;
             cvode.set_root_functions(("CVodeRootInit", ffi::CVodeRootInit), Some(roots::<S>))?;
+            let tolerances = options.quadrature_tolerances.as_ref();
+            let integrands = Some(quadratures::<S> as _);
+            cvode.set_quadratures(
+                count,
+                ("CVodeQuadInit", ffi::CVodeQuadInit),
+                integrands,
+                tolerances,
+            )?;
         }
         // SAFETY: the values are plain numbers.
         unsafe {

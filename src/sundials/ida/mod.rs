@@ -5,5 +5,5 @@ mod setup;
 mod start;
 
 pub use options::IdaOptions;
-pub use setup::Ida;
+pub use setup::{Ida, IdaKind};
 pub use start::InitialCondition;

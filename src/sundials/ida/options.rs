@@ -16,6 +16,7 @@ pub struct IdaOptions {
     pub(super) tolerances: Tolerances,
     pub(super) steps: StepOptions,
     pub(super) limits: Limits,
+    pub(super) quadrature_tolerances: Option<Tolerances>,
     pub(super) linear_solver: LinearSolver,
     pub(super) differential: Option<Vec<bool>>,
     pub(super) suppress_algebraic: bool,
@@ -29,6 +30,7 @@ impl IdaOptions {
             tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
             limits: Limits::default(),
+            quadrature_tolerances: None,
             linear_solver: LinearSolver::Dense(Jacobian::DifferenceQuotients),
             differential: None,
             suppress_algebraic: false,
@@ -59,6 +61,7 @@ impl IdaOptions {
     }
 
     builder_methods!(order);
+    builder_methods!(quadratures);
     step_options!();
     builder_methods!(limits);
 

@@ -5,9 +5,9 @@ use crate::{
     integrate::{Error, check_finite, check_length, check_start},
     ode::Dae,
     sundials::{
-        dae_callbacks::{jacobian, residual, roots},
+        dae_callbacks::{jacobian, quadratures, residual, roots},
         ffi,
-        functions::Functions,
+        functions::{Functions, QuadratureFunctions},
         solver::{InitialState, Solver},
         vector::Vector,
     },
@@ -70,6 +70,15 @@ static FUNCTIONS: Functions = Functions {
     get_root_evaluations: ffi::IDAGetNumGEvals,
     get_stability_reductions: None,
     get_tolerance_scale: ffi::IDAGetTolScaleFactor,
+    quadratures: Some(&QuadratureFunctions {
+        reinit: ("IDAQuadReInit", ffi::IDAQuadReInit),
+        scalar_tolerances: ("IDAQuadSStolerances", ffi::IDAQuadSStolerances),
+        vector_tolerances: ("IDAQuadSVtolerances", ffi::IDAQuadSVtolerances),
+        set_error_control: ("IDASetQuadErrCon", ffi::IDASetQuadErrCon),
+        get: ("IDAGetQuad", ffi::IDAGetQuad),
+        get_dky: ("IDAGetQuadDky", ffi::IDAGetQuadDky),
+        get_evaluations: ffi::IDAGetQuadNumRhsEvals,
+    }),
 };
 
 impl<S: Dae> Ida<S> {
@@ -90,6 +99,7 @@ impl<S: Dae> Ida<S> {
         check_finite("yp0", yp0)?;
         options.check(y0)?;
 
+        let count = system.quadrature_count();
         let start = InitialState { t: t0, y: y0, yp: Some(yp0), root_count: system.root_count() };
         let solver = &options.linear_solver;
         let kind = IdaKind { knows_algebraic: options.differential.is_some() };
@@ -106,6 +116,9 @@ impl<S: Dae> Ida<S> {
             ida.host.accept("IDAInit", code)?;
             ida.configure(&options.tolerances, &options.steps, &options.limits)?;
             ida.set_root_functions(("IDARootInit", ffi::IDARootInit), Some(roots::<S>))?;
+            let tolerances = options.quadrature_tolerances.as_ref();
+            let integrands = Some(quadratures::<S> as _);
+            ida.set_quadratures(count, ("IDAQuadInit", ffi::IDAQuadInit), integrands, tolerances)?;
             ida.set_newton(solver, |system, _, r| system.newton_solve(r))?;
             if solver.has_jacobian_callback() {
                 ida.set(("IDASetJacFn", ffi::IDASetJacFn), Some(jacobian::<S> as _))?;
