@@ -3,12 +3,12 @@
 use crate::{
     integrate::Integrator,
     integrate::{Error, Reached, Statistics},
-    ode::{Boxed, Dae, Ode},
+    ode::{Dae, Ode},
     rk::DormandPrince,
     sundials::{Arkode, Cvode, Ida, InitialCondition},
 };
 
-/// An integrator whose system is behind a pointer.
+/// An integrator, whatever its kind and its system.
 pub(super) trait Engine {
     fn t(&self) -> f64;
     fn y(&self) -> &[f64];
@@ -72,7 +72,7 @@ macro_rules! forward {
 
 macro_rules! ode_engine {
     ($integrator:ident) => {
-        impl<'a> Engine for $integrator<Boxed<dyn Ode + 'a>> {
+        impl<S: Ode> Engine for $integrator<S> {
             forward!();
 
             fn yp(&self) -> &[f64] {
@@ -90,7 +90,7 @@ ode_engine!(Cvode);
 ode_engine!(Arkode);
 ode_engine!(DormandPrince);
 
-impl<'a> Engine for Ida<Boxed<dyn Dae + 'a>> {
+impl<S: Dae> Engine for Ida<S> {
     forward!();
 
     fn yp(&self) -> &[f64] {

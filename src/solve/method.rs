@@ -4,10 +4,11 @@ use super::{engine::Engine, options::Options, problem::Equations};
 use crate::{
     input::InputError,
     integrate::Error,
-    ode::Boxed,
+    ode::{Boxed, MassKind},
     rk,
     sundials::{
-        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Multistep,
+        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
+        LinearSolver, MassForm, Multistep,
     },
 };
 
@@ -23,7 +24,7 @@ pub enum Method {
     RungeKutta(ButcherTable),
     /// The internal explicit method of Dormand and Prince, order 5(4): for ODEs that are not stiff. Forward in time.
     DormandPrince,
-    /// IDA, backward differentiation formulas of order 1 to 5: for DAEs.
+    /// IDA, backward differentiation formulas of order 1 to 5: for DAEs, and for ODEs whose mass matrix may be singular.
     Ida,
 }
 
@@ -42,14 +43,19 @@ impl Method {
 
     /// Refuses options that the method does not have.
     fn check(self, options: &Options, equations: &Equations<'_>) -> Result<(), InputError> {
-        let is_dae = matches!(equations, Equations::Dae { .. });
+        let (is_dae, has_mass) = match equations {
+            Equations::Dae { .. } => (true, false),
+            Equations::Ode(system) => (false, system.mass_kind() != MassKind::Identity),
+        };
         let refused = |input: &str, value: String, mend: &str| {
             Err(InputError::new(input, value, format!("{} {mend}", self.name())))
         };
-        if is_dae != (self == Self::Ida) {
+        if is_dae != (self == Self::Ida) && !has_mass {
             let mend = match is_dae {
                 true => "integrates ODEs: take Method::Ida for a DAE",
-                false => "integrates DAEs: take another method for an ODE",
+                false => {
+                    "integrates DAEs, and ODEs with a mass matrix: take another method for this ODE"
+                }
             };
             return refused("method", format!("{self:?}"), mend);
         }
@@ -128,6 +134,14 @@ impl Method {
                 Box::new(Ida::new(Boxed(system), t, y, &yp, &built)?)
             }
             Equations::Ode(system) => match self {
+                Self::Ida => {
+                    let dense = LinearSolver::Dense(Jacobian::DifferenceQuotients);
+                    let solver = options.linear_solver.as_ref().unwrap_or(&dense);
+                    let mut system = MassForm::new(Boxed(system), y.len(), solver)?;
+                    let differential = system.differential(t)?;
+                    let built = ordered!(IdaOptions::new(rtol, atol)).differential(differential);
+                    Box::new(Ida::new(system, t, y, &vec![0.0; y.len()], &built)?)
+                }
                 Self::RungeKutta(table) => {
                     let built = sundials!(ArkodeOptions::new(rtol, atol).table(table));
                     Box::new(Arkode::new(Boxed(system), t, y, &built)?)

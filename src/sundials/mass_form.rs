@@ -74,7 +74,7 @@ impl Mass {
                 let (lower, upper) = (*lower, *upper);
                 Ok(Self::Band { data: vec![0.0; n * (lower + upper + 1)], lower, upper })
             }
-            LinearSolver::Klu(pattern) => {
+            LinearSolver::Klu { pattern, .. } => {
                 let values = vec![0.0; pattern.entry_count()];
                 Ok(Self::Sparse { pattern: pattern.clone(), values })
             }

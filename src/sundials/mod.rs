@@ -29,8 +29,8 @@
 //! or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
 
 mod arkode;
-mod colouring;
 mod beside;
+mod colouring;
 mod context;
 mod cvode;
 mod dae_callbacks;
@@ -64,8 +64,8 @@ pub use ida::{Ida, IdaOptions, InitialCondition};
 pub use linear_solver::{Jacobian, LinearSolver};
 pub use mass_form::MassForm;
 pub use pattern::Pattern;
-pub use signs::Sign;
 pub use quadratures::WithSensitivities;
+pub use signs::Sign;
 pub use solver::Solver;
 pub use version::{suitesparse_version, version};
 

@@ -127,7 +127,7 @@ fn solvers(pattern: &Pattern, half: usize) -> [LinearSolver; 5] {
         LinearSolver::Dense(Jacobian::DifferenceQuotients),
         band(Jacobian::Supplied),
         band(Jacobian::DifferenceQuotients),
-        LinearSolver::Klu(pattern.clone()),
+        LinearSolver::Klu { pattern: pattern.clone(), jacobian: Jacobian::Supplied },
     ]
 }
 
@@ -303,7 +303,7 @@ fn a_circuit_whose_mass_matrix_is_singular_and_not_diagonal() {
     let options = IdaOptions::new(1e-8, 1e-10);
     assert!(error(system, &options) < 1e-9);
 
-    let klu = LinearSolver::Klu(pattern);
+    let klu = LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied };
     let system = pliant::ode::with_sparse_jacobian(circuit, sparse_jacobian);
     let mut with_sparse = with_mass(system, MassMatrix::Sparse(values));
     let system: Borrowed<'_, dyn Ode> = Borrowed(&mut with_sparse);
@@ -361,7 +361,7 @@ fn unusable_mass_matrices_are_named() {
         assert_eq!(cause, Cause::Fatal(pliant::sundials::Callback::Mass));
         assert!(source.contains("1 numbers on its diagonal, where 2"), "{source}");
     }
-    let klu = explicit.clone().newton(LinearSolver::Klu(pattern));
+    let klu = explicit.clone().newton(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied });
     assert_eq!(stopped(MassMatrix::Sparse(vec![1.0, 0.0]), &klu).0, Cause::MassMatrix);
     assert!(
         stopped([1.0; 2].into(), &klu).1.contains("is sparse, but the mass matrix is a diagonal")

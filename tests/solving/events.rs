@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use pliant::{
-    ode::{dae_with_parameters, with_parameters},
+    ode::{dae_with_parameters, with_mass, with_parameters},
     solve::{End, Event, Method, Problem, solve},
 };
 
@@ -189,6 +189,21 @@ fn algebraic_unknowns_follow_a_jump() {
     assert_eq!(solution.y(0), [0.2, 1.0]);
     assert!((solution.last()[1]).abs() < 1e-10);
     assert!((solution.last_yp()[0] + solution.last()[0]).abs() < 1e-9);
+}
+
+/// The same with a mass matrix, diag(1, 0) y' = f(t, y): the singular one of an ODE makes it a DAE.
+#[test]
+fn a_mass_matrix_may_be_singular() {
+    let heater = |_t: f64, y: &[f64], f: &mut [f64]| {
+        f[0] = y[1] - y[0];
+        f[1] = y[1] - 1.0;
+        Ok(())
+    };
+    let problem = Problem::ode(with_mass(heater, [1.0, 0.0]), [0.2, 0.0])
+        .event(Event::new(|_, y| y[0] - 0.8).terminal());
+    let solution = solve(problem, Method::Ida, (0.0, 10.0), &tight()).unwrap();
+    assert!((solution.t().last().unwrap() - 4.0_f64.ln()).abs() < 1e-9);
+    assert_eq!(solution.y(0), [0.2, 1.0]);
 }
 
 /// Backward in time events come in the order of the run, and what rises with t falls along it.

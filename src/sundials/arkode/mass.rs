@@ -19,7 +19,8 @@ use crate::{
 pub(super) fn check(solver: Option<&LinearSolver>) -> Result<LinearSolver, Error> {
     match solver {
         Some(
-            solver @ (LinearSolver::Dense(_) | LinearSolver::Band { .. } | LinearSolver::Klu(_)),
+            solver
+            @ (LinearSolver::Dense(_) | LinearSolver::Band { .. } | LinearSolver::Klu { .. }),
         ) => Ok(solver.clone()),
         Some(other) => {
             let mend = "with a mass matrix it is dense, of band form or sparse (KLU)";
