@@ -35,6 +35,7 @@ mod options;
 mod problem;
 mod root;
 mod run;
+mod saved;
 mod solution;
 mod solver;
 mod watch;
@@ -46,6 +47,7 @@ pub use method::Method;
 pub use options::{Options, Output};
 pub use problem::{Problem, Progress};
 pub use run::{Run, Step};
+pub use saved::Saved;
 pub use solution::{End, Occurrence, Solution};
 pub use solver::solve;
 

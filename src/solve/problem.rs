@@ -6,13 +6,45 @@ use std::{
     sync::{Arc, atomic::AtomicBool},
 };
 
-use super::event::{Action, Event, Jump};
-use crate::ode::{Dae, Ode};
+use super::{
+    event::{Action, Event, Jump},
+    saved::Saved,
+};
+use crate::{
+    input::InputError,
+    ode::{Dae, Ode},
+};
 
 /// The equations of a problem.
 pub(super) enum Equations<'a> {
     Ode(Box<dyn Ode + 'a>),
     Dae { system: Box<dyn Dae + 'a>, yp: Vec<f64>, differential: Option<Vec<bool>> },
+}
+
+impl Equations<'_> {
+    fn parameters(&self) -> &[f64] {
+        match self {
+            Self::Ode(system) => system.parameters(),
+            Self::Dae { system, .. } => system.parameters(),
+        }
+    }
+
+    /// Checks that the equations have as many parameters as `values`.
+    pub(super) fn check_parameters(&self, values: &[f64]) -> Result<(), InputError> {
+        let count = self.parameters().len();
+        if count == values.len() {
+            return Ok(());
+        }
+        let mend = format!("the equations have {count} parameters");
+        Err(InputError::new("length of parameters in the saved run", values.len(), mend))
+    }
+
+    pub(super) fn set_parameters(&mut self, values: &[f64]) {
+        match self {
+            Self::Ode(system) => system.set_parameters(values),
+            Self::Dae { system, .. } => system.set_parameters(values),
+        }
+    }
 }
 
 /// A time at which the equations change, and what is done then.
@@ -48,6 +80,7 @@ pub struct Problem<'a> {
     pub(super) breaks: Vec<Break<'a>>,
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
+    pub(super) saved: Option<Saved>,
 }
 
 impl fmt::Debug for Problem<'_> {
@@ -73,7 +106,8 @@ impl<'a> Problem<'a> {
     }
 
     fn new(equations: Equations<'a>, y: Vec<f64>) -> Self {
-        Self { equations, y, events: Vec::new(), breaks: Vec::new(), observer: None, cancel: None }
+        let (events, breaks) = (Vec::new(), Vec::new());
+        Self { equations, y, events, breaks, observer: None, cancel: None, saved: None }
     }
 
     /// For each unknown of a DAE, whether its derivative occurs in the equations (`true`) or it is algebraic (`false`).
@@ -117,6 +151,13 @@ impl<'a> Problem<'a> {
     /// Ends the run after the step in which another thread sets `flag`.
     pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> Self {
         self.cancel = Some(flag);
+        self
+    }
+
+    /// Goes on where a run of the same problem was [saved](super::Run::save), or [ended](super::Solution::saved): with the state, the
+    /// parameters and the counts of events of then. The span starts at its time; breaks before it are over.
+    pub fn resume(mut self, saved: Saved) -> Self {
+        self.saved = Some(saved);
         self
     }
 }

@@ -16,7 +16,8 @@ use super::{
     event::{Event, Jump},
     method::Method,
     options::Options,
-    problem::{Break, Observer, Problem, Progress},
+    problem::{Break, Equations, Observer, Problem, Progress},
+    saved::Saved,
     solution::{End, Occurrence},
     watch::{Root, Watch},
 };
@@ -121,9 +122,28 @@ impl<'a> Run<'a> {
         }
         let sign = (end - start).signum();
         options.check(span)?;
-        let Problem { equations, y, mut events, mut breaks, observer, cancel } = problem;
+        let Problem { mut equations, mut y, mut events, mut breaks, observer, cancel, saved } =
+            problem;
         for (i, event) in events.iter().enumerate() {
             event.check(i)?;
+        }
+        if let Some(saved) = &saved {
+            let derivatives = match &mut equations {
+                Equations::Dae { yp, .. } => {
+                    yp.clone_from(&saved.yp);
+                    y.len()
+                }
+                Equations::Ode(_) => 0,
+            };
+            saved.check([y.len(), derivatives, events.len()])?;
+            if start != saved.t {
+                let mend = format!("the saved run stands at {:?}", saved.t);
+                return Err(InputError::new("start of the span", start, mend).into());
+            }
+            equations.check_parameters(&saved.parameters)?;
+            equations.set_parameters(&saved.parameters);
+            y.clone_from(&saved.y);
+            breaks.retain(|Break { t, .. }| (t - start) * sign > 0.0);
         }
         for Break { t, .. } in &breaks {
             check_time("break", *t)?;
@@ -139,7 +159,10 @@ impl<'a> Run<'a> {
         let parameters = engine.parameters().to_vec();
         let mut watches = Vec::new();
         for (i, event) in events.iter_mut().enumerate() {
-            let g = value(event, i, start, &y, &parameters)?;
+            let g = match &saved {
+                Some(saved) => saved.event_values[i],
+                None => value(event, i, start, &y, &parameters)?,
+            };
             watches.push(Watch::new(event, start, g));
         }
         let limits = Limits {
@@ -149,7 +172,7 @@ impl<'a> Run<'a> {
         };
         let mut run = Self {
             engine,
-            counts: vec![0; events.len()],
+            counts: saved.map_or(vec![0; events.len()], |saved| saved.counts),
             events,
             watches,
             breaks,
@@ -429,6 +452,19 @@ impl<'a> Run<'a> {
     #[must_use]
     pub fn end(&self) -> Option<End> {
         self.end
+    }
+
+    /// Where the run stands, to be taken up later or by another program: [`Problem::resume`].
+    #[must_use]
+    pub fn save(&self) -> Saved {
+        Saved {
+            t: self.t,
+            y: self.y.clone(),
+            yp: self.yp.clone(),
+            parameters: self.parameters.clone(),
+            counts: self.counts.clone(),
+            event_values: self.watches.iter().map(Watch::value).collect(),
+        }
     }
 
     /// Writes the state at time `t` within the last step, before any jump at its end, into `out`.

@@ -2,6 +2,7 @@
 
 use faer::MatRef;
 
+use super::saved::Saved;
 use crate::{
     input::InputError,
     integrate::{Statistics, check_length, check_time},
@@ -49,8 +50,7 @@ pub struct Solution {
     pub(super) events: Vec<Occurrence>,
     pub(super) statistics: Statistics,
     pub(super) end: End,
-    pub(super) parameters: Vec<f64>,
-    pub(super) yp: Vec<f64>,
+    pub(super) saved: Saved,
 }
 
 /// Inner nodes of a step for a polynomial of this degree, as parts of it: the extrema of Chebyshev's polynomial.
@@ -73,8 +73,7 @@ impl Solution {
             events: Vec::new(),
             statistics: Statistics::default(),
             end: End::Early,
-            parameters: Vec::new(),
-            yp: Vec::new(),
+            saved: Saved::default(),
         }
     }
 
@@ -137,7 +136,7 @@ impl Solution {
     /// The time derivative of the last state, of a DAE; empty otherwise.
     #[must_use]
     pub fn last_yp(&self) -> &[f64] {
-        &self.yp
+        &self.saved.yp
     }
 
     /// One unknown at all times.
@@ -235,9 +234,15 @@ impl Solution {
         &self.statistics
     }
 
+    /// Where the run stood at its end, to go on from there: [`Problem::resume`](super::Problem::resume).
+    #[must_use]
+    pub fn saved(&self) -> &Saved {
+        &self.saved
+    }
+
     /// The parameters of the equations at the end.
     #[must_use]
     pub fn parameters(&self) -> &[f64] {
-        &self.parameters
+        &self.saved.parameters
     }
 }

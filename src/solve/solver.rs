@@ -36,8 +36,7 @@ pub fn solve(
     let mut solution = Solution::new(run.t(), run.y(), dense);
     let outcome = integrate(&mut run, &mut solution, &options.output);
     solution.statistics = run.statistics();
-    solution.parameters = run.parameters().to_vec();
-    solution.yp = run.yp().to_vec();
+    solution.saved = run.save();
     solution.end = run.end().unwrap_or(End::Early);
     match outcome {
         Ok(()) => Ok(solution),

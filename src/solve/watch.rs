@@ -35,6 +35,11 @@ impl Watch {
         Self { direction, samples, touching, t, g }
     }
 
+    /// The function where it was last looked at.
+    pub(super) fn value(&self) -> f64 {
+        self.g
+    }
+
     /// Goes on at time `t`, where the function is `g` by now and values up to `noise` mean nothing.
     pub(super) fn restart(&mut self, t: f64, g: f64, noise: f64) {
         (self.t, self.g) = (t, if g.abs() <= noise { 0.0 } else { g });

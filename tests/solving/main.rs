@@ -6,4 +6,5 @@ mod events;
 mod interpolation;
 mod limits;
 mod refusals;
+mod resuming;
 mod support;
