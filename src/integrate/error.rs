@@ -57,6 +57,8 @@ impl Error {
 pub enum Callback {
     /// [`Ode::rhs`](crate::ode::Ode::rhs)
     Rhs,
+    /// [`Ode::explicit_rhs`](crate::ode::Ode::explicit_rhs)
+    ExplicitRhs,
     /// [`Dae::residual`](crate::ode::Dae::residual)
     Residual,
     /// `dense_jacobian`, `banded_jacobian` or `sparse_jacobian`
@@ -79,6 +81,7 @@ impl fmt::Display for Callback {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Rhs => "the right-hand side",
+            Self::ExplicitRhs => "the explicit part of the right-hand side",
             Self::Residual => "the residual",
             Self::Jacobian => "the Jacobian",
             Self::Mass => "the mass matrix",

@@ -75,13 +75,22 @@ pub(crate) fn check_time(input: &str, t: f64) -> Result<(), InputError> {
     if t.is_finite() { Ok(()) } else { Err(InputError::new(input, t, "times are finite")) }
 }
 
-/// Checks that a system for an integrator of y' = f(t, y) has no mass matrix.
-pub(crate) fn check_no_mass(system: &impl Ode) -> Result<(), InputError> {
-    if system.mass_kind() == MassKind::Identity {
-        return Ok(());
+/// Checks that a system is of the form y' = rhs(t, y) and no other.
+pub(crate) fn check_form(system: &impl Ode) -> Result<(), InputError> {
+    if system.mass_kind() != MassKind::Identity {
+        let mend = "this integrator takes none: take Arkode, or Ida with MassForm";
+        return Err(InputError::new("mass matrix", format!("{:?}", system.mass_kind()), mend));
     }
-    let mend = "this integrator takes none: take Arkode, or Ida with MassForm";
-    Err(InputError::new("mass matrix", format!("{:?}", system.mass_kind()), mend))
+    check_whole(system)
+}
+
+/// Checks that the right-hand side of a system is not split.
+pub(crate) fn check_whole(system: &impl Ode) -> Result<(), InputError> {
+    if system.is_split() {
+        let mend = "it is for Arkode with ButcherTable::imex; others need it as a whole";
+        return Err(InputError::new("right-hand side", "split", mend));
+    }
+    Ok(())
 }
 
 /// Checks that every number of an input is finite.

@@ -15,6 +15,9 @@ pub struct Statistics {
     /// Evaluations of the right-hand side (ODE), residual (DAE) or forces (second order), without
     /// those of difference quotients.
     pub evaluations: u64,
+    /// How many of them were of the explicit part, if the right-hand side is
+    /// [split](crate::ode::Ode::is_split).
+    pub explicit_evaluations: u64,
     /// Evaluations spent on difference quotients for the Jacobian.
     pub difference_quotient_evaluations: u64,
     /// Evaluations of the Jacobian.

@@ -28,44 +28,19 @@ macro_rules! ode_within {
             self.0.rhs(t, y, ydot)
         }
 
-        fn dense_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            jacobian: MatMut<'_, f64>,
-        ) -> Result<(), Failure> {
+        fn dense_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], jacobian: MatMut<'_, f64>) -> Result<(), Failure> {
             self.0.dense_jacobian(t, y, ydot, jacobian)
         }
 
-        fn banded_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            jacobian: BandMut<'_>,
-        ) -> Result<(), Failure> {
+        fn banded_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], jacobian: BandMut<'_>) -> Result<(), Failure> {
             self.0.banded_jacobian(t, y, ydot, jacobian)
         }
 
-        fn sparse_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            values: &mut [f64],
-        ) -> Result<(), Failure> {
+        fn sparse_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], values: &mut [f64]) -> Result<(), Failure> {
             self.0.sparse_jacobian(t, y, ydot, values)
         }
 
-        fn newton_setup(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            gamma: f64,
-            reuse: bool,
-        ) -> Result<bool, Failure> {
+        fn newton_setup(&mut self, t: f64, y: &[f64], ydot: &[f64], gamma: f64, reuse: bool) -> Result<bool, Failure> {
             self.0.newton_setup(t, y, ydot, gamma, reuse)
         }
 
@@ -75,6 +50,14 @@ macro_rules! ode_within {
 
         fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
             self.0.newton_rhs(t, y, ydot)
+        }
+
+        fn is_split(&self) -> bool {
+            self.0.is_split()
+        }
+
+        fn explicit_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+            self.0.explicit_rhs(t, y, ydot)
         }
 
         fn mass_kind(&self) -> MassKind {
@@ -113,7 +96,7 @@ macro_rules! ode_within {
             self.0.parameters()
         }
 
-        fn set_parameters(&mut self, values: &[f64]) {
+        fn set_parameters(&mut self, values: &[f64])  {
             self.0.set_parameters(values);
         }
     };
@@ -122,46 +105,19 @@ macro_rules! ode_within {
 /// Implements [`Dae`] by the system in field 0.
 macro_rules! dae_within {
     () => {
-        fn residual(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            yp: &[f64],
-            residual: &mut [f64],
-        ) -> Result<(), Failure> {
+        fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Failure> {
             self.0.residual(t, y, yp, residual)
         }
 
-        fn dense_jacobian(
-            &mut self,
-            t: f64,
-            cj: f64,
-            y: &[f64],
-            yp: &[f64],
-            jacobian: MatMut<'_, f64>,
-        ) -> Result<(), Failure> {
+        fn dense_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: MatMut<'_, f64>) -> Result<(), Failure> {
             self.0.dense_jacobian(t, cj, y, yp, jacobian)
         }
 
-        fn banded_jacobian(
-            &mut self,
-            t: f64,
-            cj: f64,
-            y: &[f64],
-            yp: &[f64],
-            jacobian: BandMut<'_>,
-        ) -> Result<(), Failure> {
+        fn banded_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: BandMut<'_>) -> Result<(), Failure> {
             self.0.banded_jacobian(t, cj, y, yp, jacobian)
         }
 
-        fn sparse_jacobian(
-            &mut self,
-            t: f64,
-            cj: f64,
-            y: &[f64],
-            yp: &[f64],
-            values: &mut [f64],
-        ) -> Result<(), Failure> {
+        fn sparse_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], values: &mut [f64]) -> Result<(), Failure> {
             self.0.sparse_jacobian(t, cj, y, yp, values)
         }
 
@@ -185,13 +141,7 @@ macro_rules! dae_within {
             self.0.quadrature_count()
         }
 
-        fn quadratures(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            yp: &[f64],
-            qdot: &mut [f64],
-        ) -> Result<(), Failure> {
+        fn quadratures(&mut self, t: f64, y: &[f64], yp: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
             self.0.quadratures(t, y, yp, qdot)
         }
 
@@ -199,7 +149,7 @@ macro_rules! dae_within {
             self.0.parameters()
         }
 
-        fn set_parameters(&mut self, values: &[f64]) {
+        fn set_parameters(&mut self, values: &[f64])  {
             self.0.set_parameters(values);
         }
     };

@@ -81,6 +81,19 @@ pub trait Ode {
         self.rhs(t, y, ydot)
     }
 
+    /// Whether f is split: the sum of [`rhs`](Self::rhs), which is its stiff part then, and of
+    /// [`explicit_rhs`](Self::explicit_rhs). For the ImEx methods of [`Arkode`](crate::sundials::Arkode); others
+    /// refuse such a system. Default: it is not.
+    fn is_split(&self) -> bool {
+        false
+    }
+
+    /// Writes the part of f(t, y) that is not stiff into `ydot`, if f is [split](Self::is_split). Jacobians are
+    /// those of the other part.
+    fn explicit_rhs(&mut self, _t: f64, _y: &[f64], _ydot: &mut [f64]) -> Result<(), Failure> {
+        Err(missing("explicit_rhs"))
+    }
+
     /// Whether there is a mass matrix M, which makes the equations M y' = f(t, y). Default: there is none.
     ///
     /// [`rhs`](Self::rhs) and the Jacobians are those of f then, and one of the three methods below

@@ -4,7 +4,7 @@
 //! The same traits feed [`crate::sundials`] and the internal Runge-Kutta method `rk`.
 //! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
 //! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with parameters,
-//! [`with_mass`] with a mass matrix; a struct implements
+//! [`with_mass`] with a mass matrix, [`split`] with a part that is not stiff; a struct implements
 //! the trait when it wants to hand over root functions or a linear solver of its own. An
 //! integrator owns its system; [`Borrowed`] lends it one instead.
 
@@ -12,10 +12,12 @@ mod band;
 mod borrowed;
 mod closures;
 mod dae;
+mod delegate;
 mod failure;
 mod first_order;
 mod mass;
 mod second_order;
+mod split;
 mod with_mass;
 
 pub use band::BandMut;
@@ -29,4 +31,5 @@ pub use failure::Failure;
 pub use first_order::Ode;
 pub use mass::MassKind;
 pub use second_order::{EnergyBalance, Kick, Rates, SecondOrder};
+pub use split::{Split, split};
 pub use with_mass::{MassMatrix, WithMass, with_mass};

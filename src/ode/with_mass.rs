@@ -3,6 +3,7 @@
 use faer::{Mat, MatMut};
 
 use super::band::BandMut;
+use super::delegate::delegate_to_system;
 use super::failure::Failure;
 use super::first_order::Ode;
 use super::mass::MassKind;
@@ -72,7 +73,8 @@ pub struct WithMass<S> {
     mass: MassMatrix,
 }
 
-/// The equations M y' = f(t, y), where `system` gives f and its Jacobian: a closure, say.
+/// The equations M y' = f(t, y), where `system` gives f and its Jacobian: a closure, say. (A mass matrix of its own is
+/// not used.)
 ///
 /// [`Arkode`](crate::sundials::Arkode) integrates them if M is regular,
 /// [`Ida`](crate::sundials::Ida) by [`MassForm`](crate::sundials::MassForm) if it is singular, too.
@@ -99,38 +101,14 @@ pub fn with_mass<S: Ode>(system: S, mass: impl Into<MassMatrix>) -> WithMass<S> 
 }
 
 impl<S: Ode> Ode for WithMass<S> {
-    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.system.rhs(t, y, ydot)
+    delegate_to_system!();
+
+    fn is_split(&self) -> bool {
+        self.system.is_split()
     }
 
-    fn dense_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        jacobian: MatMut<'_, f64>,
-    ) -> Result<(), Failure> {
-        self.system.dense_jacobian(t, y, ydot, jacobian)
-    }
-
-    fn banded_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        jacobian: BandMut<'_>,
-    ) -> Result<(), Failure> {
-        self.system.banded_jacobian(t, y, ydot, jacobian)
-    }
-
-    fn sparse_jacobian(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        ydot: &[f64],
-        values: &mut [f64],
-    ) -> Result<(), Failure> {
-        self.system.sparse_jacobian(t, y, ydot, values)
+    fn explicit_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        self.system.explicit_rhs(t, y, ydot)
     }
 
     fn mass_kind(&self) -> MassKind {
@@ -167,21 +145,5 @@ impl<S: Ode> Ode for WithMass<S> {
         self.mass.check(mass.len(), values.len())?;
         values.copy_from_slice(mass);
         Ok(())
-    }
-
-    fn root_count(&self) -> usize {
-        self.system.root_count()
-    }
-
-    fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
-        self.system.roots(t, y, g)
-    }
-
-    fn parameters(&self) -> &[f64] {
-        self.system.parameters()
-    }
-
-    fn set_parameters(&mut self, values: &[f64]) {
-        self.system.set_parameters(values);
     }
 }

@@ -3,7 +3,7 @@
 use super::control::{Controller, StabilityLimit, StabilityMonitor};
 use super::roots::Roots;
 use super::tableau::{self, STAGES, advance};
-use crate::integrate::{Error, ExplicitOptions, Statistics, check_no_mass, check_start};
+use crate::integrate::{Error, ExplicitOptions, Statistics, check_form, check_start};
 use crate::ode::Ode;
 
 /// Order of the method.
@@ -56,7 +56,7 @@ impl<S: Ode> DormandPrince<S> {
     /// [`Error::Input`] names the option or component that cannot be used.
     pub fn new(system: S, t: f64, y: &[f64], options: &ExplicitOptions) -> Result<Self, Error> {
         check_start(t, y)?;
-        check_no_mass(&system)?;
+        check_form(&system)?;
         options.check(y)?;
         let n = y.len();
         let mut solver = Self {

@@ -91,6 +91,8 @@ pub(super) struct Functions {
     pub(super) get_jacobian_evaluations: Get<i64>,
     pub(super) get_quotient_evaluations: Get<i64>,
     pub(super) get_root_evaluations: Get<i64>,
+    /// Of right-hand sides that are split.
+    pub(super) get_explicit_evaluations: Option<Get<i64>>,
     /// CVODE alone detects stability limits.
     pub(super) get_stability_reductions: Option<Get<i64>>,
     pub(super) get_tolerance_scale: Get<f64>,

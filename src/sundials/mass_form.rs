@@ -5,7 +5,7 @@ use faer::{Mat, MatMut};
 use super::{linear_solver::LinearSolver, pattern::Pattern};
 use crate::{
     input::InputError,
-    integrate::Error,
+    integrate::{Error, check_whole},
     ode::{BandMut, Dae, Failure, MassKind, Ode},
 };
 
@@ -142,6 +142,7 @@ impl<S: Ode> MassForm<S> {
             let mend = "the system has to give one: see `mass_kind` and `with_mass`";
             return Err(Error::input("mass matrix", "none", mend));
         }
+        check_whole(&system)?;
         let mass = Mass::new(n, solver)?;
         Ok(Self { system, mass, known: false, f: vec![0.0; n] })
     }

@@ -24,7 +24,18 @@ pub(super) unsafe extern "C" fn rhs<S: Ode>(
     data: *mut c_void,
 ) -> i32 {
     // SAFETY: both have the same contract.
-    unsafe { evaluate(t, y, ydot, data, S::rhs) }
+    unsafe { evaluate(t, y, ydot, data, Callback::Rhs, S::rhs) }
+}
+
+/// `ARKRhsFn` of the explicit part.
+pub(super) unsafe extern "C" fn explicit_rhs<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    ydot: ffi::N_Vector,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: both have the same contract.
+    unsafe { evaluate(t, y, ydot, data, Callback::ExplicitRhs, S::explicit_rhs) }
 }
 
 /// `CVRhsFn`, within the Newton iteration of a user-supplied solver.
@@ -35,13 +46,13 @@ pub(super) unsafe extern "C" fn newton_rhs<S: Ode>(
     data: *mut c_void,
 ) -> i32 {
     // SAFETY: both have the same contract.
-    unsafe { evaluate(t, y, ydot, data, S::newton_rhs) }
+    unsafe { evaluate(t, y, ydot, data, Callback::Rhs, S::newton_rhs) }
 }
 
 /// A method of [`Ode`] that writes a right-hand side.
 type Rhs<S> = fn(&mut S, f64, &[f64], &mut [f64]) -> Result<(), Failure>;
 
-/// What both have in common: `call` writes into `ydot`.
+/// What they have in common: `call` writes into `ydot`.
 ///
 /// # Safety
 /// That of `CVRhsFn`; see the module.
@@ -50,6 +61,7 @@ unsafe fn evaluate<S>(
     y: ffi::N_Vector,
     ydot: ffi::N_Vector,
     data: *mut c_void,
+    callback: Callback,
     call: Rhs<S>,
 ) -> i32 {
     // SAFETY: see the module; `y` and `ydot` are different vectors.
@@ -58,7 +70,7 @@ unsafe fn evaluate<S>(
         let n = host.n;
         (host, slice(y, n), slice_mut(ydot, n))
     };
-    host.guard_output(Callback::Rhs, t, ydot, |system, ydot| call(system, t, y, ydot))
+    host.guard_output(callback, t, ydot, |system, ydot| call(system, t, y, ydot))
 }
 
 /// `CVRootFn`

@@ -35,6 +35,7 @@ impl<K, S> Solver<K, S> {
         s.root_evaluations = count(functions.get_root_evaluations);
         s.quadrature_evaluations =
             functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
+        s.explicit_evaluations = functions.get_explicit_evaluations.map_or(0, count);
         s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
         s
     }

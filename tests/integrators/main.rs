@@ -8,6 +8,7 @@ mod control;
 mod cvode;
 mod failures;
 mod ida;
+mod imex;
 mod jacobians;
 mod lifecycle;
 mod mass;

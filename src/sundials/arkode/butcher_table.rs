@@ -9,7 +9,8 @@ use crate::input::InputError;
 /// The name ends in three numbers: stages, order of the error estimate, order of the method.
 /// `SDIRK` methods are singly diagonally implicit; `ESDIRK` and `KVAERNO` ones have a first stage
 /// that costs nothing; `L2SA` ones are L-stable, with a second stage as accurate as it can be, and
-/// end with their last stage.
+/// end with their last stage. `ARK` ones come in pairs of an implicit and an explicit table with the same stages:
+/// [`imex`](Self::imex) takes both, for systems that are [split](crate::ode::Ode::is_split).
 ///
 /// ```
 /// use pliant::sundials::ButcherTable;
@@ -25,19 +26,36 @@ use crate::input::InputError;
 pub struct ButcherTable {
     id: &'static CStr,
     order: u32,
-    implicit: bool,
+    form: Form,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Implicit,
+    Explicit,
+    /// Both, by the name of the pair and the explicit table that goes with the implicit one.
+    ImEx(&'static str, &'static CStr),
 }
 
 const fn dirk(id: &'static CStr, order: u32) -> ButcherTable {
-    ButcherTable { id, order, implicit: true }
+    ButcherTable { id, order, form: Form::Implicit }
 }
 
 const fn erk(id: &'static CStr, order: u32) -> ButcherTable {
-    ButcherTable { id, order, implicit: false }
+    ButcherTable { id, order, form: Form::Explicit }
+}
+
+const fn ark(
+    name: &'static str,
+    id: &'static CStr,
+    explicit: &'static CStr,
+    order: u32,
+) -> ButcherTable {
+    ButcherTable { id, order, form: Form::ImEx(name, explicit) }
 }
 
 impl ButcherTable {
-    /// All tables: diagonally implicit ones, then explicit ones.
+    /// All single tables: diagonally implicit ones, then explicit ones.
     ///
     /// Left out is the one without an error estimate.
     pub const ALL: [Self; 37] = [
@@ -80,6 +98,20 @@ impl ButcherTable {
         erk(c"ARKODE_FEHLBERG_13_7_8", 8),
     ];
 
+    /// All pairs of an implicit and an explicit table.
+    pub const IMEX: [Self; 5] = [
+        ark("ARK324L2SA_4_2_3", c"ARKODE_ARK324L2SA_DIRK_4_2_3", c"ARKODE_ARK324L2SA_ERK_4_2_3", 3),
+        ark("ARK436L2SA_6_3_4", c"ARKODE_ARK436L2SA_DIRK_6_3_4", c"ARKODE_ARK436L2SA_ERK_6_3_4", 4),
+        ark("ARK437L2SA_7_3_4", c"ARKODE_ARK437L2SA_DIRK_7_3_4", c"ARKODE_ARK437L2SA_ERK_7_3_4", 4),
+        ark("ARK548L2SA_8_4_5", c"ARKODE_ARK548L2SA_DIRK_8_4_5", c"ARKODE_ARK548L2SA_ERK_8_4_5", 5),
+        ark(
+            "ARK548L2SAb_8_4_5",
+            c"ARKODE_ARK548L2SAb_DIRK_8_4_5",
+            c"ARKODE_ARK548L2SAb_ERK_8_4_5",
+            5,
+        ),
+    ];
+
     /// The diagonally implicit method to take for an order, 2 to 5.
     ///
     /// # Errors
@@ -110,9 +142,25 @@ impl ButcherTable {
         }
     }
 
-    /// The name in the user guide, without the prefix `ARKODE_`.
+    /// The pair of an implicit and an explicit method (ImEx) to take for an order, 3 to 5.
+    ///
+    /// # Errors
+    /// For another order.
+    pub fn imex(order: u32) -> Result<Self, InputError> {
+        match order {
+            3 => "ARK324L2SA_4_2_3".parse(),
+            4 => "ARK437L2SA_7_3_4".parse(),
+            5 => "ARK548L2SAb_8_4_5".parse(),
+            _ => Err(InputError::new("order", order, "ImEx methods have orders 3 to 5")),
+        }
+    }
+
+    /// The name in the user guide, without the prefix `ARKODE_`; for a pair without `DIRK` and `ERK`.
     #[must_use]
     pub fn name(self) -> &'static str {
+        if let Form::ImEx(name, _) = self.form {
+            return name;
+        }
         let id = self.id.to_str().unwrap_or_default();
         id.strip_prefix(PREFIX).unwrap_or(id)
     }
@@ -126,14 +174,21 @@ impl ButcherTable {
     /// Whether its stages are equations to be solved.
     #[must_use]
     pub fn is_implicit(self) -> bool {
-        self.implicit
+        self.form != Form::Explicit
     }
 
-    /// The names of the implicit and the explicit table for ARKODE, one of which is that of none.
+    /// Whether it is a pair of an implicit and an explicit table.
+    #[must_use]
+    pub fn is_imex(self) -> bool {
+        matches!(self.form, Form::ImEx(..))
+    }
+
+    /// The names of the implicit and the explicit table for ARKODE; one may be that of none.
     pub(super) fn ids(self) -> (&'static CStr, &'static CStr) {
-        match self.implicit {
-            true => (self.id, c"ARKODE_ERK_NONE"),
-            false => (c"ARKODE_DIRK_NONE", self.id),
+        match self.form {
+            Form::Implicit => (self.id, c"ARKODE_ERK_NONE"),
+            Form::Explicit => (c"ARKODE_DIRK_NONE", self.id),
+            Form::ImEx(_, explicit) => (self.id, explicit),
         }
     }
 }
@@ -153,8 +208,9 @@ impl FromStr for ButcherTable {
     /// Reads a name, with or without the prefix `ARKODE_`.
     fn from_str(name: &str) -> Result<Self, InputError> {
         let short = name.strip_prefix(PREFIX).unwrap_or(name);
-        Self::ALL.into_iter().find(|table| table.name() == short).ok_or_else(|| {
-            let known = Self::ALL.map(Self::name).join(", ");
+        let mut known = Self::ALL.into_iter().chain(Self::IMEX);
+        known.clone().find(|table| table.name() == short).ok_or_else(|| {
+            let known = known.by_ref().map(Self::name).collect::<Vec<_>>().join(", ");
             InputError::new("table", format!("\"{name}\""), format!("it is one of {known}"))
         })
     }

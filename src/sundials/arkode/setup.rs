@@ -4,7 +4,7 @@ use std::{ffi::c_void, ptr};
 
 use super::{mass, options::ArkodeOptions};
 use crate::{
-    integrate::{Error, check_start},
+    integrate::{Error, check_start, check_whole},
     ode::{MassKind, Ode},
     sundials::{
         ffi,
@@ -12,7 +12,8 @@ use crate::{
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{
-            jacobian, newton_rhs, newton_setup_with_mass, note_step_end, note_time, rhs, roots,
+            explicit_rhs, jacobian, newton_rhs, newton_setup_with_mass, note_step_end, note_time,
+            rhs, roots,
         },
         solver::{InitialState, Solver},
     },
@@ -25,7 +26,7 @@ use crate::{
 /// stiff. (`ARKStep`)
 ///
 /// After a recoverable failure of the right-hand side implicit methods retry with a smaller step,
-/// explicit ones give up: SUNDIALS has no retry there.
+/// explicit ones and explicit parts give up: SUNDIALS has no retry there.
 ///
 /// Interpolation between the steps is by Hermite polynomials, of a degree one less than the order of the
 /// method, at most 3 for implicit and 5 for explicit methods. Degrees 4 and 5 evaluate the right-hand side.
@@ -84,6 +85,7 @@ impl<S: Ode> Arkode<S> {
         get_jacobian_evaluations: ffi::ARKStepGetNumJacEvals,
         get_quotient_evaluations: ffi::ARKStepGetNumLinRhsEvals,
         get_root_evaluations: ffi::ARKStepGetNumGEvals,
+        get_explicit_evaluations: None,
         get_stability_reductions: None,
         quadratures: None,
         get_tolerance_scale: ffi::ARKStepGetTolScaleFactor,
@@ -97,6 +99,23 @@ impl<S: Ode> Arkode<S> {
         }),
         ..*Self::IMPLICIT
     };
+
+    /// The functions for pairs of both.
+    const IMEX: &'static Functions = &Functions {
+        reinit: ("ARKStepReInit", |memory, t, y, _| {
+            // SAFETY: as above.
+            unsafe { ffi::ARKStepReInit(memory, Some(explicit_rhs::<S>), Some(rhs::<S>), t, y) }
+        }),
+        get_explicit_evaluations: Some(get_explicit_evaluations),
+        ..*Self::IMPLICIT
+    };
+}
+
+/// Evaluations of the explicit part.
+unsafe extern "C" fn get_explicit_evaluations(memory: *mut c_void, explicit: *mut i64) -> i32 {
+    let mut implicit = 0;
+    // SAFETY: whoever calls through the table vouches for memory and place.
+    unsafe { ffi::ARKStepGetNumRhsEvals(memory, explicit, &raw mut implicit) }
 }
 
 /// `CVodeGetIntegratorStats` for ARKODE: evaluations are the explicit and the implicit ones, and
@@ -151,12 +170,19 @@ impl<S: Ode> Arkode<S> {
     pub fn new(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
+        if !options.table.is_imex() {
+            check_whole(&system)?;
+        } else if !system.is_split() {
+            let mend = "a pair of tables is for a right-hand side of two parts: see `is_split` and `split`";
+            return Err(Error::input("table", options.table, mend));
+        }
 
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };
-        let is_implicit = options.table.is_implicit();
-        let (functions, explicit, implicit) = match is_implicit {
-            true => (Self::IMPLICIT, None, Some(rhs::<S> as _)),
-            false => (Self::EXPLICIT, Some(rhs::<S> as _), None),
+        let (is_implicit, is_imex) = (options.table.is_implicit(), options.table.is_imex());
+        let (functions, explicit, implicit) = match (is_imex, is_implicit) {
+            (true, _) => (Self::IMEX, Some(explicit_rhs::<S> as _), Some(rhs::<S> as _)),
+            (false, true) => (Self::IMPLICIT, None, Some(rhs::<S> as _)),
+            (false, false) => (Self::EXPLICIT, Some(rhs::<S> as _), None),
         };
         let mass_kind = system.mass_kind();
         let solver = match mass_kind {

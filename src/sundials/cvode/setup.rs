@@ -2,7 +2,7 @@
 
 use super::options::{CvodeOptions, Multistep};
 use crate::{
-    integrate::{Error, check_no_mass, check_start},
+    integrate::{Error, check_form, check_start},
     ode::Ode,
     sundials::{
         ffi,
@@ -67,6 +67,7 @@ static FUNCTIONS: Functions = Functions {
     get_jacobian_evaluations: ffi::CVodeGetNumJacEvals,
     get_quotient_evaluations: ffi::CVodeGetNumLinRhsEvals,
     get_root_evaluations: ffi::CVodeGetNumGEvals,
+    get_explicit_evaluations: None,
     get_stability_reductions: Some(ffi::CVodeGetNumStabLimOrderReds),
     get_tolerance_scale: ffi::CVodeGetTolScaleFactor,
     quadratures: Some(&QuadratureFunctions {
@@ -88,7 +89,7 @@ impl<S: Ode> Cvode<S> {
     pub fn new(system: S, t0: f64, y0: &[f64], options: &CvodeOptions) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
-        check_no_mass(&system)?;
+        check_form(&system)?;
 
         let count = system.quadrature_count();
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };

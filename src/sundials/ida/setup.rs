@@ -68,6 +68,7 @@ static FUNCTIONS: Functions = Functions {
     get_jacobian_evaluations: ffi::IDAGetNumJacEvals,
     get_quotient_evaluations: ffi::IDAGetNumLinResEvals,
     get_root_evaluations: ffi::IDAGetNumGEvals,
+    get_explicit_evaluations: None,
     get_stability_reductions: None,
     get_tolerance_scale: ffi::IDAGetTolScaleFactor,
     quadratures: Some(&QuadratureFunctions {
