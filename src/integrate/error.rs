@@ -73,6 +73,8 @@ pub enum Callback {
     Roots,
     /// `quadratures`
     Quadratures,
+    /// `project`
+    Projection,
     /// The forces and constraints of a [`SecondOrder`](crate::ode::SecondOrder) system.
     Forces,
 }
@@ -89,6 +91,7 @@ impl fmt::Display for Callback {
             Self::NewtonSolve => "newton_solve",
             Self::Roots => "the root functions",
             Self::Quadratures => "the integrands",
+            Self::Projection => "the projection",
             Self::Forces => "the equations of motion",
         })
     }

@@ -52,6 +52,10 @@ macro_rules! ode_within {
             self.0.newton_rhs(t, y, ydot)
         }
 
+        fn project(&mut self, t: f64, y: &[f64], correction: &mut [f64], error: &mut [f64]) -> Result<(), Failure> {
+            self.0.project(t, y, correction, error)
+        }
+
         fn is_split(&self) -> bool {
             self.0.is_split()
         }

@@ -37,6 +37,16 @@ macro_rules! delegate_to_system {
             self.system.sparse_jacobian(t, y, ydot, values)
         }
 
+        fn project(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            correction: &mut [f64],
+            error: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.system.project(t, y, correction, error)
+        }
+
         fn root_count(&self) -> usize {
             self.system.root_count()
         }

@@ -81,6 +81,21 @@ pub trait Ode {
         self.rhs(t, y, ydot)
     }
 
+    /// Writes into `correction` (zero on entry) what takes the state `y` to the nearest one that keeps the
+    /// invariants of the equations, such as lengths or energy.
+    ///
+    /// `error` is an estimate of the error of `y`. What of it leads away from the invariants will be corrected; to
+    /// take that part away allows longer steps. Leaving it as it is is right, too.
+    fn project(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _correction: &mut [f64],
+        _error: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("project"))
+    }
+
     /// Whether f is split: the sum of [`rhs`](Self::rhs), which is its stiff part then, and of
     /// [`explicit_rhs`](Self::explicit_rhs). For the ImEx methods of [`Arkode`](crate::sundials::Arkode); others
     /// refuse such a system. Default: it is not.

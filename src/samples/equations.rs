@@ -415,6 +415,26 @@ impl Ode for Pendulum {
         sdot.copy_from_slice(&[vx, vy, -tension * x, -tension * y - Self::GRAVITY]);
         Ok(())
     }
+
+    /// Onto the circle, with a velocity along it.
+    fn project(
+        &mut self,
+        _t: f64,
+        s: &[f64],
+        correction: &mut [f64],
+        error: &mut [f64],
+    ) -> Result<(), Failure> {
+        let &[x, y, vx, vy] = s else { unreachable!("four unknowns") };
+        let length = x.hypot(y);
+        let (nx, ny) = (x / length, y / length);
+        let away = vx * nx + vy * ny;
+        correction.copy_from_slice(&[nx - x, ny - y, -away * nx, -away * ny]);
+        for error in error.chunks_exact_mut(2) {
+            let away = error[0] * nx + error[1] * ny;
+            (error[0], error[1]) = (error[0] - away * nx, error[1] - away * ny);
+        }
+        Ok(())
+    }
 }
 
 impl Dae for Pendulum {

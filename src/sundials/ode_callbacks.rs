@@ -105,6 +105,29 @@ pub(super) unsafe extern "C" fn quadratures<S: Ode>(
     host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| system.quadratures(t, y, qdot))
 }
 
+/// `CVProjFn`
+pub(super) unsafe extern "C" fn project<S: Ode>(
+    t: f64,
+    y: ffi::N_Vector,
+    correction: ffi::N_Vector,
+    _tolerance: f64,
+    error: ffi::N_Vector,
+    data: *mut c_void,
+) -> i32 {
+    // SAFETY: see the module; the three vectors are different, and the estimate of the error is there, as nobody
+    // switched it off.
+    let (host, y, correction, error) = unsafe {
+        let host = &mut *data.cast::<Host<S>>();
+        let n = host.n;
+        (host, slice(y, n), slice_mut(correction, n), slice_mut(error, n))
+    };
+    correction.fill(0.0);
+    let outcome = host.guard_output(Callback::Projection, t, correction, |system, correction| {
+        system.project(t, y, correction, error)
+    });
+    if outcome == 0 { host.check_finite(Callback::Projection, t, error) } else { outcome }
+}
+
 /// `CVLsJacFn`
 #[allow(clippy::too_many_arguments)] // as C has it
 pub(super) unsafe extern "C" fn jacobian<S: Ode>(

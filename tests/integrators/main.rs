@@ -15,6 +15,7 @@ mod mass;
 mod mass_matrix;
 mod patterns;
 mod quadratures;
+mod projection;
 mod rk;
 mod roots;
 mod signs;

@@ -39,6 +39,7 @@ pub struct CvodeOptions {
     pub(super) method: Multistep,
     pub(super) nonlinear: NonlinearOptions,
     pub(super) stability_limit_detection: bool,
+    pub(super) project: bool,
 }
 
 impl CvodeOptions {
@@ -53,6 +54,7 @@ impl CvodeOptions {
             method: Multistep::Bdf,
             nonlinear: NonlinearOptions::default(),
             stability_limit_detection: false,
+            project: false,
         }
     }
 
@@ -66,6 +68,15 @@ impl CvodeOptions {
     /// (`CVodeSetStabLimDet`). Default: no.
     pub fn stability_limit_detection(mut self, on: bool) -> Self {
         self.stability_limit_detection = on;
+        self
+    }
+
+    /// Has BDF put the state onto the invariants of the equations after each step, by
+    /// [`Ode::project`](crate::ode::Ode::project) (`CVodeSetProjFn`). Default: no.
+    ///
+    /// States between the ends of the steps keep the invariants to the tolerances.
+    pub fn project(mut self) -> Self {
+        self.project = true;
         self
     }
 
@@ -85,6 +96,9 @@ impl CvodeOptions {
         })?;
         if self.stability_limit_detection && self.method == Multistep::Adams {
             return Err(InputError::new("stability_limit_detection", true, "it belongs to BDF"));
+        }
+        if self.project && self.method == Multistep::Adams {
+            return Err(InputError::new("project", true, "it belongs to BDF"));
         }
         self.nonlinear.check(y0.len())
     }

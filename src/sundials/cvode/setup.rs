@@ -9,7 +9,7 @@ use crate::{
         functions::{Functions, QuadratureFunctions},
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
-        ode_callbacks::{jacobian, newton_rhs, newton_setup, quadratures, rhs, roots},
+        ode_callbacks::{jacobian, newton_rhs, newton_setup, project, quadratures, rhs, roots},
         solver::{InitialState, Solver},
     },
 };
@@ -119,8 +119,11 @@ impl<S: Ode> Cvode<S> {
                 tolerances,
             )?;
         }
-        // SAFETY: the values are plain numbers.
+        // SAFETY: the callback fits the registered host; the other values are plain numbers.
         unsafe {
+            if options.project {
+                cvode.set(("CVodeSetProjFn", ffi::CVodeSetProjFn), Some(project::<S> as _))?;
+            }
             if options.stability_limit_detection {
                 cvode.set(("CVodeSetStabLimDet", ffi::CVodeSetStabLimDet), 1)?;
             }
