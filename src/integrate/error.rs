@@ -75,6 +75,8 @@ pub enum Callback {
     Quadratures,
     /// `project`
     Projection,
+    /// `sensitivity_rhs` or `sensitivity_residual`, or the equations with a changed parameter in their place
+    Sensitivities,
     /// The forces and constraints of a [`SecondOrder`](crate::ode::SecondOrder) system.
     Forces,
 }
@@ -92,6 +94,7 @@ impl fmt::Display for Callback {
             Self::Roots => "the root functions",
             Self::Quadratures => "the integrands",
             Self::Projection => "the projection",
+            Self::Sensitivities => "the equations of the sensitivities",
             Self::Forces => "the equations of motion",
         })
     }

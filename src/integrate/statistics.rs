@@ -39,6 +39,8 @@ pub struct Statistics {
     pub root_evaluations: u64,
     /// Evaluations of the integrands of quadratures (CVODE, IDA).
     pub quadrature_evaluations: u64,
+    /// Evaluations of the right-hand side or residual of one sensitivity (CVODE) or all (IDA).
+    pub sensitivity_evaluations: u64,
     /// Order reductions by stability-limit detection (CVODE).
     pub stability_reductions: u64,
     /// Order of the last step.
@@ -70,11 +72,14 @@ impl Statistics {
         sum
     }
 
-    fn counters(&mut self) -> [&mut u64; 12] {
+    fn counters(&mut self) -> [&mut u64; 15] {
         [
             &mut self.steps,
             &mut self.evaluations,
+            &mut self.explicit_evaluations,
             &mut self.difference_quotient_evaluations,
+            &mut self.quadrature_evaluations,
+            &mut self.sensitivity_evaluations,
             &mut self.jacobian_evaluations,
             &mut self.linear_setups,
             &mut self.nonlinear_iterations,

@@ -91,6 +91,22 @@ pub trait Dae {
         Err(missing("quadratures"))
     }
 
+    /// Writes the residual of the sensitivity s = dy/dp of a parameter p, given by its place among the
+    /// [`parameters`](Self::parameters): (dF/dy) s + (dF/dy') s' + dF/dp. `sp` is s'.
+    #[allow(clippy::too_many_arguments)] // two states, two sensitivities
+    fn sensitivity_residual(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _parameter: usize,
+        _s: &[f64],
+        _sp: &[f64],
+        _residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("sensitivity_residual"))
+    }
+
     /// The parameters that the equations depend on, for what changes them or asks for derivatives with
     /// respect to them. Default: none.
     fn parameters(&self) -> &[f64] {

@@ -155,6 +155,20 @@ pub trait Ode {
         Err(missing("quadratures"))
     }
 
+    /// Writes the right-hand side of the sensitivity s = dy/dp of a parameter p, given by its place among the
+    /// [`parameters`](Self::parameters), into `sdot`: (df/dy) s + df/dp. `ydot` is f(t, y).
+    fn sensitivity_rhs(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        _parameter: usize,
+        _s: &[f64],
+        _sdot: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("sensitivity_rhs"))
+    }
+
     /// The parameters that the equations depend on, for what changes them or asks for derivatives with
     /// respect to them. Default: none.
     fn parameters(&self) -> &[f64] {

@@ -98,6 +98,25 @@ pub(super) struct Functions {
     pub(super) get_tolerance_scale: Get<f64>,
     /// ARKODE has none.
     pub(super) quadratures: Option<&'static QuadratureFunctions>,
+    /// ARKODE has none.
+    pub(super) sensitivities: Option<&'static SensitivityFunctions>,
+}
+
+/// Starts sensitivities again: (memory, method, s, s'). An ODE has null for s'.
+pub(super) type ReinitSensitivities =
+    unsafe fn(*mut c_void, i32, *mut ffi::N_Vector, *mut ffi::N_Vector) -> i32;
+
+/// What CVODES and IDAS have for sensitivities.
+pub(super) struct SensitivityFunctions {
+    pub(super) reinit: Named<ReinitSensitivities>,
+    pub(super) set_parameters:
+        Named<unsafe extern "C" fn(*mut c_void, *mut f64, *mut f64, *mut i32) -> i32>,
+    pub(super) set_tolerances: Named<unsafe extern "C" fn(*mut c_void) -> i32>,
+    pub(super) set_error_control: Set<i32>,
+    pub(super) get: Named<unsafe extern "C" fn(*mut c_void, *mut f64, *mut ffi::N_Vector) -> i32>,
+    pub(super) get_dky:
+        Named<unsafe extern "C" fn(*mut c_void, f64, i32, i32, ffi::N_Vector) -> i32>,
+    pub(super) get_evaluations: Get<i64>,
 }
 
 /// What CVODES and IDAS have for quadratures.

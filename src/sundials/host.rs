@@ -12,7 +12,10 @@ use std::{
     ptr::NonNull,
 };
 
-use super::{differences::Differences, functions::Get, linear_solver::LinearSolver};
+use super::{
+    differences::Differences, functions::Get, linear_solver::LinearSolver,
+    sensitivity::SensitivityRhs,
+};
 use crate::{
     integrate::{Callback, Cause, Error},
     ode::Failure,
@@ -41,6 +44,7 @@ pub(super) struct Host<S> {
     pub(super) n: usize,
     pub(super) root_count: usize,
     pub(super) quadrature_count: usize,
+    pub(super) sensitivity: Option<Box<SensitivityRhs>>,
     /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
     /// None for a fixed-point iteration.
@@ -133,6 +137,7 @@ impl<S> Host<S> {
             n,
             root_count,
             quadrature_count: 0,
+            sensitivity: None,
             linear_solver,
             custom_solve: None,
             differences: None,

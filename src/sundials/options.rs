@@ -95,6 +95,13 @@ macro_rules! builder_methods {
             self
         }
     };
+    (sensitivities) => {
+        /// Computes derivatives of the solution with respect to parameters beside it. Default: none.
+        pub fn sensitivities(mut self, sensitivities: Sensitivities) -> Self {
+            self.sensitivities = Some(sensitivities);
+            self
+        }
+    };
     (nonlinear) => {
         /// Newton iteration with this linear solver (the default, dense with difference quotients).
         pub fn newton(mut self, solver: LinearSolver) -> Self {

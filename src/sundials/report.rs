@@ -36,6 +36,8 @@ impl<K, S> Solver<K, S> {
         s.quadrature_evaluations =
             functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
         s.explicit_evaluations = functions.get_explicit_evaluations.map_or(0, count);
+        s.sensitivity_evaluations =
+            functions.sensitivities.map_or(0, |functions| count(functions.get_evaluations));
         s.stability_reductions = functions.get_stability_reductions.map_or(0, count);
         s
     }

@@ -3,7 +3,7 @@
 use std::{ffi::c_void, fmt, ptr};
 
 use super::{
-    beside::Quadratures,
+    beside::{Quadratures, Sensitivity},
     context::Context,
     differences::Differences,
     ffi,
@@ -37,6 +37,7 @@ pub struct Solver<K, S> {
     pub(super) yp: Option<Vector>,
     pub(super) scratch: Vector,
     pub(super) quadratures: Option<Quadratures>,
+    pub(super) sensitivities: Option<Sensitivity>,
     pub(super) host: HostBox<S>,
     pub(super) context: Context,
     pub(super) t: f64,
@@ -135,6 +136,7 @@ impl<K, S> Solver<K, S> {
             yp,
             scratch,
             quadratures: None,
+            sensitivities: None,
             host,
             context,
             t: start.t,

@@ -96,6 +96,7 @@ impl<K, S> Integrator for Solver<K, S> {
         let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
         self.host.accept(name, code)?;
         self.restart_quadratures()?;
+        self.restart_sensitivities()?;
         self.t = t;
         (self.has_step, self.failed_within) = (false, false);
         let host = self.host.get_mut();
@@ -181,6 +182,7 @@ impl<K, S> Solver<K, S> {
         self.host.get_mut().troubles.resume_panic();
         if self.has_step {
             self.read_quadratures()?;
+            self.read_sensitivities()?;
         }
         if code >= 0 && !self.signs.is_empty() {
             self.read_corrected()?;

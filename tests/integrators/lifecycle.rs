@@ -1,7 +1,7 @@
 //! Creates, uses and drops solvers of every kind, in every way a solver can end.
 //!
 //! Meant to be run under valgrind (`make valgrind`), where `PLIANT_LIFECYCLES` sets the number of
-//! rounds; each round makes 24 solvers.
+//! rounds; each round makes some thirty solvers.
 
 use std::{
     hint::black_box,
@@ -10,11 +10,11 @@ use std::{
 
 use crate::support::OwnSolver;
 use pliant::{
-    ode::Failure,
+    ode::{Failure, dae_with_parameters, with_parameters},
     samples::Robertson,
     sundials::{
         Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions,
-        InitialCondition, Integrator, Jacobian, LinearSolver, Multistep, Pattern,
+        InitialCondition, Integrator, Jacobian, LinearSolver, Multistep, Pattern, Sensitivities,
     },
 };
 
@@ -86,6 +86,41 @@ fn ida_solvers() {
     solver.solve_to(0.4).unwrap();
 }
 
+/// Sensitivities and integrals come and go with the solvers, also where the constructor refuses late.
+fn solvers_with_sensitivities() {
+    let decay = || {
+        with_parameters(
+            |_t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]| {
+                ydot[0] = -p[0] * y[0];
+                Ok(())
+            },
+            [2.0, 1.0],
+        )
+    };
+    for sensitivities in [Sensitivities::of([0, 1]), Sensitivities::of([0]).staggered()] {
+        let options = CvodeOptions::new(1e-4, 1e-6).sensitivities(sensitivities.clone());
+        let mut solver = Cvode::new(decay(), 0.0, &[1.0], &options).unwrap();
+        solver.solve_to(0.4).unwrap();
+        solver.reinit(0.0, &[1.0]).unwrap();
+        solver.solve_to(0.1).unwrap();
+        drop(black_box(solver.into_system()));
+        assert!(Cvode::new(decay(), 0.0, &[1.0], &options.fixed_point(0)).is_err());
+
+        let residual = |_t: f64, y: &[f64], yp: &[f64], p: &[f64], r: &mut [f64]| {
+            r[0] = yp[0] + p[0] * y[0];
+            Ok(())
+        };
+        let options = IdaOptions::new(1e-4, 1e-6).sensitivities(sensitivities);
+        let system = dae_with_parameters(residual, [2.0, 1.0]);
+        let mut solver = Ida::new(system, 0.0, &[1.0], &[-2.0], &options).unwrap();
+        solver.consistent_start(InitialCondition::State, 0.4).unwrap();
+        solver.solve_to(0.4).unwrap();
+        let wrong = options.sensitivities(Sensitivities::of([7]));
+        let system = dae_with_parameters(residual, [2.0, 1.0]);
+        assert!(Ida::new(system, 0.0, &[1.0], &[-2.0], &wrong).is_err());
+    }
+}
+
 fn solvers_that_fail() {
     type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
     let fatal: Rhs = |_, _, _| Err(std::fmt::Error.into());
@@ -118,6 +153,7 @@ fn solvers_come_and_go() {
         cvode_solvers();
         arkode_solvers();
         ida_solvers();
+        solvers_with_sensitivities();
         solvers_that_fail();
     }
     drop(panic::take_hook());

@@ -88,6 +88,7 @@ impl<S: Ode> Arkode<S> {
         get_explicit_evaluations: None,
         get_stability_reductions: None,
         quadratures: None,
+        sensitivities: None,
         get_tolerance_scale: ffi::ARKStepGetTolScaleFactor,
     };
 

@@ -7,6 +7,7 @@ use crate::{
         linear_solver::LinearSolver,
         nonlinear::{NonlinearOptions, NonlinearSolver},
         options::{Limits, builder_methods},
+        sensitivity::Sensitivities,
     },
 };
 
@@ -36,6 +37,7 @@ pub struct CvodeOptions {
     pub(super) steps: StepOptions,
     pub(super) limits: Limits,
     pub(super) quadrature_tolerances: Option<Tolerances>,
+    pub(super) sensitivities: Option<Sensitivities>,
     pub(super) method: Multistep,
     pub(super) nonlinear: NonlinearOptions,
     pub(super) stability_limit_detection: bool,
@@ -51,6 +53,7 @@ impl CvodeOptions {
             steps: StepOptions::default(),
             limits: Limits::default(),
             quadrature_tolerances: None,
+            sensitivities: None,
             method: Multistep::Bdf,
             nonlinear: NonlinearOptions::default(),
             stability_limit_detection: false,
@@ -82,6 +85,7 @@ impl CvodeOptions {
 
     builder_methods!(order);
     builder_methods!(quadratures);
+    builder_methods!(sensitivities);
     builder_methods!(nonlinear);
     step_options!();
     builder_methods!(limits);
@@ -99,6 +103,20 @@ impl CvodeOptions {
         }
         if self.project && self.method == Multistep::Adams {
             return Err(InputError::new("project", true, "it belongs to BDF"));
+        }
+        if self.sensitivities.is_some() {
+            match &self.nonlinear.solver {
+                NonlinearSolver::Newton(LinearSolver::Custom) => {
+                    let mend = "with sensitivities another linear solver is needed: newton_solve may \
+                                add what newton_rhs leaves out, which is not theirs";
+                    return Err(InputError::new("linear solver", "Custom", mend));
+                }
+                NonlinearSolver::FixedPoint { .. } => {
+                    let mend = "with sensitivities a Newton iteration is needed";
+                    return Err(InputError::new("nonlinear solver", "fixed_point", mend));
+                }
+                NonlinearSolver::Newton(_) => {}
+            }
         }
         self.nonlinear.check(y0.len())
     }

@@ -6,10 +6,11 @@ use crate::{
     ode::Ode,
     sundials::{
         ffi,
-        functions::{Functions, QuadratureFunctions},
+        functions::{Functions, QuadratureFunctions, SensitivityFunctions},
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{jacobian, newton_rhs, newton_setup, project, quadratures, rhs, roots},
+        sensitivity::{Access, one_rhs},
         solver::{InitialState, Solver},
     },
 };
@@ -79,6 +80,18 @@ static FUNCTIONS: Functions = Functions {
         get_dky: ("CVodeGetQuadDky", ffi::CVodeGetQuadDky),
         get_evaluations: ffi::CVodeGetQuadNumRhsEvals,
     }),
+    sensitivities: Some(&SensitivityFunctions {
+        reinit: ("CVodeSensReInit", |memory, method, s, _| {
+            // SAFETY: whoever calls through the table vouches for the arguments.
+            unsafe { ffi::CVodeSensReInit(memory, method, s) }
+        }),
+        set_parameters: ("CVodeSetSensParams", ffi::CVodeSetSensParams),
+        set_tolerances: ("CVodeSensEEtolerances", ffi::CVodeSensEEtolerances),
+        set_error_control: ("CVodeSetSensErrCon", ffi::CVodeSetSensErrCon),
+        get: ("CVodeGetSens", ffi::CVodeGetSens),
+        get_dky: ("CVodeGetSensDky1", ffi::CVodeGetSensDky1),
+        get_evaluations: ffi::CVodeGetSensNumRhsEvals,
+    }),
 };
 
 impl<S: Ode> Cvode<S> {
@@ -130,6 +143,17 @@ impl<S: Ode> Cvode<S> {
             if let Some(steps) = options.nonlinear.max_steps_between_setups {
                 let function = ("CVodeSetLSetupFrequency", ffi::CVodeSetLSetupFrequency as _);
                 cvode.set(function, i64::from(steps))?;
+            }
+        }
+        if let Some(sensitivities) = &options.sensitivities {
+            let memory = cvode.memory.raw;
+            let access = Access { get: S::parameters, set: S::set_parameters };
+            // SAFETY: the memory is alive, and the callback fits the host.
+            unsafe {
+                let init = ("CVodeSensInit1", |count, method, s, _| {
+                    ffi::CVodeSensInit1(memory, count, method, Some(one_rhs::<S>), s)
+                });
+                cvode.set_up_sensitivities(sensitivities, &options.tolerances, &access, init)?;
             }
         }
         // SAFETY: the callbacks fit the registered host, and the solvers live as long as the memory.

@@ -6,6 +6,7 @@ use crate::{
     sundials::{
         linear_solver::{Jacobian, LinearSolver},
         options::{Limits, builder_methods},
+        sensitivity::Sensitivities,
     },
 };
 
@@ -17,6 +18,7 @@ pub struct IdaOptions {
     pub(super) steps: StepOptions,
     pub(super) limits: Limits,
     pub(super) quadrature_tolerances: Option<Tolerances>,
+    pub(super) sensitivities: Option<Sensitivities>,
     pub(super) linear_solver: LinearSolver,
     pub(super) differential: Option<Vec<bool>>,
     pub(super) suppress_algebraic: bool,
@@ -31,6 +33,7 @@ impl IdaOptions {
             steps: StepOptions::default(),
             limits: Limits::default(),
             quadrature_tolerances: None,
+            sensitivities: None,
             linear_solver: LinearSolver::Dense(Jacobian::DifferenceQuotients),
             differential: None,
             suppress_algebraic: false,
@@ -62,6 +65,7 @@ impl IdaOptions {
 
     builder_methods!(order);
     builder_methods!(quadratures);
+    builder_methods!(sensitivities);
     step_options!();
     builder_methods!(limits);
 
@@ -75,6 +79,9 @@ impl IdaOptions {
         } else if self.suppress_algebraic {
             let mend = "it needs `differential` to say which unknowns are algebraic";
             return Err(InputError::new("suppress_algebraic", true, mend));
+        }
+        if let Some(sensitivities) = &self.sensitivities {
+            sensitivities.check_for_dae()?;
         }
         self.linear_solver.check(y0.len())
     }

@@ -7,7 +7,8 @@ use crate::{
     sundials::{
         dae_callbacks::{jacobian, quadratures, residual, roots},
         ffi,
-        functions::{Functions, QuadratureFunctions},
+        functions::{Functions, QuadratureFunctions, SensitivityFunctions},
+        sensitivity::{Access, all_residuals},
         solver::{InitialState, Solver},
         vector::Vector,
     },
@@ -80,6 +81,18 @@ static FUNCTIONS: Functions = Functions {
         get_dky: ("IDAGetQuadDky", ffi::IDAGetQuadDky),
         get_evaluations: ffi::IDAGetQuadNumRhsEvals,
     }),
+    sensitivities: Some(&SensitivityFunctions {
+        reinit: ("IDASensReInit", |memory, method, s, sp| {
+            // SAFETY: whoever calls through the table vouches for the arguments.
+            unsafe { ffi::IDASensReInit(memory, method, s, sp) }
+        }),
+        set_parameters: ("IDASetSensParams", ffi::IDASetSensParams),
+        set_tolerances: ("IDASensEEtolerances", ffi::IDASensEEtolerances),
+        set_error_control: ("IDASetSensErrCon", ffi::IDASetSensErrCon),
+        get: ("IDAGetSens", ffi::IDAGetSens),
+        get_dky: ("IDAGetSensDky1", ffi::IDAGetSensDky1),
+        get_evaluations: ffi::IDAGetSensNumResEvals,
+    }),
 };
 
 impl<S: Dae> Ida<S> {
@@ -133,6 +146,16 @@ impl<S: Dae> Ida<S> {
                 ida.set(("IDASetId", ffi::IDASetId), id.raw())?;
                 let suppress = i32::from(options.suppress_algebraic);
                 ida.set(("IDASetSuppressAlg", ffi::IDASetSuppressAlg), suppress)?;
+            }
+        }
+        if let Some(sensitivities) = &options.sensitivities {
+            let access = Access { get: S::parameters, set: S::set_parameters };
+            // SAFETY: the memory is alive, and the callback fits the host.
+            unsafe {
+                let init = ("IDASensInit", |count, method, s, sp| {
+                    ffi::IDASensInit(memory, count, method, Some(all_residuals::<S>), s, sp)
+                });
+                ida.set_up_sensitivities(sensitivities, &options.tolerances, &access, init)?;
             }
         }
         Ok(ida)

@@ -62,7 +62,8 @@ impl<S: Dae> Ida<S> {
         }
         // SAFETY: memory and vectors are alive.
         let code = unsafe { ffi::IDAGetConsistentIC(self.memory.raw, self.y.raw(), self.raw_yp()) };
-        self.host.accept("IDAGetConsistentIC", code)
+        self.host.accept("IDAGetConsistentIC", code)?;
+        self.read_consistent_sensitivities()
     }
 
     /// As [`reinit`](Integrator::reinit), from `y` and its time derivative `yp`.

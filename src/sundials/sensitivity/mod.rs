@@ -1,0 +1,10 @@
+//! Forward sensitivities: derivatives of the solution with respect to parameters, beside the run.
+
+mod callbacks;
+mod options;
+mod rhs;
+mod solve;
+
+pub(super) use callbacks::{all_residuals, one_rhs};
+pub use options::{Sensitivities, SensitivityMethod, SensitivitySource};
+pub(super) use rhs::{Access, SensitivityRhs};
