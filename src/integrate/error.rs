@@ -148,6 +148,11 @@ pub enum Cause {
     MassMatrix,
     /// The initial values of a DAE do not satisfy its equations, or none could be found.
     InconsistentStart,
+    /// A DAE is of index 2 or higher: the equations without derivatives leave an unknown undetermined.
+    HigherIndex {
+        /// The unknown, or one of several.
+        unknown: usize,
+    },
     /// An unknown does not keep the sign that `sign_constraints` ask for, whatever the step size, or the steps
     /// towards its bound have become too small.
     SignConstraint {
@@ -181,6 +186,10 @@ impl Cause {
             Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
             Self::MassMatrix => "the mass matrix cannot be factorized".into(),
             Self::InconsistentStart => "the initial values do not satisfy the equations".into(),
+            Self::HigherIndex { unknown } => format!(
+                "the equations are of index 2 or higher: those without derivatives leave unknown \
+                 {unknown} undetermined"
+            ),
             Self::SignConstraint { unknown, value } => {
                 format!(
                     "unknown {unknown} became {value:e} in the last steps, against sign_constraints"
@@ -225,6 +234,11 @@ impl Cause {
             Self::InconsistentStart => {
                 "evaluate the residual at the start, or let consistent_start find the missing \
                  values; if it is right, check a supplied Jacobian"
+            }
+            Self::HigherIndex { .. } => {
+                "replace constraints by their derivatives with respect to time, once or twice, until they \
+                 determine it, as the accelerations of a mechanism determine its constraint forces; as an ODE \
+                 it may keep the constraints themselves by `project`"
             }
             Self::SignConstraint { .. } => {
                 "look at what drives this unknown at its bound: a reaction has to end with what it \

@@ -59,6 +59,7 @@ pub(super) fn in_mechanics(source: Failed) -> Failed {
         Cause::TooManySteps { .. }
         | Cause::SignConstraint { .. }
         | Cause::MassMatrix
+        | Cause::HigherIndex { .. }
         | Cause::Other => return source,
     };
     format!("{what}: {mend} ({}, order {})", error.integrator, error.order).into()

@@ -13,7 +13,7 @@ use std::{
 };
 
 use super::{
-    differences::Differences, functions::Get, linear_solver::LinearSolver,
+    differences::Differences, functions::Get, index::Index, linear_solver::LinearSolver,
     sensitivity::SensitivityRhs,
 };
 use crate::{
@@ -28,6 +28,9 @@ pub(super) const STOP: i32 = -1;
 
 /// `newton_solve` of an `Ode` or a `Dae`: (system, step parameter, right-hand side and solution).
 pub(super) type NewtonSolve<S> = fn(&mut S, f64, &mut [f64]) -> Result<(), Failure>;
+
+/// Finds the index of a `Dae`: (system, t, y, y').
+pub(super) type FindIndex<S> = fn(&mut S, f64, &[f64], &[f64]) -> Result<Index, Failure>;
 
 /// How a user-supplied linear solver is called.
 pub(super) struct CustomSolve<S> {
@@ -51,6 +54,8 @@ pub(super) struct Host<S> {
     pub(super) custom_solve: Option<CustomSolve<S>>,
     /// For sparse Jacobians that the system does not supply.
     pub(super) differences: Option<Differences>,
+    /// To find out whether a DAE failed for its index; none if the user knows it.
+    pub(super) find_index: Option<FindIndex<S>>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
     /// Time that whole steps have reached, noted for ARKODE: it gives that of a stage after a failure.
@@ -141,6 +146,7 @@ impl<S> Host<S> {
             linear_solver,
             custom_solve: None,
             differences: None,
+            find_index: None,
             setup_time: f64::NAN,
             step_end: None,
             troubles,

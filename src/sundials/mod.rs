@@ -39,6 +39,7 @@ mod ffi;
 mod functions;
 mod host;
 mod ida;
+mod index;
 mod kernels;
 mod linear;
 mod linear_solver;

@@ -4,6 +4,7 @@ use std::ffi::c_void;
 
 use super::{
     ffi,
+    index::Index,
     signs::{self, Violation},
     solver::{Memory, Solver},
 };
@@ -89,6 +90,28 @@ impl<K, S> Solver<K, S> {
         code == 0 && singular.iter().any(|&code| i64::from(code) == flag)
     }
 
+    /// That a DAE failed for its index, if it may have failed for that.
+    fn higher_index(&mut self, cause: &Cause) -> Option<Cause> {
+        const MOST_UNKNOWNS: usize = 300;
+        let suspicious = matches!(
+            cause,
+            Cause::ErrorTest
+                | Cause::Convergence
+                | Cause::LinearSolver
+                | Cause::InconsistentStart
+                | Cause::Other
+        );
+        let host = self.host.get_mut();
+        let (find, y, yp) = (host.find_index?, self.y.as_slice(), self.yp.as_ref()?.as_slice());
+        if !suspicious || y.len() > MOST_UNKNOWNS {
+            return None;
+        }
+        match find(&mut host.system, self.t, y, yp) {
+            Ok(Index::Higher(unknown)) => Some(Cause::HigherIndex { unknown }),
+            _ => None,
+        }
+    }
+
     /// The error for a return code of the integrator on its way to `target`.
     pub(super) fn stopped(&mut self, code: i32, target: f64) -> Error {
         // first of all: asking the linear solver for its flag may leave a message, too
@@ -132,6 +155,7 @@ impl<K, S> Solver<K, S> {
         let troubles = &mut self.host.get_mut().troubles;
         let place = (statistics.current_time, statistics.current_step);
         let (cause, source) = troubles.cause(place, blame_retries, otherwise);
+        let cause = self.higher_index(&cause).unwrap_or(cause);
         IntegrationError {
             integrator: self.memory.functions.integrator,
             cause,

@@ -9,6 +9,7 @@ mod cvode;
 mod failures;
 mod ida;
 mod imex;
+mod index;
 mod jacobians;
 mod lifecycle;
 mod mass;

@@ -57,7 +57,7 @@ impl IdaOptions {
     }
 
     /// Whether algebraic unknowns are left out of the local error test (`IDASetSuppressAlg`);
-    /// advisable for equations of index 2. Default: no.
+    /// advisable for equations of index 2, which are not taken for a reason of failures then. Default: no.
     pub fn suppress_algebraic(mut self, on: bool) -> Self {
         self.suppress_algebraic = on;
         self

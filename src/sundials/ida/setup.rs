@@ -8,6 +8,7 @@ use crate::{
         dae_callbacks::{jacobian, quadratures, residual, roots},
         ffi,
         functions::{Functions, QuadratureFunctions, SensitivityFunctions},
+        index::index,
         sensitivity::{Access, all_residuals},
         solver::{InitialState, Solver},
         vector::Vector,
@@ -137,6 +138,9 @@ impl<S: Dae> Ida<S> {
             if solver.has_jacobian_callback() {
                 ida.set(("IDASetJacFn", ffi::IDASetJacFn), Some(jacobian::<S> as _))?;
             }
+        }
+        if !options.suppress_algebraic {
+            ida.host.get_mut().find_index = Some(index);
         }
         if let Some(differential) = &options.differential {
             let id: Vec<f64> = differential.iter().map(|&d| f64::from(u8::from(d))).collect();

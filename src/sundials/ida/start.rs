@@ -2,9 +2,17 @@
 
 use super::setup::Ida;
 use crate::{
-    integrate::{Error, Integrator, check_finite, check_length, check_time},
-    ode::Dae,
-    sundials::{ffi, signs, vector::Vector},
+    integrate::{
+        Callback, Cause, Error, IntegrationError, Integrator, check_finite, check_length,
+        check_time,
+    },
+    ode::{Dae, Failure},
+    sundials::{
+        ffi,
+        index::{Index, index},
+        signs,
+        vector::Vector,
+    },
 };
 
 /// Which initial values [`Ida::consistent_start`] may change.
@@ -64,6 +72,46 @@ impl<S: Dae> Ida<S> {
         let code = unsafe { ffi::IDAGetConsistentIC(self.memory.raw, self.y.raw(), self.raw_yp()) };
         self.host.accept("IDAGetConsistentIC", code)?;
         self.read_consistent_sensitivities()
+    }
+
+    /// Checks that the equations are of index 1 at most, at the present state: that those without derivatives
+    /// determine the unknowns without, which IDA relies on.
+    ///
+    /// It takes four residuals for each unknown, and elimination in dense matrices. Where an integration fails,
+    /// IDA checks it by itself, with up to 300 unknowns.
+    ///
+    /// # Errors
+    /// [`Error::Integration`] with [`Cause::HigherIndex`], or [`Cause::LinearSolver`] where the equations determine
+    /// nothing at all, such as one equation twice, or what made the residual fail; [`Error::Input`] for more than
+    /// 1000 unknowns.
+    pub fn check_index(&mut self) -> Result<(), Error> {
+        const MOST_UNKNOWNS: usize = 1000;
+        let n = self.y().len();
+        if n > MOST_UNKNOWNS {
+            let mend = format!("the index is checked in dense matrices: at most {MOST_UNKNOWNS}");
+            return Err(Error::input("number of unknowns", n, mend));
+        }
+        let (host, y) = (self.host.get_mut(), self.y.as_slice());
+        let yp = self.yp.as_ref().map_or(&[][..], Vector::as_slice);
+        let (callback, t) = (Callback::Residual, self.t);
+        let (cause, source) = match index(&mut host.system, t, y, yp) {
+            Ok(Index::AtMostOne) => return Ok(()),
+            Ok(Index::Higher(unknown)) => (Cause::HigherIndex { unknown }, None),
+            Ok(Index::Singular) => (Cause::LinearSolver, None),
+            Err(Failure::Recoverable(message)) => (Cause::Rejected { callback, t, message }, None),
+            Err(Failure::Fatal(error)) => (Cause::Fatal(callback), Some(error)),
+        };
+        let statistics = self.step_statistics();
+        Err(IntegrationError {
+            integrator: self.memory.functions.integrator,
+            cause,
+            t,
+            step: statistics.current_step,
+            order: statistics.current_order,
+            message: String::new(),
+            source,
+        }
+        .into())
     }
 
     /// As [`reinit`](Integrator::reinit), from `y` and its time derivative `yp`.
