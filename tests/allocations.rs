@@ -7,6 +7,10 @@ use pliant::ode::Failure;
 use pliant::rk::{DormandPrince, Integrator, Options};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
 use pliant::simulate::{Component, Reading};
+use pliant::sundials::{
+    Cvode, CvodeOptions, Jacobian, Krylov, KrylovMethod, LinearSolver, Pattern, Preconditioner,
+    Side,
+};
 use pliant::{
     Body, Cells, Chamber, ContactEvents, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
     Signal, Spring, Strain,
@@ -90,6 +94,42 @@ fn runge_kutta_allocates_nothing_after_its_start() {
         settings.solve_to(2.0).unwrap();
     });
     assert_eq!(allocated.count_total, 0);
+}
+
+/// Coloured differences, the incomplete factorization and the products of a Krylov method: after the first steps
+/// hundreds more allocate nothing.
+#[test]
+fn sparse_newton_iterations_do_not_allocate() {
+    let n = 50;
+    let pattern = || Pattern::band(n, 1, 1).unwrap();
+    let jacobian = Jacobian::DifferenceQuotients;
+    let ilu = Preconditioner::Ilu { pattern: pattern(), jacobian };
+    let gmres = Krylov::new(KrylovMethod::Gmres { dimension: 5, restarts: 1 });
+    for solver in [
+        LinearSolver::Klu { pattern: pattern(), jacobian },
+        LinearSolver::Krylov(gmres.preconditioner(Side::Left, ilu)),
+    ] {
+        let chain = |t: f64, y: &[f64], ydot: &mut [f64]| {
+            for i in 0..n {
+                let left = if i > 0 { y[i - 1] } else { t.sin() };
+                ydot[i] = 100.0 * (left - y[i] * y[i] * y[i] - y[i]);
+            }
+            Ok(())
+        };
+        let options = CvodeOptions::new(1e-6, 1e-9).newton(solver);
+        let mut cvode = Cvode::new(chain, 0.0, &vec![0.0; n], &options).unwrap();
+        cvode.solve_to(0.1).unwrap();
+        let before = cvode.statistics();
+        let allocated = measure(|| {
+            cvode.solve_to(10.0).unwrap();
+        });
+        let after = cvode.statistics();
+        assert!(after.steps > before.steps + 300);
+        assert!(
+            after.difference_quotient_evaluations > before.difference_quotient_evaluations + 20
+        );
+        assert_eq!(allocated.count_total, 0);
+    }
 }
 
 /// The value of a formula of any length, with all kinds of steps.

@@ -65,6 +65,10 @@ pub enum Callback {
     Jacobian,
     /// `dense_mass`, `banded_mass` or `sparse_mass`
     Mass,
+    /// `jacobian_times`
+    JacobianTimes,
+    /// The incomplete factorization that preconditions a Krylov method.
+    Preconditioner,
     /// `newton_setup`
     NewtonSetup,
     /// `newton_solve`
@@ -89,6 +93,8 @@ impl fmt::Display for Callback {
             Self::Residual => "the residual",
             Self::Jacobian => "the Jacobian",
             Self::Mass => "the mass matrix",
+            Self::JacobianTimes => "jacobian_times",
+            Self::Preconditioner => "the preconditioner",
             Self::NewtonSetup => "newton_setup",
             Self::NewtonSolve => "newton_solve",
             Self::Roots => "the root functions",
@@ -146,6 +152,9 @@ pub enum Cause {
     LinearSolver,
     /// The mass matrix could not be factorized.
     MassMatrix,
+    /// The Krylov method did not solve the linear systems of the nonlinear iteration down to the
+    /// smallest step.
+    LinearConvergence,
     /// The initial values of a DAE do not satisfy its equations, or none could be found.
     InconsistentStart,
     /// A DAE is of index 2 or higher: the equations without derivatives leave an unknown undetermined.
@@ -185,6 +194,9 @@ impl Cause {
             }
             Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
             Self::MassMatrix => "the mass matrix cannot be factorized".into(),
+            Self::LinearConvergence => {
+                "the Krylov method does not converge at the smallest step".into()
+            }
             Self::InconsistentStart => "the initial values do not satisfy the equations".into(),
             Self::HigherIndex { unknown } => format!(
                 "the equations are of index 2 or higher: those without derivatives leave unknown \
@@ -230,6 +242,9 @@ impl Cause {
             Self::MassMatrix => {
                 "look for an unknown without mass, a zero row or column: IDA takes singular mass matrices, \
                  by MassForm"
+            }
+            Self::LinearConvergence => {
+                "give it a preconditioner, more dimensions and restarts, or more iterations"
             }
             Self::InconsistentStart => {
                 "evaluate the residual at the start, or let consistent_start find the missing \

@@ -22,8 +22,16 @@ pub struct Statistics {
     pub difference_quotient_evaluations: u64,
     /// Evaluations of the Jacobian.
     pub jacobian_evaluations: u64,
-    /// Factorizations of the Newton matrix.
+    /// Factorizations of the Newton matrix, or what a Krylov method has instead.
     pub linear_setups: u64,
+    /// Iterations of the Krylov method.
+    pub linear_iterations: u64,
+    /// Linear systems that the Krylov method did not solve to its tolerance.
+    pub linear_failures: u64,
+    /// Preconditioners made of a fresh Jacobian.
+    pub preconditioner_setups: u64,
+    /// Systems solved with the preconditioner.
+    pub preconditioner_solves: u64,
     /// Iterations of the nonlinear solver.
     pub nonlinear_iterations: u64,
     /// Nonlinear iterations that did not converge. Most are repaired by a fresh Jacobian.
@@ -72,22 +80,26 @@ impl Statistics {
         sum
     }
 
-    fn counters(&mut self) -> [&mut u64; 15] {
+    fn counters(&mut self) -> [&mut u64; 19] {
         [
             &mut self.steps,
             &mut self.evaluations,
             &mut self.explicit_evaluations,
             &mut self.difference_quotient_evaluations,
-            &mut self.quadrature_evaluations,
-            &mut self.sensitivity_evaluations,
             &mut self.jacobian_evaluations,
             &mut self.linear_setups,
+            &mut self.linear_iterations,
+            &mut self.linear_failures,
+            &mut self.preconditioner_setups,
+            &mut self.preconditioner_solves,
             &mut self.nonlinear_iterations,
             &mut self.nonlinear_failures,
             &mut self.step_failures,
             &mut self.refused_steps,
             &mut self.error_test_failures,
             &mut self.root_evaluations,
+            &mut self.quadrature_evaluations,
+            &mut self.sensitivity_evaluations,
             &mut self.stability_reductions,
         ]
     }

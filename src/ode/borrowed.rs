@@ -58,6 +58,17 @@ macro_rules! ode_within {
             self.0.sparse_jacobian(t, y, ydot, values)
         }
 
+        fn jacobian_times(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            v: &[f64],
+            jv: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.jacobian_times(t, y, ydot, v, jv)
+        }
+
         fn newton_setup(
             &mut self,
             t: f64,
@@ -193,6 +204,18 @@ macro_rules! dae_within {
             values: &mut [f64],
         ) -> Result<(), Failure> {
             self.0.sparse_jacobian(t, cj, y, yp, values)
+        }
+
+        fn jacobian_times(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            v: &[f64],
+            jv: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.jacobian_times(t, cj, y, yp, v, jv)
         }
 
         fn newton_setup(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64]) -> Result<(), Failure> {

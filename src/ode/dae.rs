@@ -55,6 +55,19 @@ pub trait Dae {
         Err(missing("sparse_jacobian"))
     }
 
+    /// Writes the product of dF/dy + cj dF/dy' with the vector `v` into `jv`.
+    fn jacobian_times(
+        &mut self,
+        _t: f64,
+        _cj: f64,
+        _y: &[f64],
+        _yp: &[f64],
+        _v: &[f64],
+        _jv: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("jacobian_times"))
+    }
+
     /// Prepares to solve (dF/dy + cj dF/dy') x = r.
     fn newton_setup(&mut self, _t: f64, _cj: f64, _y: &[f64], _yp: &[f64]) -> Result<(), Failure> {
         Err(missing("newton_setup"))

@@ -48,6 +48,18 @@ pub trait Ode {
         Err(missing("sparse_jacobian"))
     }
 
+    /// Writes the product of df/dy with the vector `v` into `jv`; `ydot` is f(t, y).
+    fn jacobian_times(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        _v: &[f64],
+        _jv: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("jacobian_times"))
+    }
+
     /// Prepares to solve (I - gamma df/dy) x = r at (t, y).
     ///
     /// `reuse` allows an older df/dy to be kept (only gamma changed). Returns whether df/dy is

@@ -117,7 +117,7 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
 
 /// The values of dF/dy + cj dF/dy' on the pattern of the linear solver: the system's own, or difference
 /// quotients.
-fn sparse_jacobian<S: Dae>(
+pub(super) fn sparse_jacobian<S: Dae>(
     host: &mut Host<S>,
     t: f64,
     (cj, y, yp): (f64, &[f64], &[f64]),

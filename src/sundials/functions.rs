@@ -10,6 +10,9 @@ pub(super) type Named<F> = (&'static str, F);
 /// A function with one argument besides the memory block, mostly to set an option.
 pub(super) type Set<T> = Named<unsafe extern "C" fn(*mut c_void, T) -> i32>;
 
+/// A function with two arguments besides the memory block, mostly to set callbacks.
+pub(super) type SetTwo<A, B> = Named<unsafe extern "C" fn(*mut c_void, A, B) -> i32>;
+
 /// A function that reads one value.
 pub(super) type Get<T> = unsafe extern "C" fn(*mut c_void, *mut T) -> i32;
 
@@ -71,6 +74,8 @@ pub(super) struct Functions {
     /// The order of a Runge-Kutta method is that of its table.
     pub(super) set_max_order: Option<Set<i32>>,
     pub(super) set_convergence_coefficient: Set<f64>,
+    /// Of a Krylov method.
+    pub(super) set_tolerance_factor: Set<f64>,
     pub(super) set_stop_time: Set<f64>,
     pub(super) set_constraints: Set<ffi::N_Vector>,
 
@@ -90,6 +95,10 @@ pub(super) struct Functions {
     pub(super) get_step_failures: Get<i64>,
     pub(super) get_jacobian_evaluations: Get<i64>,
     pub(super) get_quotient_evaluations: Get<i64>,
+    pub(super) get_linear_iterations: Get<i64>,
+    pub(super) get_linear_failures: Get<i64>,
+    pub(super) get_preconditioner_setups: Get<i64>,
+    pub(super) get_preconditioner_solves: Get<i64>,
     pub(super) get_root_evaluations: Get<i64>,
     /// Of right-hand sides that are split.
     pub(super) get_explicit_evaluations: Option<Get<i64>>,

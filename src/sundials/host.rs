@@ -13,8 +13,8 @@ use std::{
 };
 
 use super::{
-    differences::Differences, functions::Get, index::Index, linear_solver::LinearSolver,
-    sensitivity::SensitivityRhs,
+    differences::Differences, functions::Get, ilu::IncompleteLu, index::Index,
+    linear_solver::LinearSolver, sensitivity::SensitivityRhs,
 };
 use crate::{
     integrate::{Callback, Cause, Error},
@@ -56,6 +56,8 @@ pub(super) struct Host<S> {
     pub(super) differences: Option<Differences>,
     /// To find out whether a DAE failed for its index; none if the user knows it.
     pub(super) find_index: Option<FindIndex<S>>,
+    /// The preconditioner of a Krylov method, if it is not the system itself.
+    pub(super) ilu: Option<IncompleteLu>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
     /// Time that whole steps have reached, noted for ARKODE: it gives that of a stage after a failure.
@@ -147,6 +149,7 @@ impl<S> Host<S> {
             custom_solve: None,
             differences: None,
             find_index: None,
+            ilu: None,
             setup_time: f64::NAN,
             step_end: None,
             troubles,
@@ -188,6 +191,17 @@ impl<S> Host<S> {
     ) -> i32 {
         let outcome = self.guard(callback, t, |system| call(system, &mut *output));
         if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
+    }
+
+    /// Asks for a smaller step where an incomplete factorization has no pivot.
+    pub(super) fn check_pivots(&mut self, t: f64, factorized: Result<(), usize>) -> i32 {
+        let Err(row) = factorized else { return 0 };
+        let message = format!(
+            "the incomplete LU factorization, which takes each unknown from the equation of its own row, has no \
+             pivot in row {row}"
+        );
+        let callback = Callback::Preconditioner;
+        self.troubles.retry(t, Cause::Rejected { callback, t, message })
     }
 
     /// Asks for a smaller step if `output` has a NaN or infinity.

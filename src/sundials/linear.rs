@@ -1,21 +1,22 @@
 //! Linear solvers of SUNDIALS for the Newton iteration.
 
-use std::ffi::c_void;
+use std::{ffi::c_void, ptr};
 
 use super::{
     context::Context,
     ffi,
     host::{Host, RETRY, STOP},
+    krylov::{Krylov, KrylovMethod, Side},
     linear_solver::LinearSolver,
     matrix::Matrix,
     vector::{Vector, slice, slice_mut},
 };
 use crate::integrate::{Callback, Error};
 
-/// Owns a `SUNLinearSolver` and the matrix it factorizes, freed in this order.
+/// Owns a `SUNLinearSolver` and the matrix it factorizes, if any, freed in this order.
 pub(super) struct Linear {
     solver: RawSolver,
-    matrix: Matrix,
+    matrix: Option<Matrix>,
 }
 
 struct RawSolver(ffi::SUNLinearSolver);
@@ -32,7 +33,8 @@ impl Linear {
         let n = template.as_slice().len();
         kind.check(n)?;
         let matrix = Matrix::new(kind, n, context)?;
-        let (y, m, c) = (template.raw(), matrix.raw(), context.raw());
+        let m = matrix.as_ref().map_or(ptr::null_mut(), Matrix::raw);
+        let (y, c) = (template.raw(), context.raw());
         let (function, raw) = match kind {
             // SAFETY: vector, matrix and context are alive and fit together.
             LinearSolver::Dense(_) => ("SUNLinSol_Dense", unsafe { ffi::SUNLinSol_Dense(y, m, c) }),
@@ -42,6 +44,8 @@ impl Linear {
             }
             // SAFETY: as above.
             LinearSolver::Klu { .. } => ("SUNLinSol_KLU", unsafe { ffi::SUNLinSol_KLU(y, m, c) }),
+            // SAFETY: vector and context are alive; the numbers were checked.
+            LinearSolver::Krylov(options) => unsafe { krylov(options, y, c) },
             // SAFETY: the context is alive; the caller vouches for `data`.
             LinearSolver::Custom => ("SUNLinSolNewEmpty", unsafe { custom::<S>(c, data) }),
         };
@@ -55,8 +59,9 @@ impl Linear {
         self.solver.0
     }
 
+    /// Null for a solver without a matrix.
     pub(super) fn matrix(&self) -> ffi::SUNMatrix {
-        self.matrix.raw()
+        self.matrix.as_ref().map_or(ptr::null_mut(), Matrix::raw)
     }
 }
 
@@ -64,6 +69,76 @@ impl Drop for RawSolver {
     fn drop(&mut self) {
         // SAFETY: made by a SUNLinearSolver constructor and freed once.
         unsafe { ffi::SUNLinSolFree(self.0) };
+    }
+}
+
+/// A Krylov method, or null, with the name of its constructor.
+///
+/// # Safety
+/// `template` and `context` are alive, and the options were checked.
+unsafe fn krylov(
+    options: &Krylov,
+    template: ffi::N_Vector,
+    context: ffi::SUNContext,
+) -> (&'static str, ffi::SUNLinearSolver) {
+    let side = match options.preconditioner {
+        None => ffi::SUN_PREC_NONE,
+        Some((Side::Left, _)) => ffi::SUN_PREC_LEFT,
+        Some((Side::Right, _)) => ffi::SUN_PREC_RIGHT,
+    } as i32;
+    // SAFETY: the caller vouches for the arguments; the operations table of a new solver is writable.
+    unsafe {
+        match options.method {
+            KrylovMethod::Gmres { dimension, restarts } => {
+                let raw = ffi::SUNLinSol_SPGMR(template, side, dimension as i32, context);
+                if !raw.is_null() {
+                    ffi::SUNLinSol_SPGMRSetMaxRestarts(raw, restarts as i32);
+                    (*(*raw).ops).solve = Some(solve_by_gmres);
+                }
+                ("SUNLinSol_SPGMR", raw)
+            }
+            KrylovMethod::BiCgStab { iterations } => {
+                let raw = ffi::SUNLinSol_SPBCGS(template, side, iterations as i32, context);
+                if !raw.is_null() {
+                    (*(*raw).ops).solve = Some(solve_by_bicgstab);
+                }
+                ("SUNLinSol_SPBCGS", raw)
+            }
+        }
+    }
+}
+
+/// The `solve` operation of GMRES, with codes that all integrators know.
+unsafe extern "C" fn solve_by_gmres(
+    solver: ffi::SUNLinearSolver,
+    matrix: ffi::SUNMatrix,
+    x: ffi::N_Vector,
+    b: ffi::N_Vector,
+    tolerance: f64,
+) -> i32 {
+    // SAFETY: SUNDIALS calls the operation as it would this function.
+    known(unsafe { ffi::SUNLinSolSolve_SPGMR(solver, matrix, x, b, tolerance) })
+}
+
+/// The same of BiCGStab.
+unsafe extern "C" fn solve_by_bicgstab(
+    solver: ffi::SUNLinearSolver,
+    matrix: ffi::SUNMatrix,
+    x: ffi::N_Vector,
+    b: ffi::N_Vector,
+    tolerance: f64,
+) -> i32 {
+    // SAFETY: SUNDIALS calls the operation as it would this function.
+    known(unsafe { ffi::SUNLinSolSolve_SPBCGS(solver, matrix, x, b, tolerance) })
+}
+
+/// IDA takes the codes of a product that failed for success.
+fn known(code: i32) -> i32 {
+    const RETRY_PRODUCT: i32 = ffi::SUNLS_ATIMES_FAIL_REC as i32;
+    match code {
+        RETRY_PRODUCT => ffi::SUNLS_PSOLVE_FAIL_REC as i32,
+        ffi::SUNLS_ATIMES_FAIL_UNREC => ffi::SUNLS_PSOLVE_FAIL_UNREC,
+        code => code,
     }
 }
 
@@ -89,7 +164,7 @@ unsafe fn custom<S>(context: ffi::SUNContext, data: *mut c_void) -> ffi::SUNLine
         // SAFETY: called once, by SUNLinSolFree; the content belongs to the integrator, so it
         // is only forgotten here.
         unsafe {
-            (*solver).content = std::ptr::null_mut();
+            (*solver).content = ptr::null_mut();
             ffi::SUNLinSolFreeEmpty(solver);
         }
         0

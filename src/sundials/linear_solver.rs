@@ -1,18 +1,7 @@
 //! How the linear systems of the Newton iteration are solved.
 
-use super::pattern::Pattern;
+use super::{jacobian::Jacobian, krylov::Krylov, pattern::Pattern};
 use crate::input::InputError;
-
-/// Where the entries of a Jacobian come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Jacobian {
-    /// Difference quotients of the right-hand side or residual: n extra evaluations for a dense
-    /// matrix, `lower + upper + 1` for a band, and for a sparse matrix one for each colour of its columns:
-    /// those that share no row have the same colour and are shifted at once.
-    DifferenceQuotients,
-    /// The system's own `dense_jacobian`, `banded_jacobian` or `sparse_jacobian`.
-    Supplied,
-}
 
 /// How the linear systems of the Newton iteration are solved.
 ///
@@ -39,6 +28,8 @@ pub enum LinearSolver {
         /// Where the entries come from.
         jacobian: Jacobian,
     },
+    /// A Krylov method: no matrix, but products with vectors.
+    Krylov(Krylov),
     /// The system's own `newton_setup` and `newton_solve`: the way to exploit structure that
     /// a matrix of entries hides.
     Custom,
@@ -66,11 +57,8 @@ impl LinearSolver {
                     format!("with {n} unknowns the band does not fit into any memory"),
                 ))
             }
-            Self::Klu { pattern, .. } if pattern.dimension() != n => Err(InputError::new(
-                "dimension of the sparsity pattern",
-                pattern.dimension(),
-                format!("it has to be the number of unknowns, {n}"),
-            )),
+            Self::Klu { pattern, .. } => pattern.check(n),
+            Self::Krylov(krylov) => krylov.check(n),
             _ => Ok(()),
         }
     }
@@ -80,13 +68,23 @@ impl LinearSolver {
         match self {
             Self::Dense(jacobian) | Self::Band { jacobian, .. } => *jacobian == Jacobian::Supplied,
             Self::Klu { .. } | Self::Custom => true,
+            Self::Krylov(_) => false,
         }
     }
 
     /// The pattern on which the layer itself takes difference quotients.
     pub(super) fn pattern_of_differences(&self) -> Option<&Pattern> {
+        match (self, self.ilu()) {
+            (Self::Klu { pattern, jacobian: Jacobian::DifferenceQuotients }, _)
+            | (_, Some((pattern, Jacobian::DifferenceQuotients))) => Some(pattern),
+            _ => None,
+        }
+    }
+
+    /// Pattern and entries of an incomplete factorization that preconditions.
+    pub(super) fn ilu(&self) -> Option<(&Pattern, Jacobian)> {
         match self {
-            Self::Klu { pattern, jacobian: Jacobian::DifferenceQuotients } => Some(pattern),
+            Self::Krylov(krylov) => krylov.ilu(),
             _ => None,
         }
     }

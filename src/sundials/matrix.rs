@@ -11,8 +11,12 @@ use crate::{integrate::Error, ode::BandMut};
 pub(super) struct Matrix(ffi::SUNMatrix);
 
 impl Matrix {
-    /// The `n` x `n` matrix that the linear solver works on.
-    pub(super) fn new(solver: &LinearSolver, n: usize, context: &Context) -> Result<Self, Error> {
+    /// The `n` x `n` matrix that the linear solver works on, if it needs one.
+    pub(super) fn new(
+        solver: &LinearSolver,
+        n: usize,
+        context: &Context,
+    ) -> Result<Option<Self>, Error> {
         let (size, context) = (n as i64, context.raw());
         let (function, raw) = match solver {
             // SAFETY: the context is alive.
@@ -30,11 +34,12 @@ impl Matrix {
             }),
             // SAFETY: the context is alive.
             LinearSolver::Custom => ("SUNMatNewEmpty", unsafe { empty(context) }),
+            LinearSolver::Krylov(_) => return Ok(None),
         };
         if raw.is_null() {
             return Err(Error::out_of_memory(function));
         }
-        Ok(Self(raw))
+        Ok(Some(Self(raw)))
     }
 
     pub(super) fn raw(&self) -> ffi::SUNMatrix {
@@ -121,7 +126,7 @@ pub(super) unsafe fn entries<'a>(
             // SAFETY: the caller vouches for the matrix.
             Entries::Sparse(unsafe { stored(matrix, solver, n) })
         }
-        LinearSolver::Custom => Entries::Custom,
+        LinearSolver::Krylov(_) | LinearSolver::Custom => Entries::Custom,
     }
 }
 
@@ -145,7 +150,7 @@ pub(super) unsafe fn stored<'a>(
             LinearSolver::Klu { pattern, .. } => {
                 (ffi::SUNSparseMatrix_Data(matrix), pattern.entry_count())
             }
-            LinearSolver::Custom => return &mut [],
+            LinearSolver::Krylov(_) | LinearSolver::Custom => return &mut [],
         };
         slice::from_raw_parts_mut(data, len)
     }

@@ -25,8 +25,8 @@
 //! [`Cvode`], [`Arkode`] and [`Ida`] are used by the methods of [`Integrator`]:
 //! [`solve_to`](Integrator::solve_to) a time or a single [`step`](Integrator::step), output between
 //! the steps by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and
-//! [`Statistics`]. [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU)
-//! or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
+//! [`Statistics`]. [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU),
+//! without a matrix ([`Krylov`]) or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
 
 mod arkode;
 mod beside;
@@ -34,19 +34,24 @@ mod colouring;
 mod context;
 mod cvode;
 mod dae_callbacks;
+mod dae_krylov;
 mod differences;
 mod ffi;
 mod functions;
 mod host;
 mod ida;
+mod ilu;
 mod index;
+mod jacobian;
 mod kernels;
+mod krylov;
 mod linear;
 mod linear_solver;
 mod mass_form;
 mod matrix;
 mod nonlinear;
 mod ode_callbacks;
+mod ode_krylov;
 mod options;
 mod pattern;
 mod pattern_search;
@@ -63,7 +68,9 @@ mod version;
 pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub use ida::{Ida, IdaOptions, InitialCondition};
-pub use linear_solver::{Jacobian, LinearSolver};
+pub use jacobian::Jacobian;
+pub use krylov::{Krylov, KrylovMethod, Preconditioner, Side};
+pub use linear_solver::LinearSolver;
 pub use mass_form::MassForm;
 pub use pattern::Pattern;
 pub use quadratures::WithSensitivities;

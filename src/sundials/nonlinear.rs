@@ -1,10 +1,7 @@
 //! How the equations of an implicit step are solved.
 
 use super::{
-    context::Context,
-    ffi,
-    linear_solver::{Jacobian, LinearSolver},
-    vector::Vector,
+    context::Context, ffi, jacobian::Jacobian, linear_solver::LinearSolver, vector::Vector,
 };
 use crate::{
     input::InputError,

@@ -170,7 +170,7 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode>(
 }
 
 /// The values of df/dy on the pattern of the linear solver: the system's own, or difference quotients.
-fn sparse_jacobian<S: Ode>(
+pub(super) fn sparse_jacobian<S: Ode>(
     host: &mut Host<S>,
     t: f64,
     y: &[f64],

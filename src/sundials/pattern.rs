@@ -167,9 +167,26 @@ impl Pattern {
         Ok(values)
     }
 
+    /// Checks that the matrix has as many columns as there are unknowns.
+    pub(super) fn check(&self, n: usize) -> Result<(), InputError> {
+        if self.dimension() == n {
+            return Ok(());
+        }
+        Err(InputError::new(
+            "dimension of the sparsity pattern",
+            self.dimension(),
+            format!("it has to be the number of unknowns, {n}"),
+        ))
+    }
+
     /// Rows of the entries of column `j`.
     pub(super) fn column(&self, j: usize) -> &[i64] {
-        &self.row_indices[self.places(j)]
+        self.rows(self.places(j))
+    }
+
+    /// Rows of the entries at these places.
+    pub(super) fn rows(&self, places: Range<usize>) -> &[i64] {
+        &self.row_indices[places]
     }
 
     /// Places of the entries of column `j` among the values.

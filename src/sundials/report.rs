@@ -10,6 +10,11 @@ use super::{
 };
 use crate::integrate::{Cause, Error, IntegrationError, Statistics};
 
+/// Codes of a factorization that found a singular matrix.
+const SINGULAR: [u32; 2] = [ffi::SUNLS_LUFACT_FAIL, ffi::SUNLS_PACKAGE_FAIL_REC];
+/// Codes of a Krylov method that did not converge.
+const NOT_CONVERGED: [u32; 2] = [ffi::SUNLS_CONV_FAIL, ffi::SUNLS_RES_REDUCED];
+
 impl<K, S> Solver<K, S> {
     pub(super) fn all_statistics(&self) -> Statistics {
         let Memory { raw: memory, functions } = self.memory;
@@ -33,6 +38,10 @@ impl<K, S> Solver<K, S> {
         s.jacobian_evaluations = count(functions.get_jacobian_evaluations);
         let ours = self.host.get().differences.as_ref().map_or(0, |ours| ours.evaluations);
         s.difference_quotient_evaluations = count(functions.get_quotient_evaluations) + ours;
+        s.linear_iterations = count(functions.get_linear_iterations);
+        s.linear_failures = count(functions.get_linear_failures);
+        s.preconditioner_setups = count(functions.get_preconditioner_setups);
+        s.preconditioner_solves = count(functions.get_preconditioner_solves);
         s.root_evaluations = count(functions.get_root_evaluations);
         s.quadrature_evaluations =
             functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
@@ -80,14 +89,13 @@ impl<K, S> Solver<K, S> {
         s
     }
 
-    /// Whether the last factorization found a singular matrix.
-    fn is_singular(&self) -> bool {
+    /// Whether the linear solver failed last with one of these codes.
+    fn linear_solver_gave(&self, codes: [u32; 2]) -> bool {
         let mut flag = 0;
         // SAFETY: the memory is alive, the result has a place.
         let code =
             unsafe { (self.memory.functions.get_linear_flag)(self.memory.raw, &raw mut flag) };
-        let singular = [ffi::SUNLS_LUFACT_FAIL, ffi::SUNLS_PACKAGE_FAIL_REC];
-        code == 0 && singular.iter().any(|&code| i64::from(code) == flag)
+        code == 0 && codes.iter().any(|&code| i64::from(code) == flag)
     }
 
     /// That a DAE failed for its index, if it may have failed for that.
@@ -133,7 +141,12 @@ impl<K, S> Solver<K, S> {
             ffi::IDA_LINESEARCH_FAIL | ffi::IDA_NO_RECOVERY if is_dae => {
                 (Cause::InconsistentStart, true)
             }
-            ffi::CV_CONV_FAILURE if self.is_singular() => (Cause::LinearSolver, true),
+            ffi::CV_CONV_FAILURE if self.linear_solver_gave(SINGULAR) => {
+                (Cause::LinearSolver, true)
+            }
+            ffi::CV_CONV_FAILURE if self.linear_solver_gave(NOT_CONVERGED) => {
+                (Cause::LinearConvergence, true)
+            }
             ffi::CV_ERR_FAILURE | ffi::CV_CONV_FAILURE if is_dae && statistics.steps == 0 => {
                 (Cause::InconsistentStart, true)
             }

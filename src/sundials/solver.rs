@@ -7,8 +7,11 @@ use super::{
     context::Context,
     differences::Differences,
     ffi,
-    functions::{Functions, Set},
+    functions::{Functions, Set, SetTwo},
     host::{CustomSolve, Host, HostBox, NewtonSolve, keep_message},
+    ilu::IncompleteLu,
+    jacobian::Jacobian,
+    krylov::Krylov,
     linear::Linear,
     linear_solver::LinearSolver,
     nonlinear::FixedPoint,
@@ -268,6 +271,7 @@ impl<K, S> Solver<K, S> {
                 unsafe { Differences::new(pattern, (memory, functions), is_dae, &self.context)? };
             self.host.get_mut().differences = Some(differences);
         }
+        self.host.get_mut().ilu = solver.ilu().map(|(pattern, _)| IncompleteLu::new(pattern));
         let data = self.host.as_ptr();
         // SAFETY: the data is the host, which outlives the solver.
         let linear = unsafe { Linear::new::<S>(solver, &self.y, &self.context, data)? };
@@ -275,7 +279,39 @@ impl<K, S> Solver<K, S> {
         let (name, set) = self.memory.functions.set_linear_solver;
         // SAFETY: memory, solver and matrix are alive, and the memory is dropped first.
         let code = unsafe { set(self.memory.raw, linear.solver(), linear.matrix()) };
-        self.host.accept(name, code)
+        self.host.accept(name, code)?;
+        if let LinearSolver::Krylov(Krylov { tolerance_factor: Some(factor), .. }) = solver {
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_tolerance_factor, *factor)? };
+        }
+        Ok(())
+    }
+
+    /// Gives a Krylov method its callbacks: `set_products` gets none for the setup and `times`,
+    /// `set_preconditioner` both of `preconditioner`.
+    ///
+    /// # Safety
+    /// The functions belong to this integrator, and the callbacks fit the host.
+    pub(super) unsafe fn set_krylov<A, B, P, Q>(
+        &mut self,
+        krylov: &Krylov,
+        (set_products, times): (SetTwo<Option<A>, B>, B),
+        (set_preconditioner, setup, solve): (SetTwo<P, Q>, P, Q),
+    ) -> Result<(), Error> {
+        let memory = self.memory.raw;
+        if krylov.products == Jacobian::Supplied {
+            let (name, set) = set_products;
+            // SAFETY: the memory is alive; the caller vouches for the callback.
+            let code = unsafe { set(memory, None, times) };
+            self.host.accept(name, code)?;
+        }
+        if krylov.preconditioner.is_some() {
+            let (name, set) = set_preconditioner;
+            // SAFETY: as above.
+            let code = unsafe { set(memory, setup, solve) };
+            self.host.accept(name, code)?;
+        }
+        Ok(())
     }
 
     /// Replaces the Newton iteration by a fixed-point iteration, by the function `set`.

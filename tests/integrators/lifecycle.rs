@@ -14,20 +14,27 @@ use pliant::{
     samples::Robertson,
     sundials::{
         Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions,
-        InitialCondition, Integrator, Jacobian, LinearSolver, Multistep, Pattern, Sensitivities,
+        InitialCondition, Integrator, Jacobian, Krylov, KrylovMethod, LinearSolver, Multistep,
+        Pattern, Preconditioner, Sensitivities, Side,
     },
 };
 
 const ATOL: [f64; 3] = [1e-8, 1e-14, 1e-6];
 
-fn linear_solvers() -> [LinearSolver; 5] {
+fn linear_solvers() -> [LinearSolver; 7] {
     let pattern = || Robertson::new().pattern().clone();
+    let gmres = Krylov::new(KrylovMethod::Gmres { dimension: 3, restarts: 1 });
+    let bicgstab = Krylov::new(KrylovMethod::BiCgStab { iterations: 9 });
+    let jacobian = Jacobian::DifferenceQuotients;
+    let ilu = Preconditioner::Ilu { pattern: pattern(), jacobian };
     [
         LinearSolver::Dense(Jacobian::Supplied),
         LinearSolver::Dense(Jacobian::DifferenceQuotients),
         LinearSolver::Band { lower: 2, upper: 2, jacobian: Jacobian::DifferenceQuotients },
         LinearSolver::Klu { pattern: pattern(), jacobian: Jacobian::Supplied },
-        LinearSolver::Klu { pattern: pattern(), jacobian: Jacobian::DifferenceQuotients },
+        LinearSolver::Klu { pattern: pattern(), jacobian },
+        LinearSolver::Krylov(gmres.preconditioner(Side::Left, ilu)),
+        LinearSolver::Krylov(bicgstab),
     ]
 }
 

@@ -11,6 +11,8 @@ mod ida;
 mod imex;
 mod index;
 mod jacobians;
+mod krylov;
+mod krylov_failures;
 mod lifecycle;
 mod mass;
 mod mass_matrix;

@@ -15,6 +15,7 @@ use crate::{
             explicit_rhs, jacobian, newton_rhs, newton_setup_with_mass, note_step_end, note_time,
             rhs, roots,
         },
+        ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
         solver::{InitialState, Solver},
     },
 };
@@ -69,6 +70,7 @@ impl<S: Ode> Arkode<S> {
         set_min_step: ("ARKStepSetMinStep", ffi::ARKStepSetMinStep),
         set_max_order: None,
         set_convergence_coefficient: ("ARKStepSetNonlinConvCoef", ffi::ARKStepSetNonlinConvCoef),
+        set_tolerance_factor: ("ARKStepSetEpsLin", ffi::ARKStepSetEpsLin),
         set_stop_time: ("ARKStepSetStopTime", ffi::ARKStepSetStopTime),
         set_constraints: ("ARKStepSetConstraints", ffi::ARKStepSetConstraints),
         get_root_info: ("ARKStepGetRootInfo", ffi::ARKStepGetRootInfo),
@@ -84,6 +86,10 @@ impl<S: Ode> Arkode<S> {
         get_step_failures: ffi::ARKStepGetNumStepSolveFails,
         get_jacobian_evaluations: ffi::ARKStepGetNumJacEvals,
         get_quotient_evaluations: ffi::ARKStepGetNumLinRhsEvals,
+        get_linear_iterations: ffi::ARKStepGetNumLinIters,
+        get_linear_failures: ffi::ARKStepGetNumLinConvFails,
+        get_preconditioner_setups: ffi::ARKStepGetNumPrecEvals,
+        get_preconditioner_solves: ffi::ARKStepGetNumPrecSolves,
         get_root_evaluations: ffi::ARKStepGetNumGEvals,
         get_explicit_evaluations: None,
         get_stability_reductions: None,
@@ -265,6 +271,19 @@ fn solve_stages<S: Ode>(arkode: &mut Arkode<S>, options: &ArkodeOptions) -> Resu
                     arkode.set(("ARKStepSetLinSysFn", ffi::ARKStepSetLinSysFn), callback)?;
                     let callback = Some(newton_rhs::<S> as _);
                     arkode.set(("ARKStepSetNlsRhsFn", ffi::ARKStepSetNlsRhsFn), callback)?;
+                } else if let LinearSolver::Krylov(krylov) = solver {
+                    arkode.set_krylov(
+                        krylov,
+                        (
+                            ("ARKStepSetJacTimes", ffi::ARKStepSetJacTimes),
+                            Some(jacobian_times::<S>),
+                        ),
+                        (
+                            ("ARKStepSetPreconditioner", ffi::ARKStepSetPreconditioner),
+                            Some(precondition_setup::<S>),
+                            Some(precondition_solve::<S>),
+                        ),
+                    )?;
                 } else if solver.has_jacobian_callback() {
                     let callback = Some(jacobian::<S> as _);
                     arkode.set(("ARKStepSetJacFn", ffi::ARKStepSetJacFn), callback)?;

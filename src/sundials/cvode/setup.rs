@@ -10,6 +10,7 @@ use crate::{
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{jacobian, newton_rhs, newton_setup, project, quadratures, rhs, roots},
+        ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
         sensitivity::{Access, one_rhs},
         solver::{InitialState, Solver},
     },
@@ -52,6 +53,7 @@ static FUNCTIONS: Functions = Functions {
     set_min_step: ("CVodeSetMinStep", ffi::CVodeSetMinStep),
     set_max_order: Some(("CVodeSetMaxOrd", ffi::CVodeSetMaxOrd)),
     set_convergence_coefficient: ("CVodeSetNonlinConvCoef", ffi::CVodeSetNonlinConvCoef),
+    set_tolerance_factor: ("CVodeSetEpsLin", ffi::CVodeSetEpsLin),
     set_stop_time: ("CVodeSetStopTime", ffi::CVodeSetStopTime),
     set_constraints: ("CVodeSetConstraints", ffi::CVodeSetConstraints),
     get_root_info: ("CVodeGetRootInfo", ffi::CVodeGetRootInfo),
@@ -67,6 +69,10 @@ static FUNCTIONS: Functions = Functions {
     get_step_failures: ffi::CVodeGetNumStepSolveFails,
     get_jacobian_evaluations: ffi::CVodeGetNumJacEvals,
     get_quotient_evaluations: ffi::CVodeGetNumLinRhsEvals,
+    get_linear_iterations: ffi::CVodeGetNumLinIters,
+    get_linear_failures: ffi::CVodeGetNumLinConvFails,
+    get_preconditioner_setups: ffi::CVodeGetNumPrecEvals,
+    get_preconditioner_solves: ffi::CVodeGetNumPrecSolves,
     get_root_evaluations: ffi::CVodeGetNumGEvals,
     get_explicit_evaluations: None,
     get_stability_reductions: Some(ffi::CVodeGetNumStabLimOrderReds),
@@ -166,6 +172,19 @@ impl<S: Ode> Cvode<S> {
                         cvode.set(("CVodeSetLinSysFn", ffi::CVodeSetLinSysFn), callback)?;
                         let callback = Some(newton_rhs::<S> as _);
                         cvode.set(("CVodeSetNlsRhsFn", ffi::CVodeSetNlsRhsFn), callback)?;
+                    } else if let LinearSolver::Krylov(krylov) = solver {
+                        cvode.set_krylov(
+                            krylov,
+                            (
+                                ("CVodeSetJacTimes", ffi::CVodeSetJacTimes),
+                                Some(jacobian_times::<S>),
+                            ),
+                            (
+                                ("CVodeSetPreconditioner", ffi::CVodeSetPreconditioner),
+                                Some(precondition_setup::<S>),
+                                Some(precondition_solve::<S>),
+                            ),
+                        )?;
                     } else if solver.has_jacobian_callback() {
                         let callback = Some(jacobian::<S> as _);
                         cvode.set(("CVodeSetJacFn", ffi::CVodeSetJacFn), callback)?;

@@ -4,7 +4,8 @@ use crate::{
     input::InputError,
     integrate::{AbsoluteTolerance, StepOptions, Tolerances, check_length, step_options},
     sundials::{
-        linear_solver::{Jacobian, LinearSolver},
+        jacobian::Jacobian,
+        linear_solver::LinearSolver,
         options::{Limits, builder_methods},
         sensitivity::Sensitivities,
     },
@@ -82,6 +83,9 @@ impl IdaOptions {
         }
         if let Some(sensitivities) = &self.sensitivities {
             sensitivities.check_for_dae()?;
+        }
+        if let LinearSolver::Krylov(krylov) = &self.linear_solver {
+            krylov.check_for_dae()?;
         }
         self.linear_solver.check(y0.len())
     }

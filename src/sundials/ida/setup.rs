@@ -6,9 +6,11 @@ use crate::{
     ode::Dae,
     sundials::{
         dae_callbacks::{jacobian, quadratures, residual, roots},
+        dae_krylov::{jacobian_times, precondition_setup, precondition_solve},
         ffi,
         functions::{Functions, QuadratureFunctions, SensitivityFunctions},
         index::index,
+        linear_solver::LinearSolver,
         sensitivity::{Access, all_residuals},
         solver::{InitialState, Solver},
         vector::Vector,
@@ -54,6 +56,7 @@ static FUNCTIONS: Functions = Functions {
     set_min_step: ("IDASetMinStep", ffi::IDASetMinStep),
     set_max_order: Some(("IDASetMaxOrd", ffi::IDASetMaxOrd)),
     set_convergence_coefficient: ("IDASetNonlinConvCoef", ffi::IDASetNonlinConvCoef),
+    set_tolerance_factor: ("IDASetEpsLin", ffi::IDASetEpsLin),
     set_stop_time: ("IDASetStopTime", ffi::IDASetStopTime),
     set_constraints: ("IDASetConstraints", ffi::IDASetConstraints),
     get_root_info: ("IDAGetRootInfo", ffi::IDAGetRootInfo),
@@ -69,6 +72,10 @@ static FUNCTIONS: Functions = Functions {
     get_step_failures: ffi::IDAGetNumStepSolveFails,
     get_jacobian_evaluations: ffi::IDAGetNumJacEvals,
     get_quotient_evaluations: ffi::IDAGetNumLinResEvals,
+    get_linear_iterations: ffi::IDAGetNumLinIters,
+    get_linear_failures: ffi::IDAGetNumLinConvFails,
+    get_preconditioner_setups: ffi::IDAGetNumPrecEvals,
+    get_preconditioner_solves: ffi::IDAGetNumPrecSolves,
     get_root_evaluations: ffi::IDAGetNumGEvals,
     get_explicit_evaluations: None,
     get_stability_reductions: None,
@@ -135,7 +142,17 @@ impl<S: Dae> Ida<S> {
             let integrands = Some(quadratures::<S> as _);
             ida.set_quadratures(count, ("IDAQuadInit", ffi::IDAQuadInit), integrands, tolerances)?;
             ida.set_newton(solver, |system, _, r| system.newton_solve(r))?;
-            if solver.has_jacobian_callback() {
+            if let LinearSolver::Krylov(krylov) = solver {
+                ida.set_krylov(
+                    krylov,
+                    (("IDASetJacTimes", ffi::IDASetJacTimes), Some(jacobian_times::<S>)),
+                    (
+                        ("IDASetPreconditioner", ffi::IDASetPreconditioner),
+                        Some(precondition_setup::<S>),
+                        Some(precondition_solve::<S>),
+                    ),
+                )?;
+            } else if solver.has_jacobian_callback() {
                 ida.set(("IDASetJacFn", ffi::IDASetJacFn), Some(jacobian::<S> as _))?;
             }
         }
