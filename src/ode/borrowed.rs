@@ -4,6 +4,7 @@ use faer::MatMut;
 
 use super::band::BandMut;
 use super::dae::Dae;
+use super::delegate::delegate_ode;
 use super::failure::Failure;
 use super::first_order::Ode;
 use super::mass::MassKind;
@@ -24,50 +25,7 @@ pub struct Boxed<S: ?Sized>(pub Box<S>);
 /// Implements [`Ode`] by the system in field 0.
 macro_rules! ode_within {
     () => {
-        fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-            self.0.rhs(t, y, ydot)
-        }
-
-        fn dense_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            jacobian: MatMut<'_, f64>,
-        ) -> Result<(), Failure> {
-            self.0.dense_jacobian(t, y, ydot, jacobian)
-        }
-
-        fn banded_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            jacobian: BandMut<'_>,
-        ) -> Result<(), Failure> {
-            self.0.banded_jacobian(t, y, ydot, jacobian)
-        }
-
-        fn sparse_jacobian(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            values: &mut [f64],
-        ) -> Result<(), Failure> {
-            self.0.sparse_jacobian(t, y, ydot, values)
-        }
-
-        fn jacobian_times(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            ydot: &[f64],
-            v: &[f64],
-            jv: &mut [f64],
-        ) -> Result<(), Failure> {
-            self.0.jacobian_times(t, y, ydot, v, jv)
-        }
+        delegate_ode!(0);
 
         fn newton_setup(
             &mut self,
@@ -86,16 +44,6 @@ macro_rules! ode_within {
 
         fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
             self.0.newton_rhs(t, y, ydot)
-        }
-
-        fn project(
-            &mut self,
-            t: f64,
-            y: &[f64],
-            correction: &mut [f64],
-            error: &mut [f64],
-        ) -> Result<(), Failure> {
-            self.0.project(t, y, correction, error)
         }
 
         fn is_split(&self) -> bool {
@@ -122,22 +70,6 @@ macro_rules! ode_within {
             self.0.sparse_mass(t, values)
         }
 
-        fn root_count(&self) -> usize {
-            self.0.root_count()
-        }
-
-        fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
-            self.0.roots(t, y, g)
-        }
-
-        fn quadrature_count(&self) -> usize {
-            self.0.quadrature_count()
-        }
-
-        fn quadratures(&mut self, t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
-            self.0.quadratures(t, y, qdot)
-        }
-
         fn sensitivity_rhs(
             &mut self,
             t: f64,
@@ -148,14 +80,6 @@ macro_rules! ode_within {
             sdot: &mut [f64],
         ) -> Result<(), Failure> {
             self.0.sensitivity_rhs(t, y, ydot, parameter, s, sdot)
-        }
-
-        fn parameters(&self) -> &[f64] {
-            self.0.parameters()
-        }
-
-        fn set_parameters(&mut self, values: &[f64]) {
-            self.0.set_parameters(values);
         }
     };
 }

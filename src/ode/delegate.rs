@@ -1,10 +1,11 @@
-//! Systems that add something to another one.
+//! Systems within other ones.
 
-/// Implements the methods of [`Ode`](super::Ode) by those of the field `system`, but for what a wrapper adds.
-macro_rules! delegate_to_system {
-    () => {
+/// Implements methods of [`Ode`](super::Ode) by those of the system in a field: all but what belongs to a mass
+/// matrix, a split right-hand side, sensitivities, or linear solvers of the system's own.
+macro_rules! delegate_ode {
+    ($field:tt) => {
         fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-            self.system.rhs(t, y, ydot)
+            self.$field.rhs(t, y, ydot)
         }
 
         fn dense_jacobian(
@@ -14,7 +15,7 @@ macro_rules! delegate_to_system {
             ydot: &[f64],
             jacobian: MatMut<'_, f64>,
         ) -> Result<(), Failure> {
-            self.system.dense_jacobian(t, y, ydot, jacobian)
+            self.$field.dense_jacobian(t, y, ydot, jacobian)
         }
 
         fn banded_jacobian(
@@ -24,7 +25,7 @@ macro_rules! delegate_to_system {
             ydot: &[f64],
             jacobian: BandMut<'_>,
         ) -> Result<(), Failure> {
-            self.system.banded_jacobian(t, y, ydot, jacobian)
+            self.$field.banded_jacobian(t, y, ydot, jacobian)
         }
 
         fn sparse_jacobian(
@@ -34,7 +35,18 @@ macro_rules! delegate_to_system {
             ydot: &[f64],
             values: &mut [f64],
         ) -> Result<(), Failure> {
-            self.system.sparse_jacobian(t, y, ydot, values)
+            self.$field.sparse_jacobian(t, y, ydot, values)
+        }
+
+        fn jacobian_times(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            v: &[f64],
+            jv: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.$field.jacobian_times(t, y, ydot, v, jv)
         }
 
         fn project(
@@ -44,24 +56,32 @@ macro_rules! delegate_to_system {
             correction: &mut [f64],
             error: &mut [f64],
         ) -> Result<(), Failure> {
-            self.system.project(t, y, correction, error)
+            self.$field.project(t, y, correction, error)
         }
 
         fn root_count(&self) -> usize {
-            self.system.root_count()
+            self.$field.root_count()
         }
 
         fn roots(&mut self, t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
-            self.system.roots(t, y, g)
+            self.$field.roots(t, y, g)
+        }
+
+        fn quadrature_count(&self) -> usize {
+            self.$field.quadrature_count()
+        }
+
+        fn quadratures(&mut self, t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+            self.$field.quadratures(t, y, qdot)
         }
 
         fn parameters(&self) -> &[f64] {
-            self.system.parameters()
+            self.$field.parameters()
         }
 
         fn set_parameters(&mut self, values: &[f64]) {
-            self.system.set_parameters(values);
+            self.$field.set_parameters(values);
         }
     };
 }
-pub(super) use delegate_to_system;
+pub(super) use delegate_ode;

@@ -3,7 +3,7 @@
 use faer::MatMut;
 
 use super::band::BandMut;
-use super::delegate::delegate_to_system;
+use super::delegate::delegate_ode;
 use super::failure::Failure;
 use super::first_order::Ode;
 use super::mass::MassKind;
@@ -54,7 +54,7 @@ where
     S: Ode,
     E: FnMut(f64, &[f64], &mut [f64]) -> Result<(), Failure>,
 {
-    delegate_to_system!();
+    delegate_ode!(system);
 
     fn is_split(&self) -> bool {
         true

@@ -3,7 +3,7 @@
 use faer::{Mat, MatMut};
 
 use super::band::BandMut;
-use super::delegate::delegate_to_system;
+use super::delegate::delegate_ode;
 use super::failure::Failure;
 use super::first_order::Ode;
 use super::mass::MassKind;
@@ -101,7 +101,7 @@ pub fn with_mass<S: Ode>(system: S, mass: impl Into<MassMatrix>) -> WithMass<S> 
 }
 
 impl<S: Ode> Ode for WithMass<S> {
-    delegate_to_system!();
+    delegate_ode!(system);
 
     fn is_split(&self) -> bool {
         self.system.is_split()
