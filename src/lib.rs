@@ -140,3 +140,8 @@ pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 #[doc = include_str!("../README.md")]
 #[cfg(all(doctest, feature = "checkpoint", feature = "output"))]
 pub struct ReadmeDoctests;
+
+/// Compiles and runs the code blocks of the chapter on embedding.
+#[doc = include_str!("../docs/embedding.md")]
+#[cfg(doctest)]
+pub struct EmbeddingDoctests;
