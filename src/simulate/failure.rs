@@ -48,7 +48,7 @@ pub(super) fn in_mechanics(source: Failed) -> Failed {
             "the body may buckle or collapse there, or a contact may be far stiffer than the body: lower the load, \
              soften the contact, or try another method",
         ),
-        Cause::LinearSolver => (
+        Cause::LinearSolver | Cause::LinearConvergence => (
             "the equations of a step have no single solution",
             "look for a part of the body that nothing holds, or a stiffness that is far too large or small",
         ),

@@ -10,12 +10,12 @@ use std::{
 
 use crate::support::OwnSolver;
 use pliant::{
-    ode::{Failure, dae_with_parameters, with_parameters},
+    ode::{Failure, MassMatrix, dae_with_parameters, with_mass, with_parameters},
     samples::Robertson,
     sundials::{
         Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions,
         InitialCondition, Integrator, Jacobian, Krylov, KrylovMethod, LinearSolver, Multistep,
-        Pattern, Preconditioner, Sensitivities, Side,
+        Pattern, Preconditioner, Sensitivities, Side, Sign,
     },
 };
 
@@ -72,6 +72,19 @@ fn arkode_solvers() {
     let options = ArkodeOptions::new(1e-4, 1e-6).table(ButcherTable::explicit(5).unwrap());
     let mut solver = Arkode::new(Robertson::new(), 0.0, &Robertson::Y0, &options).unwrap();
     solver.solve_to(1e-3).unwrap();
+
+    let on_pattern = Robertson::new().pattern().values((0..3).map(|i| (i, i, 1.0))).unwrap();
+    for solver in linear_solvers() {
+        let mass = match solver {
+            LinearSolver::Klu(_) => MassMatrix::Sparse(on_pattern.clone()),
+            _ => MassMatrix::Diagonal(vec![1.0; 3]),
+        };
+        let system = with_mass(Robertson::new(), mass);
+        let options =
+            ArkodeOptions::new(1e-4, ATOL).newton(solver).sign_constraints([Sign::NonNegative; 3]);
+        let mut solver = Arkode::new(system, 0.0, &Robertson::Y0, &options).unwrap();
+        solver.solve_to(1e-3).unwrap();
+    }
 }
 
 fn ida_solvers() {
