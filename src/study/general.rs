@@ -187,6 +187,7 @@ impl<S: Ode> Run<'_, S> {
     }
 
     fn ida(mut self, options: &IdaOptions) -> Result<Solved, Failed> {
+        integrate::check_form(&self.system)?;
         let mut slope = vec![0.0; self.y0.len()];
         self.system.rhs(0.0, self.y0, &mut slope).map_err(Failure::into_error)?;
         self.run(|system, y0| Ida::new(Implicit(system), 0.0, y0, &slope, options))

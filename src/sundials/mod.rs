@@ -27,6 +27,16 @@
 //! the steps by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and
 //! [`Statistics`]. [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU),
 //! without a matrix ([`Krylov`]) or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
+//!
+//! | equations | integrators |
+//! | --- | --- |
+//! | y' = f(t, y) | [`Cvode`], [`Arkode`] |
+//! | M y' = f(t, y) with a [mass matrix](crate::ode::Ode::mass_kind) | [`Arkode`]; [`Ida`] by [`MassForm`], where M may be singular |
+//! | y' = f(t, y) + g(t, y), f alone [stiff](crate::ode::Ode::is_split) | [`Arkode`] by [`ButcherTable::imex`] |
+//! | y' = f(t, y) with invariants | [`Cvode`] by [`CvodeOptions::project`] |
+//! | F(t, y, y') = 0 of index 1 | [`Ida`], see [`Ida::check_index`] |
+//!
+//! In all of them unknowns may have to keep their [`Sign`].
 
 mod arkode;
 mod beside;

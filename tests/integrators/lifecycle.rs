@@ -76,7 +76,7 @@ fn arkode_solvers() {
     let on_pattern = Robertson::new().pattern().values((0..3).map(|i| (i, i, 1.0))).unwrap();
     for solver in linear_solvers() {
         let mass = match solver {
-            LinearSolver::Klu(_) => MassMatrix::Sparse(on_pattern.clone()),
+            LinearSolver::Klu { .. } => MassMatrix::Sparse(on_pattern.clone()),
             _ => MassMatrix::Diagonal(vec![1.0; 3]),
         };
         let system = with_mass(Robertson::new(), mass);

@@ -26,6 +26,9 @@ use crate::{
 /// which multistep methods of high order can not follow; explicit ones for systems that are not
 /// stiff. (`ARKStep`)
 ///
+/// [`ButcherTable::imex`](super::ButcherTable::imex) makes it one of both for a right-hand side that is
+/// [split](Ode::is_split).
+///
 /// After a recoverable failure of the right-hand side implicit methods retry with a smaller step,
 /// explicit ones and explicit parts give up: SUNDIALS has no retry there.
 ///

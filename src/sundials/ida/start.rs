@@ -30,6 +30,8 @@ impl<S: Dae> Ida<S> {
     /// step. `first_output` is a time at which output will be wanted: it gives the direction and
     /// scale of time. [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
     ///
+    /// The equations have to be of index 1: see [`check_index`](Self::check_index).
+    ///
     /// # Errors
     /// [`Error::Integration`] with [`Cause::InconsistentStart`](crate::integrate::Cause::InconsistentStart) if no such values were found;
     /// [`Error::Input`] if steps were taken already, or it is not known which unknowns are
