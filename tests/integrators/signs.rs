@@ -81,6 +81,27 @@ fn every_sign_is_kept() {
     assert!(extreme(1.0, Sign::Positive) > 0.0 && extreme(-1.0, Sign::Negative) < 0.0);
 }
 
+/// y = 1 - t is zero exactly at the end of the first step of size 1.
+#[test]
+fn zero_itself_is_allowed_or_not() {
+    let end_of_step = |sign: Sign| {
+        let rhs = |_t: f64, _y: &[f64], ydot: &mut [f64]| {
+            ydot[0] = -1.0;
+            Ok(())
+        };
+        let options = ArkodeOptions::new(1e-3, 1e-3)
+            .table(ButcherTable::explicit(2).unwrap())
+            .initial_step(1.0)
+            .sign_constraints([sign]);
+        let mut solver = Arkode::new(rhs, 0.0, &[1.0], &options).unwrap();
+        solver.step(2.0).unwrap();
+        println!("{sign:?}: {:e} at {}", solver.y()[0], solver.t());
+        solver.y()[0]
+    };
+    assert_eq!(end_of_step(Sign::NonNegative), 0.0);
+    assert!(end_of_step(Sign::Positive) > 0.0);
+}
+
 fn cause<T: Debug>(result: Result<T, Error>) -> (Cause, f64) {
     match result {
         Err(Error::Integration(error)) => {
