@@ -27,7 +27,14 @@ macro_rules! ode_within {
     () => {
         delegate_ode!(0);
 
-        fn newton_setup(&mut self, t: f64, y: &[f64], ydot: &[f64], gamma: f64, reuse: bool) -> Result<bool, Failure> {
+        fn newton_setup(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            gamma: f64,
+            reuse: bool,
+        ) -> Result<bool, Failure> {
             self.0.newton_setup(t, y, ydot, gamma, reuse)
         }
 
@@ -63,7 +70,15 @@ macro_rules! ode_within {
             self.0.sparse_mass(t, values)
         }
 
-        fn sensitivity_rhs(&mut self, t: f64, y: &[f64], ydot: &[f64], parameter: usize, s: &[f64], sdot: &mut [f64]) -> Result<(), Failure> {
+        fn sensitivity_rhs(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            parameter: usize,
+            s: &[f64],
+            sdot: &mut [f64],
+        ) -> Result<(), Failure> {
             self.0.sensitivity_rhs(t, y, ydot, parameter, s, sdot)
         }
     };
@@ -72,23 +87,58 @@ macro_rules! ode_within {
 /// Implements [`Dae`] by the system in field 0.
 macro_rules! dae_within {
     () => {
-        fn residual(&mut self, t: f64, y: &[f64], yp: &[f64], residual: &mut [f64]) -> Result<(), Failure> {
+        fn residual(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            yp: &[f64],
+            residual: &mut [f64],
+        ) -> Result<(), Failure> {
             self.0.residual(t, y, yp, residual)
         }
 
-        fn dense_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: MatMut<'_, f64>) -> Result<(), Failure> {
+        fn dense_jacobian(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            jacobian: MatMut<'_, f64>,
+        ) -> Result<(), Failure> {
             self.0.dense_jacobian(t, cj, y, yp, jacobian)
         }
 
-        fn banded_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], jacobian: BandMut<'_>) -> Result<(), Failure> {
+        fn banded_jacobian(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            jacobian: BandMut<'_>,
+        ) -> Result<(), Failure> {
             self.0.banded_jacobian(t, cj, y, yp, jacobian)
         }
 
-        fn sparse_jacobian(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        fn sparse_jacobian(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            values: &mut [f64],
+        ) -> Result<(), Failure> {
             self.0.sparse_jacobian(t, cj, y, yp, values)
         }
 
-        fn jacobian_times(&mut self, t: f64, cj: f64, y: &[f64], yp: &[f64], v: &[f64], jv: &mut [f64]) -> Result<(), Failure> {
+        fn jacobian_times(
+            &mut self,
+            t: f64,
+            cj: f64,
+            y: &[f64],
+            yp: &[f64],
+            v: &[f64],
+            jv: &mut [f64],
+        ) -> Result<(), Failure> {
             self.0.jacobian_times(t, cj, y, yp, v, jv)
         }
 
@@ -112,11 +162,26 @@ macro_rules! dae_within {
             self.0.quadrature_count()
         }
 
-        fn quadratures(&mut self, t: f64, y: &[f64], yp: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+        fn quadratures(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            yp: &[f64],
+            qdot: &mut [f64],
+        ) -> Result<(), Failure> {
             self.0.quadratures(t, y, yp, qdot)
         }
 
-        fn sensitivity_residual(&mut self, t: f64, y: &[f64], yp: &[f64], parameter: usize, s: &[f64], sp: &[f64], residual: &mut [f64]) -> Result<(), Failure> {
+        fn sensitivity_residual(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            yp: &[f64],
+            parameter: usize,
+            s: &[f64],
+            sp: &[f64],
+            residual: &mut [f64],
+        ) -> Result<(), Failure> {
             self.0.sensitivity_residual(t, y, yp, parameter, s, sp, residual)
         }
 
@@ -124,7 +189,7 @@ macro_rules! dae_within {
             self.0.parameters()
         }
 
-        fn set_parameters(&mut self, values: &[f64])  {
+        fn set_parameters(&mut self, values: &[f64]) {
             self.0.set_parameters(values);
         }
     };

@@ -8,23 +8,54 @@ macro_rules! delegate_ode {
             self.$field.rhs(t, y, ydot)
         }
 
-        fn dense_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], jacobian: MatMut<'_, f64>) -> Result<(), Failure> {
+        fn dense_jacobian(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            jacobian: MatMut<'_, f64>,
+        ) -> Result<(), Failure> {
             self.$field.dense_jacobian(t, y, ydot, jacobian)
         }
 
-        fn banded_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], jacobian: BandMut<'_>) -> Result<(), Failure> {
+        fn banded_jacobian(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            jacobian: BandMut<'_>,
+        ) -> Result<(), Failure> {
             self.$field.banded_jacobian(t, y, ydot, jacobian)
         }
 
-        fn sparse_jacobian(&mut self, t: f64, y: &[f64], ydot: &[f64], values: &mut [f64]) -> Result<(), Failure> {
+        fn sparse_jacobian(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            values: &mut [f64],
+        ) -> Result<(), Failure> {
             self.$field.sparse_jacobian(t, y, ydot, values)
         }
 
-        fn jacobian_times(&mut self, t: f64, y: &[f64], ydot: &[f64], v: &[f64], jv: &mut [f64]) -> Result<(), Failure> {
+        fn jacobian_times(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            ydot: &[f64],
+            v: &[f64],
+            jv: &mut [f64],
+        ) -> Result<(), Failure> {
             self.$field.jacobian_times(t, y, ydot, v, jv)
         }
 
-        fn project(&mut self, t: f64, y: &[f64], correction: &mut [f64], error: &mut [f64]) -> Result<(), Failure> {
+        fn project(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            correction: &mut [f64],
+            error: &mut [f64],
+        ) -> Result<(), Failure> {
             self.$field.project(t, y, correction, error)
         }
 
@@ -48,7 +79,7 @@ macro_rules! delegate_ode {
             self.$field.parameters()
         }
 
-        fn set_parameters(&mut self, values: &[f64])  {
+        fn set_parameters(&mut self, values: &[f64]) {
             self.$field.set_parameters(values);
         }
     };
