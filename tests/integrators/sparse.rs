@@ -1,13 +1,16 @@
 //! Sparse Jacobians that nobody writes: difference quotients on a pattern, and patterns that are found.
 
-use std::cell::Cell;
+use std::{
+    cell::Cell,
+    panic::{AssertUnwindSafe, catch_unwind},
+};
 
 use pliant::{
     ode::{Dae, Failure, Ode},
     samples::{Hires, Robertson},
     sundials::{
-        Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, Integrator, Jacobian,
-        LinearSolver, Pattern, Statistics,
+        Arkode, ArkodeOptions, Callback, Cause, Cvode, CvodeOptions, Error, Ida, IdaOptions,
+        InitialCondition, Integrator, Jacobian, LinearSolver, Pattern, Statistics,
     },
 };
 
@@ -76,6 +79,78 @@ fn robertson_by_ida() {
         (Robertson::REFERENCE.error(solver.y()), solver.statistics())
     };
     compare(ida, Robertson::new().pattern(), 2e-5);
+}
+
+/// What corrects the start of a DAE counts, as it does for the Jacobians of C.
+#[test]
+fn a_correction_of_the_start_is_counted() {
+    let options = IdaOptions::new(1e-6, [1e-10, 1e-14, 1e-8])
+        .newton(klu(Robertson::new().pattern(), Jacobian::DifferenceQuotients))
+        .differential(Robertson::DIFFERENTIAL);
+    let mut solver = Ida::new(Robertson::new(), 0.0, &Robertson::Y0, &[0.0; 3], &options).unwrap();
+    solver.consistent_start(InitialCondition::Algebraic, 0.4).unwrap();
+    solver.solve_to(0.4).unwrap();
+    let statistics = solver.statistics();
+    assert_eq!(statistics.difference_quotient_evaluations, 3 * statistics.jacobian_evaluations);
+}
+
+/// Fails, in a way, where y_1 is not 0: there come difference quotients alone.
+#[derive(Clone, Copy)]
+struct Trap(fn(&mut f64) -> Result<(), Failure>);
+
+impl Ode for Trap {
+    fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        ydot.copy_from_slice(&[-y[0], 0.0]);
+        if y[1] == 0.0 { Ok(()) } else { (self.0)(&mut ydot[1]) }
+    }
+}
+
+impl Dae for Trap {
+    fn residual(&mut self, _t: f64, y: &[f64], yp: &[f64], r: &mut [f64]) -> Result<(), Failure> {
+        r.copy_from_slice(&[yp[0] + y[0], yp[1]]);
+        if y[1] == 0.0 { Ok(()) } else { (self.0)(&mut r[1]) }
+    }
+}
+
+#[test]
+fn failures_within_quotients_pass_through_c() {
+    let pattern = Pattern::from_entries(2, []).unwrap();
+    let solver = klu(&pattern, Jacobian::DifferenceQuotients);
+    type Run<'a> = &'a dyn Fn(Trap) -> Result<(), Error>;
+    let cvode: Run<'_> = &|trap| {
+        let options = CvodeOptions::new(1e-6, 1e-9).newton(solver.clone());
+        Cvode::new(trap, 0.0, &[1.0, 0.0], &options)?.solve_to(1.0).map(|_| ())
+    };
+    let arkode: Run<'_> = &|trap| {
+        let options = ArkodeOptions::new(1e-6, 1e-9).newton(solver.clone());
+        Arkode::new(trap, 0.0, &[1.0, 0.0], &options)?.solve_to(1.0).map(|_| ())
+    };
+    let ida: Run<'_> = &|trap| {
+        let options = IdaOptions::new(1e-6, 1e-9).newton(solver.clone());
+        let mut ida = Ida::new(trap, 0.0, &[1.0, 0.0], &[-1.0, 0.0], &options)?;
+        ida.solve_to(1.0).map(|_| ())
+    };
+    for (run, place) in [(cvode, Callback::Rhs), (arkode, Callback::Rhs), (ida, Callback::Residual)]
+    {
+        let cause = |how: fn(&mut f64) -> Result<(), Failure>| match run(Trap(how)) {
+            Err(Error::Integration(error)) => error.cause,
+            other => panic!("{other:?} is not an integration error"),
+        };
+        assert_eq!(cause(|_| Err(std::fmt::Error.into())), Cause::Fatal(place));
+        let refused = cause(|_| Err(Failure::Recoverable("no".into())));
+        assert!(matches!(refused, Cause::Rejected { callback, .. } if callback == place));
+        let nan = cause(|output| {
+            *output = f64::NAN;
+            Ok(())
+        });
+        assert!(
+            matches!(nan, Cause::NotFinite { callback, component: 1, .. } if callback == place),
+            "{nan:?}"
+        );
+        let panics = || run(Trap(|_| panic!("sabotage")));
+        let panic = catch_unwind(AssertUnwindSafe(panics)).unwrap_err();
+        assert_eq!(panic.downcast_ref(), Some(&"sabotage"));
+    }
 }
 
 /// Heat along a rod with cold ends; counts its evaluations.
