@@ -146,6 +146,9 @@ impl Krylov {
     }
 
     /// Pattern and entries of an incomplete factorization.
+    // Inlined, its test is made before the one whether there is a Krylov method at all, and its value dropped: valgrind
+    // takes that for an error.
+    #[inline(never)]
     pub(super) fn ilu(&self) -> Option<(&Pattern, Jacobian)> {
         match &self.preconditioner {
             Some((_, Preconditioner::Ilu { pattern, jacobian })) => Some((pattern, *jacobian)),
