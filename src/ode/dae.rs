@@ -69,6 +69,8 @@ pub trait Dae {
     }
 
     /// Prepares to solve (dF/dy + cj dF/dy') x = r.
+    ///
+    /// For a Krylov method that this preconditions, the solution may be approximate.
     fn newton_setup(&mut self, _t: f64, _cj: f64, _y: &[f64], _yp: &[f64]) -> Result<(), Failure> {
         Err(missing("newton_setup"))
     }

@@ -64,6 +64,8 @@ pub trait Ode {
     ///
     /// `reuse` allows an older df/dy to be kept (only gamma changed). Returns whether df/dy is
     /// current, that is, was evaluated at this (t, y).
+    ///
+    /// For a Krylov method that this preconditions, the solution may be approximate.
     fn newton_setup(
         &mut self,
         _t: f64,

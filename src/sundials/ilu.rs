@@ -146,8 +146,8 @@ mod tests {
         let x: Vec<f64> =
             (0..n).map(|i| (i + 1) as f64 * if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
         let mut b = vec![0.0; n];
-        for j in 0..n {
-            pattern.column(j).iter().for_each(|&i| b[i as usize] += entry(i as usize, j) * x[j]);
+        for (j, x) in x.iter().enumerate() {
+            pattern.column(j).iter().for_each(|&i| b[i as usize] += entry(i as usize, j) * x);
         }
         (b, x)
     }

@@ -349,13 +349,8 @@ fn unusable_input_is_named_before_c_sees_it() {
     assert_eq!(refused(&[1.0], &good.clone().initial_step(0.0)), "initial_step");
     assert_eq!(refused(&[1.0], &good.clone().max_steps(0)), "max_steps");
     let pattern = Pattern::from_entries(2, []).unwrap();
-    assert_eq!(
-        refused(
-            &[1.0],
-            &good.clone().newton(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
-        ),
-        "dimension of the sparsity pattern"
-    );
+    let klu = LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied };
+    assert_eq!(refused(&[1.0], &good.clone().newton(klu)), "dimension of the sparsity pattern");
     let band = LinearSolver::Band { lower: 1, upper: 0, jacobian: Jacobian::DifferenceQuotients };
     assert_eq!(refused(&[1.0], &good.clone().newton(band)), "bandwidths (lower, upper)");
 

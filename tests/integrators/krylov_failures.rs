@@ -24,12 +24,18 @@ fn integration_error<T: std::fmt::Debug>(result: Result<T, Error>) -> Integratio
     }
 }
 
+/// A failure, or a number that is spoilt.
+type How = fn(&mut f64) -> Result<(), Failure>;
+
+/// The state at t = 2 and the linear failures until then.
+type End = Result<(f64, u64), Error>;
+
 /// y' = -50 (y - cos t), which beyond t = 0.5 fails in the callback that it is told to fail in, some times;
 /// `newton_solve` does at once.
 #[derive(Clone, Copy)]
 struct Saboteur {
     place: Callback,
-    how: fn(&mut f64) -> Result<(), Failure>,
+    how: How,
     times: u32,
 }
 
@@ -135,8 +141,8 @@ impl Dae for Saboteur {
     }
 }
 
-/// The integrators, as functions of the saboteur; they give the state at t = 2 and the linear failures.
-const INTEGRATORS: [fn(Saboteur, LinearSolver) -> Result<(f64, u64), Error>; 3] = [
+/// The integrators, as functions of the saboteur.
+const INTEGRATORS: [fn(Saboteur, LinearSolver) -> End; 3] = [
     |saboteur, solver| {
         let options = CvodeOptions::new(1e-6, 1e-9).newton(solver).max_steps_between_setups(1);
         end(Cvode::new(saboteur, 0.0, &[1.0], &options)?)
@@ -152,16 +158,13 @@ const INTEGRATORS: [fn(Saboteur, LinearSolver) -> Result<(f64, u64), Error>; 3] 
     },
 ];
 
-fn end(mut solver: impl Integrator) -> Result<(f64, u64), Error> {
+fn end(mut solver: impl Integrator) -> End {
     solver.solve_to(2.0)?;
     Ok((solver.y()[0], solver.statistics().linear_failures))
 }
 
 /// Calls `check` with how each integrator ends, by each method and each place of sabotage.
-fn each_end(
-    (how, times): (fn(&mut f64) -> Result<(), Failure>, u32),
-    check: impl Fn(Callback, &dyn Fn() -> Result<(f64, u64), Error>),
-) {
+fn each_end((how, times): (How, u32), check: impl Fn(Callback, &dyn Fn() -> End)) {
     for (place, method) in PLACES.into_iter().flat_map(|place| [(place, GMRES), (place, BICGSTAB)])
     {
         let preconditioner = match place {
@@ -232,7 +235,7 @@ fn refused_solutions_are_tried_again() {
         *output = f64::NAN;
         Ok(())
     };
-    for how in [refuse as fn(&mut f64) -> Result<(), Failure>, nan] {
+    for how in [refuse as How, nan] {
         each_end((how, 3), |place, end| {
             if WITHIN_SOLVE.contains(&place) {
                 let (y, failures) = end().unwrap();
