@@ -79,6 +79,8 @@ pub enum Callback {
     Quadratures,
     /// `project`
     Projection,
+    /// A [`Functional`](crate::ode::Functional), `adjoint_rhs`, `adjoint_parameters`, or the equations in their place
+    Adjoint,
     /// `sensitivity_rhs` or `sensitivity_residual`, or the equations with a changed parameter in their place
     Sensitivities,
     /// The forces and constraints of a [`SecondOrder`](crate::ode::SecondOrder) system.
@@ -98,6 +100,7 @@ impl fmt::Display for Callback {
             Self::NewtonSetup => "newton_setup",
             Self::NewtonSolve => "newton_solve",
             Self::Roots => "the root functions",
+            Self::Adjoint => "the adjoint equations",
             Self::Quadratures => "the integrands",
             Self::Projection => "the projection",
             Self::Sensitivities => "the equations of the sensitivities",

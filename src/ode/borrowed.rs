@@ -81,6 +81,26 @@ macro_rules! ode_within {
         ) -> Result<(), Failure> {
             self.0.sensitivity_rhs(t, y, ydot, parameter, s, sdot)
         }
+
+        fn adjoint_rhs(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            lambda: &[f64],
+            out: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.adjoint_rhs(t, y, lambda, out)
+        }
+
+        fn adjoint_parameters(
+            &mut self,
+            t: f64,
+            y: &[f64],
+            lambda: &[f64],
+            out: &mut [f64],
+        ) -> Result<(), Failure> {
+            self.0.adjoint_parameters(t, y, lambda, out)
+        }
     };
 }
 

@@ -183,6 +183,28 @@ pub trait Ode {
         Err(missing("sensitivity_rhs"))
     }
 
+    /// Writes (df/dy)^T lambda into `out`, for adjoint gradients.
+    fn adjoint_rhs(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _lambda: &[f64],
+        _out: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("adjoint_rhs"))
+    }
+
+    /// Writes (df/dp)^T lambda into `out`, a number for each of the [`parameters`](Self::parameters).
+    fn adjoint_parameters(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _lambda: &[f64],
+        _out: &mut [f64],
+    ) -> Result<(), Failure> {
+        Err(missing("adjoint_parameters"))
+    }
+
     /// The parameters that the equations depend on, for what changes them or asks for derivatives with
     /// respect to them. Default: none.
     fn parameters(&self) -> &[f64] {

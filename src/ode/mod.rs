@@ -15,6 +15,7 @@ mod dae;
 mod delegate;
 mod failure;
 mod first_order;
+mod functional;
 mod mass;
 mod second_order;
 mod split;
@@ -29,6 +30,7 @@ pub use closures::{
 pub use dae::Dae;
 pub use failure::Failure;
 pub use first_order::Ode;
+pub use functional::{Functional, Slopes};
 pub use mass::MassKind;
 pub use second_order::{EnergyBalance, Kick, Rates, SecondOrder};
 pub use split::{Split, split};

@@ -1,6 +1,6 @@
 //! What CVODES and IDAS carry beside the state.
 
-use super::{context::Context, ffi, vector::Vector};
+use super::{context::Context, ffi, linear::Linear, vector::Vector};
 use crate::integrate::Error;
 
 /// Integrals at the present time.
@@ -63,4 +63,15 @@ impl Vectors {
             values.copy_from_slice(vector.as_slice());
         }
     }
+}
+
+/// The backward problem of an adjoint gradient, which C frees with the forward one, and what it uses.
+pub(super) struct Backward {
+    /// What C calls it.
+    pub(super) which: i32,
+    pub(super) linear: Linear,
+    /// Where it starts, then where it ends.
+    pub(super) lambda: Vector,
+    /// Integrals, if there are parameters.
+    pub(super) gradient: Option<Vector>,
 }

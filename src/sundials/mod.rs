@@ -38,6 +38,7 @@
 //!
 //! In all of them unknowns may have to keep their [`Sign`].
 
+mod adjoint;
 mod arkode;
 mod beside;
 mod colouring;
@@ -75,6 +76,7 @@ mod stop_time;
 mod vector;
 mod version;
 
+pub use adjoint::{Adjoint, AdjointOptions, Gradient};
 pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub use ida::{Ida, IdaOptions, InitialCondition};

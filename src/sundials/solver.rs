@@ -3,7 +3,7 @@
 use std::{ffi::c_void, fmt, ptr};
 
 use super::{
-    beside::{Quadratures, Sensitivity},
+    beside::{Backward, Quadratures, Sensitivity},
     context::Context,
     differences::Differences,
     ffi,
@@ -35,6 +35,7 @@ pub struct Solver<K, S> {
     linear: Option<Linear>,
     /// Mass matrix and its linear solver, if there is one.
     pub(super) mass: Option<Linear>,
+    pub(super) backward: Option<Backward>,
     pub(super) y: Vector,
     /// The time derivative of `y`, of a DAE only.
     pub(super) yp: Option<Vector>,
@@ -135,6 +136,7 @@ impl<K, S> Solver<K, S> {
             fixed_point: None,
             linear: None,
             mass: None,
+            backward: None,
             y,
             yp,
             scratch,

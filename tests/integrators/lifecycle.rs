@@ -1,7 +1,7 @@
 //! Creates, uses and drops solvers of every kind, in every way a solver can end.
 //!
 //! Meant to be run under valgrind (`make valgrind`), where `PLIANT_LIFECYCLES` sets the number of
-//! rounds; each round makes some thirty solvers.
+//! rounds; each round makes some forty solvers.
 
 use std::{
     hint::black_box,
@@ -10,12 +10,14 @@ use std::{
 
 use crate::support::OwnSolver;
 use pliant::{
-    ode::{Failure, MassMatrix, dae_with_parameters, with_mass, with_parameters},
+    ode::{
+        Failure, Functional, MassMatrix, Slopes, dae_with_parameters, with_mass, with_parameters,
+    },
     samples::Robertson,
     sundials::{
-        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions,
-        InitialCondition, Integrator, Jacobian, Krylov, KrylovMethod, LinearSolver, Multistep,
-        Pattern, Preconditioner, Sensitivities, Side, Sign,
+        Adjoint, AdjointOptions, Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida,
+        IdaOptions, InitialCondition, Integrator, Jacobian, Krylov, KrylovMethod, LinearSolver,
+        Multistep, Pattern, Preconditioner, Sensitivities, Side, Sign,
     },
 };
 
@@ -130,14 +132,42 @@ fn solvers_with_sensitivities() {
             r[0] = yp[0] + p[0] * y[0];
             Ok(())
         };
-        let options = IdaOptions::new(1e-4, 1e-6).sensitivities(sensitivities);
+        let options = IdaOptions::new(1e-4, 1e-6).differential([true]).sensitivities(sensitivities);
         let system = dae_with_parameters(residual, [2.0, 1.0]);
         let mut solver = Ida::new(system, 0.0, &[1.0], &[-2.0], &options).unwrap();
-        solver.consistent_start(InitialCondition::State, 0.4).unwrap();
+        assert!(solver.consistent_start(InitialCondition::State, 0.4).is_err());
+        solver.consistent_start(InitialCondition::Algebraic, 0.4).unwrap();
         solver.solve_to(0.4).unwrap();
         let wrong = options.sensitivities(Sensitivities::of([7]));
         let system = dae_with_parameters(residual, [2.0, 1.0]);
         assert!(Ida::new(system, 0.0, &[1.0], &[-2.0], &wrong).is_err());
+    }
+}
+
+/// Backward problems go before the forward ones.
+fn adjoint_solvers() {
+    struct End;
+    impl Functional for End {
+        fn terminal(
+            &mut self,
+            _t: f64,
+            y: &[f64],
+            _p: &[f64],
+            slopes: Option<Slopes<'_>>,
+        ) -> Result<f64, Failure> {
+            if let Some(slopes) = slopes {
+                slopes.y[0] = 1.0;
+            }
+            Ok(y[0])
+        }
+    }
+    for solver in linear_solvers() {
+        let options = AdjointOptions::new(CvodeOptions::new(1e-4, ATOL).newton(solver), 1e-4, 1e-6)
+            .checkpoint_steps(10);
+        let mut adjoint =
+            Adjoint::new(Robertson::new(), End, 0.0, &Robertson::Y0, &options).unwrap();
+        adjoint.gradient(0.4).unwrap();
+        adjoint.gradient(0.2).unwrap();
     }
 }
 
@@ -174,6 +204,7 @@ fn solvers_come_and_go() {
         arkode_solvers();
         ida_solvers();
         solvers_with_sensitivities();
+        adjoint_solvers();
         solvers_that_fail();
     }
     drop(panic::take_hook());

@@ -2,6 +2,7 @@
 
 mod support;
 
+mod adjoint;
 mod arkode;
 mod central_difference;
 mod control;

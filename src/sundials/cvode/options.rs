@@ -90,6 +90,23 @@ impl CvodeOptions {
     step_options!();
     builder_methods!(limits);
 
+    /// What an adjoint problem needs to know: the linear solver and the tolerances.
+    pub(in crate::sundials) fn for_adjoint(
+        &self,
+        y0: &[f64],
+    ) -> Result<(&LinearSolver, &Tolerances), InputError> {
+        self.check(y0)?;
+        if self.sensitivities.is_some() {
+            let mend = "the run forward of an adjoint gradient needs none";
+            return Err(InputError::new("sensitivities", "given", mend));
+        }
+        let Some(solver) = self.nonlinear.linear_solver() else {
+            let mend = "an adjoint gradient needs a Newton iteration";
+            return Err(InputError::new("nonlinear solver", "fixed_point", mend));
+        };
+        Ok((solver, &self.tolerances))
+    }
+
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         self.steps.check()?;

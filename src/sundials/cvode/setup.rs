@@ -26,7 +26,19 @@ pub type Cvode<S> = Solver<CvodeKind, S>;
 #[derive(Debug)]
 pub struct CvodeKind;
 
-static FUNCTIONS: Functions = Functions {
+static FUNCTIONS: Functions = TABLE;
+
+/// CVODES as it runs forward with checkpoints, for an adjoint problem.
+pub(in crate::sundials) static WITH_CHECKPOINTS: Functions = Functions {
+    solve: ("CVodeF", |memory, target, t, y, _, task| {
+        let mut checkpoints = 0;
+        // SAFETY: whoever calls through the table vouches for the arguments.
+        unsafe { ffi::CVodeF(memory, target, y, t, task, &raw mut checkpoints) }
+    }),
+    ..TABLE
+};
+
+const TABLE: Functions = Functions {
     integrator: "CVODE",
     free: ffi::CVodeFree,
     solve: ("CVode", |memory, target, t, y, _, task| {

@@ -21,14 +21,14 @@ pub enum InitialCondition {
     /// The algebraic unknowns and the derivatives of the differential ones; differential unknowns
     /// stay (`IDA_YA_YDP_INIT`). Needs [`IdaOptions::differential`](super::IdaOptions::differential).
     Algebraic,
-    /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`).
+    /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`). Not with sensitivities.
     State,
 }
 
 impl<S: Dae> Ida<S> {
     /// Corrects the initial values so that they satisfy the equations; call it before the first
     /// step. `first_output` is a time at which output will be wanted: it gives the direction and
-    /// scale of time. [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
+    /// scale of time. Sensitivities are corrected, too. [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
     ///
     /// The equations have to be of index 1: see [`check_index`](Self::check_index).
     ///
@@ -52,6 +52,11 @@ impl<S: Dae> Ida<S> {
         if unknown == InitialCondition::Algebraic && !self.kind.knows_algebraic {
             let mend = "the option `differential` has to say which unknowns are algebraic";
             return Err(Error::input("unknown", "InitialCondition::Algebraic", mend));
+        }
+        if unknown == InitialCondition::State && self.sensitivities.is_some() {
+            let mend =
+                "with sensitivities it is Algebraic: IDAS 6.4.1 reads numbers that it never wrote";
+            return Err(Error::input("unknown", "InitialCondition::State", mend));
         }
         if self.statistics().steps > 0 {
             let mend = "initial values can only be corrected before the first step";

@@ -1,0 +1,330 @@
+//! Adjoint gradients, against closed forms, forward sensitivities and differences.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use faer::MatMut;
+use pliant::{
+    ode::{BandMut, Failure, Functional, Ode, Slopes},
+    sundials::{
+        Adjoint, AdjointOptions, Callback, Cause, Cvode, CvodeOptions, Error, Gradient, Integrator,
+        Jacobian, LinearSolver, Pattern, Sensitivities,
+    },
+};
+
+/// Robertson's reactions with their three rates as parameters, and everything supplied.
+struct Reactions {
+    p: [f64; 3],
+    pattern: Pattern,
+    /// What the adjoint parameters do before t = 1.
+    trouble: Option<fn() -> Result<(), Failure>>,
+}
+
+const START: [f64; 3] = [1.0, 0.0, 0.0];
+
+impl Reactions {
+    fn new() -> Self {
+        let pattern = Pattern::from_entries(3, (0..3).flat_map(|i| [(i, 0), (i, 1), (i, 2)]));
+        Self { p: [0.04, 1e4, 3e7], pattern: pattern.unwrap(), trouble: None }
+    }
+
+    fn entries(&self, y: &[f64]) -> [[f64; 3]; 3] {
+        let [a, b, c] = self.p;
+        [
+            [-a, b * y[2], b * y[1]],
+            [a, -b * y[2] - 2.0 * c * y[1], -b * y[1]],
+            [0.0, 2.0 * c * y[1], 0.0],
+        ]
+    }
+}
+
+impl Ode for Reactions {
+    fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let [a, b, c] = self.p;
+        ydot[0] = -a * y[0] + b * y[1] * y[2];
+        ydot[2] = c * y[1] * y[1];
+        ydot[1] = -ydot[0] - ydot[2];
+        Ok(())
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        _ydot: &[f64],
+        mut jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        let entries = self.entries(y);
+        (0..3).for_each(|i| (0..3).for_each(|j| jacobian[(i, j)] = entries[i][j]));
+        Ok(())
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        _ydot: &[f64],
+        mut jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        // The lower left corner is zero.
+        let entries = self.entries(y);
+        for (i, j) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1), (1, 2), (2, 1), (2, 2)] {
+            jacobian[(i, j)] = entries[i][j];
+        }
+        Ok(())
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        _ydot: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        let entries = self.entries(y);
+        (0..3).for_each(|j| (0..3).for_each(|i| values[3 * j + i] = entries[i][j]));
+        Ok(())
+    }
+
+    fn adjoint_rhs(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        let entries = self.entries(y);
+        (0..3).for_each(|j| out[j] = (0..3).map(|i| entries[i][j] * lambda[i]).sum());
+        Ok(())
+    }
+
+    fn adjoint_parameters(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        if let Some(trouble) = self.trouble.filter(|_| t < 1.0) {
+            trouble()?;
+        }
+        let first = lambda[1] - lambda[0];
+        out.copy_from_slice(&[
+            first * y[0],
+            -first * y[1] * y[2],
+            (lambda[2] - lambda[1]) * y[1] * y[1],
+        ]);
+        Ok(())
+    }
+
+    fn parameters(&self) -> &[f64] {
+        &self.p
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) {
+        self.p.copy_from_slice(values);
+    }
+}
+
+/// y_0(T)^2 + 3 p_0 + integral of y_2 + p_0 y_0.
+struct Mixed;
+
+impl Functional for Mixed {
+    fn running(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        p: &[f64],
+        slopes: Option<Slopes<'_>>,
+    ) -> Result<f64, Failure> {
+        if let Some(slopes) = slopes {
+            (slopes.y[0], slopes.y[2], slopes.p[0]) = (p[0], 1.0, y[0]);
+        }
+        Ok(y[2] + p[0] * y[0])
+    }
+
+    fn terminal(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        p: &[f64],
+        slopes: Option<Slopes<'_>>,
+    ) -> Result<f64, Failure> {
+        if let Some(slopes) = slopes {
+            (slopes.y[0], slopes.p[0]) = (2.0 * y[0], 3.0);
+        }
+        Ok(y[0] * y[0] + 3.0 * p[0])
+    }
+}
+
+/// The same by forward sensitivities: the integral as a fourth unknown.
+fn forward(t: f64) -> (f64, [f64; 3]) {
+    struct Extended(Reactions);
+    impl Ode for Extended {
+        fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+            ydot[3] = y[2] + self.0.p[0] * y[0];
+            self.0.rhs(t, &y[..3], &mut ydot[..3])
+        }
+
+        fn parameters(&self) -> &[f64] {
+            self.0.parameters()
+        }
+
+        fn set_parameters(&mut self, values: &[f64]) {
+            self.0.set_parameters(values);
+        }
+    }
+    let options = CvodeOptions::new(1e-9, [1e-12, 1e-16, 1e-12, 1e-10])
+        .sensitivities(Sensitivities::of([0, 1, 2]));
+    let start = [1.0, 0.0, 0.0, 0.0];
+    let mut solver = Cvode::new(Extended(Reactions::new()), 0.0, &start, &options).unwrap();
+    solver.solve_to(t).unwrap();
+    let (y, s) = (solver.y(), solver.sensitivities());
+    let slopes = [0, 1, 2].map(|j| 2.0 * y[0] * s[(0, j)] + s[(3, j)]);
+    (y[0] * y[0] + 0.12 + y[3], [slopes[0] + 3.0, slopes[1], slopes[2]])
+}
+
+fn largest<const N: usize>(found: &[f64], exact: [f64; N]) -> f64 {
+    assert_eq!(found.len(), N);
+    found.iter().zip(exact).map(|(x, e)| (x / e - 1.0).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn robertson_backward_and_forward_agree() {
+    let (value, slopes) = forward(40.0);
+    let supplied = LinearSolver::Dense(Jacobian::Supplied);
+    let band = |jacobian| LinearSolver::Band { lower: 1, upper: 2, jacobian };
+    for solver in [
+        supplied.clone(),
+        LinearSolver::Dense(Jacobian::DifferenceQuotients),
+        band(Jacobian::Supplied),
+        band(Jacobian::DifferenceQuotients),
+        LinearSolver::Klu(Reactions::new().pattern),
+    ] {
+        let options = CvodeOptions::new(1e-8, [1e-12, 1e-16, 1e-12]).newton(solver.clone());
+        let options = AdjointOptions::new(options, 1e-8, 1e-9);
+        let mut own = vec![options.clone()];
+        if matches!(solver, LinearSolver::Dense(Jacobian::Supplied)) {
+            own.push(options.clone().supplied_rhs().supplied_parameters());
+            own.push(options.clone().checkpoint_steps(20));
+            own.push(options.gradient_tolerances(1e-8, [1e-8, 1e-14, 1e-17]));
+        }
+        for options in own {
+            let mut adjoint = Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &options).unwrap();
+            let gradient = adjoint.gradient(40.0).unwrap();
+            let errors =
+                (largest(&[gradient.value], [value]), largest(&gradient.parameters, slopes));
+            println!("{errors:?}");
+            assert!(errors.0 < 5e-8 && errors.1 < 2e-6);
+            assert_eq!(adjoint.system().p, Reactions::new().p, "put back to the last bit");
+            // Again: the same run, the same digits.
+            assert_eq!(adjoint.gradient(40.0).unwrap(), gradient);
+        }
+    }
+}
+
+/// An oscillator x'' = -w^2 x: G = x(T), in w, x0 and v0, in both directions of time.
+#[test]
+fn an_oscillator_in_closed_form() {
+    struct End;
+    impl Functional for End {
+        fn terminal(
+            &mut self,
+            _t: f64,
+            y: &[f64],
+            _p: &[f64],
+            slopes: Option<Slopes<'_>>,
+        ) -> Result<f64, Failure> {
+            if let Some(slopes) = slopes {
+                slopes.y[0] = 1.0;
+            }
+            Ok(y[0])
+        }
+    }
+    let system = pliant::ode::with_parameters(
+        |_t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]| {
+            ydot.copy_from_slice(&[y[1], -p[0] * p[0] * y[0]]);
+            Ok(())
+        },
+        [3.0],
+    );
+    let options = AdjointOptions::new(CvodeOptions::new(1e-9, 1e-11), 1e-9, 1e-11);
+    let mut adjoint = Adjoint::new(system, End, 0.0, &[1.0, 0.5], &options).unwrap();
+    for (t, w) in [(2.0, 3.0), (0.7, 3.0), (-1.5, 3.0), (2.0, 2.0)] {
+        adjoint.system_mut().set_parameters(&[w]);
+        let gradient = adjoint.gradient(t).unwrap();
+        let (sin, cos) = f64::sin_cos(w * t);
+        let exact = Gradient {
+            value: cos + 0.5 * sin / w,
+            parameters: vec![-t * sin + 0.5 * (t * cos / w - sin / (w * w))],
+            initial_state: vec![cos, sin / w],
+        };
+        let pairs =
+            |g: &Gradient| [g.value, g.parameters[0], g.initial_state[0], g.initial_state[1]];
+        let errors = pairs(&gradient).into_iter().zip(pairs(&exact)).map(|(g, e)| (g - e).abs());
+        let error = errors.fold(0.0, f64::max);
+        println!("{error:e}");
+        assert!(error < 5e-8, "{gradient:?} {exact:?}");
+    }
+}
+
+#[test]
+fn troubles_on_the_way_back_are_told() {
+    let options = AdjointOptions::new(CvodeOptions::new(1e-6, [1e-8, 1e-12, 1e-8]), 1e-6, 1e-8)
+        .supplied_parameters();
+    let run = |trouble: fn() -> Result<(), Failure>| {
+        let system = Reactions { trouble: Some(trouble), ..Reactions::new() };
+        let mut adjoint = Adjoint::new(system, Mixed, 0.0, &START, &options).unwrap();
+        let outcome = catch_unwind(AssertUnwindSafe(|| adjoint.gradient(10.0)));
+        // It goes on working.
+        adjoint.system_mut().trouble = None;
+        adjoint.gradient(10.0).unwrap();
+        outcome
+    };
+    let stopped = |outcome: std::thread::Result<Result<Gradient, Error>>| match outcome {
+        Ok(Err(Error::Integration(error))) => {
+            println!("{error}");
+            *error
+        }
+        other => panic!("{other:?}"),
+    };
+    let error = stopped(run(|| Err(Failure::Fatal("no".into()))));
+    assert_eq!(error.cause, Cause::Fatal(Callback::Adjoint));
+    assert!(error.integrator.contains("back") && error.t < 2.0);
+    let error = stopped(run(|| Err(Failure::Recoverable("not here".into()))));
+    assert!(matches!(error.cause, Cause::Rejected { callback: Callback::Adjoint, .. }));
+    let panic = run(|| panic!("sabotage")).unwrap_err();
+    assert_eq!(*panic.downcast_ref::<&str>().unwrap(), "sabotage");
+    // Forward, as ever.
+    let few = AdjointOptions::new(CvodeOptions::new(1e-6, 1e-8).max_steps(10), 1e-6, 1e-8);
+    let mut adjoint = Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &few).unwrap();
+    let error = stopped(Ok(adjoint.gradient(10.0)));
+    assert!(matches!(error.cause, Cause::TooManySteps { steps: 10, .. }), "{error}");
+}
+
+#[test]
+fn unusable_input_is_named() {
+    let forward = CvodeOptions::new(1e-6, 1e-8);
+    let refused = |options: &AdjointOptions| match Adjoint::new(
+        Reactions::new(),
+        Mixed,
+        0.0,
+        &START,
+        options,
+    ) {
+        Err(Error::Input(error)) => error.to_string(),
+        other => panic!("{other:?}"),
+    };
+    let options = |forward: &CvodeOptions| AdjointOptions::new(forward.clone(), 1e-6, 1e-8);
+    let custom = forward.clone().newton(LinearSolver::Custom);
+    assert!(refused(&options(&custom)).contains("entries"));
+    assert!(refused(&options(&forward.clone().fixed_point(0))).contains("Newton"));
+    let sensitivities = forward.clone().sensitivities(Sensitivities::of([0]));
+    assert!(refused(&options(&sensitivities)).contains("sensitivities"));
+    assert!(refused(&options(&forward).checkpoint_steps(0)).contains("checkpoint_steps"));
+    assert!(refused(&AdjointOptions::new(forward.clone(), 2.0, 1e-8)).contains("rtol"));
+    assert!(refused(&AdjointOptions::new(forward.clone(), 1e-6, [1e-8])).contains("atol"));
+    assert!(refused(&options(&forward).gradient_tolerances(1e-6, 0.0)).contains("atol"));
+    let mut adjoint =
+        Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &options(&forward)).unwrap();
+    assert!(adjoint.gradient(0.0).is_err() && adjoint.gradient(f64::NAN).is_err());
+}
