@@ -6,10 +6,11 @@
 //! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with parameters,
 //! [`with_mass`] with a mass matrix, [`split`] with a part that is not stiff; a struct implements
 //! the trait when it wants to hand over root functions or a linear solver of its own. An
-//! integrator owns its system; [`Borrowed`] lends it one instead.
+//! integrator owns its system; [`Borrowed`] lends it one instead. [`check`] holds supplied derivatives against differences.
 
 mod band;
 mod borrowed;
+pub mod check;
 mod closures;
 mod dae;
 mod delegate;

@@ -37,6 +37,9 @@
 //! | F(t, y, y') = 0 of index 1 | [`Ida`], see [`Ida::check_index`] |
 //!
 //! In all of them unknowns may have to keep their [`Sign`].
+//!
+//! Beside the state, [`Cvode`] and [`Ida`] carry integrals and [`Sensitivities`] along; [`Adjoint`] has gradients with respect
+//! to many parameters.
 
 mod adjoint;
 mod arkode;

@@ -5,6 +5,7 @@ mod support;
 mod adjoint;
 mod arkode;
 mod central_difference;
+mod checks;
 mod control;
 mod cvode;
 mod failures;
