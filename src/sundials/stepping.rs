@@ -179,13 +179,16 @@ impl<K, S> Solver<K, S> {
             self.t = end;
             (self.has_step, self.failed_within) = (false, true);
         }
+        let read = match self.has_step {
+            true => self.read_quadratures().and_then(|()| self.read_sensitivities()),
+            false => Ok(()),
+        };
         self.host.get_mut().troubles.resume_panic();
-        if self.has_step {
-            self.read_quadratures()?;
-            self.read_sensitivities()?;
-        }
-        if code >= 0 && !self.signs.is_empty() {
-            self.read_corrected()?;
+        if code >= 0 {
+            read?;
+            if !self.signs.is_empty() {
+                self.read_corrected()?;
+            }
         }
         match code {
             ffi::CV_ROOT_RETURN => {
