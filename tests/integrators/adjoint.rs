@@ -193,12 +193,14 @@ fn robertson_backward_and_forward_agree() {
     let (value, slopes) = forward(40.0);
     let supplied = LinearSolver::Dense(Jacobian::Supplied);
     let band = |jacobian| LinearSolver::Band { lower: 1, upper: 2, jacobian };
+    let klu = |jacobian| LinearSolver::Klu { pattern: Reactions::new().pattern, jacobian };
     for solver in [
         supplied.clone(),
         LinearSolver::Dense(Jacobian::DifferenceQuotients),
         band(Jacobian::Supplied),
         band(Jacobian::DifferenceQuotients),
-        LinearSolver::Klu(Reactions::new().pattern),
+        klu(Jacobian::Supplied),
+        klu(Jacobian::DifferenceQuotients),
     ] {
         let options = CvodeOptions::new(1e-8, [1e-12, 1e-16, 1e-12]).newton(solver.clone());
         let options = AdjointOptions::new(options, 1e-8, 1e-9);

@@ -5,7 +5,7 @@ use faer::MatMut;
 use crate::{
     input::InputError,
     ode::{BandMut, Failure, Ode},
-    sundials::{Jacobian, LinearSolver, Pattern, matrix::Entries},
+    sundials::{Jacobian, LinearSolver, Pattern, colouring::Colouring, matrix::Entries},
 };
 
 /// The Jacobian at one point, stored as the linear solver of the run forward has it.
@@ -13,6 +13,8 @@ pub(super) struct StoredJacobian {
     forward: LinearSolver,
     n: usize,
     values: Vec<f64>,
+    /// Of a sparse matrix.
+    colouring: Option<Colouring>,
     /// Unknowns moved for difference quotients, and two results.
     moved: Vec<f64>,
     ahead: Vec<f64>,
@@ -24,12 +26,17 @@ impl StoredJacobian {
         let count = match forward {
             LinearSolver::Dense(_) => n * n,
             LinearSolver::Band { lower, upper, .. } => n * (lower + upper + 1),
-            LinearSolver::Klu(pattern) => pattern.entry_count(),
+            LinearSolver::Klu { pattern, .. } => pattern.entry_count(),
             _ => 0,
         };
         let vector = || vec![0.0; n];
         let (moved, ahead, behind) = (vector(), vector(), vector());
-        Self { forward: forward.clone(), n, values: vec![0.0; count], moved, ahead, behind }
+        let colouring = match forward {
+            LinearSolver::Klu { pattern, .. } => Some(Colouring::new(pattern)),
+            _ => None,
+        };
+        let (forward, values) = (forward.clone(), vec![0.0; count]);
+        Self { forward, n, values, colouring, moved, ahead, behind }
     }
 
     /// The linear solver for -J^T.
@@ -41,10 +48,13 @@ impl StoredJacobian {
                 upper: *lower,
                 jacobian: Jacobian::Supplied,
             }),
-            LinearSolver::Klu(pattern) => {
+            LinearSolver::Klu { .. } => {
                 let mut entries = Vec::new();
-                each_place(pattern, |i, j, _| entries.push((j, i)));
-                Ok(LinearSolver::Klu(Pattern::from_entries(self.n, entries)?))
+                for j in 0..self.n {
+                    places(&self.forward, self.n, j, |i, _| entries.push((j, i)));
+                }
+                let pattern = Pattern::from_entries(self.n, entries)?;
+                Ok(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
             }
             other => {
                 let mend = "an adjoint gradient needs entries of the Jacobian: choose a dense, a band or a \
@@ -65,9 +75,9 @@ impl StoredJacobian {
         let n = self.n;
         self.values.fill(0.0);
         let quotients = match &self.forward {
-            LinearSolver::Dense(jacobian) | LinearSolver::Band { jacobian, .. } => {
-                *jacobian == Jacobian::DifferenceQuotients
-            }
+            LinearSolver::Dense(jacobian)
+            | LinearSolver::Band { jacobian, .. }
+            | LinearSolver::Klu { jacobian, .. } => *jacobian == Jacobian::DifferenceQuotients,
             _ => false,
         };
         if quotients {
@@ -96,51 +106,39 @@ impl StoredJacobian {
         y: &[f64],
         size: impl Fn(usize) -> f64,
     ) -> Result<(), Failure> {
-        let n = self.n;
-        let (lower, upper) = match &self.forward {
-            LinearSolver::Band { lower, upper, .. } => (*lower, *upper),
-            _ => (n - 1, n - 1),
-        };
-        let dense = matches!(self.forward, LinearSolver::Dense(_));
-        let width = (lower + upper + 1).min(n);
         let step = |j: usize| f64::EPSILON.cbrt() * size(j);
-        for first in 0..width {
+        for colour in 0..self.colours() {
             for (sign, result) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
                 self.moved.copy_from_slice(y);
-                for j in (first..n).step_by(width) {
+                columns(&self.forward, self.colouring.as_ref(), self.n, colour, |j| {
                     self.moved[j] += sign * step(j);
-                }
+                });
                 system.rhs(t, &self.moved, result)?;
             }
-            for j in (first..n).step_by(width) {
+            let (values, ahead, behind) = (&mut self.values, &self.ahead, &self.behind);
+            columns(&self.forward, self.colouring.as_ref(), self.n, colour, |j| {
                 let distance = (y[j] + step(j)) - (y[j] - step(j));
-                for i in j.saturating_sub(upper)..=(j + lower).min(n - 1) {
-                    let place = match dense {
-                        true => j * n + i,
-                        false => j * (lower + upper + 1) + upper + i - j,
-                    };
-                    self.values[place] = (self.ahead[i] - self.behind[i]) / distance;
-                }
-            }
+                places(&self.forward, self.n, j, |i, place| {
+                    values[place] = (ahead[i] - behind[i]) / distance;
+                });
+            });
         }
         Ok(())
     }
 
+    /// How many evaluations have all columns.
+    fn colours(&self) -> usize {
+        match (&self.forward, &self.colouring) {
+            (_, Some(colouring)) => colouring.count(),
+            (LinearSolver::Band { lower, upper, .. }, _) => (lower + upper + 1).min(self.n),
+            _ => self.n,
+        }
+    }
+
     /// Calls `visit` with row, column and value of each entry.
     fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
-        let n = self.n;
-        match &self.forward {
-            LinearSolver::Klu(pattern) => {
-                each_place(pattern, |i, j, place| visit(i, j, self.values[place]));
-            }
-            LinearSolver::Band { lower, upper, .. } => {
-                for j in 0..n {
-                    for i in j.saturating_sub(*upper)..=(j + lower).min(n - 1) {
-                        visit(i, j, self.values[j * (lower + upper + 1) + upper + i - j]);
-                    }
-                }
-            }
-            _ => self.values.iter().enumerate().for_each(|(k, value)| visit(k % n, k / n, *value)),
+        for j in 0..self.n {
+            places(&self.forward, self.n, j, |i, place| visit(i, j, self.values[place]));
         }
     }
 
@@ -155,21 +153,47 @@ impl StoredJacobian {
         match (entries, backward) {
             (Entries::Dense(mut matrix), _) => self.each(|i, j, value| matrix[(j, i)] = -value),
             (Entries::Band(mut band), _) => self.each(|i, j, value| band[(j, i)] = -value),
-            (Entries::Sparse(values), LinearSolver::Klu(pattern)) => self.each(|i, j, value| {
-                if let Some(place) = pattern.position(j, i) {
-                    values[place] = -value;
-                }
-            }),
+            (Entries::Sparse(values), LinearSolver::Klu { pattern, .. }) => {
+                self.each(|i, j, value| {
+                    if let Some(place) = pattern.position(j, i) {
+                        values[place] = -value;
+                    }
+                })
+            }
             _ => {}
         }
     }
 }
 
-/// Calls `visit` with row, column and place of each entry.
-fn each_place(pattern: &Pattern, mut visit: impl FnMut(usize, usize, usize)) {
-    for (j, ends) in pattern.column_pointers().windows(2).enumerate() {
-        for place in ends[0] as usize..ends[1] as usize {
-            visit(pattern.row_indices()[place] as usize, j, place);
+/// Calls `visit` with the row and place of each entry of column `j`.
+fn places(solver: &LinearSolver, n: usize, j: usize, mut visit: impl FnMut(usize, usize)) {
+    match solver {
+        LinearSolver::Klu { pattern, .. } => {
+            let rows = pattern.column(j).iter().zip(pattern.places(j));
+            rows.for_each(|(&i, place)| visit(i as usize, place));
         }
+        LinearSolver::Band { lower, upper, .. } => {
+            for i in j.saturating_sub(*upper)..=(j + lower).min(n - 1) {
+                visit(i, j * (lower + upper + 1) + upper + i - j);
+            }
+        }
+        _ => (0..n).for_each(|i| visit(i, j * n + i)),
+    }
+}
+
+/// Calls `visit` with each column of a colour: columns that do not meet in any row.
+fn columns(
+    solver: &LinearSolver,
+    colouring: Option<&Colouring>,
+    n: usize,
+    colour: usize,
+    mut visit: impl FnMut(usize),
+) {
+    match (solver, colouring) {
+        (_, Some(colouring)) => colouring.columns(colour).iter().for_each(|&j| visit(j)),
+        (LinearSolver::Band { lower, upper, .. }, _) => {
+            (colour..n).step_by((lower + upper + 1).min(n)).for_each(visit);
+        }
+        _ => visit(colour),
     }
 }
