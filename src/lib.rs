@@ -62,6 +62,8 @@ pub mod material;
 pub mod mesh;
 #[cfg(feature = "bodies")]
 mod model;
+#[cfg(doctest)]
+mod misuse;
 pub mod ode;
 #[cfg(feature = "output")]
 pub mod output;
