@@ -60,10 +60,10 @@ pub mod integrate;
 pub mod material;
 #[cfg(feature = "bodies")]
 pub mod mesh;
-#[cfg(feature = "bodies")]
-mod model;
 #[cfg(doctest)]
 mod misuse;
+#[cfg(feature = "bodies")]
+mod model;
 pub mod ode;
 #[cfg(feature = "output")]
 pub mod output;

@@ -69,7 +69,8 @@ impl Vectors {
 pub(super) struct Backward {
     /// What C calls it.
     pub(super) which: i32,
-    pub(super) linear: Linear,
+    /// C uses it; here it is kept, and freed after the memory.
+    pub(super) _linear: Linear,
     /// Where it starts, then where it ends.
     pub(super) lambda: Vector,
     /// Integrals, if there are parameters.

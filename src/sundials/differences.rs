@@ -5,7 +5,6 @@ use std::ffi::c_void;
 use super::{
     colouring::Colouring,
     context::Context,
-    ffi,
     functions::{Functions, Get},
     pattern::Pattern,
     vector::Vector,

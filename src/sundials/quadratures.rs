@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     input::InputError,
-    integrate::{AbsoluteTolerance, Error, Integrator, Tolerances, check_time},
+    integrate::{AbsoluteTolerance, Error, Tolerances, check_time},
 };
 
 /// What makes a [`Solver`] one of CVODE or IDA, which carry integrals and sensitivities along.
@@ -18,18 +18,18 @@ impl WithSensitivities for CvodeKind {}
 impl WithSensitivities for IdaKind {}
 
 impl<K: WithSensitivities, S> Solver<K, S> {
-    /// The integrals of [`quadratures`](crate::ode::Ode::quadratures) from the start to time [`t`](Integrator::t). A new start
+    /// The integrals of [`quadratures`](crate::ode::Ode::quadratures) from the start to time [`t`](crate::integrate::Integrator::t). A new start
     /// sets them to zero. (`CVodeGetQuad`, `IDAGetQuad`)
     #[must_use]
     pub fn quadratures(&self) -> &[f64] {
         self.quadratures.as_ref().map_or(&[], |quadratures| quadratures.values.as_slice())
     }
 
-    /// As [`interpolate`](Integrator::interpolate), of the integrals: their first derivative is the integrand.
+    /// As [`interpolate`](crate::integrate::Integrator::interpolate), of the integrals: their first derivative is the integrand.
     /// (`CVodeGetQuadDky`, `IDAGetQuadDky`)
     ///
     /// # Errors
-    /// As for [`interpolate`](Integrator::interpolate).
+    /// As for [`interpolate`](crate::integrate::Integrator::interpolate).
     pub fn interpolate_quadratures(
         &mut self,
         t: f64,

@@ -126,7 +126,7 @@ impl<'a, S: Ode, F: Functional> Run<'a, S, F> {
         let gradient = (count > 0).then(|| Vector::from_slice(&zeros, context)).transpose()?;
         let (start, integrals) = (lambda.raw(), gradient.as_ref().map(Vector::raw));
         let (solver, matrix) = (linear.solver(), linear.matrix());
-        self.solver.backward = Some(Backward { which, linear, lambda, gradient });
+        self.solver.backward = Some(Backward { which, _linear: linear, lambda, gradient });
         let Tolerances { rtol, atol } = &self.options.tolerances;
         let atol = Vector::from_slice(&spread(atol, n), context)?;
         let max_steps = i64::from(self.solver.max_steps);
