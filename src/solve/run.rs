@@ -231,11 +231,14 @@ impl<'a> Run<'a> {
             self.yp.copy_from_slice(self.engine.yp());
         }
         (self.t_old, self.t) = (t_old, t);
+        let at_break = at_break && stops_at.is_none_or(|at| at == self.engine.t());
         if stops_at.is_some() {
             self.jump_at_events(&jumps)?;
-        } else if at_break {
+        }
+        if at_break {
             self.jump_at_break()?;
-        } else if t == end {
+        }
+        if t == end && self.end.is_none() {
             self.end = Some(End::Span);
         }
         self.report();
@@ -355,7 +358,7 @@ impl<'a> Run<'a> {
     /// Takes over what actions have made of the state, which was `before`, and of the parameters.
     fn land(&mut self, before: Vec<f64>, met: &[(usize, Root)]) -> Result<(), Reason> {
         self.stale = true;
-        self.before = Some(before);
+        self.before.get_or_insert(before);
         check_finite("state after the jump", &self.y)?;
         check_finite("parameters after the jump", &self.parameters)?;
 

@@ -41,7 +41,8 @@ fn pairs_have_their_orders() {
     let mut exact = DormandPrince::new(both, 0.0, &Y0, &options).unwrap();
     exact.solve_to(1.0).unwrap();
     // M = diag(2, 4) and both parts multiplied by it
-    let heavy = |f: fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>| {
+    type Rhs = fn(f64, &[f64], &mut [f64]) -> Result<(), Failure>;
+    let heavy = |f: Rhs| {
         move |t: f64, y: &[f64], ydot: &mut [f64]| {
             f(t, y, ydot)?;
             (ydot[0], ydot[1]) = (2.0 * ydot[0], 4.0 * ydot[1]);

@@ -1,6 +1,6 @@
 //! Known times at which something changes.
 
-use pliant::solve::{End, Options, Problem, solve};
+use pliant::solve::{End, Event, Options, Problem, solve};
 
 use crate::support::{methods, oscillator, tight};
 
@@ -52,5 +52,25 @@ fn a_break_may_end_the_run() {
         let problem = Problem::ode(oscillator, [0.0, 1.0]).break_with(2.0, |jump| jump.end());
         let solution = solve(problem, method, (0.0, 8.0), &Options::new(1e-6, 1e-8)).unwrap();
         assert_eq!((solution.end(), solution.t().last()), (End::Break, Some(&2.0)));
+    }
+}
+
+/// An impact exactly where a break is: both happen, the event first.
+#[test]
+fn an_event_may_come_with_a_break() {
+    for method in methods() {
+        let falls = |t: f64, _y: &[f64], ydot: &mut [f64]| {
+            ydot[0] = if t < 2.0 { -1.0 } else { 3.0 };
+            Ok(())
+        };
+        let bounce =
+            Event::new(|t: f64, _| t - 2.0_f64.next_down()).action(|jump| jump.y[0] += 10.0);
+        let problem =
+            Problem::ode(falls, [1.0]).event(bounce).break_with(2.0, |jump| jump.y[0] *= 2.0);
+        let solution = solve(problem, method, (0.0, 4.0), &tight()).unwrap();
+        assert_eq!(solution.events().len(), 1, "{method:?}");
+        // 1 - 2 + 10 = 9, twice that is 18, and 6 more by the end
+        assert!((solution.last()[0] - 24.0).abs() < 1e-9, "{method:?}: {:?}", solution.last());
+        assert_eq!(solution.end(), End::Span);
     }
 }
