@@ -215,7 +215,7 @@ impl<'a> Run<'a> {
         self.engine.step(end)?;
         let mut t = self.engine.t();
         let at_break = self.breaks.last().is_some_and(|next| t == self.just_before(next.t));
-        let jumps = self.look_for_events(t)?;
+        let jumps = self.look_for_events(t, at_break || t == end)?;
         let stops_at = jumps.first().map(|(_, root)| root.t);
         if let Some(at) = stops_at {
             t = at;
@@ -252,8 +252,8 @@ impl<'a> Run<'a> {
     }
 
     /// Finds the events of the step that has just been made, up to `t`, and notes them. Those that stop the step are returned, the last ones noted.
-    fn look_for_events(&mut self, t: f64) -> Result<Vec<(usize, Root)>, Reason> {
-        let is_last = t == self.span.1;
+    /// `is_last` tells that the next step does not go on from there, but from a break, if at all.
+    fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Vec<(usize, Root)>, Reason> {
         // as SUNDIALS has it
         let tolerance = 100.0 * f64::EPSILON * (t.abs() + (t - self.t).abs());
         let Self { engine, events, watches, scratch, parameters, .. } = self;
