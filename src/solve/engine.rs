@@ -1,9 +1,11 @@
 //! What a run asks of an integrator beyond [`Integrator`].
 
+use faer::{MatMut, MatRef};
+
 use crate::{
     integrate::Integrator,
     integrate::{Error, Reached, Statistics},
-    ode::{Dae, Ode},
+    ode::{Dae, Failure, Ode},
     rk::DormandPrince,
     sundials::{Arkode, Cvode, Ida, InitialCondition},
 };
@@ -24,6 +26,12 @@ pub(super) trait Engine {
     fn restart(&mut self, t: f64, y: &[f64], yp: &[f64], towards: f64) -> Result<(), Error>;
     fn parameters(&self) -> &[f64];
     fn set_parameters(&mut self, values: &[f64]);
+    /// Writes the right-hand side of an ODE.
+    fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
+    /// Writes the sensitivities at `t`, within the last step.
+    fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
+    /// Lets the sensitivities start from `s`, after a new start.
+    fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
     /// Corrects the start, before the first step.
     fn make_consistent(&mut self, _towards: f64) -> Result<(), Error> {
         Ok(())
@@ -70,13 +78,44 @@ macro_rules! forward {
     };
 }
 
+/// Sensitivities of those that have them.
+macro_rules! with_sensitivities {
+    () => {
+        fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error> {
+            self.interpolate_sensitivities(t, 0, out)
+        }
+
+        fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
+            self.set_sensitivities(s)
+        }
+    };
+}
+
+/// Nothing of those that have none, for which nobody asks.
+macro_rules! without_sensitivities {
+    () => {
+        fn interpolate_sensitivities(&mut self, _: f64, _: MatMut<'_, f64>) -> Result<(), Error> {
+            Ok(())
+        }
+
+        fn set_sensitivities(&mut self, _: MatRef<'_, f64>) -> Result<(), Error> {
+            Ok(())
+        }
+    };
+}
+
 macro_rules! ode_engine {
-    ($integrator:ident) => {
+    ($integrator:ident, $sensitivities:ident) => {
         impl<S: Ode> Engine for $integrator<S> {
             forward!();
+            $sensitivities!();
 
             fn yp(&self) -> &[f64] {
                 &[]
+            }
+
+            fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+                self.system_mut().rhs(t, y, out)
             }
 
             fn restart(&mut self, t: f64, y: &[f64], _: &[f64], _: f64) -> Result<(), Error> {
@@ -86,15 +125,22 @@ macro_rules! ode_engine {
     };
 }
 
-ode_engine!(Cvode);
-ode_engine!(Arkode);
-ode_engine!(DormandPrince);
+ode_engine!(Cvode, with_sensitivities);
+ode_engine!(Arkode, without_sensitivities);
+ode_engine!(DormandPrince, without_sensitivities);
 
 impl<S: Dae> Engine for Ida<S> {
     forward!();
+    with_sensitivities!();
 
     fn yp(&self) -> &[f64] {
         Ida::yp(self)
+    }
+
+    /// None is known of a DAE.
+    fn slope(&mut self, _: f64, _: &[f64], out: &mut [f64]) -> Result<(), Failure> {
+        out.fill(f64::NAN);
+        Ok(())
     }
 
     fn restart(&mut self, t: f64, y: &[f64], yp: &[f64], towards: f64) -> Result<(), Error> {

@@ -74,6 +74,9 @@ impl Method {
                 "is explicit and solves no linear systems",
             );
         }
+        if options.sensitivities.is_some() && !multistep {
+            return refused("sensitivities", "given".into(), "has none: take Bdf, Adams or Ida");
+        }
         if let (Some(h), Self::DormandPrince) = (options.min_step, self) {
             return refused("min_step", h.to_string(), "has no such limit");
         }
@@ -121,6 +124,9 @@ impl Method {
                 let mut built = sundials!($built);
                 if let Some(order) = options.max_order {
                     built = built.max_order(order);
+                }
+                if let Some(sensitivities) = &options.sensitivities {
+                    built = built.sensitivities(sensitivities.clone());
                 }
                 built
             }};

@@ -36,6 +36,7 @@ mod problem;
 mod root;
 mod run;
 mod saved;
+mod sensitivities;
 mod solution;
 mod solver;
 mod watch;

@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::{
     input::InputError,
     integrate::{AbsoluteTolerance, Tolerances, check_finite},
-    sundials::LinearSolver,
+    sundials::{LinearSolver, Sensitivities},
 };
 
 /// What a [`Solution`](super::Solution) keeps.
@@ -35,6 +35,7 @@ pub struct Options {
     pub(super) max_evaluations: Option<u64>,
     pub(super) max_wall_time: Option<Duration>,
     pub(super) output: Output,
+    pub(super) sensitivities: Option<Sensitivities>,
 }
 
 impl Options {
@@ -51,6 +52,7 @@ impl Options {
             max_evaluations: None,
             max_wall_time: None,
             output: Output::default(),
+            sensitivities: None,
         }
     }
 
@@ -106,6 +108,16 @@ impl Options {
     /// What is kept. Default: [`Output::Steps`].
     pub fn output(mut self, output: Output) -> Self {
         self.output = output;
+        self
+    }
+
+    /// Computes the derivatives dy/dp to some parameters of the equations, too, by CVODE and IDA:
+    /// [`Solution::sensitivities`](super::Solution::sensitivities).
+    ///
+    /// In an ODE they go on across actions at events and breaks. An action is then called some more times, at states nearby, for its
+    /// derivatives; it may not change the parameters.
+    pub fn sensitivities(mut self, sensitivities: Sensitivities) -> Self {
+        self.sensitivities = Some(sensitivities);
         self
     }
 

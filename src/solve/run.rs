@@ -10,14 +10,17 @@ use std::{
     time::{Duration, Instant},
 };
 
+use faer::{MatMut, MatRef};
+
 use super::{
     engine::Engine,
     error::Reason,
-    event::{Event, Jump},
+    event::{Action, Event, Jump},
     method::Method,
     options::Options,
     problem::{Break, Equations, Observer, Problem, Progress},
     saved::Saved,
+    sensitivities::{Carried, Crossing},
     solution::{End, Occurrence},
     watch::{Root, Watch},
 };
@@ -66,6 +69,7 @@ pub struct Run<'a> {
     before: Option<Vec<f64>>,
     /// Whether the integrator has to start anew at `t`.
     stale: bool,
+    carried: Option<Carried>,
     occurred: Vec<Occurrence>,
     scratch: Vec<f64>,
     /// Of the starts before the last one.
@@ -152,10 +156,19 @@ impl<'a> Run<'a> {
                 return Err(InputError::new("break", t, mend).into());
             }
         }
+        let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
+        if options.sensitivities.is_some() && jumps && method == Method::Ida {
+            let mend = "sensitivities of a DAE do not go on across actions and breaks";
+            return Err(InputError::new("sensitivities", "given", mend).into());
+        }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let mut engine = method.engine(equations, (start, sign), &y, options)?;
         engine.make_consistent(end)?;
         let (y, yp) = (engine.y().to_vec(), engine.yp().to_vec());
+        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
+        if let (Some(carried), Some(saved)) = (&mut carried, &saved) {
+            carried.resume(&saved.sensitivities, engine.as_mut())?;
+        }
         let parameters = engine.parameters().to_vec();
         let mut watches = Vec::new();
         for (i, event) in events.iter_mut().enumerate() {
@@ -189,6 +202,7 @@ impl<'a> Run<'a> {
             parameters,
             before: None,
             stale: false,
+            carried,
             occurred: Vec::new(),
             past: Statistics::default(),
             started: Instant::now(),
@@ -231,6 +245,9 @@ impl<'a> Run<'a> {
             self.yp.copy_from_slice(self.engine.yp());
         }
         (self.t_old, self.t) = (t_old, t);
+        if let Some(carried) = &mut self.carried {
+            carried.read(self.engine.as_mut(), t)?;
+        }
         let at_break = at_break && stops_at.is_none_or(|at| at == self.engine.t());
         if stops_at.is_some() {
             self.jump_at_events(&jumps)?;
@@ -314,25 +331,61 @@ impl<'a> Run<'a> {
 
     /// Does what the events at the present time ask for.
     fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
-        let mut acted = false;
+        let mut acting = Vec::new();
         let y = self.y.clone();
         for (i, _) in met {
             let event = &mut self.events[*i];
             let mut ends = event.last == Some(self.counts[*i]);
             if let Some(action) = &mut event.action {
+                acting.push(*i);
                 let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
                 let mut jump = Jump { t: self.t, y, yp, p, ends };
                 action(&mut jump);
-                (acted, ends) = (true, jump.ends);
+                ends = jump.ends;
             }
             if ends && self.end.is_none() {
                 self.end = Some(End::Event(*i));
             }
         }
-        if acted {
+        if !acting.is_empty() {
+            self.carry_across_event(&y, &acting)?;
             self.land(y, met)?;
         }
         Ok(())
+    }
+
+    /// Carries the sensitivities across the actions of these events, from the state `before` to the present one.
+    fn carry_across_event(&mut self, before: &[f64], acting: &[usize]) -> Result<(), Reason> {
+        let Some(carried) = &mut self.carried else { return Ok(()) };
+        let p = self.engine.parameters().to_vec();
+        check_unchanged(&p, &self.parameters)?;
+        let (h, t) = (self.t - self.t_old, self.t);
+        let at = Crossing { t, h, before, after: &self.y, p: &p };
+        let (engine, events) = (self.engine.as_mut(), &mut self.events);
+        let function = &mut events[acting[0]].function;
+        let taus = carried.of_time(engine, &at, |t, y, p| function(t, y, p))?;
+        carried.cross(engine, &at, &taus, |jump| {
+            for &i in acting {
+                events[i].action.iter_mut().for_each(|action| action(jump));
+            }
+        })
+    }
+
+    /// Carries them across the actions of breaks, whose time depends on nothing.
+    fn carry_across_break(
+        &mut self,
+        before: &[f64],
+        actions: &mut [Action<'a>],
+    ) -> Result<(), Reason> {
+        let Some(carried) = &mut self.carried else { return Ok(()) };
+        let p = self.engine.parameters().to_vec();
+        check_unchanged(&p, &self.parameters)?;
+        let (h, t) = (self.t - self.t_old, self.t);
+        let at = Crossing { t, h, before, after: &self.y, p: &p };
+        let taus = vec![0.0; p.len()];
+        carried.cross(self.engine.as_mut(), &at, &taus, |jump| {
+            actions.iter_mut().for_each(|action| action(jump));
+        })
     }
 
     fn jump_at_break(&mut self) -> Result<(), Reason> {
@@ -340,19 +393,23 @@ impl<'a> Run<'a> {
         self.t = *t;
         self.stale = true;
         let y = self.y.clone();
-        let mut acted = false;
+        let mut actions = Vec::new();
         while let Some(mut next) = self.breaks.pop_if(|next| next.t == self.t) {
             if let Some(action) = &mut next.action {
                 let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
                 let mut jump = Jump { t: self.t, y, yp, p, ends: false };
                 action(&mut jump);
-                acted = true;
                 if jump.ends {
                     self.end = Some(End::Break);
                 }
             }
+            actions.extend(next.action);
         }
-        if acted { self.land(y, &[]) } else { Ok(()) }
+        if actions.is_empty() {
+            return Ok(());
+        }
+        self.carry_across_break(&y, &mut actions)?;
+        self.land(y, &[])
     }
 
     /// Takes over what actions have made of the state, which was `before`, and of the parameters.
@@ -373,14 +430,17 @@ impl<'a> Run<'a> {
     }
 
     /// Starts the integrator anew where something has changed.
-    fn start_anew(&mut self) -> Result<(), integrate::Error> {
+    fn start_anew(&mut self) -> Result<(), Reason> {
         if !self.stale {
             return Ok(());
         }
         self.past = self.statistics();
         self.stale = false;
         self.engine.restart(self.t, &self.y, &self.yp, self.span.1)?;
-        self.set_stop_time()
+        if let Some(carried) = &self.carried {
+            carried.hand_over(self.engine.as_mut())?;
+        }
+        Ok(self.set_stop_time()?)
     }
 
     fn set_stop_time(&mut self) -> Result<(), integrate::Error> {
@@ -466,8 +526,38 @@ impl<'a> Run<'a> {
             yp: self.yp.clone(),
             parameters: self.parameters.clone(),
             counts: self.counts.clone(),
+            sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
             event_values: self.watches.iter().map(Watch::value).collect(),
         }
+    }
+
+    /// The sensitivities at the present time, after any jump: entry (i, j) is the derivative of unknown i to the j-th parameter of
+    /// [`Options::sensitivities`].
+    #[must_use]
+    pub fn sensitivities(&self) -> MatRef<'_, f64> {
+        let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
+        MatRef::from_column_major_slice(s, self.y.len(), s.len() / self.y.len())
+    }
+
+    /// The sensitivities at the present time, one column after the other.
+    pub(super) fn sensitivities_after(&self) -> &[f64] {
+        self.carried.as_ref().map_or(&[][..], |carried| &carried.s)
+    }
+
+    /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there was none.
+    pub(super) fn sensitivities_before(&self) -> &[f64] {
+        let Some(carried) = &self.carried else { return &[] };
+        carried.before.as_ref().unwrap_or(&carried.s)
+    }
+
+    /// The sensitivities at time `t` within the last step, one column after the other.
+    pub(super) fn sensitivities_at(&mut self, t: f64) -> Result<Vec<f64>, Reason> {
+        let Some(carried) = &self.carried else { return Ok(Vec::new()) };
+        let (n, mut s) = (self.y.len(), vec![0.0; carried.s.len()]);
+        let columns = s.len() / n;
+        let out = MatMut::from_column_major_slice_mut(&mut s, n, columns);
+        self.engine.interpolate_sensitivities(t, out)?;
+        Ok(s)
     }
 
     /// Writes the state at time `t` within the last step, before any jump at its end, into `out`.
@@ -508,5 +598,16 @@ fn value(event: &mut Event<'_>, i: usize, t: f64, y: &[f64], p: &[f64]) -> Resul
     match (event.function)(t, y, p) {
         value if value.is_nan() => Err(Reason::Event { event: i, t, value }),
         value => Ok(value),
+    }
+}
+
+/// Stops what sensitivities cannot follow.
+fn check_unchanged(before: &[f64], after: &[f64]) -> Result<(), InputError> {
+    match before.iter().zip(after).position(|(before, after)| before != after) {
+        None => Ok(()),
+        Some(i) => {
+            let mend = "with sensitivities an action changes the state alone";
+            Err(InputError::new(format!("parameter {i} after the jump"), after[i], mend))
+        }
     }
 }

@@ -21,6 +21,8 @@ pub struct Saved {
     pub parameters: Vec<f64>,
     /// How often each event was met.
     pub counts: Vec<u32>,
+    /// The sensitivities, one column after the other; empty if there are none.
+    pub sensitivities: Vec<f64>,
     /// The event functions; 0 for one that is about to leave zero.
     pub event_values: Vec<f64>,
 }

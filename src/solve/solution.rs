@@ -47,6 +47,8 @@ pub struct Solution {
     inner: Option<Vec<usize>>,
     /// Inner nodes: states at the [`nodes`] of each step.
     nodes: Vec<f64>,
+    /// The sensitivities of each time, one column after the other.
+    sensitivities: Vec<f64>,
     pub(super) events: Vec<Occurrence>,
     pub(super) statistics: Statistics,
     pub(super) end: End,
@@ -63,13 +65,14 @@ fn node(k: usize, degree: usize) -> f64 {
 }
 
 impl Solution {
-    pub(super) fn new(t: f64, y: &[f64], dense: bool) -> Self {
+    pub(super) fn new(t: f64, (y, s): (&[f64], &[f64]), dense: bool) -> Self {
         Self {
             n: y.len(),
             t: vec![t],
             states: y.to_vec(),
             inner: dense.then(Vec::new),
             nodes: Vec::new(),
+            sensitivities: s.to_vec(),
             events: Vec::new(),
             statistics: Statistics::default(),
             end: End::Early,
@@ -81,7 +84,7 @@ impl Solution {
     pub(super) fn push<E>(
         &mut self,
         t: f64,
-        y: &[f64],
+        (y, s): (&[f64], &[f64]),
         degree: u32,
         mut at: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -98,18 +101,22 @@ impl Solution {
                 }
             }
         }
-        self.t.push(t);
-        self.states.extend_from_slice(y);
+        self.add(t, y, s);
         Ok(())
     }
 
+    fn add(&mut self, t: f64, y: &[f64], s: &[f64]) {
+        self.t.push(t);
+        self.states.extend_from_slice(y);
+        self.sensitivities.extend_from_slice(s);
+    }
+
     /// Adds the state after a jump.
-    pub(super) fn push_jump(&mut self, t: f64, y: &[f64]) {
+    pub(super) fn push_jump(&mut self, t: f64, (y, s): (&[f64], &[f64])) {
         if let Some(inner) = &mut self.inner {
             inner.push(self.nodes.len());
         }
-        self.t.push(t);
-        self.states.extend_from_slice(y);
+        self.add(t, y, s);
     }
 
     /// The times, in the order of the run.
@@ -131,6 +138,18 @@ impl Solution {
     #[must_use]
     pub fn last(&self) -> &[f64] {
         &self.states[self.states.len() - self.n..]
+    }
+
+    /// The sensitivities at time `t()[k]`: entry (i, j) is the derivative of unknown i to the j-th parameter of
+    /// [`Options::sensitivities`](super::Options::sensitivities), at that time, whatever it depends on.
+    ///
+    /// # Panics
+    /// If there is no such time.
+    #[must_use]
+    pub fn sensitivities(&self, k: usize) -> MatRef<'_, f64> {
+        let count = self.sensitivities.len() / self.t.len();
+        let s = &self.sensitivities[k * count..(k + 1) * count];
+        MatRef::from_column_major_slice(s, self.n, count / self.n)
     }
 
     /// The time derivative of the last state, of a DAE; empty otherwise.

@@ -29,11 +29,11 @@ pub fn solve(
         Ok(run) => run,
         Err(Reason::Input(error)) => return Err(Error::Input(error)),
         Err(reason) => {
-            let solution = Solution::new(span.0, &start, dense);
+            let solution = Solution::new(span.0, (&start, &[]), dense);
             return Err(Error::Stopped(Box::new(Stopped { reason, solution })));
         }
     };
-    let mut solution = Solution::new(run.t(), run.y(), dense);
+    let mut solution = Solution::new(run.t(), (run.y(), run.sensitivities_after()), dense);
     let outcome = integrate(&mut run, &mut solution, &options.output);
     solution.statistics = run.statistics();
     solution.saved = run.save();
@@ -72,7 +72,7 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
             Err(reason) => {
                 // where it stopped, if that is not there already
                 if *output != Output::Steps && solution.t().last() != Some(&run.t()) {
-                    solution.push_jump(run.t(), run.y());
+                    solution.push_jump(run.t(), (run.y(), run.sensitivities_after()));
                 }
                 return Err(reason);
             }
@@ -82,9 +82,10 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
                 y.copy_from_slice(run.y());
             }
             let degree = run.interpolant_degree();
-            solution.push(t, &y, degree, |at, out| run.interpolate(at, out))?;
+            let s = run.sensitivities_before().to_vec();
+            solution.push(t, (&y, &s), degree, |at, out| run.interpolate(at, out))?;
             if jumped {
-                solution.push_jump(t, run.y());
+                solution.push_jump(t, (run.y(), run.sensitivities_after()));
             }
             continue;
         }
@@ -92,15 +93,16 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
             && (first - t) * sign <= 0.0
         {
             if *first == t {
-                y.copy_from_slice(run.y());
+                solution.push_jump(*first, (run.y(), run.sensitivities_after()));
             } else {
                 run.interpolate(*first, &mut y)?;
+                let s = run.sensitivities_at(*first)?;
+                solution.push_jump(*first, (&y, &s));
             }
-            solution.push_jump(*first, &y);
             times = rest;
         }
         if run.end().is_some() && solution.t().last() != Some(&t) {
-            solution.push_jump(t, run.y());
+            solution.push_jump(t, (run.y(), run.sensitivities_after()));
         }
     }
 }

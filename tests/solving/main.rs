@@ -7,4 +7,5 @@ mod interpolation;
 mod limits;
 mod refusals;
 mod resuming;
+mod sensitivities;
 mod support;

@@ -101,6 +101,11 @@ impl Sensitivities {
         self
     }
 
+    /// Places of the parameters.
+    pub(crate) fn parameters(&self) -> &[usize] {
+        &self.parameters
+    }
+
     /// Stops what IDAS has not.
     pub(in crate::sundials) fn check_for_dae(&self) -> Result<(), InputError> {
         if self.method == SensitivityMethod::StaggeredOneByOne {
