@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::error::Reason;
 use crate::input::InputError;
 
 /// Which changes of sign of an event function count.
@@ -122,6 +123,14 @@ impl<'a> Event<'a> {
 }
 
 impl Event<'_> {
+    /// The value of the function of this event, the one of number `i`.
+    pub(super) fn value(&mut self, i: usize, t: f64, y: &[f64], p: &[f64]) -> Result<f64, Reason> {
+        match (self.function)(t, y, p) {
+            value if value.is_nan() => Err(Reason::Event { event: i, t, value }),
+            value => Ok(value),
+        }
+    }
+
     /// Checks the event of number `i`.
     pub(super) fn check(&self, i: usize) -> Result<(), InputError> {
         if !(1..=10_000).contains(&self.samples) {

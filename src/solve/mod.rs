@@ -26,6 +26,7 @@
 //! [`Run`] is the same in the hands of the caller, step by step, and [`ensemble`] solves many problems on all cores.
 //! What a method cannot do is an error before the first step, never replaced by something else.
 
+mod crossing;
 mod engine;
 mod ensemble;
 mod error;
@@ -39,6 +40,7 @@ mod saved;
 mod sensitivities;
 mod solution;
 mod solver;
+mod stepping;
 mod watch;
 
 pub use ensemble::ensemble;

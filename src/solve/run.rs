@@ -2,11 +2,7 @@
 
 use std::{
     fmt,
-    ops::ControlFlow,
-    sync::{
-        Arc,
-        atomic::{AtomicBool, Ordering::Relaxed},
-    },
+    sync::{Arc, atomic::AtomicBool},
     time::{Duration, Instant},
 };
 
@@ -15,18 +11,18 @@ use faer::{MatMut, MatRef};
 use super::{
     engine::Engine,
     error::Reason,
-    event::{Action, Event, Jump},
+    event::Event,
     method::Method,
     options::Options,
-    problem::{Break, Equations, Observer, Problem, Progress},
+    problem::{Break, Equations, Observer, Problem},
     saved::Saved,
-    sensitivities::{Carried, Crossing},
+    sensitivities::Carried,
     solution::{End, Occurrence},
-    watch::{Root, Watch},
+    watch::Watch,
 };
 use crate::{
     input::InputError,
-    integrate::{self, Statistics, check_finite, check_time},
+    integrate::{self, Statistics, check_time},
 };
 
 /// A problem on its way: [`advance`](Self::advance) by a step, look, go on.
@@ -48,41 +44,41 @@ use crate::{
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Run<'a> {
-    engine: Box<dyn Engine + 'a>,
-    events: Vec<Event<'a>>,
-    watches: Vec<Watch>,
-    counts: Vec<u32>,
+    pub(super) engine: Box<dyn Engine + 'a>,
+    pub(super) events: Vec<Event<'a>>,
+    pub(super) watches: Vec<Watch>,
+    pub(super) counts: Vec<u32>,
     /// Those ahead, the next one last.
-    breaks: Vec<Break<'a>>,
-    observer: Option<Observer<'a>>,
-    cancel: Option<Arc<AtomicBool>>,
-    limits: Limits,
-    span: (f64, f64),
+    pub(super) breaks: Vec<Break<'a>>,
+    pub(super) observer: Option<Observer<'a>>,
+    pub(super) cancel: Option<Arc<AtomicBool>>,
+    pub(super) limits: Limits,
+    pub(super) span: (f64, f64),
     /// +1 forward in time, -1 backward.
-    sign: f64,
-    t_old: f64,
-    t: f64,
-    y: Vec<f64>,
-    yp: Vec<f64>,
-    parameters: Vec<f64>,
+    pub(super) sign: f64,
+    pub(super) t_old: f64,
+    pub(super) t: f64,
+    pub(super) y: Vec<f64>,
+    pub(super) yp: Vec<f64>,
+    pub(super) parameters: Vec<f64>,
     /// State before the jump at `t`, if there was one.
-    before: Option<Vec<f64>>,
+    pub(super) before: Option<Vec<f64>>,
     /// Whether the integrator has to start anew at `t`.
-    stale: bool,
-    carried: Option<Carried>,
-    occurred: Vec<Occurrence>,
-    scratch: Vec<f64>,
+    pub(super) stale: bool,
+    pub(super) carried: Option<Carried>,
+    pub(super) occurred: Vec<Occurrence>,
+    pub(super) scratch: Vec<f64>,
     /// Of the starts before the last one.
-    past: Statistics,
-    started: Instant,
-    end: Option<End>,
+    pub(super) past: Statistics,
+    pub(super) started: Instant,
+    pub(super) end: Option<End>,
 }
 
 /// Limits of the whole run.
-struct Limits {
-    steps: u64,
-    evaluations: Option<u64>,
-    wall_time: Option<Duration>,
+pub(super) struct Limits {
+    pub(super) steps: u64,
+    pub(super) evaluations: Option<u64>,
+    pub(super) wall_time: Option<Duration>,
 }
 
 /// One step of a [`Run`].
@@ -174,7 +170,7 @@ impl<'a> Run<'a> {
         for (i, event) in events.iter_mut().enumerate() {
             let g = match &saved {
                 Some(saved) => saved.event_values[i],
-                None => value(event, i, start, &y, &parameters)?,
+                None => event.value(i, start, &y, &parameters)?,
             };
             watches.push(Watch::new(event, start, g));
         }
@@ -212,279 +208,14 @@ impl<'a> Run<'a> {
         Ok(run)
     }
 
-    /// Makes one step, which ends where something happens to the state: at a break, or an event with an action or that ends the run.
-    /// None at the end of the run.
-    ///
-    /// # Errors
-    /// Why the run cannot go on. What was reached stays: [`t`](Self::t), [`y`](Self::y).
-    pub fn advance(&mut self) -> Result<Option<Step<'_>>, Reason> {
-        if self.end.is_some() {
-            return Ok(None);
-        }
-        self.check_limits()?;
-        self.start_anew()?;
-        self.occurred.clear();
-        self.before = None;
-        let (t_old, end) = (self.t, self.span.1);
-        self.engine.step(end)?;
-        let mut t = self.engine.t();
-        let at_break = self.breaks.last().is_some_and(|next| t == self.just_before(next.t));
-        let jumps = self.look_for_events(t, at_break || t == end)?;
-        let stops_at = jumps.first().map(|(_, root)| root.t);
-        if let Some(at) = stops_at {
-            t = at;
-            let y = &mut self.scratch;
-            self.engine.interpolate(t, 0, y)?;
-            self.y.copy_from_slice(y);
-            if !self.yp.is_empty() {
-                self.engine.interpolate(t, 1, y)?;
-                self.yp.copy_from_slice(y);
-            }
-        } else {
-            self.y.copy_from_slice(self.engine.y());
-            self.yp.copy_from_slice(self.engine.yp());
-        }
-        (self.t_old, self.t) = (t_old, t);
-        if let Some(carried) = &mut self.carried {
-            carried.read(self.engine.as_mut(), t)?;
-        }
-        let at_break = at_break && stops_at.is_none_or(|at| at == self.engine.t());
-        if stops_at.is_some() {
-            self.jump_at_events(&jumps)?;
-        }
-        if at_break {
-            self.jump_at_break()?;
-        }
-        if t == end && self.end.is_none() {
-            self.end = Some(End::Span);
-        }
-        self.report();
-        Ok(Some(Step {
-            t_old,
-            t: self.t,
-            y: &self.y,
-            before: self.before.as_deref(),
-            events: &self.occurred,
-        }))
-    }
-
-    /// Finds the events of the step that has just been made, up to `t`, and notes them. Those that stop the step are returned, the last ones noted.
-    /// `is_last` tells that the next step does not go on from there, but from a break, if at all.
-    fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Vec<(usize, Root)>, Reason> {
-        // as SUNDIALS has it
-        let tolerance = 100.0 * f64::EPSILON * (t.abs() + (t - self.t).abs());
-        let Self { engine, events, watches, scratch, parameters, .. } = self;
-        let mut search = |i: usize| {
-            let event = &mut events[i];
-            watches[i].next_root((t, is_last), tolerance, &mut |at| {
-                engine.interpolate(at, 0, scratch)?;
-                value(event, i, at, scratch, parameters)
-            })
-        };
-        let count = self.counts.len();
-        let mut roots = Vec::with_capacity(count);
-        for i in 0..count {
-            roots.push(search(i)?);
-        }
-        loop {
-            let times = roots.iter().flatten().map(|root| root.t * self.sign);
-            let first = times.fold(f64::INFINITY, f64::min);
-            if first == f64::INFINITY {
-                return Ok(Vec::new());
-            }
-            let mut met: Vec<(usize, Root)> = Vec::new();
-            for (i, root) in roots.iter().enumerate() {
-                if let Some(root) = root
-                    && root.t * self.sign <= first + 2.0 * tolerance
-                {
-                    met.push((i, *root));
-                }
-            }
-            // all of them at the last of their times, where every one has crossed zero
-            let at =
-                met.iter().map(|(_, root)| root.t * self.sign).fold(first, f64::max) * self.sign;
-            let mut y = vec![0.0; self.y.len()];
-            self.engine.interpolate(at, 0, &mut y)?;
-            let mut stops = false;
-            for (i, root) in &mut met {
-                root.t = at;
-                self.counts[*i] += 1;
-                let event = &self.events[*i];
-                stops |= event.action.is_some() || event.last == Some(self.counts[*i]);
-                let occurrence = Occurrence { event: *i, t: at, sign: root.sign, y: y.clone() };
-                self.occurred.push(occurrence);
-            }
-            if stops {
-                return Ok(met);
-            }
-            for (i, _) in met {
-                let event = &mut self.events[i];
-                let (engine, scratch, parameters) =
-                    (&mut self.engine, &mut self.scratch, &self.parameters);
-                roots[i] = self.watches[i].next_root((t, is_last), tolerance, &mut |at| {
-                    engine.interpolate(at, 0, scratch)?;
-                    value(event, i, at, scratch, parameters)
-                })?;
-            }
-        }
-    }
-
-    /// Does what the events at the present time ask for.
-    fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
-        let mut acting = Vec::new();
-        let y = self.y.clone();
-        for (i, _) in met {
-            let event = &mut self.events[*i];
-            let mut ends = event.last == Some(self.counts[*i]);
-            if let Some(action) = &mut event.action {
-                acting.push(*i);
-                let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends };
-                action(&mut jump);
-                ends = jump.ends;
-            }
-            if ends && self.end.is_none() {
-                self.end = Some(End::Event(*i));
-            }
-        }
-        if !acting.is_empty() {
-            self.carry_across_event(&y, &acting)?;
-            self.land(y, met)?;
-        }
-        Ok(())
-    }
-
-    /// Carries the sensitivities across the actions of these events, from the state `before` to the present one.
-    fn carry_across_event(&mut self, before: &[f64], acting: &[usize]) -> Result<(), Reason> {
-        let Some(carried) = &mut self.carried else { return Ok(()) };
-        let p = self.engine.parameters().to_vec();
-        check_unchanged(&p, &self.parameters)?;
-        let (h, t) = (self.t - self.t_old, self.t);
-        let at = Crossing { t, h, before, after: &self.y, p: &p };
-        let (engine, events) = (self.engine.as_mut(), &mut self.events);
-        let function = &mut events[acting[0]].function;
-        let taus = carried.of_time(engine, &at, |t, y, p| function(t, y, p))?;
-        carried.cross(engine, &at, &taus, |jump| {
-            for &i in acting {
-                events[i].action.iter_mut().for_each(|action| action(jump));
-            }
-        })
-    }
-
-    /// Carries them across the actions of breaks, whose time depends on nothing.
-    fn carry_across_break(
-        &mut self,
-        before: &[f64],
-        actions: &mut [Action<'a>],
-    ) -> Result<(), Reason> {
-        let Some(carried) = &mut self.carried else { return Ok(()) };
-        let p = self.engine.parameters().to_vec();
-        check_unchanged(&p, &self.parameters)?;
-        let (h, t) = (self.t - self.t_old, self.t);
-        let at = Crossing { t, h, before, after: &self.y, p: &p };
-        let taus = vec![0.0; p.len()];
-        carried.cross(self.engine.as_mut(), &at, &taus, |jump| {
-            actions.iter_mut().for_each(|action| action(jump));
-        })
-    }
-
-    fn jump_at_break(&mut self) -> Result<(), Reason> {
-        let Some(Break { t, .. }) = self.breaks.last() else { return Ok(()) };
-        self.t = *t;
-        self.stale = true;
-        let y = self.y.clone();
-        let mut actions = Vec::new();
-        while let Some(mut next) = self.breaks.pop_if(|next| next.t == self.t) {
-            if let Some(action) = &mut next.action {
-                let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
-                let mut jump = Jump { t: self.t, y, yp, p, ends: false };
-                action(&mut jump);
-                if jump.ends {
-                    self.end = Some(End::Break);
-                }
-            }
-            actions.extend(next.action);
-        }
-        if actions.is_empty() {
-            return Ok(());
-        }
-        self.carry_across_break(&y, &mut actions)?;
-        self.land(y, &[])
-    }
-
-    /// Takes over what actions have made of the state, which was `before`, and of the parameters.
-    fn land(&mut self, before: Vec<f64>, met: &[(usize, Root)]) -> Result<(), Reason> {
-        self.stale = true;
-        self.before.get_or_insert(before);
-        check_finite("state after the jump", &self.y)?;
-        check_finite("parameters after the jump", &self.parameters)?;
-
-        self.engine.set_parameters(&self.parameters);
-        for (i, watch) in self.watches.iter_mut().enumerate() {
-            let g = value(&mut self.events[i], i, self.t, &self.y, &self.parameters)?;
-            let noise =
-                met.iter().find(|(event, _)| *event == i).map_or(0.0, |(_, root)| root.noise);
-            watch.restart(self.t, g, noise);
-        }
-        Ok(())
-    }
-
-    /// Starts the integrator anew where something has changed.
-    fn start_anew(&mut self) -> Result<(), Reason> {
-        if !self.stale {
-            return Ok(());
-        }
-        self.past = self.statistics();
-        self.stale = false;
-        self.engine.restart(self.t, &self.y, &self.yp, self.span.1)?;
-        if let Some(carried) = &self.carried {
-            carried.hand_over(self.engine.as_mut())?;
-        }
-        Ok(self.set_stop_time()?)
-    }
-
-    fn set_stop_time(&mut self) -> Result<(), integrate::Error> {
+    pub(super) fn set_stop_time(&mut self) -> Result<(), integrate::Error> {
         let stop = self.breaks.last().map_or(self.span.1, |next| self.just_before(next.t));
         self.engine.set_stop_time(stop)
     }
 
     /// The last number before time `t`.
-    fn just_before(&self, t: f64) -> f64 {
+    pub(super) fn just_before(&self, t: f64) -> f64 {
         if self.sign > 0.0 { t.next_down() } else { t.next_up() }
-    }
-
-    fn check_limits(&mut self) -> Result<(), Reason> {
-        if self.cancel.as_ref().is_some_and(|flag| flag.load(Relaxed)) {
-            return Err(Reason::Cancelled);
-        }
-        let statistics = self.statistics();
-        let evaluations = statistics.evaluations + statistics.difference_quotient_evaluations;
-        if statistics.steps >= self.limits.steps {
-            return Err(Reason::Steps(statistics.steps));
-        }
-        if self.limits.evaluations.is_some_and(|most| evaluations >= most) {
-            return Err(Reason::Evaluations(evaluations));
-        }
-        match self.limits.wall_time {
-            Some(most) if self.started.elapsed() >= most => {
-                Err(Reason::WallTime(self.started.elapsed()))
-            }
-            _ => Ok(()),
-        }
-    }
-
-    /// Shows the step to the observer.
-    fn report(&mut self) {
-        let Some(mut observer) = self.observer.take() else { return };
-        let (start, end) = self.span;
-        let part = (self.t - start) / (end - start);
-        let steps = self.statistics().steps;
-        let goes_on = observer(Progress { t: self.t, y: &self.y, steps, part });
-        self.observer = Some(observer);
-        if goes_on == ControlFlow::Break(()) {
-            // the next step tells
-            self.cancel = Some(Arc::new(true.into()));
-        }
     }
 
     /// Time reached.
@@ -590,24 +321,5 @@ impl<'a> Run<'a> {
     #[must_use]
     pub fn statistics(&self) -> Statistics {
         self.past.followed_by(&self.engine.statistics())
-    }
-}
-
-/// The value of the function of event `i`.
-fn value(event: &mut Event<'_>, i: usize, t: f64, y: &[f64], p: &[f64]) -> Result<f64, Reason> {
-    match (event.function)(t, y, p) {
-        value if value.is_nan() => Err(Reason::Event { event: i, t, value }),
-        value => Ok(value),
-    }
-}
-
-/// Stops what sensitivities cannot follow.
-fn check_unchanged(before: &[f64], after: &[f64]) -> Result<(), InputError> {
-    match before.iter().zip(after).position(|(before, after)| before != after) {
-        None => Ok(()),
-        Some(i) => {
-            let mend = "with sensitivities an action changes the state alone";
-            Err(InputError::new(format!("parameter {i} after the jump"), after[i], mend))
-        }
     }
 }

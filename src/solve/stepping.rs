@@ -1,0 +1,119 @@
+//! A run at work: one step after the other.
+
+use std::{
+    ops::ControlFlow,
+    sync::{Arc, atomic::Ordering::Relaxed},
+};
+
+use super::{
+    error::Reason,
+    problem::Progress,
+    run::{Run, Step},
+    solution::End,
+};
+
+impl Run<'_> {
+    /// Makes one step, which ends where something happens to the state: at a break, or an event with an action or that ends the run.
+    /// None at the end of the run.
+    ///
+    /// # Errors
+    /// Why the run cannot go on. What was reached stays: [`t`](Self::t), [`y`](Self::y).
+    pub fn advance(&mut self) -> Result<Option<Step<'_>>, Reason> {
+        if self.end.is_some() {
+            return Ok(None);
+        }
+        self.check_limits()?;
+        self.start_anew()?;
+        self.occurred.clear();
+        self.before = None;
+        let (t_old, end) = (self.t, self.span.1);
+        self.engine.step(end)?;
+        let mut t = self.engine.t();
+        let at_break = self.breaks.last().is_some_and(|next| t == self.just_before(next.t));
+        let jumps = self.look_for_events(t, at_break || t == end)?;
+        let stops_at = jumps.first().map(|(_, root)| root.t);
+        if let Some(at) = stops_at {
+            t = at;
+            let y = &mut self.scratch;
+            self.engine.interpolate(t, 0, y)?;
+            self.y.copy_from_slice(y);
+            if !self.yp.is_empty() {
+                self.engine.interpolate(t, 1, y)?;
+                self.yp.copy_from_slice(y);
+            }
+        } else {
+            self.y.copy_from_slice(self.engine.y());
+            self.yp.copy_from_slice(self.engine.yp());
+        }
+        (self.t_old, self.t) = (t_old, t);
+        if let Some(carried) = &mut self.carried {
+            carried.read(self.engine.as_mut(), t)?;
+        }
+        let at_break = at_break && stops_at.is_none_or(|at| at == self.engine.t());
+        if stops_at.is_some() {
+            self.jump_at_events(&jumps)?;
+        }
+        if at_break {
+            self.jump_at_break()?;
+        }
+        if t == end && self.end.is_none() {
+            self.end = Some(End::Span);
+        }
+        self.report();
+        Ok(Some(Step {
+            t_old,
+            t: self.t,
+            y: &self.y,
+            before: self.before.as_deref(),
+            events: &self.occurred,
+        }))
+    }
+
+    /// Starts the integrator anew where something has changed.
+    fn start_anew(&mut self) -> Result<(), Reason> {
+        if !self.stale {
+            return Ok(());
+        }
+        self.past = self.statistics();
+        self.stale = false;
+        self.engine.restart(self.t, &self.y, &self.yp, self.span.1)?;
+        if let Some(carried) = &self.carried {
+            carried.hand_over(self.engine.as_mut())?;
+        }
+        Ok(self.set_stop_time()?)
+    }
+
+    fn check_limits(&mut self) -> Result<(), Reason> {
+        if self.cancel.as_ref().is_some_and(|flag| flag.load(Relaxed)) {
+            return Err(Reason::Cancelled);
+        }
+        let statistics = self.statistics();
+        let evaluations = statistics.evaluations + statistics.difference_quotient_evaluations;
+        if statistics.steps >= self.limits.steps {
+            return Err(Reason::Steps(statistics.steps));
+        }
+        if self.limits.evaluations.is_some_and(|most| evaluations >= most) {
+            return Err(Reason::Evaluations(evaluations));
+        }
+        match self.limits.wall_time {
+            Some(most) if self.started.elapsed() >= most => {
+                Err(Reason::WallTime(self.started.elapsed()))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Shows the step to the observer.
+    fn report(&mut self) {
+        let Some(mut observer) = self.observer.take() else { return };
+        let (start, end) = self.span;
+        let part = (self.t - start) / (end - start);
+        let steps = self.statistics().steps;
+        let goes_on = observer(Progress { t: self.t, y: &self.y, steps, part });
+        self.observer = Some(observer);
+        if goes_on == ControlFlow::Break(()) {
+            // the next step tells
+            self.cancel = Some(Arc::new(true.into()));
+        }
+    }
+}
