@@ -19,9 +19,9 @@
 //! # Ok::<(), pliant::Error>(())
 //! ```
 //!
-//! The integrators stand on their own: [`sundials`] is a safe layer over CVODE and IDA for any ODE
-//! or DAE, [`rk`] an explicit Runge-Kutta method, [`central_difference`] one for systems of second order; all take the
-//! systems of [`ode`].
+//! The integrators stand on their own: [`solve`](mod@solve) integrates any ODE or DAE by one call, [`sundials`] is the safe layer over CVODE, IDA and ARKODE
+//! below it, [`rk`] an explicit Runge-Kutta method, [`central_difference`] one for systems of second order; all take the
+//! systems of [`ode`]. Without the feature `bodies` they are all there is.
 //!
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
 //! brackets are its equations.

@@ -92,7 +92,9 @@ impl Carried {
     ///
     /// With the slopes f- before and f+ behind it, they are
     ///
-    ///     s+ = a_y (s + f- tau) + a_t tau + a_p - f+ tau
+    /// ```text
+    /// s+ = a_y (s + f- tau) + a_t tau + a_p - f+ tau
+    /// ```
     ///
     /// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049). Derivatives are central differences along these directions.
     pub(super) fn cross(
