@@ -8,6 +8,7 @@
 ///
 /// SUNDIALS user guide: "Optional output functions" of CVODE, IDA and ARKODE.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Statistics {
     /// Steps taken.

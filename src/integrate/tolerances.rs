@@ -6,6 +6,7 @@ use crate::input::InputError;
 ///
 /// Made from an `f64`, an array, a slice or a `Vec`.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum AbsoluteTolerance {
     /// The same for all unknowns.
     Scalar(f64),
@@ -39,6 +40,7 @@ impl<const N: usize> From<[f64; N]> for AbsoluteTolerance {
 
 /// Local errors are kept below `rtol |y_i| + atol_i` in the root mean square over the unknowns.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tolerances {
     /// Relative tolerance, above 0 and below 1.
     pub rtol: f64,

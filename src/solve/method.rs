@@ -14,6 +14,7 @@ use crate::{
 
 /// An integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Method {
     /// CVODE, backward differentiation formulas of order 1 to 5: for stiff ODEs.

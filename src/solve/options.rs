@@ -10,6 +10,7 @@ use crate::{
 
 /// What a [`Solution`](super::Solution) keeps.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Output {
     /// The ends of all steps, and the polynomials between them: [`Solution::at`](super::Solution::at) any time. That takes a
     /// multiple of the memory of the states, the order of the method at most.
@@ -23,6 +24,7 @@ pub enum Output {
 
 /// Tolerances, limits and what is kept, for any [`Method`](super::Method). An option that a method does not have is an error.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
 pub struct Options {
     pub(super) tolerances: Tolerances,

@@ -10,6 +10,7 @@ use crate::{
 /// The run goes on from here with a new start of the integrator, which estimates its first step: to the same solution within the
 /// tolerances, not to the last bit.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Saved {
     /// Time.
     pub t: f64,

@@ -10,6 +10,7 @@ use crate::{
 
 /// An event that was met.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Occurrence {
     /// Which event, in the order of [`Problem::event`](super::Problem::event).
     pub event: usize,
@@ -23,6 +24,7 @@ pub struct Occurrence {
 
 /// Why a run is at its end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum End {
     /// The end of the span is reached.
     Span,
@@ -39,6 +41,8 @@ pub enum End {
 /// States are kept one after the other: the one of time `t()[k]` is `y(k)`. Where the solution jumps, a time occurs
 /// twice, with the state before and after.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(remote = "Self"))]
 pub struct Solution {
     n: usize,
     t: Vec<f64>,
@@ -263,5 +267,44 @@ impl Solution {
     #[must_use]
     pub fn parameters(&self) -> &[f64] {
         &self.saved.parameters
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Solution {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Solution {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let solution = Self::deserialize(deserializer)?;
+        match solution.fits() {
+            true => Ok(solution),
+            false => {
+                Err(serde::de::Error::custom("the arrays of the solution do not fit together"))
+            }
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Solution {
+    /// Whether the lengths of the arrays fit together, of a solution that comes from elsewhere.
+    fn fits(&self) -> bool {
+        let (n, times) = (self.n, self.t.len());
+        let nodes = self.nodes.len();
+        let inner = self.inner.as_ref().is_none_or(|inner| {
+            let ends = inner.iter().copied().chain([nodes]);
+            let ordered = ends.clone().zip(ends.clone().skip(1)).all(|(start, end)| start <= end);
+            inner.len() + 1 == times && ordered && ends.into_iter().all(|end| end % n.max(1) == 0)
+        });
+        n > 0
+            && times > 0
+            && self.states.len() == n * times
+            && self.sensitivities.len().is_multiple_of(n * times)
+            && inner
     }
 }

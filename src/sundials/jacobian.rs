@@ -2,6 +2,7 @@
 
 /// Where the entries of a Jacobian, or its products with vectors, come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Jacobian {
     /// Difference quotients of the right-hand side or residual: n extra evaluations for a dense
     /// matrix, `lower + upper + 1` for a band, and for a sparse matrix one for each colour of its columns:

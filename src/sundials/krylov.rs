@@ -23,6 +23,7 @@ use crate::input::InputError;
 ///
 /// User guide: chapter "Linear Algebraic Solvers", `SUNLinSol_SPGMR` and `SUNLinSol_SPBCGS`.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
 pub struct Krylov {
     pub(super) method: KrylovMethod,
@@ -33,6 +34,7 @@ pub struct Krylov {
 
 /// The Krylov methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum KrylovMethod {
     /// The smallest residual in a subspace (`SUNLinSol_SPGMR`): one product for each of its dimensions, whose
     /// vectors are all kept.
@@ -52,6 +54,7 @@ pub enum KrylovMethod {
 
 /// The side of the matrix A at which a preconditioner P stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Side {
     /// P^-1 A x = P^-1 b: the residual is measured after P^-1.
     Left,
@@ -61,6 +64,7 @@ pub enum Side {
 
 /// What a Krylov method solves instead of its systems, to know roughly where to go.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Preconditioner {
     /// The system's own `newton_setup` and `newton_solve`, which may be approximate here. A `newton_rhs` of its
     /// own is not called: its part has to be in `rhs`.

@@ -7,6 +7,7 @@ use crate::input::InputError;
 ///
 /// User guide: chapter "Linear Algebraic Solvers", SUNLinearSolver.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum LinearSolver {
     /// LU factorization of a dense matrix: n^2 numbers, n^3 work. For small systems.

@@ -14,9 +14,28 @@ use crate::input::InputError;
 /// The values of a Jacobian come in the order of [`row_indices`](Self::row_indices);
 /// [`position`](Self::position) finds the place of one entry.
 #[derive(Clone, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "Unchecked"))]
 pub struct Pattern {
     column_pointers: Vec<i64>,
     row_indices: Vec<i64>,
+}
+
+/// The arrays of a pattern that comes from elsewhere.
+#[cfg(feature = "serde")]
+#[derive(serde::Deserialize)]
+struct Unchecked {
+    column_pointers: Vec<usize>,
+    row_indices: Vec<usize>,
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<Unchecked> for Pattern {
+    type Error = InputError;
+
+    fn try_from(arrays: Unchecked) -> Result<Self, InputError> {
+        Self::from_csc(&arrays.column_pointers, &arrays.row_indices)
+    }
 }
 
 impl Pattern {

@@ -9,3 +9,4 @@ mod refusals;
 mod resuming;
 mod sensitivities;
 mod support;
+mod values;

@@ -23,6 +23,8 @@ use crate::input::InputError;
 ///
 /// User guide: "Using ARKODE", appendix "Butcher tables".
 #[derive(Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(into = "String", try_from = "String"))]
 pub struct ButcherTable {
     id: &'static CStr,
     order: u32,
@@ -213,6 +215,22 @@ impl FromStr for ButcherTable {
             let known = known.by_ref().map(Self::name).collect::<Vec<_>>().join(", ");
             InputError::new("table", format!("\"{name}\""), format!("it is one of {known}"))
         })
+    }
+}
+
+#[cfg(feature = "serde")]
+impl From<ButcherTable> for String {
+    fn from(table: ButcherTable) -> Self {
+        table.name().into()
+    }
+}
+
+#[cfg(feature = "serde")]
+impl TryFrom<String> for ButcherTable {
+    type Error = InputError;
+
+    fn try_from(name: String) -> Result<Self, InputError> {
+        name.parse()
     }
 }
 

@@ -4,6 +4,7 @@ use crate::{input::InputError, integrate::check_finite};
 
 /// How the equations of the sensitivities are solved together with those of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SensitivityMethod {
     /// All of one step at once (`CV_SIMULTANEOUS`).
     Simultaneous,
@@ -15,6 +16,7 @@ pub enum SensitivityMethod {
 
 /// Where the right-hand sides or residuals of the sensitivities come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum SensitivitySource {
     /// The system's own `sensitivity_rhs` or `sensitivity_residual`.
     Supplied,
@@ -49,6 +51,7 @@ pub enum SensitivitySource {
 /// # Ok::<(), pliant::sundials::Error>(())
 /// ```
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
 pub struct Sensitivities {
     pub(super) parameters: Vec<usize>,
