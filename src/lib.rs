@@ -60,8 +60,6 @@ pub mod integrate;
 pub mod material;
 #[cfg(feature = "bodies")]
 pub mod mesh;
-#[cfg(doctest)]
-mod misuse;
 #[cfg(feature = "bodies")]
 mod model;
 pub mod ode;

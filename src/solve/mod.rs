@@ -32,6 +32,8 @@ mod ensemble;
 mod error;
 mod event;
 mod method;
+#[cfg(doctest)]
+mod misuse;
 mod options;
 mod problem;
 mod root;
