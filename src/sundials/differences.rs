@@ -7,6 +7,7 @@ use super::{
     context::Context,
     functions::{Functions, Get},
     pattern::Pattern,
+    signs::Sign,
     vector::Vector,
 };
 use crate::integrate::Error;
@@ -19,6 +20,8 @@ pub(super) struct Differences {
     memory: *mut c_void,
     functions: &'static Functions,
     weights: Vector,
+    /// Which signs the unknowns keep, if any.
+    signs: Vec<Sign>,
     /// The point that the function is evaluated at. An ODE has no `yp`.
     y: Vec<f64>,
     yp: Vec<f64>,
@@ -35,6 +38,7 @@ impl Differences {
         pattern: &Pattern,
         (memory, functions): (*mut c_void, &'static Functions),
         is_dae: bool,
+        signs: &[Sign],
         context: &Context,
     ) -> Result<Self, Error> {
         let n = pattern.dimension();
@@ -45,6 +49,7 @@ impl Differences {
             memory,
             functions,
             weights: Vector::from_slice(&zeros, context)?,
+            signs: signs.to_vec(),
             y: zeros.clone(),
             yp: if is_dae { zeros.clone() } else { Vec::new() },
             value: zeros,
@@ -115,7 +120,9 @@ impl Differences {
         for colour in 0..self.colouring.count() {
             let columns = self.colouring.columns(colour);
             for &j in columns {
-                self.y[j] += increment(j, weights[j]);
+                let step = increment(j, weights[j]);
+                let is_allowed = self.signs.get(j).is_none_or(|sign| sign.allows(y[j] + step));
+                self.y[j] += if is_allowed { step } else { -step };
                 if let Some(yp) = self.yp.get_mut(j) {
                     *yp += cj * (self.y[j] - y[j]);
                 }

@@ -23,7 +23,7 @@ pub enum Sign {
 }
 
 impl Sign {
-    fn allows(self, y: f64) -> bool {
+    pub(super) fn allows(self, y: f64) -> bool {
         match self {
             Self::Free => true,
             Self::NonNegative => y >= 0.0,

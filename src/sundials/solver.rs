@@ -269,8 +269,9 @@ impl<K, S> Solver<K, S> {
         if let Some(pattern) = solver.pattern_of_differences() {
             let is_dae = self.yp.is_some();
             // SAFETY: the memory belongs to these functions; its callbacks alone ask for differences.
-            let differences =
-                unsafe { Differences::new(pattern, (memory, functions), is_dae, &self.context)? };
+            let differences = unsafe {
+                Differences::new(pattern, (memory, functions), is_dae, &self.signs, &self.context)?
+            };
             self.host.get_mut().differences = Some(differences);
         }
         self.host.get_mut().ilu = solver.ilu().map(|(pattern, _)| IncompleteLu::new(pattern));
