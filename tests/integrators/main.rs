@@ -9,6 +9,7 @@ mod checks;
 mod control;
 mod cvode;
 mod failures;
+mod golden_counts;
 mod ida;
 mod imex;
 mod index;
