@@ -5,6 +5,7 @@
 #[cfg(feature = "bodies")]
 mod actuated;
 mod equations;
+mod oscillator;
 #[cfg(feature = "bodies")]
 mod scenes;
 #[cfg(feature = "bodies")]
@@ -16,6 +17,7 @@ pub use actuated::{
     ring_springs, spring_ring,
 };
 pub use equations::{Hires, Pendulum, Reference, Robertson, VanDerPol};
+pub use oscillator::DampedOscillator;
 #[cfg(feature = "bodies")]
 pub use scenes::{
     BEAM_MATERIAL, BENT_BEAM_MATERIAL, BeamJump, ClampedBeam, FLAG_MATERIAL, RingRoll,

@@ -27,3 +27,4 @@ mod roots;
 mod sensitivities;
 mod signs;
 mod sparse;
+mod stability_limit;
