@@ -16,7 +16,10 @@ pub use actuated::{
     MEMBRANE_MATERIAL, bending_actuator, membrane, membrane_arch, report_8, ring_jump,
     ring_springs, spring_ring,
 };
-pub use equations::{Hires, Pendulum, Reference, Robertson, VanDerPol};
+pub use equations::{
+    Brusselator, HeatedSquare, Hires, Oregonator, Pendulum, Pollution, Reference, Robertson,
+    TransistorAmplifier, VanDerPol,
+};
 pub use oscillator::DampedOscillator;
 #[cfg(feature = "bodies")]
 pub use scenes::{

@@ -55,6 +55,13 @@ fn jacobians_are_derivatives() {
     check_ode(robertson.clone(), robertson.pattern(), &[0.7, 3e-2, 0.3]);
     let oscillator = VanDerPol::new();
     check_ode(oscillator.clone(), oscillator.pattern(), &[1.3, -0.7]);
+    let oregonator = Oregonator::new();
+    check_ode(oregonator.clone(), oregonator.pattern(), &[1.3, 0.7, 0.4]);
+    let brusselator = Brusselator::new(4);
+    let y = [1.3, 2.7, 0.4, 3.1, 0.8, 2.2, 1.9, 0.6];
+    check_ode(brusselator.clone(), brusselator.pattern(), &y);
+    let square = HeatedSquare::new(3);
+    check_ode(square.clone(), square.pattern(), &[0.3, 0.1, 0.4, 0.2, 0.5, 0.9, 0.6, 0.8, 0.7]);
 }
 
 #[test]
