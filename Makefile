@@ -27,8 +27,9 @@ test: ## Every check: format, lints, tests, documentation and its examples
 bench: setup ## Benchmarks: one table of what the parts of a step cost; all others: cargo bench
 	cargo bench --bench table
 
-charts: setup ## The gallery in docs/charts, some 20 minutes; out/charts keeps what was run
+charts: setup ## docs/charts and docs/integrators.md, some 20 minutes; out/ keeps what was run
 	cargo run --release --example gallery -- --out docs/charts
+	cargo run --release --example integrators -- --out docs
 
 advice: setup ## docs/advice.md, the adviser on trial, some 10 minutes
 	cargo run --release --example advice

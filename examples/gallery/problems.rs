@@ -2,7 +2,7 @@
 
 use clap::ValueEnum;
 use pliant::samples::{self, ClampedBeam, RingRoll};
-use pliant::study::{General, Problem, Scenes, all_methods};
+use pliant::study::{Problem, Scenes, all_methods};
 use pliant::{Cells, Error, Inertia, InputError, Method, Scene, Settings, Strain};
 
 /// In the order of the page.
@@ -25,9 +25,6 @@ pub enum Sample {
     ClampedBeamLumped,
     ClampedBeamLumpedDamped,
     ClampedBeamMeshes,
-    Hires,
-    Robertson,
-    VanDerPol,
 }
 
 /// Viscosity of the damped clamped beam (Pa s): 1 % of critical damping in its lowest mode.
@@ -59,9 +56,6 @@ impl Sample {
             Self::ClampedBeamLumped => "Clamped beam, undamped, lumped inertia",
             Self::ClampedBeamLumpedDamped => "Clamped beam, lightly damped, lumped inertia",
             Self::ClampedBeamMeshes => "Clamped beam, mesh by mesh",
-            Self::Hires => "HIRES",
-            Self::Robertson => "Robertson",
-            Self::VanDerPol => "Van der Pol",
         }
     }
 
@@ -93,9 +87,6 @@ impl Sample {
             Self::ClampedBeamLumped => beam(Inertia::Lumped, 0.0),
             Self::ClampedBeamLumpedDamped => beam(Inertia::Lumped, LIGHT),
             Self::ClampedBeamMeshes => return Ok(Box::new(meshes(self.title())?)),
-            Self::Hires => return Ok(Box::new(General::hires().tolerances(tolerances))),
-            Self::Robertson => return Ok(Box::new(General::robertson().tolerances(tolerances))),
-            Self::VanDerPol => return Ok(Box::new(General::van_der_pol().tolerances(tolerances))),
         };
         let scenes = Scenes::new(self.title(), scene?).tolerances(tolerances);
         let all = all_methods().into_iter();

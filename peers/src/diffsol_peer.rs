@@ -30,7 +30,7 @@ type V = FaerVec<f64>;
 
 /// diffsol's KLU solver, never moved.
 #[derive(Default)]
-struct Klu(Box<KLU<M>>);
+pub struct Klu(Box<KLU<M>>);
 
 impl LinearSolver<M> for Klu {
     fn set_linearisation<C: LaLinearOp<V = V, T = f64, M = M, C = FaerContext>>(&mut self, op: &C) {

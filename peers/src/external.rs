@@ -1,10 +1,12 @@
 //! Peers that are programs of their own.
 //!
 //! Each is called with: case, `consistent` or `lumped`, method, setting, folder of the exported
-//! case, file of the times, file for the displacements. It writes these as double precision numbers, time by
+//! case, file of the times, file for the displacements. (Systems of equations: name, method, rtol, file of atol,
+//! file for the state at the end.) It writes these as double precision numbers, time by
 //! time, and prints one line: processor time (s), steps, evaluations of the forces,
 //! factorizations (-1 for what it does not know). A failure is a line that begins with "failed:".
 
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
@@ -66,28 +68,46 @@ fn gave_up(error: impl std::fmt::Display) -> GaveUp {
 }
 
 impl Program {
-    /// Runs the program.
+    /// Runs the program on a case.
     ///
     /// # Errors
     /// Why there is no result.
     pub fn solve(&self, task: &Task) -> Result<Solved, GaveUp> {
         let out = task.folder.join("displacements");
-        let _ = fs::remove_file(&out);
         let inertia = match task.inertia {
             Inertia::Consistent => "consistent",
             Inertia::Lumped => "lumped",
         };
+        let setting = task.setting.to_string();
+        let arguments = [task.case.name, inertia, self.method, &setting].map(OsStr::new);
+        let times = task.folder.join("times");
+        let files = [task.folder.as_os_str(), times.as_os_str()];
+        self.call(arguments.into_iter().chain(files), &out, task.times * task.dofs, task.limit)
+    }
+
+    /// Runs the program, which writes so many numbers to `out`, and may take this processor time (s).
+    ///
+    /// # Errors
+    /// Why there is no result.
+    pub fn call<'a>(
+        &self,
+        arguments: impl Iterator<Item = &'a OsStr>,
+        out: &Path,
+        count: usize,
+        limit: f64,
+    ) -> Result<Solved, GaveUp> {
+        let _ = fs::remove_file(out);
         let mut child = Command::new(&self.command[0])
             .args(&self.command[1..])
-            .args([task.case.name, inertia, self.method, &task.setting.to_string()])
-            .args([task.folder, &task.folder.join("times"), &out])
+            .args(arguments)
+            .arg(out)
             .envs(["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"].map(|name| (name, "1")))
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
             .map_err(|error| GaveUp(format!("{}: {error}", self.command[0])))?;
         let clock = Instant::now();
-        let allowed = self.patience * task.limit;
+        let allowed = self.patience * limit;
         let status = loop {
             match child.try_wait().map_err(gave_up)? {
                 Some(status) => break status,
@@ -117,10 +137,10 @@ impl Program {
         let [seconds, steps, evaluations, factorizations] = numbers[..] else {
             return Err(GaveUp(format!("it said: {last}")));
         };
-        let bytes = fs::read(&out).map_err(gave_up)?;
+        let bytes = fs::read(out).map_err(gave_up)?;
         let u: Vec<f64> = bytes.as_chunks().0.iter().map(|x| f64::from_le_bytes(*x)).collect();
-        if u.len() != task.times * task.dofs {
-            return Err(GaveUp(format!("{} displacements, not times x dofs", u.len())));
+        if u.len() != count {
+            return Err(GaveUp(format!("{} numbers, not {count}", u.len())));
         }
         let [steps, evaluations, factorizations] =
             [steps, evaluations, factorizations].map(|count| count.max(0.0) as usize);

@@ -1,9 +1,11 @@
 //! Runs pliant and its peers on the same equations: charts, tables, `peers/README.md`'s numbers.
 //!
-//! `peers [--quick] [--out FOLDER] [CASE...]`; programs are expected where `peers/run` puts them.
+//! `peers [--quick] [--out FOLDER] [CASE...]` for scenes, `peers equations [--quick] [--out FOLDER] [SYSTEM...]` for systems
+//! of equations; programs are expected where `peers/run` puts them.
 
 mod comparison;
 mod diffsol_peer;
+mod equations;
 mod external;
 mod implicit;
 mod report;
@@ -29,6 +31,7 @@ fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let done = match arguments.split_first() {
         Some((first, rest)) if first == "diffsol" => diffsol_peer::main(rest),
+        Some((first, rest)) if first == "equations" => equations::run(rest),
         _ => run(&arguments),
     };
     if let Err(error) = done {
@@ -85,7 +88,8 @@ fn run(words: &[String]) -> Result<(), Failed> {
 
 /// Two methods of pliant that do not know of each other, at tolerances near what they can do.
 fn references(case: &Case) -> [Settings; 2] {
-    let solver = |method, max_order, rtol| Settings { method, max_order, rtol, ..Settings::default() };
+    let solver =
+        |method, max_order, rtol| Settings { method, max_order, rtol, ..Settings::default() };
     match case.name {
         "beam-70x4-damped" => {
             [solver(Method::CvodeBdf, None, 1e-11), solver(Method::Arkode, Some(5), 1e-9)]
@@ -96,7 +100,7 @@ fn references(case: &Case) -> [Settings; 2] {
 }
 
 /// Tolerances 10^-2, 10^-3, ... of so many digits.
-fn digits(quick: bool, from: i32, to: i32) -> Vec<f64> {
+pub fn digits(quick: bool, from: i32, to: i32) -> Vec<f64> {
     let step = if quick { 2 } else { 1 };
     (from..=to).step_by(step).map(|digits| format!("1e-{digits}").parse().unwrap_or(1.0)).collect()
 }
@@ -159,11 +163,11 @@ fn add_lines(comparison: &mut Comparison, case: &Case, inertia: Inertia, quick: 
     line("Octave ode45", "Octave", octave("ode45"), &[1e-3]);
 }
 
-fn libname() -> &'static str {
+pub fn libname() -> &'static str {
     if cfg!(target_os = "macos") { "libpliant_peers.dylib" } else { "libpliant_peers.so" }
 }
 
-fn here(paths: &[&str]) -> Vec<String> {
+pub fn here(paths: &[&str]) -> Vec<String> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     paths.iter().map(|path| root.join(path).display().to_string()).collect()
 }

@@ -22,6 +22,10 @@ use super::{
 };
 use crate::integrate::{AbsoluteTolerance, Error, StepOptions, Tolerances};
 
+/// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and ARKODE, 10 of
+/// IDA, end runs at jumps that follow a long smooth stretch (the Oregonator); 20 lead from any step to the smallest there is.
+const ERROR_TEST_FAILURES: i32 = 20;
+
 /// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or
 /// [`Ida`](super::Ida), by the parameter `K`. What all of them can do is in
 /// [`Integrator`](crate::integrate::Integrator).
@@ -205,6 +209,7 @@ impl<K, S> Solver<K, S> {
         unsafe {
             self.set(functions.set_user_data, self.host.as_ptr())?;
             self.set(functions.set_max_steps, i64::from(steps.max_steps))?;
+            self.set(functions.set_max_error_test_failures, ERROR_TEST_FAILURES)?;
             for (function, value) in [
                 (functions.set_initial_step, steps.initial_step),
                 (functions.set_max_step, steps.max_step),

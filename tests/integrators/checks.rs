@@ -6,7 +6,7 @@ use pliant::{
         BandMut, Dae, Failure, Functional, Ode, Slopes,
         check::{self, CheckError, Storage},
     },
-    samples::{Hires, Robertson, VanDerPol},
+    samples::{Hires, Pollution, Robertson, TransistorAmplifier, VanDerPol},
 };
 
 fn sparse(pattern: &pliant::sundials::Pattern) -> Storage<'_> {
@@ -25,6 +25,9 @@ fn the_samples_are_right() {
         check::jacobian(&mut hires, 0.0, &Hires::Y0, storage).unwrap();
     }
     check::jacobian(&mut VanDerPol::new(), 0.0, VanDerPol::REFERENCE.y, Storage::Dense).unwrap();
+    check::jacobian(&mut Pollution::new(), 0.0, Pollution::REFERENCE.y, Storage::Dense).unwrap();
+    let y = TransistorAmplifier::REFERENCE.y;
+    check::jacobian(&mut TransistorAmplifier, 0.0, y, Storage::Dense).unwrap();
     let pattern = Robertson::new().pattern().clone();
     let (y, yp) = ([0.7, 1e-5, 0.3], [-0.1, 1e-3, 0.2]);
     for cj in [0.0, 3.0, 1e4] {

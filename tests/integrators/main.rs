@@ -28,3 +28,4 @@ mod sensitivities;
 mod signs;
 mod sparse;
 mod stability_limit;
+mod standard_problems;

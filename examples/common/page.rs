@@ -1,6 +1,6 @@
-//! The page: tables over all problems, then chart, reading and table of each.
+//! A page of charts: tables over all problems, then chart, reading and table of each.
 //!
-//! `readings.md` holds the prose: what stands before the first problem, then a section for each,
+//! A file of readings holds the prose: what stands before the first problem, then a section for each,
 //! headed by its name. Numbers in it come from the findings, by what stands in braces:
 //!
 //! - `{time of LINE at ERROR}`: how long a line takes to reach a relative error;
@@ -13,10 +13,6 @@ use std::fmt::Write;
 
 use pliant::study::{Findings, LineFindings, Row, time_text};
 
-use crate::problems::Sample;
-
-const READINGS: &str = include_str!("readings.md");
-
 /// Relative tolerances at which the automatic choice is judged, as points are named.
 const JUDGED: [&str; 3] = ["1e-3", "1e-5", "1e-7"];
 
@@ -25,41 +21,45 @@ const TARGETS: [f64; 2] = [1.5, 3.0];
 
 /// A problem and what was found.
 pub struct Section {
-    pub sample: Sample,
+    /// As in the names of files.
+    pub name: String,
+    /// Over chart and section.
+    pub title: &'static str,
+    /// Whether its lines are methods, which are ranked over all problems.
+    pub compares_methods: bool,
     pub findings: Findings,
 }
 
-/// The page in Markdown.
-pub fn page(sections: &[Section]) -> String {
-    let before = READINGS.split("\n### ").next().unwrap_or_default();
+/// The page in Markdown, with charts at `charts`.
+pub fn page(readings: &str, charts: &str, sections: &[Section]) -> String {
+    let before = readings.split("\n### ").next().unwrap_or_default();
     let mut page =
         before.replace("{fastest}", &fastest(sections)).replace("{auto}", &auto(sections));
-    sections.iter().for_each(|section| page += &section.text());
+    sections.iter().for_each(|section| page += &section.text(readings, charts));
     page
 }
 
 impl Section {
-    fn text(&self) -> String {
-        let Self { sample, findings } = self;
-        let (title, name) = (sample.title(), sample.name());
-        let reading = filled(reading(&name), findings);
+    fn text(&self, readings: &str, charts: &str) -> String {
+        let Self { title, name, findings, .. } = self;
+        let reading = filled(reading(readings, name), findings);
         let table = findings.fastest().markdown();
         let notes: String = findings.notes().iter().map(|note| format!("- {note}\n")).collect();
         format!(
-            "\n### {title}\n\n![{title}: error over time]({name}.svg)\n\n{reading}\n\n{table}\n\
+            "\n### {title}\n\n![{title}: error over time]({charts}{name}.svg)\n\n{reading}\n\n{table}\n\
              <details><summary>Notes</summary>\n\n{notes}\n</details>\n"
         )
     }
 }
 
 /// What is said of a problem.
-fn reading(name: &str) -> &'static str {
-    READINGS
+fn reading<'a>(readings: &'a str, name: &str) -> &'a str {
+    readings
         .split("\n### ")
         .skip(1)
         .filter_map(|section| section.split_once('\n'))
         .find_map(|(heading, text)| (heading == name).then_some(text.trim()))
-        .unwrap_or_else(|| panic!("readings.md has no section {name}"))
+        .unwrap_or_else(|| panic!("there is no reading of {name}"))
 }
 
 /// `text` with numbers for what stands in braces.
@@ -77,7 +77,7 @@ fn filled(text: &str, findings: &Findings) -> String {
 fn number(asked: &str, findings: &Findings) -> Option<String> {
     let known = |name: &str| findings.lines().iter().find(|line| line.name == name);
     let line = |name: &str| known(name).unwrap_or_else(|| panic!("{{{asked}}}: no line {name}"));
-    let parts = |text: &'static str| panic!("{{{asked}}}: it lacks \"{text}\"");
+    let parts = |text: &str| panic!("{{{asked}}}: it lacks \"{text}\"");
     let (what, at) = asked.rsplit_once(" at ").unwrap_or_else(|| parts("at"));
     let time = |name: &str| line(name).time_to_reach(at.parse().expect("an error"));
     if let Some((long, short)) = what.split_once(" / ") {
@@ -119,8 +119,8 @@ fn fastest(sections: &[Section]) -> String {
     digits.clone().for_each(|digit| write!(table, " 1e-{digit} |").unwrap());
     table += "\n| --- |";
     digits.clone().for_each(|_| table += " --- |");
-    for Section { sample, findings } in methods(sections) {
-        write!(table, "\n| {} |", sample.title()).unwrap();
+    for Section { title, findings, .. } in methods(sections) {
+        write!(table, "\n| {title} |").unwrap();
         for accuracy in &findings.fastest().accuracies[..*digits.end()] {
             let cell = match accuracy.reached.iter().find(|(name, _)| name != "auto") {
                 Some((name, time)) => format!("{name}: {}", time_text(*time)),
@@ -134,7 +134,7 @@ fn fastest(sections: &[Section]) -> String {
 }
 
 fn methods(sections: &[Section]) -> impl Iterator<Item = &Section> {
-    sections.iter().filter(|section| section.sample.compares_methods())
+    sections.iter().filter(|section| section.compares_methods)
 }
 
 /// How much longer than the fastest other method the automatic choice takes for the error that
@@ -143,9 +143,9 @@ fn auto(sections: &[Section]) -> String {
     let mut table = format!("| problem | {} |\n| --- |", JUDGED.join(" | "));
     JUDGED.iter().for_each(|_| table += " --- |");
     let mut ratios = Vec::new();
-    for Section { sample, findings } in methods(sections) {
+    for Section { title, findings, .. } in methods(sections) {
         let Some(auto) = findings.lines().iter().find(|line| line.name == "auto") else { continue };
-        write!(table, "\n| {} |", sample.title()).unwrap();
+        write!(table, "\n| {title} |").unwrap();
         for point in JUDGED {
             let cell = match compared(auto, point, findings) {
                 Some((ratio, _)) if ratio <= TARGETS[0] => format!("{ratio:.2}"),
