@@ -22,16 +22,12 @@ impl Default for StepOptions {
 impl StepOptions {
     pub(crate) fn check(&self) -> Result<(), InputError> {
         if let Some(h) = self.max_step
-            && !(h > 0.0 && h.is_finite())
+            && !(SHORTEST..=LONGEST).contains(&h)
         {
-            return Err(InputError::new("max_step", h, "it is positive and finite"));
+            let mend = format!("it lies between {SHORTEST:e} and {LONGEST:e}");
+            return Err(InputError::new("max_step", h, mend));
         }
-        if let Some(h) = self.initial_step
-            && !(h.is_finite() && h != 0.0)
-        {
-            let mend = "it is finite, and negative when integrating backwards";
-            return Err(InputError::new("initial_step", h, mend));
-        }
+        self.initial_step.map_or(Ok(()), |h| check_step("initial_step", h))?;
         check_count("max_steps", self.max_steps)
     }
 }
@@ -70,9 +66,28 @@ pub(crate) fn check_start(t0: f64, y0: &[f64]) -> Result<(), InputError> {
     check_finite("y0", y0)
 }
 
-/// Checks that a time is finite.
+/// Times and steps are not longer: integrators compute powers of them, which would overflow.
+const LONGEST: f64 = 1e100;
+/// Steps are not shorter, for the same reason.
+const SHORTEST: f64 = 1e-100;
+
+/// Checks a time.
 pub(crate) fn check_time(input: &str, t: f64) -> Result<(), InputError> {
-    if t.is_finite() { Ok(()) } else { Err(InputError::new(input, t, "times are finite")) }
+    if t.abs() <= LONGEST {
+        return Ok(());
+    }
+    Err(InputError::new(input, t, format!("times lie between -{LONGEST:e} and {LONGEST:e}")))
+}
+
+/// Checks a step size with its sign.
+pub(crate) fn check_step(input: &str, h: f64) -> Result<(), InputError> {
+    if (SHORTEST..=LONGEST).contains(&h.abs()) {
+        return Ok(());
+    }
+    let mend = format!(
+        "its size lies between {SHORTEST:e} and {LONGEST:e}; negative when integrating backwards"
+    );
+    Err(InputError::new(input, h, mend))
 }
 
 /// Checks that a system is of the form y' = rhs(t, y) and no other.

@@ -129,9 +129,9 @@ impl Options {
             return Err(InputError::new("max_steps", 0, "it is at least 1"));
         }
         if let Some(h) = self.initial_step
-            && !(h > 0.0 && h.is_finite())
+            && !(h > 0.0)
         {
-            let mend = "it is positive and finite; the span tells the direction of time";
+            let mend = "it is positive; the span tells the direction of time";
             return Err(InputError::new("initial_step", h, mend));
         }
         if let Output::Times(times) = &self.output {

@@ -42,6 +42,8 @@ unsafe fn parts(vector: ffi::N_Vector) -> (*mut f64, usize) {
 }
 
 /// sqrt(sum_i (x_i w_i)^2 / n), summed in eight interleaved parts.
+///
+/// What is not a number counts as infinite: C asks whether norms are too large, and NaN never is.
 unsafe extern "C" fn weighted_norm(x: ffi::N_Vector, w: ffi::N_Vector) -> f64 {
     // SAFETY: SUNDIALS passes live vectors of equal length, and nothing writes to them here.
     let (x, w) = unsafe {
@@ -58,7 +60,8 @@ unsafe extern "C" fn weighted_norm(x: ffi::N_Vector, w: ffi::N_Vector) -> f64 {
         }
     }
     let rest: f64 = x_rest.iter().zip(w_rest).map(|(x, w)| (x * w) * (x * w)).sum();
-    ((sums.iter().sum::<f64>() + rest) / x.len() as f64).sqrt()
+    let norm = ((sums.iter().sum::<f64>() + rest) / x.len() as f64).sqrt();
+    if norm.is_nan() { f64::INFINITY } else { norm }
 }
 
 /// z = a x + b y, where z may be x or y.

@@ -1,7 +1,7 @@
 //! Options that the integrators of SUNDIALS share.
 
 use super::signs::{Sign, check_signs, check_state};
-use crate::input::InputError;
+use crate::{input::InputError, integrate::check_step};
 
 /// Limits of the control of step size and order, of the nonlinear iteration, and of the unknowns.
 #[derive(Clone, Debug, Default)]
@@ -16,10 +16,11 @@ pub(super) struct Limits {
 
 impl Limits {
     pub(super) fn check(&self, max_step: Option<f64>, y0: &[f64]) -> Result<(), InputError> {
-        if let Some(h) = self.min_step
-            && !(h > 0.0 && h.is_finite())
-        {
-            return Err(InputError::new("min_step", h, "it is positive and finite"));
+        if let Some(h) = self.min_step {
+            check_step("min_step", h)?;
+            if h < 0.0 {
+                return Err(InputError::new("min_step", h, "it is positive: a size without sign"));
+            }
         }
         if let (Some(min), Some(max)) = (self.min_step, max_step)
             && min > max

@@ -48,13 +48,17 @@ impl Pattern {
         n: usize,
         entries: impl IntoIterator<Item = (usize, usize)>,
     ) -> Result<Self, InputError> {
+        if n == 0 {
+            let mend = "a matrix has at least one row and column";
+            return Err(InputError::new("number of unknowns", n, mend));
+        }
         let mut columns: Vec<Vec<usize>> = (0..n).map(|j| vec![j]).collect();
         for (row, column) in entries {
             if row >= n || column >= n {
                 return Err(InputError::new(
                     "pattern entry",
                     format!("({row}, {column})"),
-                    format!("rows and columns of this matrix run from 0 to {}", n.wrapping_sub(1)),
+                    format!("rows and columns of this matrix run from 0 to {}", n - 1),
                 ));
             }
             columns[column].push(row);

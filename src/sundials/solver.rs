@@ -44,6 +44,8 @@ pub struct Solver<K, S> {
     /// The time derivative of `y`, of a DAE only.
     pub(super) yp: Option<Vector>,
     pub(super) scratch: Vector,
+    /// y' where the first step starts from, of a DAE.
+    pub(super) first_slope: Vec<f64>,
     pub(super) quadratures: Option<Quadratures>,
     pub(super) sensitivities: Option<Sensitivity>,
     pub(super) host: HostBox<S>,
@@ -144,6 +146,7 @@ impl<K, S> Solver<K, S> {
             y,
             yp,
             scratch,
+            first_slope: start.yp.unwrap_or_default().to_vec(),
             quadratures: None,
             sensitivities: None,
             host,

@@ -169,11 +169,17 @@ impl<K, S> Solver<K, S> {
         let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
         self.host.get_mut().troubles.clear();
         signs::forget_violation();
+        if !self.has_step {
+            self.remember_start();
+        }
         // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
         // keeps others away while callbacks use the host.
         let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
         self.failed_within = false;
         self.has_step = code >= 0 || self.step_statistics().steps > 0;
+        if !self.has_step {
+            self.restore_start();
+        }
         if let Some(end) = self.host.get().step_end.filter(|_| code < 0) {
             // the time of `y`; C has that of a stage, and would interpolate as if the step ended there
             self.t = end;
@@ -208,6 +214,22 @@ impl<K, S> Solver<K, S> {
                 self.host.accept(name, code).map(|()| Reached::Time)
             }
             code => Err(self.stopped(code, target)),
+        }
+    }
+
+    /// Keeps the state that a first step starts from: IDA overwrites it by an interpolation between numbers that may have
+    /// overflown.
+    fn remember_start(&mut self) {
+        self.scratch.as_mut_slice().copy_from_slice(self.y.as_slice());
+        if let Some(yp) = &self.yp {
+            self.first_slope.copy_from_slice(yp.as_slice());
+        }
+    }
+
+    fn restore_start(&mut self) {
+        self.y.as_mut_slice().copy_from_slice(self.scratch.as_slice());
+        if let Some(yp) = &mut self.yp {
+            yp.as_mut_slice().copy_from_slice(&self.first_slope);
         }
     }
 

@@ -22,6 +22,7 @@ mod mass_matrix;
 mod patterns;
 mod projection;
 mod quadratures;
+mod random_problems;
 mod rk;
 mod roots;
 mod sensitivities;

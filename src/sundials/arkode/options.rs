@@ -3,7 +3,9 @@
 use super::butcher_table::ButcherTable;
 use crate::{
     input::InputError,
-    integrate::{AbsoluteTolerance, StepOptions, Tolerances, check_count, step_options},
+    integrate::{
+        AbsoluteTolerance, StepOptions, Tolerances, check_count, check_step, step_options,
+    },
     sundials::{
         linear_solver::LinearSolver,
         nonlinear::{NonlinearOptions, NonlinearSolver},
@@ -129,12 +131,7 @@ impl ArkodeOptions {
         self.tolerances.check(y0)?;
         self.steps.check()?;
         self.limits.check(self.steps.max_step, y0)?;
-        if let Some(h) = self.fixed_step
-            && !(h.is_finite() && h != 0.0)
-        {
-            let mend = "it is finite, and negative when integrating backwards";
-            return Err(InputError::new("fixed_step", h, mend));
-        }
+        self.fixed_step.map_or(Ok(()), |h| check_step("fixed_step", h))?;
         if self.fixed_step.is_some() && self.limits.signs.iter().any(|sign| *sign != Sign::Free) {
             let mend = "signs are kept by smaller steps: let the tolerances choose the steps";
             return Err(InputError::new("sign_constraints", "given with fixed_step", mend));
