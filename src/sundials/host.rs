@@ -14,7 +14,7 @@ use std::{
 
 use super::{
     differences::Differences, functions::Get, ilu::IncompleteLu, index::Index,
-    linear_solver::LinearSolver, sensitivity::SensitivityRhs,
+    linear_solver::LinearSolver, sensitivity::SensitivityRhs, signs::Violation,
 };
 use crate::{
     integrate::{Callback, Cause, Error},
@@ -74,6 +74,8 @@ pub(super) struct Troubles {
     retry: Option<(f64, Cause)>,
     /// How many such requests came in a row for the same time, to rounding.
     stuck: u32,
+    /// The unknown that was last found beyond its bound.
+    violation: Option<Violation>,
     message: String,
 }
 
@@ -98,6 +100,7 @@ impl Troubles {
         self.fatal = None;
         self.retry = None;
         self.stuck = 0;
+        self.violation = None;
         self.message.clear();
     }
 
@@ -124,6 +127,10 @@ impl Troubles {
             Some((at, cause)) if blame_retries && (at - t) * h >= 0.0 => (cause, None),
             _ => (otherwise, None),
         }
+    }
+
+    pub(super) fn recent_violation(&self) -> Option<Violation> {
+        self.violation.filter(Violation::is_recent)
     }
 
     pub(super) fn message(&self) -> &str {
@@ -229,6 +236,12 @@ impl<S> HostBox<S> {
 
     pub(super) fn as_ptr(&self) -> *mut c_void {
         self.0.as_ptr().cast()
+    }
+
+    /// Where vectors of signs note what was found beyond its bound, during calls of C.
+    pub(super) fn violation(&self) -> *mut Option<Violation> {
+        // SAFETY: the host lives as long as `self`; no reference is made.
+        unsafe { &raw mut (*self.0.as_ptr()).troubles.violation }
     }
 
     pub(super) fn get(&self) -> &Host<S> {

@@ -5,7 +5,7 @@ use std::ffi::c_void;
 use super::{
     ffi,
     index::Index,
-    signs::{self, Violation},
+    signs::Violation,
     solver::{Memory, Solver},
 };
 use crate::integrate::{Cause, Error, IntegrationError, Statistics};
@@ -160,8 +160,8 @@ impl<K, S> Solver<K, S> {
         // many steps at a bound may have another reason, unless they hardly lead on
         let crawls = statistics.current_step.abs() < 1e-6 * (target - self.t).abs();
         let at_bound = !self.signs.is_empty() && (code != ffi::CV_TOO_MUCH_WORK || crawls);
-        let violation = signs::last_violation().filter(|_| at_bound);
-        let otherwise = match violation {
+        let violation = self.host.get().troubles.recent_violation();
+        let otherwise = match violation.filter(|_| at_bound) {
             Some(Violation { unknown, value, .. }) => Cause::SignConstraint { unknown, value },
             None => otherwise,
         };

@@ -1,9 +1,12 @@
 //! Inequality constraints: unknowns that keep their sign.
 
-use std::{cell::Cell, fmt, slice};
+use std::{fmt, ptr, slice};
 
 use super::ffi;
-use crate::{input::InputError, integrate::check_length};
+use crate::{
+    input::InputError,
+    integrate::{Error, check_length},
+};
 
 /// The values that an unknown may have: an inequality constraint, for the option `sign_constraints`.
 ///
@@ -75,20 +78,59 @@ pub(super) struct Violation {
     age: u32,
 }
 
-thread_local! {
-    /// What [`mask`] last found: C gives it no place for that. It is read where C has returned, on the same thread.
-    static VIOLATION: Cell<Option<Violation>> = const { Cell::new(None) };
+impl Violation {
+    /// Whether it was in the step last tried, or in one of the two before. (Close to a bound that the equations cross,
+    /// every other step is repeated.)
+    pub(super) fn is_recent(&self) -> bool {
+        self.age <= 2
+    }
 }
 
-/// Forgets what was found in calls before.
-pub(super) fn forget_violation() {
-    VIOLATION.set(None);
+/// The content of a vector of signs: that of a serial vector, and where [`mask`] notes what it last found. C gives it no
+/// other place for that.
+#[repr(C)]
+struct Content {
+    serial: ffi::_N_VectorContent_Serial,
+    found: *mut Option<Violation>,
 }
 
-/// The unknown that was beyond its bound in the step last tried, or in one of the two before. (Close to a bound that
-/// the equations cross, every other step is repeated.)
-pub(super) fn last_violation() -> Option<Violation> {
-    VIOLATION.get().filter(|violation| violation.age <= 2)
+/// Makes `vector` one of signs, and with it all its later clones, for which [`mask`] notes in `found` what it finds.
+///
+/// # Safety
+/// `vector` is a live serial vector; `found` may be written to whenever [`mask`] gets it or a clone.
+pub(super) unsafe fn note_in(
+    vector: ffi::N_Vector,
+    found: *mut Option<Violation>,
+) -> Result<(), Error> {
+    // SAFETY: the content of a serial vector was allocated by malloc, as N_VDestroy frees it; where realloc fails, it is
+    // still there. The operations table of a live vector is writable.
+    unsafe {
+        let content = libc::realloc((*vector).content, size_of::<Content>());
+        if content.is_null() {
+            return Err(Error::out_of_memory("realloc"));
+        }
+        (*content.cast::<Content>()).found = found;
+        (*vector).content = content;
+        (*(*vector).ops).nvclone = Some(clone);
+    }
+    Ok(())
+}
+
+/// `N_VClone` of vectors of signs.
+unsafe extern "C" fn clone(signs: ffi::N_Vector) -> ffi::N_Vector {
+    // SAFETY: SUNDIALS passes a live vector, which has this function from `note_in`, hence such a content.
+    unsafe {
+        let clone = ffi::N_VClone_Serial(signs);
+        if clone.is_null() {
+            return clone;
+        }
+        let found = (*(*signs).content.cast::<Content>()).found;
+        if note_in(clone, found).is_err() {
+            ffi::N_VDestroy(clone);
+            return ptr::null_mut();
+        }
+        clone
+    }
 }
 
 /// The numbers of a vector.
@@ -109,10 +151,12 @@ pub(super) unsafe extern "C" fn mask(
     y: ffi::N_Vector,
     mask: ffi::N_Vector,
 ) -> i32 {
-    // SAFETY: SUNDIALS passes three different live vectors of equal length, and nothing else uses them here.
-    let (signs, y, mask) = unsafe {
+    // SAFETY: SUNDIALS passes three different live vectors of equal length, and nothing else uses them here. The first is
+    // one of signs, as no other is registered, and its place for what is found is not used during a call of C.
+    let (signs, y, mask, found) = unsafe {
+        let found = &mut *(*(*signs).content.cast::<Content>()).found;
         let (signs, y) = (numbers(signs), numbers(y));
-        (signs, y, slice::from_raw_parts_mut(ffi::N_VGetArrayPointer(mask), y.len()))
+        (signs, y, slice::from_raw_parts_mut(ffi::N_VGetArrayPointer(mask), y.len()), found)
     };
     let mut first = None;
     for (i, mask) in mask.iter_mut().enumerate() {
@@ -125,7 +169,7 @@ pub(super) unsafe extern "C" fn mask(
         }
     }
     let older = |old: Violation| Violation { age: old.age.saturating_add(1), ..old };
-    VIOLATION.set(first.or(VIOLATION.get().map(older)));
+    *found = first.or(found.map(older));
     i32::from(first.is_none())
 }
 

@@ -16,7 +16,7 @@ use super::{
     linear_solver::LinearSolver,
     nonlinear::FixedPoint,
     options::Limits,
-    signs::Sign,
+    signs::{self, Sign},
     stop_time::StopTime,
     vector::Vector,
 };
@@ -239,8 +239,12 @@ impl<K, S> Solver<K, S> {
         let values: Vec<f64> = signs.iter().map(|sign| f64::from(*sign as i8)).collect();
         let values = Vector::from_slice(&values, &self.context)?;
         self.signs = signs.to_vec();
-        // SAFETY: C keeps a copy of the vector, whose length was checked.
-        unsafe { self.set(self.memory.functions.set_constraints, values.raw()) }
+        // SAFETY: C keeps a clone of the vector, whose length was checked, and it notes what it finds in the host, which
+        // outlives the memory.
+        unsafe {
+            signs::note_in(values.raw(), self.host.violation())?;
+            self.set(self.memory.functions.set_constraints, values.raw())
+        }
     }
 
     /// Registers the root functions by `init`, if there are any.

@@ -2,12 +2,7 @@
 
 use std::ffi::c_void;
 
-use super::{
-    ffi,
-    signs::{self, check_state},
-    solver::Solver,
-    vector::Vector,
-};
+use super::{ffi, signs::check_state, solver::Solver, vector::Vector};
 use crate::integrate::{
     Error, Integrator, Reached, Statistics, check_finite, check_length, check_time,
 };
@@ -168,7 +163,6 @@ impl<K, S> Solver<K, S> {
         let (name, solve) = functions.solve;
         let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
         self.host.get_mut().troubles.clear();
-        signs::forget_violation();
         if !self.has_step {
             self.remember_start();
         }

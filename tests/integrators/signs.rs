@@ -141,6 +141,30 @@ fn equations_that_lead_across_the_bound_are_an_error() {
     }
 }
 
+/// Each solver knows its own bounds: that one within the equations of another met one is not why the other fails.
+#[test]
+fn solvers_within_solvers_keep_their_bounds_apart() {
+    let inner = CvodeOptions::new(1e-3, 1e-6).sign_constraints([Sign::NonNegative]).max_steps(100);
+    let mut sign = 1.0;
+    let rhs = |_t: f64, _y: &[f64], ydot: &mut [f64]| {
+        let falling = |_t: f64, _y: &[f64], ydot: &mut [f64]| {
+            ydot[0] = -1.0;
+            Ok(())
+        };
+        let (inner, _) = cause(Cvode::new(falling, 0.0, &[1.0], &inner)?.solve_to(2.0));
+        assert!(matches!(inner, Cause::SignConstraint { .. }), "{inner:?}");
+        // no step passes this
+        sign = -sign;
+        ydot.copy_from_slice(&[sign * 1e9, 0.0]);
+        Ok(())
+    };
+    let outer = CvodeOptions::new(1e-6, 1e-9)
+        .sign_constraints([Sign::Free, Sign::NonNegative])
+        .min_step(1e-6);
+    let (cause, _) = cause(Cvode::new(rhs, 0.0, &[0.0, 1.0], &outer).unwrap().solve_to(2.0));
+    assert!(matches!(cause, Cause::ErrorTest | Cause::Convergence), "{cause:?}");
+}
+
 #[test]
 fn a_start_beyond_the_bound_is_not_found() {
     // the second equation asks for -1

@@ -67,7 +67,6 @@ impl<S: Dae> Ida<S> {
             InitialCondition::State => ffi::IDA_Y_INIT,
         };
         self.host.get_mut().troubles.clear();
-        signs::forget_violation();
         // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
         // others away while callbacks use the host.
         let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, first_output) };
