@@ -30,3 +30,4 @@ mod signs;
 mod sparse;
 mod stability_limit;
 mod standard_problems;
+mod threads;
