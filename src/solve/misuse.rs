@@ -1,5 +1,7 @@
 //! What does not compile, each beside what does: who holds what, and for how long.
 //!
+//! The two differ by the mistake alone: rustdoc compares the error codes in a nightly version only.
+//!
 //! A solver owns its system. What `into_system` has taken apart is gone:
 //!
 //! ```
