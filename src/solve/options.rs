@@ -129,7 +129,7 @@ impl Options {
             return Err(InputError::new("max_steps", 0, "it is at least 1"));
         }
         if let Some(h) = self.initial_step
-            && !(h > 0.0)
+            && (h.is_nan() || h <= 0.0)
         {
             let mend = "it is positive; the span tells the direction of time";
             return Err(InputError::new("initial_step", h, mend));

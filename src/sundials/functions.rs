@@ -71,7 +71,8 @@ pub(super) struct Functions {
     pub(super) set_initial_step: Set<f64>,
     pub(super) set_max_step: Set<f64>,
     pub(super) set_min_step: Set<f64>,
-    pub(super) set_max_error_test_failures: Set<i32>,
+    /// Not of IDA.
+    pub(super) set_max_error_test_failures: Option<Set<i32>>,
     /// The order of a Runge-Kutta method is that of its table.
     pub(super) set_max_order: Option<Set<i32>>,
     pub(super) set_convergence_coefficient: Set<f64>,

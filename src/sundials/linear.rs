@@ -4,6 +4,7 @@ use std::{ffi::c_void, ptr};
 
 use super::{
     context::Context,
+    factored::{factored, forget_factors},
     ffi,
     host::{Host, RETRY, STOP},
     krylov::{Krylov, KrylovMethod, Side},
@@ -49,10 +50,21 @@ impl Linear {
             // SAFETY: the context is alive; the caller vouches for `data`.
             LinearSolver::Custom => ("SUNLinSolNewEmpty", unsafe { custom::<S>(c, data) }),
         };
+        let is_direct = matrix.is_some();
+        // SAFETY: the solver is new or null, and a direct one if there is a matrix.
+        let raw = if is_direct { unsafe { factored(raw, context) } } else { raw };
         if raw.is_null() {
             return Err(Error::out_of_memory(function));
         }
         Ok(Self { solver: RawSolver(raw), matrix })
+    }
+
+    /// Has the next solution begin with a set-up: the matrix may be half written.
+    pub(super) fn forget_factors(&mut self) {
+        if self.matrix.is_some() {
+            // SAFETY: a solver with a matrix is made by `factored`; `&mut self` keeps others away.
+            unsafe { forget_factors(self.solver.0) };
+        }
     }
 
     pub(super) fn solver(&self) -> ffi::SUNLinearSolver {

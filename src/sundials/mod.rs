@@ -50,6 +50,7 @@ mod cvode;
 mod dae_callbacks;
 mod dae_krylov;
 mod differences;
+mod factored;
 mod ffi;
 mod functions;
 mod host;

@@ -42,7 +42,8 @@ impl<K, S> Solver<K, S> {
         s.linear_failures = count(functions.get_linear_failures);
         s.preconditioner_setups = count(functions.get_preconditioner_setups);
         s.preconditioner_solves = count(functions.get_preconditioner_solves);
-        s.root_evaluations = count(functions.get_root_evaluations);
+        // ARKODE has no number before
+        s.root_evaluations = if s.steps > 0 { count(functions.get_root_evaluations) } else { 0 };
         s.quadrature_evaluations =
             functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
         s.explicit_evaluations = functions.get_explicit_evaluations.map_or(0, count);

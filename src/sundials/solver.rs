@@ -22,8 +22,9 @@ use super::{
 };
 use crate::integrate::{AbsoluteTolerance, Error, StepOptions, Tolerances};
 
-/// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and ARKODE, 10 of
-/// IDA, end runs at jumps that follow a long smooth stretch (the Oregonator); 20 lead from any step to the smallest there is.
+/// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and ARKODE
+/// end runs at jumps that follow a long smooth stretch (the Oregonator); 20 lead from any step to the smallest there is.
+/// IDA keeps its 10: it gets over such jumps, and more of them hide that equations are of higher index.
 const ERROR_TEST_FAILURES: i32 = 20;
 
 /// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or
@@ -58,6 +59,8 @@ pub struct Solver<K, S> {
     pub(super) has_step: bool,
     /// Whether the last call failed in an integrator that gives the time of a stage then.
     pub(super) failed_within: bool,
+    /// Whether the first step of IDA has failed.
+    pub(super) failed_at_start: bool,
     /// Degree of the polynomials between the steps, if it is not the order of the last step.
     pub(super) interpolant_degree: Option<u32>,
     pub(super) roots_found: Vec<i32>,
@@ -156,6 +159,7 @@ impl<K, S> Solver<K, S> {
             stop_time: StopTime::default(),
             has_step: false,
             failed_within: false,
+            failed_at_start: false,
             interpolant_degree: None,
             roots_found: vec![0; root_count],
             signs: Vec::new(),
@@ -212,7 +216,9 @@ impl<K, S> Solver<K, S> {
         unsafe {
             self.set(functions.set_user_data, self.host.as_ptr())?;
             self.set(functions.set_max_steps, i64::from(steps.max_steps))?;
-            self.set(functions.set_max_error_test_failures, ERROR_TEST_FAILURES)?;
+            if let Some(set) = functions.set_max_error_test_failures {
+                self.set(set, ERROR_TEST_FAILURES)?;
+            }
             for (function, value) in [
                 (functions.set_initial_step, steps.initial_step),
                 (functions.set_max_step, steps.max_step),
@@ -228,6 +234,13 @@ impl<K, S> Solver<K, S> {
             }
         }
         self.set_signs(&limits.signs)
+    }
+
+    /// After a failure: the matrix of Newton's iteration may be half written.
+    pub(super) fn forget_factors(&mut self) {
+        if let Some(linear) = &mut self.linear {
+            linear.forget_factors();
+        }
     }
 
     /// Has the unknowns keep these signs.

@@ -93,7 +93,7 @@ impl<K, S> Integrator for Solver<K, S> {
         self.restart_quadratures()?;
         self.restart_sensitivities()?;
         self.t = t;
-        (self.has_step, self.failed_within) = (false, false);
+        (self.has_step, self.failed_within, self.failed_at_start) = (false, false, false);
         let host = self.host.get_mut();
         host.step_end = host.step_end.and(Some(t));
         host.differences.iter_mut().for_each(|differences| differences.evaluations = 0);
@@ -164,13 +164,16 @@ impl<K, S> Solver<K, S> {
         let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
         self.host.get_mut().troubles.clear();
         if !self.has_step {
-            self.remember_start();
+            self.remember_start()?;
         }
         // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
         // keeps others away while callbacks use the host.
         let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
         self.failed_within = false;
         self.has_step = code >= 0 || self.step_statistics().steps > 0;
+        if code < 0 {
+            self.forget_factors();
+        }
         if !self.has_step {
             self.restore_start();
         }
@@ -212,18 +215,29 @@ impl<K, S> Solver<K, S> {
     }
 
     /// Keeps the state that a first step starts from: IDA overwrites it by an interpolation between numbers that may have
-    /// overflown.
-    fn remember_start(&mut self) {
+    /// overflown. After a first step that failed IDA has to be told the start again, or it would take y' times the step for y'.
+    fn remember_start(&mut self) -> Result<(), Error> {
+        if self.failed_at_start {
+            let (name, reinit) = self.memory.functions.reinit;
+            // SAFETY: memory and vectors are alive; the integrator copies the vectors.
+            let code = unsafe { reinit(self.memory.raw, self.t, self.y.raw(), self.raw_yp()) };
+            self.host.accept(name, code)?;
+            self.restart_quadratures()?;
+            self.restart_sensitivities()?;
+            self.failed_at_start = false;
+        }
         self.scratch.as_mut_slice().copy_from_slice(self.y.as_slice());
         if let Some(yp) = &self.yp {
             self.first_slope.copy_from_slice(yp.as_slice());
         }
+        Ok(())
     }
 
     fn restore_start(&mut self) {
         self.y.as_mut_slice().copy_from_slice(self.scratch.as_slice());
         if let Some(yp) = &mut self.yp {
             yp.as_mut_slice().copy_from_slice(&self.first_slope);
+            self.failed_at_start = true;
         }
     }
 

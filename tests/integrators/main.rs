@@ -3,6 +3,7 @@
 mod support;
 
 mod adjoint;
+mod after_failures;
 mod arkode;
 mod central_difference;
 mod checks;

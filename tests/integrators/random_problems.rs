@@ -43,7 +43,6 @@ fn nothing_panics_or_hangs_and_what_goes_well_is_right() {
         if env::var_os("PLIANT_SEEDS").is_some() && seed % 100_000 == 0 {
             println!("{seed}: {counts:?}");
         }
-        if env::var_os("SHOW").is_some() { eprintln!("seed {seed}"); }
         let outcome = std::panic::catch_unwind(|| run(&bytes(seed)));
         let outcome = outcome.unwrap_or_else(|_| panic!("seed {seed}"));
         *counts.entry(format!("{outcome:?}")).or_default() += 1;

@@ -53,7 +53,7 @@ impl<'a> Bytes<'a> {
     /// A number of ordinary size, now and then another one.
     pub fn number(&mut self) -> f64 {
         match self.byte() {
-            byte @ 0..=15 => NASTY[usize::from(byte)],
+            byte @ 0..=7 => NASTY[2 * usize::from(byte)],
             byte => (f64::from(byte) - 128.0) / 32.0,
         }
     }
@@ -61,7 +61,7 @@ impl<'a> Bytes<'a> {
     /// A positive power of ten from 1e-12 to 1e3, now and then any number.
     pub fn scale(&mut self) -> f64 {
         match self.byte() {
-            byte @ 0..=15 => NASTY[usize::from(byte)],
+            byte @ 0..=3 => NASTY[4 * usize::from(byte)],
             byte => 10_f64.powi(i32::from(byte % 16) - 12),
         }
     }
@@ -69,7 +69,7 @@ impl<'a> Bytes<'a> {
     /// A time, mostly small.
     pub fn time(&mut self) -> f64 {
         match self.byte() {
-            byte @ 0..=7 => NASTY[usize::from(byte)],
+            byte @ 0..=3 => NASTY[2 * usize::from(byte) + 1],
             byte @ 8..=23 => 10_f64.powi(i32::from(byte) - 14),
             byte => (f64::from(byte) - 64.0) / 64.0,
         }

@@ -137,8 +137,10 @@ where
                 }
             }),
         };
+        // at such times IDA's differences overflow
+        let is_beyond = matches!(&result, Err(_) if solver.t().abs() > 1e100);
         assert!(
-            solver.y().iter().all(|y| y.is_finite()),
+            is_beyond || solver.y().iter().all(|y| y.is_finite()),
             "{:?} after {result:?} of {:?}",
             solver.y(),
             solver.system().system(),

@@ -32,7 +32,7 @@ fn tolerances(bytes: &mut Bytes<'_>, n: usize) -> (f64, AbsoluteTolerance) {
         true => (0..length(bytes, n)).map(|_| bytes.scale()).collect(),
         false => vec![rtol * 1e-3],
     };
-    bytes.is_loose |= rtol > 0.1 || atol.iter().any(|atol| *atol > 0.1);
+    bytes.is_loose |= rtol >= 0.1 || atol.iter().any(|atol| *atol > 0.1);
     let atol = if atol.len() == 1 { atol[0].into() } else { atol.into() };
     (rtol, atol)
 }
@@ -177,7 +177,9 @@ pub fn ida(bytes: &mut Bytes<'_>, n: usize) -> IdaOptions {
     shared!(options, bytes, n);
     if bytes.is(2) {
         let differential: Vec<bool> = (0..length(bytes, n)).map(|i| i + 1 < n).collect();
-        options = options.differential(differential).suppress_algebraic(bytes.is(2));
+        let suppressed = bytes.is(2);
+        bytes.is_loose |= suppressed;
+        options = options.differential(differential).suppress_algebraic(suppressed);
     }
     if bytes.is(4) {
         options = options.max_order(bytes.below(8) as u32);

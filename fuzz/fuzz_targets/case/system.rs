@@ -43,10 +43,10 @@ enum Trouble {
 impl System {
     /// A system and its start.
     pub fn read(bytes: &mut Bytes<'_>) -> (Self, Vec<f64>) {
-        let n = bytes.below(6);
+        let n = if bytes.is(20) { 0 } else { 1 + bytes.below(5) };
         let rates = (0..n).map(|_| 10_f64.powi(bytes.below(9) as i32 - 3)).collect();
         let limits = (0..n).map(|_| f64::from(bytes.byte()) / 64.0 - 2.0).collect();
-        let trouble = match bytes.below(16) {
+        let trouble = match bytes.below(12) {
             0 => Trouble::Recoverable,
             1 => Trouble::Fatal,
             2 => Trouble::NotANumber,
@@ -57,14 +57,14 @@ impl System {
         let system = Self {
             rates,
             limits,
-            mass: bytes.is(6).then(|| f64::from(bytes.byte()) / 64.0),
+            mass: bytes.is(8).then(|| f64::from(bytes.byte()) / 64.0),
             algebraic: bytes.is(3),
             roots: if bytes.is(3) { bytes.below(4) } else { 0 },
             quadratures: if bytes.is(5) { bytes.below(3) } else { 0 },
-            is_split: bytes.is(8),
+            is_split: bytes.is(20),
             parameters: vec![1.0; bytes.below(3)],
             trouble,
-            begins: u32::from(bytes.byte()),
+            begins: u32::from(bytes.byte() / 4),
             lasts: bytes.is(2),
             evaluations: 0,
         };

@@ -71,7 +71,10 @@ impl<S: Ode> Arkode<S> {
         set_initial_step: ("ARKStepSetInitStep", ffi::ARKStepSetInitStep),
         set_max_step: ("ARKStepSetMaxStep", ffi::ARKStepSetMaxStep),
         set_min_step: ("ARKStepSetMinStep", ffi::ARKStepSetMinStep),
-        set_max_error_test_failures: ("ARKStepSetMaxErrTestFails", ffi::ARKStepSetMaxErrTestFails),
+        set_max_error_test_failures: Some((
+            "ARKStepSetMaxErrTestFails",
+            ffi::ARKStepSetMaxErrTestFails,
+        )),
         set_max_order: None,
         set_convergence_coefficient: ("ARKStepSetNonlinConvCoef", ffi::ARKStepSetNonlinConvCoef),
         set_tolerance_factor: ("ARKStepSetEpsLin", ffi::ARKStepSetEpsLin),

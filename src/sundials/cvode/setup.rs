@@ -63,7 +63,7 @@ const TABLE: Functions = Functions {
     set_initial_step: ("CVodeSetInitStep", ffi::CVodeSetInitStep),
     set_max_step: ("CVodeSetMaxStep", ffi::CVodeSetMaxStep),
     set_min_step: ("CVodeSetMinStep", ffi::CVodeSetMinStep),
-    set_max_error_test_failures: ("CVodeSetMaxErrTestFails", ffi::CVodeSetMaxErrTestFails),
+    set_max_error_test_failures: Some(("CVodeSetMaxErrTestFails", ffi::CVodeSetMaxErrTestFails)),
     set_max_order: Some(("CVodeSetMaxOrd", ffi::CVodeSetMaxOrd)),
     set_convergence_coefficient: ("CVodeSetNonlinConvCoef", ffi::CVodeSetNonlinConvCoef),
     set_tolerance_factor: ("CVodeSetEpsLin", ffi::CVodeSetEpsLin),

@@ -54,7 +54,7 @@ static FUNCTIONS: Functions = Functions {
     set_initial_step: ("IDASetInitStep", ffi::IDASetInitStep),
     set_max_step: ("IDASetMaxStep", ffi::IDASetMaxStep),
     set_min_step: ("IDASetMinStep", ffi::IDASetMinStep),
-    set_max_error_test_failures: ("IDASetMaxErrTestFails", ffi::IDASetMaxErrTestFails),
+    set_max_error_test_failures: None,
     set_max_order: Some(("IDASetMaxOrd", ffi::IDASetMaxOrd)),
     set_convergence_coefficient: ("IDASetNonlinConvCoef", ffi::IDASetNonlinConvCoef),
     set_tolerance_factor: ("IDASetEpsLin", ffi::IDASetEpsLin),
