@@ -43,9 +43,6 @@ impl Reference {
 
 const QUADRUPLE: &str = "integrated in quadruple precision; two tolerances agree";
 
-const TEST_SET: &str = "F. Mazzia, C. Magherini, Test Set for Initial Value Problem Solvers (2008); all \
-     digits given agree with an integration in quadruple precision";
-
 /// A problem that lists the entries of its Jacobian.
 trait Entries {
     /// Calls `put` with row, column and value of each entry of df/dy. The places do not depend on

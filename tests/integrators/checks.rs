@@ -25,7 +25,11 @@ fn the_samples_are_right() {
         check::jacobian(&mut hires, 0.0, &Hires::Y0, storage).unwrap();
     }
     check::jacobian(&mut VanDerPol::new(), 0.0, VanDerPol::REFERENCE.y, Storage::Dense).unwrap();
-    check::jacobian(&mut Pollution::new(), 0.0, Pollution::REFERENCE.y, Storage::Dense).unwrap();
+    let (mut pollution, pattern) = (Pollution::new(), Pollution::new().pattern().clone());
+    for storage in [Storage::Dense, sparse(&pattern)] {
+        check::jacobian(&mut pollution, 0.0, Pollution::REFERENCE.y, storage).unwrap();
+        check::jacobian(&mut pollution, 0.0, &Pollution::Y0, storage).unwrap();
+    }
     let y = TransistorAmplifier::REFERENCE.y;
     check::jacobian(&mut TransistorAmplifier, 0.0, y, Storage::Dense).unwrap();
     let pattern = Robertson::new().pattern().clone();

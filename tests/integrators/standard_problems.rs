@@ -115,7 +115,7 @@ fn transistor_amplifier() {
     let Reference { t, y, .. } = TransistorAmplifier::REFERENCE;
     let (y0, slope) = (TransistorAmplifier::Y0, TransistorAmplifier::YP0);
     for newton in [DENSE, QUOTIENTS] {
-        check("TRANSAMP, IDA", 60.0, |rtol| {
+        check("TRANSAMP, IDA", 80.0, |rtol| {
             let system = MassForm::new(TransistorAmplifier, 8, &newton).unwrap();
             let atol: Vec<f64> = y.iter().map(|y| rtol * y.abs()).collect();
             let options = IdaOptions::new(rtol, atol).newton(newton.clone()).max_order(3);

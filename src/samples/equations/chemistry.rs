@@ -2,7 +2,7 @@
 
 use faer::MatMut;
 
-use super::{Entries, Reference, TEST_SET, jacobians_from_entries};
+use super::{Entries, QUADRUPLE, Reference, jacobians_from_entries};
 use crate::{
     ode::{BandMut, Failure, Ode},
     sundials::Pattern,
@@ -26,7 +26,7 @@ impl Oregonator {
         t: 360.0,
         y: &[1.000_814_870_318_522_7, 1_228.178_521_549_888, 132.055_494_284_650_83],
         digits: 15,
-        source: TEST_SET,
+        source: QUADRUPLE,
     };
 
     /// The problem.
@@ -158,7 +158,7 @@ impl Pollution {
             5.682_943_292_316_393e-5,
         ],
         digits: 14,
-        source: TEST_SET,
+        source: QUADRUPLE,
     };
 
     /// The problem.

@@ -68,7 +68,7 @@ impl Brusselator {
             8.782_943_216_042_928e-1,
             3.157_853_117_242_124_7,
         ],
-        digits: 14,
+        digits: 15,
         source: QUADRUPLE,
     };
 

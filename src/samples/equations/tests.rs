@@ -93,3 +93,29 @@ fn references_satisfy_what_is_conserved() {
         assert!((reference.y.iter().sum::<f64>() - 1.0).abs() < 1e-14);
     }
 }
+
+/// The start of the amplifier, y + t y' near t = 0, satisfies M y' = f, and the sums of rows without derivatives to first order.
+#[test]
+fn the_amplifier_starts_consistently() {
+    let (y0, slope) = (TransistorAmplifier::Y0, TransistorAmplifier::YP0);
+    let f = |t: f64| {
+        let y: Vec<f64> = y0.iter().zip(slope).map(|(y, slope)| y + t * slope).collect();
+        let mut f = [0.0; 8];
+        TransistorAmplifier.rhs(t, &y, &mut f).unwrap();
+        f
+    };
+    let mut mass = Mat::zeros(8, 8);
+    TransistorAmplifier.dense_mass(0.0, mass.as_mut()).unwrap();
+    for (i, f) in f(0.0).into_iter().enumerate() {
+        let product: f64 = (0..8).map(|j| mass[(i, j)] * slope[j]).sum();
+        assert!((product - f).abs() < 1e-18, "row {i}: {product} is not {f}");
+    }
+    let h = 1e-8;
+    let (forth, back) = (f(h), f(-h));
+    for i in [0, 3, 6] {
+        assert_eq!(f(0.0)[i] + f(0.0)[i + 1], 0.0);
+        // What is left is rounding, eps f / h, and cubic terms; those of the rates are of order 1e-2.
+        let rate = ((forth[i] + forth[i + 1]) - (back[i] + back[i + 1])) / (2.0 * h);
+        assert!(rate.abs() < 1e-10, "rows {i} and {}: {rate}", i + 1);
+    }
+}
