@@ -248,25 +248,21 @@ fn errors(y: &[f64], truth: &[f64]) -> impl Iterator<Item = f64> {
 
 impl Goal<'_> {
     /// These tolerances for CVODE.
-    #[must_use]
     pub fn cvode(&self) -> CvodeOptions {
         CvodeOptions::new(self.rtol, self.atol.to_vec())
     }
 
     /// These tolerances for ARKODE.
-    #[must_use]
     pub fn arkode(&self) -> ArkodeOptions {
         ArkodeOptions::new(self.rtol, self.atol.to_vec())
     }
 
     /// These tolerances for IDA.
-    #[must_use]
     pub fn ida(&self) -> IdaOptions {
         IdaOptions::new(self.rtol, self.atol.to_vec())
     }
 
     /// These tolerances for Dormand-Prince.
-    #[must_use]
     pub fn rk(&self) -> rk::Options {
         rk::Options::new(self.rtol, self.atol.to_vec())
     }

@@ -52,10 +52,10 @@ fn solver(k: usize) -> Solver {
 
 /// One step; some calls are refused on the way, and some solvers start anew.
 fn step(solver: &mut Solver, k: usize, count: usize) {
-    if (k + count) % 11 == 0 {
+    if (k + count).is_multiple_of(11) {
         solver.solve_to(f64::NAN).unwrap_err();
     }
-    if count == 6 && k % 7 == 0 {
+    if count == 6 && k.is_multiple_of(7) {
         solver.reinit(0.0, &Robertson::Y0).unwrap();
     }
     solver.step(40.0).unwrap();
@@ -63,7 +63,7 @@ fn step(solver: &mut Solver, k: usize, count: usize) {
 
 /// How many steps solver k makes before it is dropped.
 fn steps(k: usize) -> usize {
-    if k % 13 == 0 { 3 } else { STEPS }
+    if k.is_multiple_of(13) { 3 } else { STEPS }
 }
 
 /// Time and state, to the last bit.

@@ -10,7 +10,6 @@ use crate::{
     sundials::{
         ffi,
         index::{Index, index},
-        signs,
         vector::Vector,
     },
 };
