@@ -81,6 +81,12 @@ impl Method {
         if let (Some(h), Self::DormandPrince) = (options.min_step, self) {
             return refused("min_step", h.to_string(), "has no such limit");
         }
+        if !options.sign_constraints.is_empty() && self == Self::DormandPrince {
+            return refused("sign_constraints", "given".into(), "keeps no signs: take another one");
+        }
+        if options.project && self != Self::Bdf {
+            return refused("project", "true".into(), "does not project: take Bdf");
+        }
         Ok(())
     }
 
@@ -117,7 +123,7 @@ impl Method {
                 if let Some(solver) = &options.linear_solver {
                     built = built.newton(solver.clone());
                 }
-                built
+                built.sign_constraints(options.sign_constraints.as_slice())
             }};
         }
         macro_rules! ordered {
@@ -161,6 +167,7 @@ impl Method {
                     let family =
                         if self == Self::Adams { Multistep::Adams } else { Multistep::Bdf };
                     let built = ordered!(CvodeOptions::new(rtol, atol).method(family));
+                    let built = if options.project { built.project() } else { built };
                     Box::new(Cvode::new(Boxed(system), t, y, &built)?)
                 }
             },

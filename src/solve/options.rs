@@ -5,7 +5,7 @@ use std::time::Duration;
 use crate::{
     input::InputError,
     integrate::{AbsoluteTolerance, Tolerances, check_finite},
-    sundials::{LinearSolver, Sensitivities},
+    sundials::{LinearSolver, Sensitivities, Sign},
 };
 
 /// What a [`Solution`](super::Solution) keeps.
@@ -38,6 +38,8 @@ pub struct Options {
     pub(super) max_wall_time: Option<Duration>,
     pub(super) output: Output,
     pub(super) sensitivities: Option<Sensitivities>,
+    pub(super) sign_constraints: Vec<Sign>,
+    pub(super) project: bool,
 }
 
 impl Options {
@@ -55,6 +57,8 @@ impl Options {
             max_wall_time: None,
             output: Output::default(),
             sensitivities: None,
+            sign_constraints: Vec::new(),
+            project: false,
         }
     }
 
@@ -120,6 +124,21 @@ impl Options {
     /// derivatives; it may not change the parameters.
     pub fn sensitivities(mut self, sensitivities: Sensitivities) -> Self {
         self.sensitivities = Some(sensitivities);
+        self
+    }
+
+    /// Inequality constraints: for each unknown the sign that it keeps, at the ends of steps; see
+    /// [`CvodeOptions::sign_constraints`](crate::sundials::CvodeOptions::sign_constraints). By all methods but
+    /// Dormand-Prince. Default: none.
+    pub fn sign_constraints(mut self, signs: impl Into<Vec<Sign>>) -> Self {
+        self.sign_constraints = signs.into();
+        self
+    }
+
+    /// Puts the state onto the invariants of the equations after each step, by [`Ode::project`](crate::ode::Ode::project).
+    /// By BDF alone. Default: it does not.
+    pub fn project(mut self) -> Self {
+        self.project = true;
         self
     }
 

@@ -12,6 +12,7 @@ use crate::{
 ///
 /// The numbers are those of C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sign {
     /// All.
     Free = 0,
