@@ -105,7 +105,7 @@ mod tests {
         let page = made(&["beam-jump", "ring-roll"], directory.path());
         for part in [
             "\n| Jumping beam | ",
-            "\nOf 1 ratios ",
+            "\nOf 2 ratios ",
             "\n### Jumping beam\n\n![Jumping beam: error over time](beam-jump.svg)\n",
             "\n### Rolling ring\n",
             "\n| 1e-2 | ",
