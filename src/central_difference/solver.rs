@@ -6,7 +6,7 @@ use super::control::Control;
 use super::stability::Stability;
 use crate::integrate::{
     Callback, Cause, Error, ExplicitOptions, IntegrationError, Integrator, Reached, Statistics,
-    check_finite, check_length, check_start, check_stop_time, check_target, check_time,
+    check_finite, check_length, check_start, check_start_time, check_stop_time, check_target,
 };
 use crate::ode::{Failure, SecondOrder};
 
@@ -306,7 +306,7 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
 
     fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
         check_length("length of y", y.len(), self.y.len())?;
-        check_time("t", t)?;
+        check_start_time("t", t)?;
         check_finite("y", y)?;
         let (u, v) = (&y[..self.n], &y[self.n..2 * self.n]);
         let begun = self.system.start(t, u, v);

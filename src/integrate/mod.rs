@@ -16,8 +16,8 @@ pub use explicit_options::ExplicitOptions;
 pub(crate) use explicit_options::{check_stop_time, check_target};
 pub use integrator::{Integrator, Reached};
 pub(crate) use options::{
-    StepOptions, check_count, check_finite, check_form, check_length, check_start, check_step,
-    check_time, check_whole, step_options,
+    StepOptions, check_count, check_finite, check_form, check_length, check_start,
+    check_start_time, check_step, check_time, check_whole, step_options,
 };
 pub use statistics::Statistics;
 pub use tolerances::{AbsoluteTolerance, Tolerances};

@@ -59,17 +59,25 @@ pub(crate) use step_options;
 
 /// Checks the start of an integration.
 pub(crate) fn check_start(t0: f64, y0: &[f64]) -> Result<(), InputError> {
-    check_time("t0", t0)?;
+    check_start_time("t0", t0)?;
     if y0.is_empty() {
         return Err(InputError::new("length of y0", 0, "there is at least one unknown"));
     }
     check_finite("y0", y0)
 }
 
-/// Step sizes are not larger: integrators compute powers of them, which would overflow.
+/// Step sizes and starts are not larger: integrators compute powers of them, which would overflow.
 const LONGEST: f64 = 1e100;
 /// They are not smaller, for the same reason.
 const SHORTEST: f64 = 1e-100;
+
+/// Checks a time to start from. (Times that merely tell a direction may be any that are finite.)
+pub(crate) fn check_start_time(input: &str, t: f64) -> Result<(), InputError> {
+    if t.abs() <= LONGEST {
+        return Ok(());
+    }
+    Err(InputError::new(input, t, format!("starts lie between -{LONGEST:e} and {LONGEST:e}")))
+}
 
 /// Checks that a time is finite.
 pub(crate) fn check_time(input: &str, t: f64) -> Result<(), InputError> {

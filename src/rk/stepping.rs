@@ -6,8 +6,8 @@ use super::control::{Controller, StabilityMonitor};
 use super::dormand_prince::{DormandPrince, ORDER};
 use super::stages::stopped;
 use crate::integrate::{
-    Cause, Error, Integrator, Reached, Statistics, check_finite, check_length, check_stop_time,
-    check_target, check_time,
+    Cause, Error, Integrator, Reached, Statistics, check_finite, check_length, check_start_time,
+    check_stop_time, check_target,
 };
 use crate::ode::Ode;
 
@@ -169,7 +169,7 @@ impl<S: Ode> Integrator for DormandPrince<S> {
 
     fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
         check_length("length of y", y.len(), self.y.len())?;
-        check_time("t", t)?;
+        check_start_time("t", t)?;
         check_finite("y", y)?;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);
@@ -187,7 +187,7 @@ impl<S: Ode> Integrator for DormandPrince<S> {
 
     fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
         check_length("length of y", y.len(), self.y.len())?;
-        check_time("t", t)?;
+        check_start_time("t", t)?;
         check_finite("y", y)?;
         (self.t, self.t_old) = (t, t);
         self.y.copy_from_slice(y);

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     input::InputError,
-    integrate::{self, Statistics, check_time},
+    integrate::{self, Statistics, check_start_time, check_time},
 };
 
 /// A problem on its way: [`advance`](Self::advance) by a step, look, go on.
@@ -115,7 +115,7 @@ impl<'a> Run<'a> {
         options: &Options,
     ) -> Result<Self, Reason> {
         let (start, end) = span;
-        check_time("start of the span", start)?;
+        check_start_time("start of the span", start)?;
         check_time("end of the span", end)?;
         if start == end {
             return Err(InputError::new("end of the span", end, "it differs from the start").into());

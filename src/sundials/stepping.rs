@@ -4,7 +4,8 @@ use std::ffi::c_void;
 
 use super::{ffi, signs::check_state, solver::Solver, vector::Vector};
 use crate::integrate::{
-    Error, Integrator, Reached, Statistics, check_finite, check_length, check_time,
+    Error, Integrator, Reached, Statistics, check_finite, check_length, check_start_time,
+    check_time,
 };
 
 impl<K, S> Integrator for Solver<K, S> {
@@ -82,7 +83,7 @@ impl<K, S> Integrator for Solver<K, S> {
     /// `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
     fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
         check_length("length of y", y.len(), self.y().len())?;
-        check_time("t", t)?;
+        check_start_time("t", t)?;
         check_finite("y", y)?;
         check_state(&self.signs, "y", y)?;
         self.y.as_mut_slice().copy_from_slice(y);
@@ -108,7 +109,7 @@ impl<K, S> Integrator for Solver<K, S> {
     /// `ARKStepReset` for ARKODE; the others need a new start.
     fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
         check_length("length of y", y.len(), self.y().len())?;
-        check_time("t", t)?;
+        check_start_time("t", t)?;
         check_finite("y", y)?;
         check_state(&self.signs, "y", y)?;
         let Some((name, reset)) = self.memory.functions.reset else { return Ok(false) };

@@ -137,7 +137,7 @@ where
                 }
             }),
         };
-        // at such times IDA's differences overflow
+        // a step towards such a time may reach it, and IDA's differences overflow there
         let is_beyond = result.is_err() && solver.t().abs() > 1e100;
         assert!(
             is_beyond || solver.y().iter().all(|y| y.is_finite()),
