@@ -10,8 +10,11 @@
 //! - `{fastest}`, `{auto}`: the tables over all problems.
 
 use std::fmt::Write;
+use std::fs;
+use std::path::Path;
 
-use pliant::study::{Findings, LineFindings, Row, time_text};
+use pliant::Error;
+use pliant::study::{Findings, LineFindings, Problem, Row, Study, time_text};
 
 /// Relative tolerances at which the automatic choice is judged, as points are named.
 const JUDGED: [&str; 3] = ["1e-3", "1e-5", "1e-7"];
@@ -28,6 +31,43 @@ pub struct Section {
     /// Whether its lines are methods, which are ranked over all problems.
     pub compares_methods: bool,
     pub findings: Findings,
+}
+
+/// How a page of charts is made.
+pub struct Making<'a> {
+    pub repetitions: usize,
+    /// Processor time that any run may take (s).
+    pub limit: f64,
+    /// Directory for the rows that are kept.
+    pub keep: &'a Path,
+    /// Directory for the charts.
+    pub charts: &'a Path,
+}
+
+impl Making<'_> {
+    /// Runs a problem, draws its chart, and tells who is the fastest.
+    pub fn section(
+        &self,
+        name: String,
+        title: &'static str,
+        compares_methods: bool,
+        problem: &mut dyn Problem,
+    ) -> Result<Section, Error> {
+        let findings = Study::new(problem)
+            .repetitions(self.repetitions)
+            .limit(self.limit)
+            .keep(self.keep.join(format!("{name}.csv")))
+            .run(&mut |stage| eprintln!("{name}: {stage}"))?
+            .by_processor_time();
+        findings.write_chart(self.charts.join(format!("{name}.svg")))?;
+        println!("{title}\n\n{}\n", findings.fastest());
+        Ok(Section { name, title, compares_methods, findings })
+    }
+}
+
+/// Writes a page.
+pub fn write(path: &Path, page: &str) -> Result<(), Error> {
+    fs::write(path, page).map_err(|source| Error::Output { path: path.into(), source })
 }
 
 /// The page in Markdown, with charts at `charts`.

@@ -13,14 +13,12 @@ mod common;
 mod page;
 mod problems;
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use common::finish;
-use page::{Section, page};
+use page::{Making, page};
 use pliant::Error;
-use pliant::study::{Findings, Study};
 use problems::Sample;
 use rayon::ThreadPoolBuilder;
 
@@ -59,36 +57,25 @@ fn main() {
 fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { problems, rtol, repetitions, limit, keep, out } = arguments;
     let problems = if problems.is_empty() { Sample::value_variants() } else { problems };
-    let mut sections = Vec::new();
-    for &sample in problems {
-        let name = sample.name();
-        let findings = Study::new(&mut *sample.problem(rtol)?)
-            .repetitions(*repetitions)
-            .limit(*limit)
-            .keep(keep.join(format!("{name}.csv")))
-            .run(&mut |stage| eprintln!("{name}: {stage}"))?
-            .by_processor_time();
-        findings.write_chart(out.join(format!("{name}.svg")))?;
-        println!("{}\n\n{}\n", sample.title(), findings.fastest());
-        sections.push(section(sample, findings));
-    }
-    let path = out.join("README.md");
-    fs::write(&path, page(READINGS, "", &sections))
-        .map_err(|source| Error::Output { path: path.clone(), source })?;
+    let making = Making { repetitions: *repetitions, limit: *limit, keep, charts: out };
+    let section = |&sample: &Sample| {
+        let (mut problem, ranked) = (sample.problem(rtol)?, sample.compares_methods());
+        making.section(sample.name(), sample.title(), ranked, &mut *problem)
+    };
+    let sections = problems.iter().map(section).collect::<Result<Vec<_>, _>>()?;
+    page::write(&out.join("README.md"), &page(READINGS, "", &sections))?;
     println!("written to {}: README.md, .svg of each problem", out.display());
     Ok(())
 }
 
-fn section(sample: Sample, findings: Findings) -> Section {
-    let (name, title) = (sample.name(), sample.title());
-    Section { name, title, compares_methods: sample.compares_methods(), findings }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::fs;
     use std::path::Path;
 
     use super::*;
+    use page::Section;
+    use pliant::study::Study;
 
     fn made(problems: &[&str], directory: &Path) -> String {
         let [keep, out] = ["rows", "page"].map(|name| directory.join(name).display().to_string());
@@ -129,7 +116,13 @@ mod tests {
             // without tolerances nothing is run, and numbers are none
             let mut problem = sample.problem(&[]).unwrap();
             let findings = Study::new(&mut *problem).run(&mut |_| ()).unwrap();
-            let page = page(READINGS, "", &[section(sample, findings)]);
+            let section = Section {
+                name: sample.name(),
+                title: sample.title(),
+                compares_methods: true,
+                findings,
+            };
+            let page = page(READINGS, "", &[section]);
             assert!(page.contains(sample.title()));
         }
     }

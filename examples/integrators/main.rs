@@ -11,14 +11,13 @@ mod common;
 #[path = "../common/page.rs"]
 mod page;
 
-use std::fs;
 use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use common::finish;
-use page::{Section, page};
+use page::{Making, page};
 use pliant::Error;
-use pliant::study::{Findings, General, Study};
+use pliant::study::General;
 
 const READINGS: &str = include_str!("readings.md");
 
@@ -89,11 +88,6 @@ impl System {
             Self::HeatedSquare => General::heated_square(),
         }
     }
-
-    fn section(self, findings: Findings) -> Section {
-        let (name, title) = (self.name(), self.title());
-        Section { name, title, compares_methods: true, findings }
-    }
 }
 
 fn main() {
@@ -103,31 +97,26 @@ fn main() {
 fn run(arguments: &Arguments) -> Result<(), Error> {
     let Arguments { problems, rtol, repetitions, limit, keep, out } = arguments;
     let problems = if problems.is_empty() { System::value_variants() } else { problems };
-    let mut sections = Vec::new();
-    for &system in problems {
-        let name = system.name();
-        let findings = Study::new(&mut system.problem().tolerances(rtol.as_slice()))
-            .repetitions(*repetitions)
-            .limit(*limit)
-            .keep(keep.join(format!("{name}.csv")))
-            .run(&mut |stage| eprintln!("{name}: {stage}"))?
-            .by_processor_time();
-        findings.write_chart(out.join(format!("integrators/{name}.svg")))?;
-        println!("{}\n\n{}\n", system.title(), findings.fastest());
-        sections.push(system.section(findings));
-    }
-    let path = out.join("integrators.md");
-    fs::write(&path, page(READINGS, "integrators/", &sections))
-        .map_err(|source| Error::Output { path: path.clone(), source })?;
+    let charts = out.join("integrators");
+    let making = Making { repetitions: *repetitions, limit: *limit, keep, charts: &charts };
+    let section = |system: &System| {
+        let mut problem = system.problem().tolerances(rtol.as_slice());
+        making.section(system.name(), system.title(), true, &mut problem)
+    };
+    let sections = problems.iter().map(section).collect::<Result<Vec<_>, _>>()?;
+    page::write(&out.join("integrators.md"), &page(READINGS, "integrators/", &sections))?;
     println!("written to {}: integrators.md, integrators/*.svg", out.display());
     Ok(())
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
     use std::path::Path;
 
     use super::*;
+    use page::Section;
+    use pliant::study::Study;
 
     #[test]
     fn every_problem_can_be_read_about() {
@@ -138,7 +127,13 @@ mod tests {
             }
             let mut problem = system.problem().tolerances([]);
             let findings = Study::new(&mut problem).run(&mut |_| ()).unwrap();
-            let page = page(READINGS, "", &[system.section(findings)]);
+            let section = Section {
+                name: system.name(),
+                title: system.title(),
+                compares_methods: true,
+                findings,
+            };
+            let page = page(READINGS, "", &[section]);
             assert!(page.contains(system.title()));
         }
     }

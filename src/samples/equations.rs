@@ -97,7 +97,32 @@ macro_rules! jacobians_from_entries {
     };
 }
 
-use jacobians_from_entries;
+/// Implements what problems of a fixed number of unknowns have alike.
+macro_rules! of_unknowns {
+    ($problem:ty, $n:literal) => {
+        impl $problem {
+            /// The problem.
+            #[must_use]
+            pub fn new() -> Self {
+                Self { pattern: Self::pattern_of($n) }
+            }
+
+            /// Where its Jacobian may be nonzero.
+            #[must_use]
+            pub fn pattern(&self) -> &Pattern {
+                &self.pattern
+            }
+        }
+
+        impl Default for $problem {
+            fn default() -> Self {
+                Self::new()
+            }
+        }
+    };
+}
+
+use {jacobians_from_entries, of_unknowns};
 
 /// HIRES: eight reactions of plant photomorphogenesis; stiff.
 ///
@@ -128,25 +153,9 @@ impl Hires {
         digits: 13,
         source: QUADRUPLE,
     };
-
-    /// The problem.
-    #[must_use]
-    pub fn new() -> Self {
-        Self { pattern: Self::pattern_of(8) }
-    }
-
-    /// Where its Jacobian is nonzero.
-    #[must_use]
-    pub fn pattern(&self) -> &Pattern {
-        &self.pattern
-    }
 }
 
-impl Default for Hires {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+of_unknowns!(Hires, 8);
 
 impl Ode for Hires {
     fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -351,25 +360,9 @@ impl VanDerPol {
         digits: 15,
         source: QUADRUPLE,
     };
-
-    /// The problem.
-    #[must_use]
-    pub fn new() -> Self {
-        Self { pattern: Self::pattern_of(2) }
-    }
-
-    /// Where its Jacobian may be nonzero.
-    #[must_use]
-    pub fn pattern(&self) -> &Pattern {
-        &self.pattern
-    }
 }
 
-impl Default for VanDerPol {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+of_unknowns!(VanDerPol, 2);
 
 impl Ode for VanDerPol {
     fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {

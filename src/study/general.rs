@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::timing::Budget;
 use super::{Failed, Line, Measured, Point, Problem, fingerprint};
 use crate::error::Error;
-use crate::integrate::{self, Integrator};
+use crate::integrate::Integrator;
 use crate::ode::{Failure, Ode, with_mass};
 use crate::rk::{self, DormandPrince};
 use crate::sundials::{
@@ -47,7 +47,7 @@ pub struct General {
     ways: Vec<Box<Way>>,
 }
 
-type Way = dyn Fn(&Goal<'_>) -> Result<Reached, Failed>;
+type Way = dyn Fn(&Goal<'_>) -> Result<EndState, Failed>;
 
 /// What errors are measured against.
 enum Truth {
@@ -75,7 +75,7 @@ pub struct Goal<'a> {
 
 /// An end state and what it cost.
 #[derive(Debug, Clone, Default)]
-pub struct Reached {
+pub struct EndState {
     /// The state.
     pub y: Vec<f64>,
     /// Time (s) of a program that measures itself; otherwise that of the call counts.
@@ -130,7 +130,7 @@ impl General {
         mut self,
         name: &str,
         family: &str,
-        way: impl Fn(&Goal<'_>) -> Result<Reached, Failed> + 'static,
+        way: impl Fn(&Goal<'_>) -> Result<EndState, Failed> + 'static,
     ) -> Self {
         let points = points(&self.tolerances);
         self.lines.push(Line { name: name.into(), family: family.into(), points });
@@ -157,9 +157,9 @@ impl General {
             .cvode("cvode-bdf, stability limit", system, y0, newton, bdf(5, true))
             .cvode("cvode-adams", system, y0, newton, |options| options.method(Multistep::Adams))
             .ida("ida", system, y0, newton)
-            .arkode("arkode", system, y0, newton, ButcherTable::implicit(4))
-            .arkode("arkode, order 3", system, y0, newton, ButcherTable::implicit(3))
-            .arkode("arkode, order 5", system, y0, newton, ButcherTable::implicit(5))
+            .arkode("arkode", system, y0, newton, 4)
+            .arkode("arkode, order 3", system, y0, newton, 3)
+            .arkode("arkode, order 5", system, y0, newton, 5)
             .rk(system, y0)
     }
 
@@ -185,11 +185,12 @@ impl General {
         system: &S,
         y0: &[f64],
         newton: &LinearSolver,
-        table: Result<ButcherTable, crate::InputError>,
+        order: u32,
     ) -> Self {
         let (system, y0, newton) = (system.clone(), y0.to_vec(), newton.clone());
         self.line(name, family(name), move |goal| {
-            let options = goal.arkode().table(table.clone()?).newton(newton.clone());
+            let options =
+                goal.arkode().table(ButcherTable::implicit(order)?).newton(newton.clone());
             goal.reach(Arkode::new(system.clone(), 0.0, &y0, &options)?)
         })
     }
@@ -219,7 +220,7 @@ impl General {
     }
 
     /// Solves the problem by the line of this number.
-    fn solve(&self, line: usize, rtol: f64, limit: Duration) -> Result<(Reached, f64), Failed> {
+    fn solve(&self, line: usize, rtol: f64, limit: Duration) -> Result<(EndState, f64), Failed> {
         let (Truth::Known(scale, _) | Truth::Sought(scale, _)) = &self.truth;
         let atol: Vec<f64> = scale.iter().map(|y| rtol * y.abs()).collect();
         let clock = Instant::now();
@@ -271,11 +272,11 @@ impl Goal<'_> {
     ///
     /// # Errors
     /// Those of the integrator; that the time is spent.
-    pub fn reach(&self, mut integrator: impl Integrator) -> Result<Reached, Failed> {
+    pub fn reach(&self, mut integrator: impl Integrator) -> Result<EndState, Failed> {
         let (mut budget, end) = (Budget::new(self.limit), self.t);
         integrator.set_stop_time(Some(end))?;
         while integrator.t() < end {
-            let _: integrate::Reached = integrator.step(end)?;
+            let _ = integrator.step(end)?;
             if budget.is_spent() {
                 let (steps, t) = (integrator.statistics().steps, integrator.t());
                 let reason = format!("given up after {steps} steps at t = {t:.3e} of {end:e}");
@@ -283,7 +284,7 @@ impl Goal<'_> {
             }
         }
         let statistics = integrator.statistics();
-        Ok(Reached {
+        Ok(EndState {
             y: integrator.y().to_vec(),
             seconds: None,
             steps: statistics.steps as usize,
@@ -336,7 +337,7 @@ impl Problem for General {
 
     fn measure(&mut self, line: usize, point: usize, limit: Duration) -> Result<Measured, Failed> {
         let rtol = self.lines[line].points[point].rtol;
-        let (Reached { y, steps, evaluations, factorizations, .. }, seconds) =
+        let (EndState { y, steps, evaluations, factorizations, .. }, seconds) =
             self.solve(line, rtol, limit)?;
         let (Truth::Known(truth, _) | Truth::Sought(truth, _)) = &self.truth;
         let squares: f64 = errors(&y, truth).map(|error| error * error).sum();

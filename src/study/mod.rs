@@ -65,7 +65,7 @@ mod verification;
 pub use advise::{Advice, Adviser, Candidate, Choice, Parts};
 pub use fastest::{Accuracy, Fastest, time_text};
 pub use findings::{Findings, LineFindings};
-pub use general::{General, Goal, Reached};
+pub use general::{EndState, General, Goal};
 pub use look::Look;
 pub use quantity::{Part, Quantity};
 pub use row::Row;

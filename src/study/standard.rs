@@ -7,8 +7,7 @@ use crate::samples::{
     TransistorAmplifier, VanDerPol,
 };
 use crate::sundials::{
-    ButcherTable, Ida, Jacobian, Krylov, KrylovMethod, LinearSolver, MassForm, Pattern,
-    Preconditioner, Side,
+    Ida, Jacobian, Krylov, KrylovMethod, LinearSolver, MassForm, Pattern, Preconditioner, Side,
 };
 
 const DENSE: LinearSolver = LinearSolver::Dense(Jacobian::Supplied);
@@ -86,7 +85,7 @@ impl General {
                 ],
             )
             .ida("ida, band", &system, &y0, &band)
-            .arkode("arkode", &system, &y0, &klu, ButcherTable::implicit(5))
+            .arkode("arkode", &system, &y0, &klu, 5)
             .rk(&system, &y0)
     }
 
@@ -110,8 +109,8 @@ impl General {
                     ("cvode-bdf, GMRES, ILU", &ilu),
                 ],
             )
-            .arkode("arkode, KLU", &system, &y0, &klu, ButcherTable::implicit(4))
-            .arkode("arkode, GMRES, ILU", &system, &y0, &ilu, ButcherTable::implicit(4))
+            .arkode("arkode, KLU", &system, &y0, &klu, 4)
+            .arkode("arkode, GMRES, ILU", &system, &y0, &ilu, 4)
             .rk(&system, &y0)
     }
 

@@ -92,11 +92,5 @@ pub(super) unsafe extern "C" fn precondition_solve<S: Dae>(
         z.copy_from_slice(slice(r, n));
         (host, z)
     };
-    match &host.ilu {
-        Some(ilu) => {
-            ilu.solve(z);
-            host.check_finite(Callback::Preconditioner, t, z)
-        }
-        None => host.guard_output(Callback::NewtonSolve, t, z, Dae::newton_solve),
-    }
+    host.precondition(t, z, Dae::newton_solve)
 }

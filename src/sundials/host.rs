@@ -200,6 +200,22 @@ impl<S> Host<S> {
         if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
     }
 
+    /// Solves with the preconditioner of a Krylov method, in place: the incomplete factorization, or `own` of the system.
+    pub(super) fn precondition(
+        &mut self,
+        t: f64,
+        z: &mut [f64],
+        own: impl FnOnce(&mut S, &mut [f64]) -> Result<(), Failure>,
+    ) -> i32 {
+        match &self.ilu {
+            Some(ilu) => {
+                ilu.solve(z);
+                self.check_finite(Callback::Preconditioner, t, z)
+            }
+            None => self.guard_output(Callback::NewtonSolve, t, z, own),
+        }
+    }
+
     /// Asks for a smaller step where an incomplete factorization has no pivot.
     pub(super) fn check_pivots(&mut self, t: f64, factorized: Result<(), usize>) -> i32 {
         let Err(row) = factorized else { return 0 };

@@ -104,12 +104,5 @@ pub(super) unsafe extern "C" fn precondition_solve<S: Ode>(
         z.copy_from_slice(slice(r, n));
         (host, z)
     };
-    match &host.ilu {
-        Some(ilu) => {
-            ilu.solve(z);
-            host.check_finite(Callback::Preconditioner, t, z)
-        }
-        None => host
-            .guard_output(Callback::NewtonSolve, t, z, |system, z| system.newton_solve(gamma, z)),
-    }
+    host.precondition(t, z, |system, z| system.newton_solve(gamma, z))
 }

@@ -10,7 +10,7 @@ use diffsol::{
 use diffsol_la::{LinearSolver, MatrixRef};
 use faer::sparse::SymbolicSparseColMat;
 use pliant::ode::{Boxed, MassKind, Ode};
-use pliant::study::{Failed, Goal, Reached};
+use pliant::study::{EndState, Failed, Goal};
 use pliant_peers::motion::Clock;
 use pliant_peers::systems::System;
 
@@ -160,7 +160,7 @@ impl<M: Used> OdeEquations for Equations<M> {
 ///
 /// # Errors
 /// Why there is no result.
-pub fn integrate(system: &System, kind: Kind, goal: &Goal) -> Result<Reached, Failed> {
+pub fn integrate(system: &System, kind: Kind, goal: &Goal) -> Result<EndState, Failed> {
     let context = FaerContext::default();
     let (mut ode, n) = (system.ode(), system.y0.len());
     let start = V::from_vec(system.y0.clone(), context);
@@ -215,7 +215,7 @@ fn by<M: Used, S: LinearSolver<M>>(
     equations: Equations<M>,
     kind: Kind,
     goal: &Goal,
-) -> Result<Reached, Failed>
+) -> Result<EndState, Failed>
 where
     for<'b> &'b M: MatrixRef<M>,
 {
@@ -238,14 +238,14 @@ where
 fn steps<'a, M: Used>(
     mut solver: impl OdeSolverMethod<'a, Equations<M>>,
     goal: &Goal,
-) -> Result<Reached, Failed> {
+) -> Result<EndState, Failed> {
     let clock = Clock::new(goal.limit.as_secs_f64());
     solver.set_stop_time(goal.t)?;
     while !matches!(solver.step()?, OdeSolverStopReason::TstopReached) {
         clock.check()?;
     }
     let statistics = solver.get_statistics();
-    Ok(Reached {
+    Ok(EndState {
         y: slice(solver.state().y).to_vec(),
         seconds: None,
         steps: statistics.number_of_steps,

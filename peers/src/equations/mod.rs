@@ -13,7 +13,7 @@ use std::time::Instant;
 use pliant::ode::{MassKind, Ode};
 use pliant::rk::DormandPrince;
 use pliant::samples::TransistorAmplifier;
-use pliant::study::{Failed, Findings, General, Goal, Reached, Study, time_text};
+use pliant::study::{EndState, Failed, Findings, General, Goal, Study, time_text};
 use pliant::sundials::{Arkode, Cvode, Ida, Jacobian, LinearSolver, MassForm};
 use pliant_peers::motion::{Clock, ENOUGH, REPETITIONS};
 use pliant_peers::systems::{NAMES, System};
@@ -122,7 +122,7 @@ fn problem(name: &str, folder: &Path) -> Result<General, Failed> {
 
 impl Way {
     /// The least processor time of some runs. A program repeats itself.
-    fn repeated(&self, system: &System, goal: &Goal) -> Result<Reached, Failed> {
+    fn repeated(&self, system: &System, goal: &Goal) -> Result<EndState, Failed> {
         if let Self::Scipy(program, name, folder) = self {
             return scipy(program, name, folder, system, goal);
         }
@@ -133,12 +133,12 @@ impl Way {
             let seconds = clock.seconds();
             (least, all, count) = (least.min(seconds), all + seconds, count + 1);
             if count == REPETITIONS || all > ENOUGH {
-                return Ok(Reached { seconds: Some(least), ..reached });
+                return Ok(EndState { seconds: Some(least), ..reached });
             }
         }
     }
 
-    fn reach(&self, system: &System, goal: &Goal) -> Result<Reached, Failed> {
+    fn reach(&self, system: &System, goal: &Goal) -> Result<EndState, Failed> {
         let (y0, newton, jacobian) = (&system.y0, || newton(system), Jacobian::Supplied);
         match self {
             Self::Bdf => {
@@ -177,7 +177,7 @@ fn scipy(
     folder: &Path,
     system: &System,
     goal: &Goal,
-) -> Result<Reached, Failed> {
+) -> Result<EndState, Failed> {
     let [atol, out] = ["atol", "end"].map(|file| folder.join(format!("{name}.{file}")));
     fs::write(&atol, goal.atol.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<_>>())?;
     let rtol = goal.rtol.to_string();
@@ -185,7 +185,7 @@ fn scipy(
         [OsStr::new(name), OsStr::new(program.method), OsStr::new(&rtol), atol.as_os_str()];
     let limit = goal.limit.as_secs_f64();
     let solved = program.call(arguments.into_iter(), &out, system.y0.len(), limit)?;
-    Ok(Reached {
+    Ok(EndState {
         y: solved.u,
         seconds: Some(solved.seconds),
         steps: solved.steps,

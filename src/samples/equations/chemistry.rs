@@ -2,7 +2,7 @@
 
 use faer::MatMut;
 
-use super::{Entries, QUADRUPLE, Reference, jacobians_from_entries};
+use super::{Entries, QUADRUPLE, Reference, jacobians_from_entries, of_unknowns};
 use crate::{
     ode::{BandMut, Failure, Ode},
     sundials::Pattern,
@@ -28,25 +28,9 @@ impl Oregonator {
         digits: 15,
         source: QUADRUPLE,
     };
-
-    /// The problem.
-    #[must_use]
-    pub fn new() -> Self {
-        Self { pattern: Self::pattern_of(3) }
-    }
-
-    /// Where its Jacobian may be nonzero.
-    #[must_use]
-    pub fn pattern(&self) -> &Pattern {
-        &self.pattern
-    }
 }
 
-impl Default for Oregonator {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+of_unknowns!(Oregonator, 3);
 
 impl Ode for Oregonator {
     fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -160,25 +144,9 @@ impl Pollution {
         digits: 14,
         source: QUADRUPLE,
     };
-
-    /// The problem.
-    #[must_use]
-    pub fn new() -> Self {
-        Self { pattern: Self::pattern_of(20) }
-    }
-
-    /// Where its Jacobian is nonzero.
-    #[must_use]
-    pub fn pattern(&self) -> &Pattern {
-        &self.pattern
-    }
 }
 
-impl Default for Pollution {
-    fn default() -> Self {
-        Self::new()
-    }
-}
+of_unknowns!(Pollution, 20);
 
 impl Ode for Pollution {
     fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
