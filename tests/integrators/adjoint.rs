@@ -202,8 +202,8 @@ fn robertson_backward_and_forward_agree() {
         klu(Jacobian::Supplied),
         klu(Jacobian::DifferenceQuotients),
     ] {
-        let options = CvodeOptions::new(1e-8, [1e-12, 1e-16, 1e-12]).newton(solver.clone());
-        let options = AdjointOptions::new(options, 1e-8, 1e-9);
+        let forward = CvodeOptions::new(1e-8, [1e-12, 1e-16, 1e-12]).newton(solver.clone());
+        let options = AdjointOptions::new(1e-8, 1e-9);
         let mut own = vec![options.clone()];
         if matches!(solver, LinearSolver::Dense(Jacobian::Supplied)) {
             own.push(options.clone().supplied_rhs().supplied_parameters());
@@ -211,7 +211,8 @@ fn robertson_backward_and_forward_agree() {
             own.push(options.gradient_tolerances(1e-8, [1e-8, 1e-14, 1e-17]));
         }
         for options in own {
-            let mut adjoint = Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &options).unwrap();
+            let mut adjoint =
+                Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &forward, &options).unwrap();
             let gradient = adjoint.gradient(40.0).unwrap();
             let errors =
                 (largest(&[gradient.value], [value]), largest(&gradient.parameters, slopes));
@@ -249,8 +250,8 @@ fn an_oscillator_in_closed_form() {
         },
         [3.0],
     );
-    let options = AdjointOptions::new(CvodeOptions::new(1e-9, 1e-11), 1e-9, 1e-11);
-    let mut adjoint = Adjoint::new(system, End, 0.0, &[1.0, 0.5], &options).unwrap();
+    let (forward, options) = (CvodeOptions::new(1e-9, 1e-11), AdjointOptions::new(1e-9, 1e-11));
+    let mut adjoint = Adjoint::new(system, End, 0.0, &[1.0, 0.5], &forward, &options).unwrap();
     for (t, w) in [(2.0, 3.0), (0.7, 3.0), (-1.5, 3.0), (2.0, 2.0)] {
         adjoint.system_mut().set_parameters(&[w]);
         let gradient = adjoint.gradient(t).unwrap();
@@ -271,11 +272,11 @@ fn an_oscillator_in_closed_form() {
 
 #[test]
 fn troubles_on_the_way_back_are_told() {
-    let options = AdjointOptions::new(CvodeOptions::new(1e-6, [1e-8, 1e-12, 1e-8]), 1e-6, 1e-8)
-        .supplied_parameters();
+    let forward = CvodeOptions::new(1e-6, [1e-8, 1e-12, 1e-8]);
+    let options = AdjointOptions::new(1e-6, 1e-8).supplied_parameters();
     let run = |trouble: fn() -> Result<(), Failure>| {
         let system = Reactions { trouble: Some(trouble), ..Reactions::new() };
-        let mut adjoint = Adjoint::new(system, Mixed, 0.0, &START, &options).unwrap();
+        let mut adjoint = Adjoint::new(system, Mixed, 0.0, &START, &forward, &options).unwrap();
         let outcome = catch_unwind(AssertUnwindSafe(|| adjoint.gradient(10.0)));
         // It goes on working.
         adjoint.system_mut().trouble = None;
@@ -297,8 +298,9 @@ fn troubles_on_the_way_back_are_told() {
     let panic = run(|| panic!("sabotage")).unwrap_err();
     assert_eq!(*panic.downcast_ref::<&str>().unwrap(), "sabotage");
     // Forward, as ever.
-    let few = AdjointOptions::new(CvodeOptions::new(1e-6, 1e-8).max_steps(10), 1e-6, 1e-8);
-    let mut adjoint = Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &few).unwrap();
+    let few = CvodeOptions::new(1e-6, 1e-8).max_steps(10);
+    let options = AdjointOptions::new(1e-6, 1e-8);
+    let mut adjoint = Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &few, &options).unwrap();
     let error = stopped(Ok(adjoint.gradient(10.0)));
     assert!(matches!(error.cause, Cause::TooManySteps { steps: 10, .. }), "{error}");
 }
@@ -306,27 +308,22 @@ fn troubles_on_the_way_back_are_told() {
 #[test]
 fn unusable_input_is_named() {
     let forward = CvodeOptions::new(1e-6, 1e-8);
-    let refused = |options: &AdjointOptions| match Adjoint::new(
-        Reactions::new(),
-        Mixed,
-        0.0,
-        &START,
-        options,
-    ) {
+    let back = AdjointOptions::new(1e-6, 1e-8);
+    let made = |forward: &CvodeOptions, back: &AdjointOptions| {
+        Adjoint::new(Reactions::new(), Mixed, 0.0, &START, forward, back)
+    };
+    let refused = |forward: &CvodeOptions, back: &AdjointOptions| match made(forward, back) {
         Err(Error::Input(error)) => error.to_string(),
         other => panic!("{other:?}"),
     };
-    let options = |forward: &CvodeOptions| AdjointOptions::new(forward.clone(), 1e-6, 1e-8);
-    let custom = forward.clone().newton(LinearSolver::Custom);
-    assert!(refused(&options(&custom)).contains("entries"));
-    assert!(refused(&options(&forward.clone().fixed_point(0))).contains("Newton"));
+    assert!(refused(&forward.clone().newton(LinearSolver::Custom), &back).contains("entries"));
+    assert!(refused(&forward.clone().fixed_point(0), &back).contains("Newton"));
     let sensitivities = forward.clone().sensitivities(Sensitivities::of([0]));
-    assert!(refused(&options(&sensitivities)).contains("sensitivities"));
-    assert!(refused(&options(&forward).checkpoint_steps(0)).contains("checkpoint_steps"));
-    assert!(refused(&AdjointOptions::new(forward.clone(), 2.0, 1e-8)).contains("rtol"));
-    assert!(refused(&AdjointOptions::new(forward.clone(), 1e-6, [1e-8])).contains("atol"));
-    assert!(refused(&options(&forward).gradient_tolerances(1e-6, 0.0)).contains("atol"));
-    let mut adjoint =
-        Adjoint::new(Reactions::new(), Mixed, 0.0, &START, &options(&forward)).unwrap();
+    assert!(refused(&sensitivities, &back).contains("sensitivities"));
+    assert!(refused(&forward, &back.clone().checkpoint_steps(0)).contains("checkpoint_steps"));
+    assert!(refused(&forward, &AdjointOptions::new(2.0, 1e-8)).contains("rtol"));
+    assert!(refused(&forward, &AdjointOptions::new(1e-6, [1e-8])).contains("atol"));
+    assert!(refused(&forward, &back.clone().gradient_tolerances(1e-6, 0.0)).contains("atol"));
+    let mut adjoint = made(&forward, &back).unwrap();
     assert!(adjoint.gradient(0.0).is_err() && adjoint.gradient(f64::NAN).is_err());
 }

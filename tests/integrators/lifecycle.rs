@@ -164,10 +164,11 @@ fn adjoint_solvers() {
         }
     }
     for solver in linear_solvers() {
-        let options = AdjointOptions::new(CvodeOptions::new(1e-4, ATOL).newton(solver), 1e-4, 1e-6)
-            .checkpoint_steps(10);
+        let forward = CvodeOptions::new(1e-4, ATOL).newton(solver);
+        let options = AdjointOptions::new(1e-4, 1e-6).checkpoint_steps(10);
         // what works on no matrix is refused, as it cannot be transposed
-        if let Ok(mut adjoint) = Adjoint::new(Robertson::new(), End, 0.0, &Robertson::Y0, &options)
+        if let Ok(mut adjoint) =
+            Adjoint::new(Robertson::new(), End, 0.0, &Robertson::Y0, &forward, &options)
         {
             adjoint.gradient(0.4).unwrap();
             adjoint.gradient(0.2).unwrap();

@@ -3,14 +3,12 @@
 use crate::{
     input::InputError,
     integrate::{AbsoluteTolerance, Tolerances, check_count},
-    sundials::CvodeOptions,
 };
 
-/// Options of an [`Adjoint`](super::Adjoint).
+/// Options of the way back of an [`Adjoint`](super::Adjoint).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct AdjointOptions {
-    pub(super) forward: CvodeOptions,
     pub(super) tolerances: Tolerances,
     pub(super) gradient_tolerances: Option<Tolerances>,
     pub(super) checkpoint_steps: u32,
@@ -19,11 +17,9 @@ pub struct AdjointOptions {
 }
 
 impl AdjointOptions {
-    /// These options of the run forward; `rtol` and `atol` for the adjoint lambda = dG/dy(t) on the way back. Its linear
-    /// solver is that of the run forward, transposed.
-    pub fn new(forward: CvodeOptions, rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
+    /// These tolerances for the adjoint lambda = dG/dy(t). Its linear solver is that of the run forward, transposed.
+    pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
-            forward,
             tolerances: Tolerances::new(rtol, atol),
             gradient_tolerances: None,
             checkpoint_steps: 150,

@@ -12,7 +12,8 @@ use crate::{
     },
     ode::{Borrowed, Failure, Functional, Ode, Slopes},
     sundials::{
-        Cvode, beside::Backward, cvode::WITH_CHECKPOINTS, ffi, linear::Linear, vector::Vector,
+        Cvode, CvodeOptions, beside::Backward, cvode::WITH_CHECKPOINTS, ffi, linear::Linear,
+        vector::Vector,
     },
 };
 
@@ -38,18 +39,18 @@ pub(super) struct Run<'a, S, F> {
 impl<'a, S: Ode, F: Functional> Run<'a, S, F> {
     pub(super) fn new(
         system: &'a mut AdjointSystem<S, F>,
-        t0: f64,
-        y0: &[f64],
+        (t0, y0): &(f64, Vec<f64>),
+        forward: &CvodeOptions,
         options: &'a AdjointOptions,
     ) -> Result<Self, Error> {
         system.start();
-        let mut solver = Cvode::new(Borrowed(system), t0, y0, &options.forward)?;
+        let mut solver = Cvode::new(Borrowed(system), *t0, y0, forward)?;
         let steps = i64::from(options.checkpoint_steps);
         // SAFETY: the memory is alive; the values are plain numbers.
         let code = unsafe { ffi::CVodeAdjInit(solver.memory.raw, steps, ffi::CV_HERMITE) };
         solver.host.accept("CVodeAdjInit", code)?;
         solver.memory.functions = &WITH_CHECKPOINTS;
-        Ok(Self { solver, options, t0 })
+        Ok(Self { solver, options, t0: *t0 })
     }
 
     /// Runs to time `t` and back.

@@ -10,6 +10,7 @@ use super::{
 use crate::{
     integrate::{Error, check_start, check_time},
     ode::{Functional, Ode},
+    sundials::CvodeOptions,
 };
 
 /// Gradients of a [`Functional`] of the solution of y' = f(t, y, p), with respect to any number of parameters and to
@@ -47,8 +48,8 @@ use crate::{
 ///     },
 ///     [2.0],
 /// );
-/// let options = AdjointOptions::new(CvodeOptions::new(1e-8, 1e-10), 1e-8, 1e-10);
-/// let gradient = Adjoint::new(decay, End, 0.0, &[1.0], &options)?.gradient(1.0)?;
+/// let (forward, back) = (CvodeOptions::new(1e-8, 1e-10), AdjointOptions::new(1e-8, 1e-10));
+/// let gradient = Adjoint::new(decay, End, 0.0, &[1.0], &forward, &back)?.gradient(1.0)?;
 /// let exact = (-2f64).exp();
 /// assert!((gradient.value - exact).abs() < 1e-6);
 /// assert!((gradient.parameters[0] + exact).abs() < 1e-6);
@@ -60,6 +61,7 @@ use crate::{
 pub struct Adjoint<S, F> {
     pub(super) system: AdjointSystem<S, F>,
     pub(super) start: (f64, Vec<f64>),
+    pub(super) forward: CvodeOptions,
     pub(super) options: AdjointOptions,
 }
 
@@ -70,7 +72,7 @@ impl<S, F> fmt::Debug for Adjoint<S, F> {
 }
 
 impl<S: Ode, F: Functional> Adjoint<S, F> {
-    /// For the solution that starts at time `t0` from `y0`.
+    /// For the solution that starts at time `t0` from `y0`, by these options of the run forward and of the way back.
     ///
     /// # Errors
     /// [`Error::Input`] for options or initial values that cannot be used, and for systems with root functions: at an
@@ -80,6 +82,7 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         functional: F,
         t0: f64,
         y0: &[f64],
+        forward: &CvodeOptions,
         options: &AdjointOptions,
     ) -> Result<Self, Error> {
         check_start(t0, y0)?;
@@ -88,12 +91,12 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
             let mend = "an adjoint gradient does not stop at events: leave them out";
             return Err(Error::input("root_count", system.root_count(), mend));
         }
-        let forward = &options.forward;
         let (solver, tolerances) = forward.for_adjoint(y0)?;
         let system = AdjointSystem::new(system, functional, y0.len(), solver, tolerances, options)?;
-        let mut adjoint = Self { system, start: (t0, y0.to_vec()), options: options.clone() };
+        let (start, forward, options) = ((t0, y0.to_vec()), forward.clone(), options.clone());
+        let mut adjoint = Self { system, start, forward, options };
         // finds what else can not be used
-        Run::new(&mut adjoint.system, t0, y0, options)?;
+        adjoint.run()?;
         Ok(adjoint)
     }
 
@@ -108,11 +111,14 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
     /// A panic of the system or the functional passes through.
     pub fn gradient(&mut self, t: f64) -> Result<Gradient, Error> {
         check_time("end time", t)?;
-        let (t0, y0) = &self.start;
-        if t == *t0 {
+        if t == self.start.0 {
             return Err(Error::input("end time", t, "it is another than the start"));
         }
-        Run::new(&mut self.system, *t0, y0, &self.options)?.gradient(t)
+        self.run()?.gradient(t)
+    }
+
+    fn run(&mut self) -> Result<Run<'_, S, F>, Error> {
+        Run::new(&mut self.system, &self.start, &self.forward, &self.options)
     }
 
     /// The system.
