@@ -1,15 +1,24 @@
 //! What happens along a run: events, breaks, and the jumps at both.
 
+use std::mem;
+
 use super::{
+    engine::Start,
     error::Reason,
     event::{Action, Jump},
     problem::Break,
     run::Run,
-    sensitivities::Crossing,
+    sensitivities::{Carried, Crossing},
     solution::{End, Occurrence},
     watch::Root,
 };
 use crate::{input::InputError, integrate::check_finite};
+
+/// A state, and its time derivative, of a DAE.
+struct State {
+    y: Vec<f64>,
+    yp: Vec<f64>,
+}
 
 impl<'a> Run<'a> {
     /// Finds the events of the step that has just been made, up to `t`, and notes them. Those that stop the step are returned, the last ones noted.
@@ -80,7 +89,7 @@ impl<'a> Run<'a> {
     /// Does what the events at the present time ask for.
     pub(super) fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
         let mut acting = Vec::new();
-        let y = self.y.clone();
+        let before = self.state();
         for (i, _) in met {
             let event = &mut self.events[*i];
             let mut ends = event.last == Some(self.counts[*i]);
@@ -96,51 +105,89 @@ impl<'a> Run<'a> {
             }
         }
         if !acting.is_empty() {
-            self.carry_across_event(&y, &acting)?;
-            self.land(y, met)?;
+            self.land(&before, met)?;
+            self.carry_across_event(&before, &acting)?;
         }
         Ok(())
     }
 
+    /// State and time derivative.
+    fn state(&self) -> State {
+        State { y: self.y.clone(), yp: self.yp.clone() }
+    }
+
     /// Carries the sensitivities across the actions of these events, from the state `before` to the present one.
-    fn carry_across_event(&mut self, before: &[f64], acting: &[usize]) -> Result<(), Reason> {
-        let Some(carried) = &mut self.carried else { return Ok(()) };
-        let p = self.engine.parameters().to_vec();
-        check_unchanged(&p, &self.parameters)?;
-        let (h, t) = (self.t - self.t_old, self.t);
-        let at = Crossing { t, h, before, after: &self.y, p: &p };
-        let (engine, events) = (self.engine.as_mut(), &mut self.events);
-        let function = &mut events[acting[0]].function;
-        let taus = carried.of_time(engine, &at, |t, y, p| function(t, y, p))?;
-        carried.cross(engine, &at, &taus, |jump| {
-            for &i in acting {
-                events[i].action.iter_mut().for_each(|action| action(jump));
-            }
-        })
+    fn carry_across_event(&mut self, before: &State, acting: &[usize]) -> Result<(), Reason> {
+        let function = acting[0];
+        let mut events = mem::take(&mut self.events);
+        let outcome = self.carry(before, |carried, at| {
+            let function = &mut events[function].function;
+            let taus = carried.of_time(at, |t, y, p| function(t, y, p));
+            carried.cross(at, &taus, |jump| {
+                for &i in acting {
+                    events[i].action.iter_mut().for_each(|action| action(jump));
+                }
+            })
+        });
+        self.events = events;
+        outcome
     }
 
     /// Carries them across the actions of breaks, whose time depends on nothing.
     fn carry_across_break(
         &mut self,
-        before: &[f64],
+        before: &State,
         actions: &mut [Action<'a>],
     ) -> Result<(), Reason> {
-        let Some(carried) = &mut self.carried else { return Ok(()) };
-        let p = self.engine.parameters().to_vec();
-        check_unchanged(&p, &self.parameters)?;
-        let (h, t) = (self.t - self.t_old, self.t);
-        let at = Crossing { t, h, before, after: &self.y, p: &p };
-        let taus = vec![0.0; p.len()];
-        carried.cross(self.engine.as_mut(), &at, &taus, |jump| {
-            actions.iter_mut().for_each(|action| action(jump));
+        self.carry(before, |carried, at| {
+            if actions.is_empty() {
+                carried.before = Some(carried.s.clone());
+                return Ok(());
+            }
+            let taus = vec![0.0; at.p.len()];
+            carried.cross(at, &taus, |jump| actions.iter_mut().for_each(|action| action(jump)))
         })
+    }
+
+    /// Carries them by `cross` from the state `before` to the present one.
+    fn carry(
+        &mut self,
+        before: &State,
+        cross: impl FnOnce(&mut Carried, &Crossing<'_>) -> Result<(), Reason>,
+    ) -> Result<(), Reason> {
+        let Some(mut carried) = self.carried.take() else { return Ok(()) };
+        let [mut left, mut right] = [before.yp.clone(), self.yp.clone()];
+        let of_dae = !left.is_empty();
+        for (slope, y) in [(&mut left, &before.y), (&mut right, &self.y)] {
+            slope.resize(y.len(), 0.0);
+            self.engine.slope(self.t, y, slope).map_err(|failure| {
+                let mend = "sensitivities need it on both sides of a jump";
+                InputError::new("right-hand side at a jump", failure.into_error(), mend)
+            })?;
+        }
+        let (t, h, slopes) = (self.t, self.t - self.t_old, [&left[..], &right]);
+        let at = Crossing { t, h, before: &before.y, slopes, of_dae, p: &self.parameters };
+        cross(&mut carried, &at)?;
+        self.correct(Some(&mut carried.s))?;
+        self.carried = Some(carried);
+        Ok(())
+    }
+
+    /// Makes the present state of a DAE, and sensitivities, satisfy the equations.
+    fn correct(&mut self, s: Option<&mut [f64]>) -> Result<(), Reason> {
+        let (t, y, yp) = (self.t, &mut self.y[..], &mut self.yp[..]);
+        match self.engine.correct(Start { t, y, yp, s }, t + (t - self.t_old)) {
+            Err(error) if self.end.is_some() => Err(error.into()),
+            // the next start tells what else is wrong
+            _ => Ok(()),
+        }
     }
 
     pub(super) fn jump_at_break(&mut self) -> Result<(), Reason> {
         let Some(Break { t, .. }) = self.breaks.last() else { return Ok(()) };
         self.t = *t;
         self.stale = true;
-        let y = self.y.clone();
+        let before = self.state();
         let mut actions = Vec::new();
         while let Some(mut next) = self.breaks.pop_if(|next| next.t == self.t) {
             if let Some(action) = &mut next.action {
@@ -153,21 +200,26 @@ impl<'a> Run<'a> {
             }
             actions.extend(next.action);
         }
-        if actions.is_empty() {
+        // algebraic unknowns jump with the equations
+        let follows = !self.yp.is_empty() && self.engine.can_be_consistent();
+        if actions.is_empty() && !follows {
             return Ok(());
         }
-        self.carry_across_break(&y, &mut actions)?;
-        self.land(y, &[])
+        self.land(&before, &[])?;
+        self.carry_across_break(&before, &mut actions)
     }
 
     /// Takes over what actions have made of the state, which was `before`, and of the parameters.
-    fn land(&mut self, before: Vec<f64>, met: &[(usize, Root)]) -> Result<(), Reason> {
+    fn land(&mut self, before: &State, met: &[(usize, Root)]) -> Result<(), Reason> {
         self.stale = true;
-        self.before.get_or_insert(before);
+        self.before.get_or_insert_with(|| before.y.clone());
         check_finite("state after the jump", &self.y)?;
         check_finite("parameters after the jump", &self.parameters)?;
-
+        if self.carried.is_some() {
+            check_unchanged(self.engine.parameters(), &self.parameters)?;
+        }
         self.engine.set_parameters(&self.parameters);
+        self.correct(None)?;
         for (i, watch) in self.watches.iter_mut().enumerate() {
             let g = self.events[i].value(i, self.t, &self.y, &self.parameters)?;
             let noise =

@@ -1,6 +1,10 @@
 //! The methods, and the integrators behind them.
 
-use super::{engine::Engine, options::Options, problem::Equations};
+use super::{
+    engine::{DaeEngine, Engine, OdeEngine},
+    options::Options,
+    problem::Equations,
+};
 use crate::{
     input::InputError,
     integrate::Error,
@@ -144,7 +148,8 @@ impl Method {
                 if let Some(differential) = differential {
                     built = built.differential(differential);
                 }
-                Box::new(Ida::new(Boxed(system), t, y, &yp, &built)?)
+                let integrator = Ida::new(Boxed(system), t, y, &yp, &built)?;
+                Box::new(DaeEngine { integrator, options: built })
             }
             Equations::Ode(system) => match self {
                 Self::Ida => {
@@ -153,22 +158,25 @@ impl Method {
                     let mut system = MassForm::new(Boxed(system), y.len(), solver)?;
                     let differential = system.differential(t)?;
                     let built = ordered!(IdaOptions::new(rtol, atol)).differential(differential);
-                    Box::new(Ida::new(system, t, y, &vec![0.0; y.len()], &built)?)
+                    let integrator = Ida::new(system, t, y, &vec![0.0; y.len()], &built)?;
+                    Box::new(DaeEngine { integrator, options: built })
                 }
                 Self::RungeKutta(table) => {
                     let built = sundials!(ArkodeOptions::new(rtol, atol).table(table));
-                    Box::new(Arkode::new(Boxed(system), t, y, &built)?)
+                    Box::new(OdeEngine { integrator: Arkode::new(Boxed(system), t, y, &built)? })
                 }
                 Self::DormandPrince => {
                     let built = common!(rk::Options::new(rtol, atol));
-                    Box::new(rk::DormandPrince::new(Boxed(system), t, y, &built)?)
+                    Box::new(OdeEngine {
+                        integrator: rk::DormandPrince::new(Boxed(system), t, y, &built)?,
+                    })
                 }
                 _ => {
                     let family =
                         if self == Self::Adams { Multistep::Adams } else { Multistep::Bdf };
                     let built = ordered!(CvodeOptions::new(rtol, atol).method(family));
                     let built = if options.project { built.project() } else { built };
-                    Box::new(Cvode::new(Boxed(system), t, y, &built)?)
+                    Box::new(OdeEngine { integrator: Cvode::new(Boxed(system), t, y, &built)? })
                 }
             },
         })

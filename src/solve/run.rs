@@ -152,18 +152,21 @@ impl<'a> Run<'a> {
                 return Err(InputError::new("break", t, mend).into());
             }
         }
-        let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
-        if options.sensitivities.is_some() && jumps && method == Method::Ida {
-            let mend = "sensitivities of a DAE do not go on across actions and breaks";
-            return Err(InputError::new("sensitivities", "given", mend).into());
-        }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let mut engine = method.engine(equations, (start, sign), &y, options)?;
-        engine.make_consistent(end)?;
-        let (y, yp) = (engine.y().to_vec(), engine.yp().to_vec());
+        let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
+        if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
+            let mend = "to go on across actions and breaks, Problem::differential tells which unknowns are differential";
+            return Err(InputError::new("sensitivities", "given for a DAE", mend).into());
+        }
         let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
         if let (Some(carried), Some(saved)) = (&mut carried, &saved) {
             carried.resume(&saved.sensitivities, engine.as_mut())?;
+        }
+        engine.make_consistent(end)?;
+        let (y, yp) = (engine.y().to_vec(), engine.yp().to_vec());
+        if let Some(carried) = &mut carried {
+            carried.read(engine.as_mut(), start)?;
         }
         let parameters = engine.parameters().to_vec();
         let mut watches = Vec::new();

@@ -20,9 +20,11 @@ pub(super) struct Crossing<'c> {
     pub(super) t: f64,
     /// Length of the step that led there, which tells the scale of time.
     pub(super) h: f64,
-    /// The states before and after.
+    /// The state before.
     pub(super) before: &'c [f64],
-    pub(super) after: &'c [f64],
+    /// Its time derivatives before and after.
+    pub(super) slopes: [&'c [f64]; 2],
+    pub(super) of_dae: bool,
     pub(super) p: &'c [f64],
 }
 
@@ -38,16 +40,6 @@ impl Crossing<'_> {
         }
         let y = self.before.iter().zip(*dy).map(|(y, d)| y + distance * d).collect();
         (self.t + distance * dt, y, p)
-    }
-
-    /// The right-hand side here.
-    fn slope(&self, engine: &mut dyn Engine, y: &[f64]) -> Result<Vec<f64>, Reason> {
-        let mut slope = vec![0.0; y.len()];
-        engine.slope(self.t, y, &mut slope).map_err(|failure| {
-            let mend = "sensitivities need it on both sides of a jump";
-            InputError::new("right-hand side at a jump", failure.into_error(), mend)
-        })?;
-        Ok(slope)
     }
 }
 
@@ -70,11 +62,9 @@ impl Carried {
     /// tau = -(g_y s + g_p) / (g_t + g_y f-).
     pub(super) fn of_time(
         &self,
-        engine: &mut dyn Engine,
         at: &Crossing<'_>,
         mut g: impl FnMut(f64, &[f64], &[f64]) -> f64,
-    ) -> Result<Vec<f64>, Reason> {
-        let slope = at.slope(engine, at.before)?;
+    ) -> Vec<f64> {
         let mut along = |direction: Direction<'_>, size: f64| {
             let distance = f64::EPSILON.cbrt() * size;
             let [ahead, behind] = [distance, -distance].map(|distance| {
@@ -83,9 +73,9 @@ impl Carried {
             });
             (ahead - behind) / (2.0 * distance)
         };
-        let rate = along((1.0, &slope, None), at.h);
+        let rate = along((1.0, at.slopes[0], None), at.h);
         let columns = self.parameters.iter().zip(self.s.chunks(at.before.len()));
-        Ok(columns.map(|(&k, s)| -along((0.0, s, Some(k)), scale(at.p[k])) / rate).collect())
+        columns.map(|(&k, s)| -along((0.0, s, Some(k)), scale(at.p[k])) / rate).collect()
     }
 
     /// Carries them across a jump y+ = a(t, y, p) by `act`, at a time with the derivatives `taus`.
@@ -99,20 +89,22 @@ impl Carried {
     /// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049). Derivatives are central differences along these directions.
     pub(super) fn cross(
         &mut self,
-        engine: &mut dyn Engine,
         at: &Crossing<'_>,
         taus: &[f64],
         mut act: impl FnMut(&mut Jump<'_>),
     ) -> Result<(), Reason> {
         let n = at.before.len();
-        let (left, right) = (at.slope(engine, at.before)?, at.slope(engine, at.after)?);
+        let [left, right] = at.slopes;
+        // what an action reads of derivatives, these differences would miss: it makes them NaN
+        let mut unknown = vec![f64::NAN; if at.of_dae { n } else { 0 }];
         self.before = Some(self.s.clone());
         for ((&tau, &k), s) in taus.iter().zip(&self.parameters).zip(self.s.chunks_mut(n)) {
-            let direction: Vec<f64> = s.iter().zip(&left).map(|(s, f)| s + f * tau).collect();
+            let direction: Vec<f64> = s.iter().zip(left).map(|(s, f)| s + f * tau).collect();
             let distance = f64::EPSILON.cbrt() * scale(at.p[k]);
             let mut landed = |distance: f64| {
                 let (t, mut y, mut p) = at.moved(&(tau, &direction, Some(k)), distance);
-                act(&mut Jump { t, y: &mut y, yp: &mut [], p: &mut p, ends: false });
+                unknown.fill(f64::NAN);
+                act(&mut Jump { t, y: &mut y, yp: &mut unknown, p: &mut p, ends: false });
                 y
             };
             let (ahead, behind) = (landed(distance), landed(-distance));
@@ -120,8 +112,11 @@ impl Carried {
                 s[i] = (ahead[i] - behind[i]) / (2.0 * distance) - right[i] * tau;
             }
         }
-        check_finite("sensitivities after the jump", &self.s)?;
-        Ok(())
+        if at.of_dae && self.s.iter().any(|s| s.is_nan()) {
+            let mend = "with sensitivities of a DAE an action reads y, t and p alone, not yp";
+            return Err(InputError::new("sensitivities after the jump", "NaN", mend).into());
+        }
+        Ok(check_finite("sensitivities after the jump", &self.s)?)
     }
 
     /// Starts from those of a saved run.

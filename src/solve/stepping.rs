@@ -76,10 +76,11 @@ impl Run<'_> {
         }
         self.past = self.statistics();
         self.stale = false;
-        self.engine.restart(self.t, &self.y, &self.yp, self.span.1)?;
+        self.engine.restart(self.t, &self.y, &self.yp)?;
         if let Some(carried) = &self.carried {
             carried.hand_over(self.engine.as_mut())?;
         }
+        self.engine.make_consistent(self.span.1)?;
         Ok(self.set_stop_time()?)
     }
 

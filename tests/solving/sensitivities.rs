@@ -88,6 +88,71 @@ fn a_bounce_is_followed() {
     }
 }
 
+/// The same ball as a DAE, with its acceleration as an algebraic unknown, whose derivative to gravity is -1 at the start already.
+#[test]
+fn a_bounce_of_a_dae_is_followed() {
+    let p = [9.81, 0.8];
+    let ball = dae_with_parameters(
+        |_t, y, yp, p, r| {
+            r[0] = yp[0] - y[1];
+            r[1] = yp[1] - y[2];
+            r[2] = y[2] + p[0];
+            Ok(())
+        },
+        p,
+    );
+    let floor = Event::new(|_, y| y[0]).falling().action(|jump| jump.y[1] *= -jump.p[1]);
+    let problem = Problem::dae(ball, [10.0, 0.0, 0.0], [0.0; 3])
+        .differential([true, true, false])
+        .event(floor);
+    let options = tight().sensitivities(Sensitivities::of([0, 1]));
+    let solution = solve(problem, Method::Ida, (0.0, 4.2), &options).unwrap();
+    assert_eq!(solution.events().len(), 2);
+    assert!((solution.last()[0] - height(4.2, p)).abs() < 1e-7);
+    let last = solution.t().len() - 1;
+    for k in [0, last] {
+        let s = solution.sensitivities(k);
+        assert!((s[(2, 0)] + 1.0).abs() < 1e-9 && s[(2, 1)].abs() < 1e-9, "{s:?}");
+    }
+    for k in 0..2 {
+        let by = |d: f64| {
+            let mut p = p;
+            p[k] += d;
+            height(4.2, p)
+        };
+        let expected = (by(1e-5) - by(-1e-5)) / 2e-5;
+        let error = (solution.sensitivities(last)[(0, k)] - expected).abs() / expected.abs();
+        println!("{k}: {error:e}");
+        assert!(error < 2e-8, "{k}: {error:e}");
+    }
+}
+
+/// y' = z, 0 = z - p until t = 1 and 0 = z - 2 p from then on: z and dz/dp jump there with the equations.
+#[test]
+fn algebraic_unknowns_jump_at_a_break() {
+    let ramp = dae_with_parameters(
+        |t, y, yp, p, r| {
+            r[0] = yp[0] - y[1];
+            r[1] = y[1] - if t < 1.0 { p[0] } else { 2.0 * p[0] };
+            Ok(())
+        },
+        [3.0],
+    );
+    let problem =
+        Problem::dae(ramp, [0.0, 0.0], [0.0; 2]).differential([true, false]).breaks([1.0]);
+    let options = tight().sensitivities(Sensitivities::of([0]));
+    let solution = solve(problem, Method::Ida, (0.0, 2.0), &options).unwrap();
+    let at = solution.t().iter().position(|&t| t == 1.0).unwrap();
+    let found = [at, at + 1].map(|k| [solution.y(k)[1], solution.sensitivities(k)[(1, 0)]]);
+    let expected = [[3.0, 1.0], [6.0, 2.0]];
+    for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
+        assert!((found - expected).abs() < 1e-8, "{found} {expected}");
+    }
+    let last = solution.t().len() - 1;
+    assert!((solution.y(last)[0] - 9.0).abs() < 1e-8);
+    assert!((solution.sensitivities(last)[(0, 0)] - 3.0).abs() < 1e-8);
+}
+
 /// At t = 1 the state is raised by p1: dy/dp1 = e^(-p0 (t - 1)) from then on, and 0 before.
 #[test]
 fn a_break_is_followed() {
@@ -132,5 +197,17 @@ fn what_cannot_be_followed_is_refused() {
     );
     let problem = Problem::dae(dae, [1.0], [-2.0]).breaks([0.5]);
     let text = solve(problem, Method::Ida, (0.0, 1.0), &options).unwrap_err().to_string();
-    assert!(text.contains("sensitivities of a DAE"), "{text}");
+    assert!(text.contains("Problem::differential"), "{text}");
+    let dae = dae_with_parameters(
+        |_t, y, yp, p, r| {
+            r[0] = yp[0] + p[0] * y[0];
+            Ok(())
+        },
+        [2.0],
+    );
+    let problem = Problem::dae(dae, [1.0], [-2.0])
+        .differential([true])
+        .break_with(0.5, |jump| jump.y[0] = -jump.yp[0]);
+    let text = solve(problem, Method::Ida, (0.0, 1.0), &options).unwrap_err().to_string();
+    assert!(text.contains("not yp"), "{text}");
 }
