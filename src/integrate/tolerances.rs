@@ -93,6 +93,18 @@ impl Tolerances {
         }
     }
 
+    /// The smallest absolute tolerance that is not zero, or `rtol` if all are: for numbers beside the unknowns.
+    pub(crate) fn least_atol(&self) -> f64 {
+        let least = match &self.atol {
+            AbsoluteTolerance::Scalar(atol) => *atol,
+            AbsoluteTolerance::Vector(atol) => {
+                let given = atol.iter().copied().filter(|atol| *atol > 0.0);
+                given.reduce(f64::min).unwrap_or(0.0)
+            }
+        };
+        if least > 0.0 { least } else { self.rtol }
+    }
+
     /// Writes the weights 1/(rtol |y_i| + atol_i) of the error norm.
     pub(crate) fn weigh(&self, y: &[f64], weights: &mut [f64]) {
         let weight = |y: f64, atol: f64| 1.0 / (self.rtol * y.abs() + atol);

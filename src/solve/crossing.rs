@@ -5,7 +5,7 @@ use std::mem;
 use super::{
     engine::Start,
     error::Reason,
-    event::{Action, Jump},
+    event::{Action, Jump, check_crosses},
     problem::Break,
     run::Run,
     sensitivities::{Carried, Crossing},
@@ -90,8 +90,11 @@ impl<'a> Run<'a> {
     pub(super) fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
         let mut acting = Vec::new();
         let before = self.state();
-        for (i, _) in met {
+        for (i, root) in met {
             let event = &mut self.events[*i];
+            if self.carried.is_some() && event.action.is_some() {
+                check_crosses(*i, self.t, root.sign != 0)?;
+            }
             let mut ends = event.last == Some(self.counts[*i]);
             if let Some(action) = &mut event.action {
                 acting.push(*i);

@@ -171,3 +171,12 @@ impl Jump<'_> {
         self.ends = true;
     }
 }
+
+/// Stops derivatives at an event whose function only touches zero: its time, and whether it is there at all, depend on parameters without them.
+pub(super) fn check_crosses(event: usize, t: f64, crosses: bool) -> Result<(), InputError> {
+    if crosses {
+        return Ok(());
+    }
+    let mend = "where its function only touches zero, the solution has no derivatives";
+    Err(InputError::new(format!("event {event} at t = {t:?}"), "touching", mend))
+}

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::{
     input::InputError,
-    integrate::Error,
+    integrate::{Error, Tolerances},
     ode::{Boxed, MassKind},
     rk,
     sundials::{
@@ -15,6 +15,50 @@ use crate::{
         LinearSolver, MassForm, Multistep,
     },
 };
+
+// The options of each integrator are types of their own, with builders of the same names.
+
+/// What all integrators have.
+macro_rules! common {
+    ($built:expr, $options:expr, $sign:expr) => {{
+        let mut built = $built;
+        if let Some(h) = $options.initial_step {
+            built = built.initial_step(h.copysign($sign));
+        }
+        if let Some(h) = $options.max_step {
+            built = built.max_step(h);
+        }
+        built
+    }};
+}
+
+/// What those of SUNDIALS have.
+macro_rules! sundials {
+    ($built:expr, $options:expr, $sign:expr) => {{
+        let mut built = common!($built, $options, $sign);
+        if let Some(h) = $options.min_step {
+            built = built.min_step(h);
+        }
+        if let Some(solver) = &$options.linear_solver {
+            built = built.newton(solver.clone());
+        }
+        built.sign_constraints($options.sign_constraints.as_slice())
+    }};
+}
+
+/// What multistep methods have.
+macro_rules! ordered {
+    ($built:expr, $options:expr, $sign:expr) => {{
+        let mut built = sundials!($built, $options, $sign);
+        if let Some(order) = $options.max_order {
+            built = built.max_order(order);
+        }
+        if let Some(sensitivities) = &$options.sensitivities {
+            built = built.sensitivities(sensitivities.clone());
+        }
+        built
+    }};
+}
 
 /// An integration method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,82 +147,67 @@ impl Method {
         options: &Options,
     ) -> Result<Box<dyn Engine + 'a>, Error> {
         self.check(options, &equations)?;
-        let Options { tolerances, .. } = options;
-        let (rtol, atol) = (tolerances.rtol, tolerances.atol.clone());
-        // the options of each integrator are types of their own, with builders of the same names
-        macro_rules! common {
-            ($built:expr) => {{
-                let mut built = $built;
-                if let Some(h) = options.initial_step {
-                    built = built.initial_step(h.copysign(sign));
-                }
-                if let Some(h) = options.max_step {
-                    built = built.max_step(h);
-                }
-                built
-            }};
-        }
-        macro_rules! sundials {
-            ($built:expr) => {{
-                let mut built = common!($built);
-                if let Some(h) = options.min_step {
-                    built = built.min_step(h);
-                }
-                if let Some(solver) = &options.linear_solver {
-                    built = built.newton(solver.clone());
-                }
-                built.sign_constraints(options.sign_constraints.as_slice())
-            }};
-        }
-        macro_rules! ordered {
-            ($built:expr) => {{
-                let mut built = sundials!($built);
-                if let Some(order) = options.max_order {
-                    built = built.max_order(order);
-                }
-                if let Some(sensitivities) = &options.sensitivities {
-                    built = built.sensitivities(sensitivities.clone());
-                }
-                built
-            }};
-        }
-        Ok(match equations {
+        let Tolerances { rtol, atol } = options.tolerances.clone();
+        let system = match self.take(equations, t, y.len(), options)? {
             Equations::Dae { system, yp, differential } => {
-                let mut built = ordered!(IdaOptions::new(rtol, atol));
-                if let Some(differential) = differential {
-                    built = built.differential(differential);
-                }
-                let integrator = Ida::new(Boxed(system), t, y, &yp, &built)?;
-                Box::new(DaeEngine { integrator, options: built })
+                let options = self.ida(options, sign, differential);
+                let integrator = Ida::new(Boxed(system), t, y, &yp, &options)?;
+                return Ok(Box::new(DaeEngine { integrator, options }));
             }
-            Equations::Ode(system) => match self {
-                Self::Ida => {
-                    let dense = LinearSolver::Dense(Jacobian::DifferenceQuotients);
-                    let solver = options.linear_solver.as_ref().unwrap_or(&dense);
-                    let mut system = MassForm::new(Boxed(system), y.len(), solver)?;
-                    let differential = system.differential(t)?;
-                    let built = ordered!(IdaOptions::new(rtol, atol)).differential(differential);
-                    let integrator = Ida::new(system, t, y, &vec![0.0; y.len()], &built)?;
-                    Box::new(DaeEngine { integrator, options: built })
-                }
-                Self::RungeKutta(table) => {
-                    let built = sundials!(ArkodeOptions::new(rtol, atol).table(table));
-                    Box::new(OdeEngine { integrator: Arkode::new(Boxed(system), t, y, &built)? })
-                }
-                Self::DormandPrince => {
-                    let built = common!(rk::Options::new(rtol, atol));
-                    Box::new(OdeEngine {
-                        integrator: rk::DormandPrince::new(Boxed(system), t, y, &built)?,
-                    })
-                }
-                _ => {
-                    let family =
-                        if self == Self::Adams { Multistep::Adams } else { Multistep::Bdf };
-                    let built = ordered!(CvodeOptions::new(rtol, atol).method(family));
-                    let built = if options.project { built.project() } else { built };
-                    Box::new(OdeEngine { integrator: Cvode::new(Boxed(system), t, y, &built)? })
-                }
-            },
+            Equations::Ode(system) => Boxed(system),
+        };
+        Ok(match self {
+            Self::RungeKutta(table) => {
+                let built = sundials!(ArkodeOptions::new(rtol, atol).table(table), options, sign);
+                Box::new(OdeEngine { integrator: Arkode::new(system, t, y, &built)? })
+            }
+            Self::DormandPrince => {
+                let built = common!(rk::Options::new(rtol, atol), options, sign);
+                Box::new(OdeEngine { integrator: rk::DormandPrince::new(system, t, y, &built)? })
+            }
+            _ => {
+                let built = self.cvode(options, sign);
+                Box::new(OdeEngine { integrator: Cvode::new(system, t, y, &built)? })
+            }
         })
+    }
+
+    /// The options of CVODE.
+    pub(super) fn cvode(self, options: &Options, sign: f64) -> CvodeOptions {
+        let Tolerances { rtol, atol } = options.tolerances.clone();
+        let family = if self == Self::Adams { Multistep::Adams } else { Multistep::Bdf };
+        let built = ordered!(CvodeOptions::new(rtol, atol).method(family), options, sign);
+        if options.project { built.project() } else { built }
+    }
+
+    /// The options of IDA.
+    pub(super) fn ida(
+        self,
+        options: &Options,
+        sign: f64,
+        differential: Option<Vec<bool>>,
+    ) -> IdaOptions {
+        let Tolerances { rtol, atol } = options.tolerances.clone();
+        let built = ordered!(IdaOptions::new(rtol, atol), options, sign);
+        differential.into_iter().fold(built, IdaOptions::differential)
+    }
+    /// The equations as this method takes them: IDA those with a mass matrix as a DAE.
+    pub(super) fn take<'a>(
+        self,
+        equations: Equations<'a>,
+        t: f64,
+        n: usize,
+        options: &Options,
+    ) -> Result<Equations<'a>, Error> {
+        match equations {
+            Equations::Ode(system) if self == Self::Ida => {
+                let dense = LinearSolver::Dense(Jacobian::DifferenceQuotients);
+                let solver = options.linear_solver.as_ref().unwrap_or(&dense);
+                let mut system = MassForm::new(Boxed(system), n, solver)?;
+                let differential = Some(system.differential(t)?);
+                Ok(Equations::Dae { system: Box::new(system), yp: vec![0.0; n], differential })
+            }
+            equations => Ok(equations),
+        }
     }
 }

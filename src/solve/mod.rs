@@ -31,6 +31,8 @@ mod engine;
 mod ensemble;
 mod error;
 mod event;
+mod gradient;
+mod history;
 mod method;
 #[cfg(doctest)]
 mod misuse;
@@ -48,6 +50,7 @@ mod watch;
 pub use ensemble::ensemble;
 pub use error::{Error, Reason, Stopped};
 pub use event::{Direction, Event, Jump};
+pub use gradient::gradient;
 pub use method::Method;
 pub use options::{Options, Output};
 pub use problem::{Problem, Progress};

@@ -120,8 +120,8 @@ impl Options {
     /// Computes the derivatives dy/dp to some parameters of the equations, too, by CVODE and IDA:
     /// [`Solution::sensitivities`](super::Solution::sensitivities).
     ///
-    /// In an ODE they go on across actions at events and breaks. An action is then called some more times, at states nearby, for its
-    /// derivatives; it may not change the parameters.
+    /// They go on across actions at events and breaks, those of a DAE if its [differential unknowns](super::Problem::differential) are
+    /// known. An action is then called some more times, at states nearby, for its derivatives; it may not change the parameters.
     pub fn sensitivities(mut self, sensitivities: Sensitivities) -> Self {
         self.sensitivities = Some(sensitivities);
         self

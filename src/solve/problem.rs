@@ -22,7 +22,7 @@ pub(super) enum Equations<'a> {
 }
 
 impl Equations<'_> {
-    fn parameters(&self) -> &[f64] {
+    pub(super) fn parameters(&self) -> &[f64] {
         match self {
             Self::Ode(system) => system.parameters(),
             Self::Dae { system, .. } => system.parameters(),

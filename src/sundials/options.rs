@@ -1,7 +1,10 @@
 //! Options that the integrators of SUNDIALS share.
 
 use super::signs::{Sign, check_signs, check_state};
-use crate::{input::InputError, integrate::check_step};
+use crate::{
+    input::InputError,
+    integrate::{Tolerances, check_step},
+};
 
 /// Limits of the control of step size and order, of the nonlinear iteration, and of the unknowns.
 #[derive(Clone, Debug, Default)]
@@ -12,6 +15,19 @@ pub(super) struct Limits {
     pub(super) convergence_coefficient: Option<f64>,
     /// One for each unknown, or none.
     pub(super) signs: Vec<Sign>,
+}
+
+/// Tolerances of integrals, if they are not those of the unknowns, and whether they take part in the error control.
+#[derive(Clone, Debug)]
+pub(super) struct QuadratureOptions {
+    pub(super) tolerances: Option<Tolerances>,
+    pub(super) error_control: bool,
+}
+
+impl Default for QuadratureOptions {
+    fn default() -> Self {
+        Self { tolerances: None, error_control: true }
+    }
 }
 
 impl Limits {
@@ -85,14 +101,21 @@ macro_rules! builder_methods {
         }
     };
     (quadratures) => {
-        /// Lets the errors of the integrals [`quadratures`](crate::ode::Ode::quadratures), too, decide on the step size, with
-        /// these tolerances. Default: the unknowns alone do.
+        /// Tolerances of the integrals [`quadratures`](crate::ode::Ode::quadratures), whose errors, too, decide on the step size.
+        /// Default: `rtol` of the unknowns, and their smallest `atol`.
         pub fn quadrature_tolerances(
             mut self,
             rtol: f64,
             atol: impl Into<AbsoluteTolerance>,
         ) -> Self {
-            self.quadrature_tolerances = Some(Tolerances::new(rtol, atol));
+            self.quadratures.tolerances = Some(Tolerances::new(rtol, atol));
+            self
+        }
+
+        /// Whether errors of the integrals, too, decide on the step size (`CVodeSetQuadErrCon`). Default: yes. Without, the run is that
+        /// of the unknowns alone, and the integrals are as wrong as its steps are long.
+        pub fn quadrature_error_control(mut self, on: bool) -> Self {
+            self.quadratures.error_control = on;
             self
         }
     };

@@ -3,8 +3,8 @@
 use std::ffi::c_void;
 
 use super::{
-    beside::Quadratures, cvode::CvodeKind, ffi, functions::Named, ida::IdaKind, solver::Solver,
-    vector::Vector,
+    beside::Quadratures, cvode::CvodeKind, ffi, functions::Named, ida::IdaKind,
+    options::QuadratureOptions, solver::Solver, vector::Vector,
 };
 use crate::{
     input::InputError,
@@ -70,9 +70,9 @@ impl<K, S> Solver<K, S> {
         count: usize,
         (name, init): Named<unsafe extern "C" fn(*mut c_void, F, ffi::N_Vector) -> i32>,
         callback: F,
-        tolerances: Option<&Tolerances>,
+        (options, of_unknowns): (&QuadratureOptions, &Tolerances),
     ) -> Result<(), Error> {
-        check_tolerances(count, tolerances)?;
+        check_tolerances(count, options.tolerances.as_ref())?;
         let Some(functions) = self.memory.functions.quadratures.filter(|_| count > 0) else {
             return Ok(());
         };
@@ -85,18 +85,24 @@ impl<K, S> Solver<K, S> {
         let code = unsafe { init(memory, callback, values.raw()) };
         self.quadratures = Some(Quadratures { values, scratch });
         self.host.accept(name, code)?;
-        let Some(Tolerances { rtol, atol }) = tolerances else { return Ok(()) };
+        if !options.error_control {
+            return Ok(());
+        }
+        let Tolerances { rtol, atol } = match &options.tolerances {
+            Some(tolerances) => tolerances.clone(),
+            None => Tolerances::new(of_unknowns.rtol, of_unknowns.least_atol()),
+        };
         let (name, code) = match atol {
             AbsoluteTolerance::Scalar(atol) => {
                 let (name, set) = functions.scalar_tolerances;
                 // SAFETY: the memory is alive.
-                (name, unsafe { set(memory, *rtol, *atol) })
+                (name, unsafe { set(memory, rtol, atol) })
             }
             AbsoluteTolerance::Vector(atol) => {
-                let atol = Vector::from_slice(atol, &self.context)?;
+                let atol = Vector::from_slice(&atol, &self.context)?;
                 let (name, set) = functions.vector_tolerances;
                 // SAFETY: the memory is alive and copies the vector, whose length was checked.
-                (name, unsafe { set(memory, *rtol, atol.raw()) })
+                (name, unsafe { set(memory, rtol, atol.raw()) })
             }
         };
         self.host.accept(name, code)?;

@@ -154,8 +154,10 @@ fn error_control_finds_what_the_unknowns_do_not_show() {
         (solver.quadratures()[0] - exact).abs()
     };
     let options = CvodeOptions::new(1e-6, 1e-9);
-    let (without, with) = (run(options.clone()), run(options.quadrature_tolerances(1e-6, 1e-9)));
+    let own = run(options.clone().quadrature_tolerances(1e-6, 1e-9));
+    let (without, with) = (run(options.clone().quadrature_error_control(false)), run(options));
     println!("{without:e} {with:e}");
+    assert_eq!(own, with, "those of the unknowns, by default");
     assert!(without > 1e-3 && with < 1e-5);
 }
 
@@ -163,7 +165,8 @@ fn error_control_finds_what_the_unknowns_do_not_show() {
 #[test]
 fn integrals_do_not_change_the_run() {
     let options = CvodeOptions::new(1e-6, 1e-9);
-    let mut with = Cvode::new(Decay::default(), 0.0, &[1.0], &options).unwrap();
+    let uncontrolled = options.clone().quadrature_error_control(false);
+    let mut with = Cvode::new(Decay::default(), 0.0, &[1.0], &uncontrolled).unwrap();
     let plain = |_t: f64, y: &[f64], ydot: &mut [f64]| {
         ydot[0] = -y[0];
         Ok(())

@@ -4,6 +4,7 @@ mod bounds;
 mod breaks;
 mod ensembles;
 mod events;
+mod gradients;
 mod interpolation;
 mod limits;
 mod refusals;

@@ -75,12 +75,8 @@ impl AdjointOptions {
         if let Some(tolerances) = &self.gradient_tolerances {
             return tolerances.clone();
         }
-        let Tolerances { rtol, atol } = &self.tolerances;
-        let least = match atol {
-            AbsoluteTolerance::Scalar(atol) => *atol,
-            AbsoluteTolerance::Vector(atol) => atol.iter().copied().fold(f64::INFINITY, f64::min),
-        };
+        let (rtol, least) = (self.tolerances.rtol, self.tolerances.least_atol());
         let size = |p: &f64| if *p == 0.0 { 1.0 } else { p.abs() };
-        Tolerances::new(*rtol, parameters.iter().map(|p| least / size(p)).collect::<Vec<_>>())
+        Tolerances::new(rtol, parameters.iter().map(|p| least / size(p)).collect::<Vec<_>>())
     }
 }

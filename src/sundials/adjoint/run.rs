@@ -55,6 +55,8 @@ impl<'a, S: Ode, F: Functional> Run<'a, S, F> {
 
     /// Runs to time `t` and back.
     pub(super) fn gradient(mut self, t: f64) -> Result<Gradient, Error> {
+        // there may be a jump behind
+        self.solver.set_stop_time(Some(t))?;
         self.solver.solve_to(t)?;
         let mut gradient = self.terminal(t)?;
         gradient.value += self.solver.quadratures()[0];

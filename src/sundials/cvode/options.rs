@@ -6,7 +6,7 @@ use crate::{
     sundials::{
         linear_solver::LinearSolver,
         nonlinear::{NonlinearOptions, NonlinearSolver},
-        options::{Limits, builder_methods},
+        options::{Limits, QuadratureOptions, builder_methods},
         sensitivity::Sensitivities,
     },
 };
@@ -36,7 +36,7 @@ pub struct CvodeOptions {
     pub(super) tolerances: Tolerances,
     pub(super) steps: StepOptions,
     pub(super) limits: Limits,
-    pub(super) quadrature_tolerances: Option<Tolerances>,
+    pub(super) quadratures: QuadratureOptions,
     pub(super) sensitivities: Option<Sensitivities>,
     pub(super) method: Multistep,
     pub(super) nonlinear: NonlinearOptions,
@@ -52,7 +52,7 @@ impl CvodeOptions {
             tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
             limits: Limits::default(),
-            quadrature_tolerances: None,
+            quadratures: QuadratureOptions::default(),
             sensitivities: None,
             method: Multistep::Bdf,
             nonlinear: NonlinearOptions::default(),

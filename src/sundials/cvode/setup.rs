@@ -142,7 +142,7 @@ impl<S: Ode> Cvode<S> {
             cvode.host.accept("CVodeInit", code)?;
             cvode.configure(&options.tolerances, &options.steps, &options.limits)?;
             cvode.set_root_functions(("CVodeRootInit", ffi::CVodeRootInit), Some(roots::<S>))?;
-            let tolerances = options.quadrature_tolerances.as_ref();
+            let tolerances = (&options.quadratures, &options.tolerances);
             let integrands = Some(quadratures::<S> as _);
             cvode.set_quadratures(
                 count,

@@ -6,7 +6,7 @@ use crate::{
     sundials::{
         jacobian::Jacobian,
         linear_solver::LinearSolver,
-        options::{Limits, builder_methods},
+        options::{Limits, QuadratureOptions, builder_methods},
         sensitivity::Sensitivities,
     },
 };
@@ -18,7 +18,7 @@ pub struct IdaOptions {
     pub(super) tolerances: Tolerances,
     pub(super) steps: StepOptions,
     pub(super) limits: Limits,
-    pub(super) quadrature_tolerances: Option<Tolerances>,
+    pub(super) quadratures: QuadratureOptions,
     pub(super) sensitivities: Option<Sensitivities>,
     pub(super) linear_solver: LinearSolver,
     pub(super) differential: Option<Vec<bool>>,
@@ -33,7 +33,7 @@ impl IdaOptions {
             tolerances: Tolerances::new(rtol, atol),
             steps: StepOptions::default(),
             limits: Limits::default(),
-            quadrature_tolerances: None,
+            quadratures: QuadratureOptions::default(),
             sensitivities: None,
             linear_solver: LinearSolver::Dense(Jacobian::DifferenceQuotients),
             differential: None,

@@ -139,7 +139,7 @@ impl<S: Dae> Ida<S> {
             ida.host.accept("IDAInit", code)?;
             ida.configure(&options.tolerances, &options.steps, &options.limits)?;
             ida.set_root_functions(("IDARootInit", ffi::IDARootInit), Some(roots::<S>))?;
-            let tolerances = options.quadrature_tolerances.as_ref();
+            let tolerances = (&options.quadratures, &options.tolerances);
             let integrands = Some(quadratures::<S> as _);
             ida.set_quadratures(count, ("IDAQuadInit", ffi::IDAQuadInit), integrands, tolerances)?;
             ida.set_newton(solver, |system, _, r| system.newton_solve(r))?;
