@@ -28,6 +28,10 @@ pub(super) trait Engine {
     fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
     /// Writes the sensitivities at `t`, within the last step.
     fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
+    /// Number of integrals.
+    fn quadrature_count(&self) -> usize;
+    /// Writes the integrals since the last start at `t`, within the last step.
+    fn interpolate_quadratures(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error>;
     /// Lets the sensitivities start from `s`, after a new start.
     fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
     /// Corrects the start, before the first step: what may be, so that it satisfies the equations. Sensitivities, too.
@@ -104,7 +108,7 @@ macro_rules! forward {
     };
 }
 
-/// Sensitivities of those that have them.
+/// Sensitivities and integrals of those that have them.
 macro_rules! with_sensitivities {
     () => {
         fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error> {
@@ -113,6 +117,14 @@ macro_rules! with_sensitivities {
 
         fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
             self.integrator.set_sensitivities(s)
+        }
+
+        fn quadrature_count(&self) -> usize {
+            self.integrator.system().quadrature_count()
+        }
+
+        fn interpolate_quadratures(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error> {
+            self.integrator.interpolate_quadratures(t, 0, out)
         }
     };
 }
@@ -125,6 +137,14 @@ macro_rules! without_sensitivities {
         }
 
         fn set_sensitivities(&mut self, _: MatRef<'_, f64>) -> Result<(), Error> {
+            Ok(())
+        }
+
+        fn quadrature_count(&self) -> usize {
+            0
+        }
+
+        fn interpolate_quadratures(&mut self, _: f64, _: &mut [f64]) -> Result<(), Error> {
             Ok(())
         }
     };

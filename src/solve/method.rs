@@ -126,6 +126,10 @@ impl Method {
         if options.sensitivities.is_some() && !multistep {
             return refused("sensitivities", "given".into(), "has none: take Bdf, Adams or Ida");
         }
+        if equations.quadrature_count() > 0 && !multistep {
+            let mend = "computes none: make them unknowns, or take Bdf, Adams or Ida";
+            return refused("integrals", equations.quadrature_count().to_string(), mend);
+        }
         if let (Some(h), Self::DormandPrince) = (options.min_step, self) {
             return refused("min_step", h.to_string(), "has no such limit");
         }

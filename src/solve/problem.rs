@@ -29,6 +29,13 @@ impl Equations<'_> {
         }
     }
 
+    pub(super) fn quadrature_count(&self) -> usize {
+        match self {
+            Self::Ode(system) => system.quadrature_count(),
+            Self::Dae { system, .. } => system.quadrature_count(),
+        }
+    }
+
     /// Checks that the equations have as many parameters as `values`.
     pub(super) fn check_parameters(&self, values: &[f64]) -> Result<(), InputError> {
         let count = self.parameters().len();

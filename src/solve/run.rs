@@ -17,7 +17,7 @@ use super::{
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
     sensitivities::Carried,
-    solution::{End, Occurrence},
+    solution::{End, Occurrence, Row},
     watch::Watch,
 };
 use crate::{
@@ -66,6 +66,8 @@ pub struct Run<'a> {
     /// Whether the integrator has to start anew at `t`.
     pub(super) stale: bool,
     pub(super) carried: Option<Carried>,
+    /// Integrals since the start of the span, and up to the last start of the integrator.
+    pub(super) quadratures: [Vec<f64>; 2],
     pub(super) occurred: Vec<Occurrence>,
     pub(super) scratch: Vec<f64>,
     /// Of the starts before the last one.
@@ -135,7 +137,7 @@ impl<'a> Run<'a> {
                 }
                 Equations::Ode(_) => 0,
             };
-            saved.check([y.len(), derivatives, events.len()])?;
+            saved.check([y.len(), derivatives, events.len(), equations.quadrature_count()])?;
             if start != saved.t {
                 let mend = format!("the saved run stands at {:?}", saved.t);
                 return Err(InputError::new("start of the span", start, mend).into());
@@ -177,6 +179,10 @@ impl<'a> Run<'a> {
             };
             watches.push(Watch::new(event, start, g));
         }
+        let mut quadratures = vec![0.0; engine.quadrature_count()];
+        if let Some(saved) = &saved {
+            quadratures.clone_from(&saved.quadratures);
+        }
         let limits = Limits {
             steps: options.max_steps,
             evaluations: options.max_evaluations,
@@ -202,6 +208,7 @@ impl<'a> Run<'a> {
             before: None,
             stale: false,
             carried,
+            quadratures: [quadratures.clone(), quadratures],
             occurred: Vec::new(),
             past: Statistics::default(),
             started: Instant::now(),
@@ -261,6 +268,7 @@ impl<'a> Run<'a> {
             parameters: self.parameters.clone(),
             counts: self.counts.clone(),
             sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
+            quadratures: self.quadratures().to_vec(),
             event_values: self.watches.iter().map(Watch::value).collect(),
         }
     }
@@ -273,9 +281,17 @@ impl<'a> Run<'a> {
         MatRef::from_column_major_slice(s, self.y.len(), s.len() / self.y.len())
     }
 
-    /// The sensitivities at the present time, one column after the other.
-    pub(super) fn sensitivities_after(&self) -> &[f64] {
-        self.carried.as_ref().map_or(&[][..], |carried| &carried.s)
+    /// The integrals of [`Ode::quadratures`](crate::ode::Ode::quadratures) from the start of the span to the present time; none if
+    /// the equations have none.
+    #[must_use]
+    pub fn quadratures(&self) -> &[f64] {
+        &self.quadratures[0]
+    }
+
+    /// What there is at the present time, after any jump.
+    pub(super) fn row(&self) -> Row<'_> {
+        let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
+        Row { y: &self.y, s, q: self.quadratures() }
     }
 
     /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there was none.
@@ -292,6 +308,15 @@ impl<'a> Run<'a> {
         let out = MatMut::from_column_major_slice_mut(&mut s, n, columns);
         self.engine.interpolate_sensitivities(t, out)?;
         Ok(s)
+    }
+
+    /// The integrals at time `t` within the last step.
+    pub(super) fn quadratures_at(&mut self, t: f64) -> Result<Vec<f64>, integrate::Error> {
+        let [_, past] = &self.quadratures;
+        let mut q = past.clone();
+        self.engine.interpolate_quadratures(t, &mut q)?;
+        q.iter_mut().zip(past).for_each(|(q, past)| *q += past);
+        Ok(q)
     }
 
     /// Writes the state at time `t` within the last step, before any jump at its end, into `out`.

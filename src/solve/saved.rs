@@ -24,17 +24,28 @@ pub struct Saved {
     pub counts: Vec<u32>,
     /// The sensitivities, one column after the other; empty if there are none.
     pub sensitivities: Vec<f64>,
+    /// The integrals since the start; empty if there are none.
+    pub quadratures: Vec<f64>,
     /// The event functions; 0 for one that is about to leave zero.
     pub event_values: Vec<f64>,
 }
 
 impl Saved {
-    /// Checks that it fits a problem with so many unknowns, derivatives and events.
-    pub(super) fn check(&self, [n, derivatives, events]: [usize; 3]) -> Result<(), InputError> {
+    /// Checks that it fits a problem with so many unknowns, derivatives, events and integrals.
+    pub(super) fn check(
+        &self,
+        [n, derivatives, events, integrals]: [usize; 4],
+    ) -> Result<(), InputError> {
         check_length("length of y in the saved run", self.y.len(), n)?;
         check_finite("y of the saved run", &self.y)?;
         check_finite("yp of the saved run", &self.yp)?;
         check_finite("parameters of the saved run", &self.parameters)?;
+        check_finite("quadratures of the saved run", &self.quadratures)?;
+        if self.quadratures.len() != integrals {
+            let mend = format!("the equations have {integrals}");
+            let input = "length of quadratures in the saved run";
+            return Err(InputError::new(input, self.quadratures.len(), mend));
+        }
         if self.yp.len() != derivatives {
             let mend = "a DAE has as many as unknowns, an ODE none";
             return Err(InputError::new("length of yp in the saved run", self.yp.len(), mend));

@@ -53,10 +53,20 @@ pub struct Solution {
     nodes: Vec<f64>,
     /// The sensitivities of each time, one column after the other.
     sensitivities: Vec<f64>,
+    /// The integrals of each time.
+    quadratures: Vec<f64>,
     pub(super) events: Vec<Occurrence>,
     pub(super) statistics: Statistics,
     pub(super) end: End,
     pub(super) saved: Saved,
+}
+
+/// What is kept of one time: state, sensitivities (one column after the other) and integrals.
+#[derive(Clone, Copy)]
+pub(super) struct Row<'r> {
+    pub(super) y: &'r [f64],
+    pub(super) s: &'r [f64],
+    pub(super) q: &'r [f64],
 }
 
 /// Inner nodes of a step for a polynomial of this degree, as parts of it: the extrema of Chebyshev's polynomial.
@@ -69,14 +79,15 @@ fn node(k: usize, degree: usize) -> f64 {
 }
 
 impl Solution {
-    pub(super) fn new(t: f64, (y, s): (&[f64], &[f64]), dense: bool) -> Self {
+    pub(super) fn new(t: f64, row: Row<'_>, dense: bool) -> Self {
         Self {
-            n: y.len(),
+            n: row.y.len(),
             t: vec![t],
-            states: y.to_vec(),
+            states: row.y.to_vec(),
             inner: dense.then(Vec::new),
             nodes: Vec::new(),
-            sensitivities: s.to_vec(),
+            sensitivities: row.s.to_vec(),
+            quadratures: row.q.to_vec(),
             events: Vec::new(),
             statistics: Statistics::default(),
             end: End::Early,
@@ -88,7 +99,7 @@ impl Solution {
     pub(super) fn push<E>(
         &mut self,
         t: f64,
-        (y, s): (&[f64], &[f64]),
+        row: Row<'_>,
         degree: u32,
         mut at: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -105,22 +116,23 @@ impl Solution {
                 }
             }
         }
-        self.add(t, y, s);
+        self.add(t, row);
         Ok(())
     }
 
-    fn add(&mut self, t: f64, y: &[f64], s: &[f64]) {
+    fn add(&mut self, t: f64, row: Row<'_>) {
         self.t.push(t);
-        self.states.extend_from_slice(y);
-        self.sensitivities.extend_from_slice(s);
+        self.states.extend_from_slice(row.y);
+        self.sensitivities.extend_from_slice(row.s);
+        self.quadratures.extend_from_slice(row.q);
     }
 
     /// Adds the state after a jump.
-    pub(super) fn push_jump(&mut self, t: f64, (y, s): (&[f64], &[f64])) {
+    pub(super) fn push_jump(&mut self, t: f64, row: Row<'_>) {
         if let Some(inner) = &mut self.inner {
             inner.push(self.nodes.len());
         }
-        self.add(t, y, s);
+        self.add(t, row);
     }
 
     /// The times, in the order of the run.
@@ -154,6 +166,17 @@ impl Solution {
         let count = self.sensitivities.len() / self.t.len();
         let s = &self.sensitivities[k * count..(k + 1) * count];
         MatRef::from_column_major_slice(s, self.n, count / self.n)
+    }
+
+    /// The integrals of [`Ode::quadratures`](crate::ode::Ode::quadratures) from the start of the span to time `t()[k]`; none if
+    /// the equations have none.
+    ///
+    /// # Panics
+    /// If there is no such time.
+    #[must_use]
+    pub fn quadratures(&self, k: usize) -> &[f64] {
+        let count = self.quadratures.len() / self.t.len();
+        &self.quadratures[k * count..(k + 1) * count]
     }
 
     /// The time derivative of the last state, of a DAE; empty otherwise.
@@ -305,6 +328,7 @@ impl Solution {
             && times > 0
             && self.states.len() == n * times
             && self.sensitivities.len().is_multiple_of(n * times)
+            && self.quadratures.len().is_multiple_of(times)
             && inner
     }
 }

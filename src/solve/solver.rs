@@ -6,7 +6,7 @@ use super::{
     options::{Options, Output},
     problem::Problem,
     run::Run,
-    solution::{End, Solution},
+    solution::{End, Row, Solution},
 };
 
 /// Integrates `problem` by `method` over `span`, from its start to its end, which may lie before it.
@@ -29,11 +29,11 @@ pub fn solve(
         Ok(run) => run,
         Err(Reason::Input(error)) => return Err(Error::Input(error)),
         Err(reason) => {
-            let solution = Solution::new(span.0, (&start, &[]), dense);
+            let solution = Solution::new(span.0, Row { y: &start, s: &[], q: &[] }, dense);
             return Err(Error::Stopped(Box::new(Stopped { reason, solution })));
         }
     };
-    let mut solution = Solution::new(run.t(), (run.y(), run.sensitivities_after()), dense);
+    let mut solution = Solution::new(run.t(), run.row(), dense);
     let outcome = integrate(&mut run, &mut solution, &options.output);
     solution.statistics = run.statistics();
     solution.saved = run.save();
@@ -72,7 +72,7 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
             Err(reason) => {
                 // where it stopped, if that is not there already
                 if *output != Output::Steps && solution.t().last() != Some(&run.t()) {
-                    solution.push_jump(run.t(), (run.y(), run.sensitivities_after()));
+                    solution.push_jump(run.t(), run.row());
                 }
                 return Err(reason);
             }
@@ -82,10 +82,11 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
                 y.copy_from_slice(run.y());
             }
             let degree = run.interpolant_degree();
-            let s = run.sensitivities_before().to_vec();
-            solution.push(t, (&y, &s), degree, |at, out| run.interpolate(at, out))?;
+            let (s, q) = (run.sensitivities_before().to_vec(), run.quadratures().to_vec());
+            let row = Row { y: &y, s: &s, q: &q };
+            solution.push(t, row, degree, |at, out| run.interpolate(at, out))?;
             if jumped {
-                solution.push_jump(t, (run.y(), run.sensitivities_after()));
+                solution.push_jump(t, run.row());
             }
             continue;
         }
@@ -93,16 +94,16 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
             && (first - t) * sign <= 0.0
         {
             if *first == t {
-                solution.push_jump(*first, (run.y(), run.sensitivities_after()));
+                solution.push_jump(*first, run.row());
             } else {
                 run.interpolate(*first, &mut y)?;
-                let s = run.sensitivities_at(*first)?;
-                solution.push_jump(*first, (&y, &s));
+                let (s, q) = (run.sensitivities_at(*first)?, run.quadratures_at(*first)?);
+                solution.push_jump(*first, Row { y: &y, s: &s, q: &q });
             }
             times = rest;
         }
         if run.end().is_some() && solution.t().last() != Some(&t) {
-            solution.push_jump(t, (run.y(), run.sensitivities_after()));
+            solution.push_jump(t, run.row());
         }
     }
 }

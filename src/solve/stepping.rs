@@ -49,6 +49,9 @@ impl Run<'_> {
         if let Some(carried) = &mut self.carried {
             carried.read(self.engine.as_mut(), t)?;
         }
+        let [q, past] = &mut self.quadratures;
+        self.engine.interpolate_quadratures(t, q)?;
+        q.iter_mut().zip(past).for_each(|(q, past)| *q += *past);
         let at_break = at_break && stops_at.is_none_or(|at| at == self.engine.t());
         if stops_at.is_some() {
             self.jump_at_events(&jumps)?;
@@ -76,6 +79,8 @@ impl Run<'_> {
         }
         self.past = self.statistics();
         self.stale = false;
+        let [q, past] = &mut self.quadratures;
+        past.copy_from_slice(q);
         self.engine.restart(self.t, &self.y, &self.yp)?;
         if let Some(carried) = &self.carried {
             carried.hand_over(self.engine.as_mut())?;

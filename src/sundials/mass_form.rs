@@ -266,6 +266,20 @@ impl<S: Ode> Dae for MassForm<S> {
         self.system.roots(t, y, g)
     }
 
+    fn quadrature_count(&self) -> usize {
+        self.system.quadrature_count()
+    }
+
+    fn quadratures(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _yp: &[f64],
+        qdot: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.system.quadratures(t, y, qdot)
+    }
+
     fn parameters(&self) -> &[f64] {
         self.system.parameters()
     }

@@ -5,6 +5,7 @@ mod breaks;
 mod ensembles;
 mod events;
 mod gradients;
+mod integrals;
 mod interpolation;
 mod limits;
 mod refusals;
