@@ -225,24 +225,26 @@ fn robertson_backward_and_forward_agree() {
     }
 }
 
+/// G = y0(T).
+struct End;
+impl Functional for End {
+    fn terminal(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        _p: &[f64],
+        slopes: Option<Slopes<'_>>,
+    ) -> Result<f64, Failure> {
+        if let Some(slopes) = slopes {
+            slopes.y[0] = 1.0;
+        }
+        Ok(y[0])
+    }
+}
+
 /// An oscillator x'' = -w^2 x: G = x(T), in w, x0 and v0, in both directions of time.
 #[test]
 fn an_oscillator_in_closed_form() {
-    struct End;
-    impl Functional for End {
-        fn terminal(
-            &mut self,
-            _t: f64,
-            y: &[f64],
-            _p: &[f64],
-            slopes: Option<Slopes<'_>>,
-        ) -> Result<f64, Failure> {
-            if let Some(slopes) = slopes {
-                slopes.y[0] = 1.0;
-            }
-            Ok(y[0])
-        }
-    }
     let system = pliant::ode::with_parameters(
         |_t: f64, y: &[f64], p: &[f64], ydot: &mut [f64]| {
             ydot.copy_from_slice(&[y[1], -p[0] * p[0] * y[0]]);
@@ -268,6 +270,22 @@ fn an_oscillator_in_closed_form() {
         println!("{error:e}");
         assert!(error < 5e-8, "{gradient:?} {exact:?}");
     }
+}
+
+/// y' = y, which ends where the equations end: at t = 1.
+#[test]
+fn the_equations_are_not_asked_beyond_the_end() {
+    let growth = |t: f64, y: &[f64], ydot: &mut [f64]| {
+        if t > 1.0 {
+            return Err(Failure::Fatal("there is nothing beyond".into()));
+        }
+        ydot[0] = y[0];
+        Ok(())
+    };
+    let (forward, options) = (CvodeOptions::new(1e-6, 1e-8), AdjointOptions::new(1e-6, 1e-8));
+    let mut adjoint = Adjoint::new(growth, End, 0.0, &[1.0], &forward, &options).unwrap();
+    let slope = adjoint.gradient(1.0).unwrap().initial_state[0];
+    assert!((slope - std::f64::consts::E).abs() < 1e-4, "{slope}");
 }
 
 #[test]

@@ -210,4 +210,16 @@ fn what_cannot_be_followed_is_refused() {
         .break_with(0.5, |jump| jump.y[0] = -jump.yp[0]);
     let text = solve(problem, Method::Ida, (0.0, 1.0), &options).unwrap_err().to_string();
     assert!(text.contains("not yp"), "{text}");
+    // the top of a flight is touched, and no crossing of it
+    let fall = with_parameters(
+        |_t, y, p, ydot| {
+            ydot.copy_from_slice(&[y[1], -p[0]]);
+            Ok(())
+        },
+        [8.0],
+    );
+    let top = Event::new(|_, y| y[0] - 1.0).touching(1e-3).action(|jump| jump.y[1] = -1.0);
+    let problem = Problem::ode(fall, [0.0, 4.0]).event(top);
+    let text = solve(problem, Method::Bdf, (0.0, 1.0), &options).unwrap_err().to_string();
+    assert!(text.contains("only touches zero"), "{text}");
 }
