@@ -87,8 +87,8 @@ pub fn gradient(
         let mend = "a gradient takes Bdf or Adams, or Ida for a DAE";
         return Err(InputError::new("method", format!("{method:?}"), mend).into());
     }
-    if options.sensitivities.is_some() {
-        let mend = "the run forward of a gradient needs none";
+    if options.sensitivities.is_some() || problem.initial_sensitivities.is_some() {
+        let mend = "the run forward of a gradient needs none; what the start depends on adds (dy0/dp)^T dG/dy0";
         return Err(InputError::new("sensitivities", "given", mend).into());
     }
     let mut problem = problem;

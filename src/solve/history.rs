@@ -102,7 +102,8 @@ fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Place)>>) -
     };
     let observer = problem.observer.take();
     let (y, cancel, saved) = (problem.y.clone(), problem.cancel.clone(), problem.saved.clone());
-    Problem { equations, y, events, breaks, observer, cancel, saved }
+    let initial_sensitivities = None;
+    Problem { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities }
 }
 
 /// Solves `problem`; what it goes through, and where it ends.

@@ -88,6 +88,7 @@ pub struct Problem<'a> {
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) saved: Option<Saved>,
+    pub(super) initial_sensitivities: Option<Vec<f64>>,
 }
 
 impl fmt::Debug for Problem<'_> {
@@ -114,7 +115,8 @@ impl<'a> Problem<'a> {
 
     fn new(equations: Equations<'a>, y: Vec<f64>) -> Self {
         let (events, breaks) = (Vec::new(), Vec::new());
-        Self { equations, y, events, breaks, observer: None, cancel: None, saved: None }
+        let (observer, cancel, saved, initial_sensitivities) = (None, None, None, None);
+        Self { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities }
     }
 
     /// For each unknown of a DAE, whether its derivative occurs in the equations (`true`) or it is algebraic (`false`).
@@ -124,6 +126,14 @@ impl<'a> Problem<'a> {
         if let Equations::Dae { differential, .. } = &mut self.equations {
             *differential = Some(differential_unknowns.into());
         }
+        self
+    }
+
+    /// The sensitivities at the start, where the initial state depends on the parameters of
+    /// [`Options::sensitivities`](super::Options::sensitivities): dy/dp, one column after the other. Default: zero. Algebraic unknowns of a DAE
+    /// have theirs corrected with them.
+    pub fn initial_sensitivities(mut self, s: impl Into<Vec<f64>>) -> Self {
+        self.initial_sensitivities = Some(s.into());
         self
     }
 

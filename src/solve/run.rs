@@ -124,8 +124,8 @@ impl<'a> Run<'a> {
         }
         let sign = (end - start).signum();
         options.check(span)?;
-        let Problem { mut equations, mut y, mut events, mut breaks, observer, cancel, saved } =
-            problem;
+        let Problem { mut equations, mut y, mut events, mut breaks, .. } = problem;
+        let Problem { observer, cancel, saved, initial_sensitivities, .. } = problem;
         for (i, event) in events.iter().enumerate() {
             event.check(i)?;
         }
@@ -162,8 +162,14 @@ impl<'a> Run<'a> {
             return Err(InputError::new("sensitivities", "given for a DAE", mend).into());
         }
         let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
-        if let (Some(carried), Some(saved)) = (&mut carried, &saved) {
-            carried.resume(&saved.sensitivities, engine.as_mut())?;
+        let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
+        match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
+            (Some(carried), Some(s)) => carried.start(s, engine.as_mut())?,
+            (None, Some(_)) if initial_sensitivities.is_some() => {
+                let mend = "Options::sensitivities tells which parameters they belong to";
+                return Err(InputError::new("initial_sensitivities", "given", mend).into());
+            }
+            _ => {}
         }
         engine.make_consistent(end)?;
         let (y, yp) = (engine.y().to_vec(), engine.yp().to_vec());

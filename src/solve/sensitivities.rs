@@ -119,11 +119,11 @@ impl Carried {
         Ok(check_finite("sensitivities after the jump", &self.s)?)
     }
 
-    /// Starts from those of a saved run.
-    pub(super) fn resume(&mut self, s: &[f64], engine: &mut dyn Engine) -> Result<(), Reason> {
+    /// Starts from others than zero.
+    pub(super) fn start(&mut self, s: &[f64], engine: &mut dyn Engine) -> Result<(), Reason> {
         if s.len() != self.s.len() {
             let mend = format!("there are {} of them, n for each parameter", self.s.len());
-            let input = "length of sensitivities in the saved run";
+            let input = "length of the sensitivities at the start";
             return Err(InputError::new(input, s.len(), mend).into());
         }
         self.s.copy_from_slice(s);

@@ -223,3 +223,21 @@ fn what_cannot_be_followed_is_refused() {
     let text = solve(problem, Method::Bdf, (0.0, 1.0), &options).unwrap_err().to_string();
     assert!(text.contains("only touches zero"), "{text}");
 }
+
+/// y(0) = p1 and y' = -p0 y: dy/dp1 = e^(-p0 t), from 1 at the start.
+#[test]
+fn the_start_may_depend_on_parameters() {
+    let options = tight().sensitivities(Sensitivities::of([1, 0]));
+    let problem = || decay().initial_sensitivities([1.0, 0.0]);
+    let solution = solve(problem(), Method::Bdf, (0.0, 1.0), &options).unwrap();
+    let decayed = (-2.0_f64).exp();
+    for (k, expected) in [(0, [1.0, 0.0]), (solution.t().len() - 1, [decayed, -decayed])] {
+        let s = solution.sensitivities(k);
+        assert!((s[(0, 0)] - expected[0]).abs() < 1e-9 && (s[(0, 1)] - expected[1]).abs() < 1e-9);
+    }
+    let refused = |problem, options: &Options| {
+        solve(problem, Method::Bdf, (0.0, 1.0), options).unwrap_err().to_string()
+    };
+    assert!(refused(decay().initial_sensitivities([1.0]), &options).contains("there are 2"));
+    assert!(refused(problem(), &tight()).contains("Options::sensitivities"));
+}
