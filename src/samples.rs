@@ -17,8 +17,8 @@ pub use actuated::{
     ring_springs, spring_ring,
 };
 pub use equations::{
-    Brusselator, HeatedSquare, Hires, Oregonator, Pendulum, Pollution, Reference, Robertson,
-    TransistorAmplifier, VanDerPol,
+    Brusselator, CarAxis, HeatedSquare, Hires, Oregonator, Pendulum, Pollution, Reference,
+    Robertson, TransistorAmplifier, VanDerPol,
 };
 pub use oscillator::DampedOscillator;
 #[cfg(feature = "bodies")]

@@ -1,5 +1,6 @@
-//! Standard stiff problems, a DAE and a pendulum, each with a trusted end state.
+//! Standard stiff problems, DAEs and a pendulum, each with a trusted end state.
 
+mod car_axis;
 mod chemistry;
 mod fields;
 mod pendulum;
@@ -14,6 +15,7 @@ use crate::{
     sundials::Pattern,
 };
 
+pub use car_axis::CarAxis;
 pub use chemistry::{Oregonator, Pollution};
 pub use fields::{Brusselator, HeatedSquare};
 pub use pendulum::Pendulum;

@@ -3,7 +3,7 @@
 use pliant::{
     ode::{Ode, with_mass},
     samples::{
-        Brusselator, HeatedSquare, Hires, Oregonator, Pollution, Reference, Robertson,
+        Brusselator, CarAxis, HeatedSquare, Hires, Oregonator, Pollution, Reference, Robertson,
         TransistorAmplifier, VanDerPol,
     },
     sundials::{
@@ -123,6 +123,42 @@ fn transistor_amplifier() {
             TransistorAmplifier::REFERENCE.error(&found)
         });
     }
+}
+
+fn car_axis(alpha: f64, rtol: f64) -> Ida<CarAxis> {
+    let atol: Vec<f64> = CarAxis::REFERENCE.y.iter().map(|y| rtol * y.abs()).collect();
+    let options = IdaOptions::new(rtol, atol).differential(CarAxis::DIFFERENTIAL);
+    Ida::new(CarAxis { alpha }, 0.0, &CarAxis::Y0, &CarAxis::YP0, &options).unwrap()
+}
+
+/// Whatever alpha is: the exact solution does not depend on it.
+#[test]
+fn the_car_axis() {
+    for alpha in [1.0, 10.0] {
+        check(&format!("CARAXIS, IDA, alpha {alpha}"), 650.0, |rtol| {
+            CarAxis::REFERENCE.error(&end(car_axis(alpha, rtol), CarAxis::REFERENCE.t))
+        });
+    }
+}
+
+/// Until t = 3 and from t = 27 until 30.
+#[test]
+fn the_constraints_of_the_car_axis_drift_without_alpha_alone() {
+    let drifts = [0.0, 10.0].map(|alpha| {
+        let mut solver = car_axis(alpha, 1e-7);
+        let mut largest = |times: std::ops::Range<i32>| {
+            times.fold(0.0_f64, |largest, tenths| {
+                let t = 0.1 * f64::from(tenths + 1);
+                solver.solve_to(t).unwrap();
+                CarAxis::constraints(t, solver.y()).iter().fold(largest, |a, g| a.max(g.abs()))
+            })
+        };
+        (largest(0..30), largest(270..300))
+    });
+    println!("{drifts:?}");
+    let [without, with] = drifts;
+    assert!(without.1 > 5.0 * without.0, "{drifts:?}");
+    assert!(with.0 < 5e-8 && with.1 < 5e-8, "{drifts:?}");
 }
 
 /// 10^4 unknowns, by KLU and by GMRES with an incomplete factorization, against the closed form of the same discrete

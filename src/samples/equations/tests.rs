@@ -119,3 +119,23 @@ fn the_amplifier_starts_consistently() {
         assert!(rate.abs() < 1e-10, "rows {i} and {}: {rate}", i + 1);
     }
 }
+
+/// The start of the car axis, y + t y' near t = 0, satisfies its equations, and those without derivatives to first order.
+#[test]
+fn the_car_axis_starts_consistently() {
+    let slope = CarAxis::YP0;
+    let residual = |t: f64| {
+        let y: Vec<f64> = CarAxis::Y0.iter().zip(slope).map(|(y, slope)| y + t * slope).collect();
+        let mut residual = [0.0; 10];
+        CarAxis { alpha: 3.0 }.residual(t, &y, &slope, &mut residual).unwrap();
+        residual
+    };
+    assert_eq!(residual(0.0), [0.0; 10]);
+    let h = 1e-6;
+    let (forth, back) = (residual(h), residual(-h));
+    for i in [8, 9] {
+        // What is left is cubic; the rates of the terms are of order 100.
+        let rate = (forth[i] - back[i]) / (2.0 * h);
+        assert!(rate.abs() < 1e-8, "row {i}: {rate}");
+    }
+}
