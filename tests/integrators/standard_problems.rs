@@ -2,9 +2,10 @@
 
 use pliant::{
     ode::{Ode, with_mass},
+    rk::{self, DormandPrince},
     samples::{
-        Brusselator, CarAxis, HeatedSquare, Hires, Oregonator, Pollution, Reference, Robertson,
-        TransistorAmplifier, VanDerPol,
+        Brusselator, CarAxis, DampedOscillator, HeatedSquare, Hires, Oregonator, Pendulum,
+        Pollution, Reference, Robertson, TransistorAmplifier, VanDerPol,
     },
     sundials::{
         Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, Integrator, Jacobian, Krylov,
@@ -123,6 +124,44 @@ fn transistor_amplifier() {
             TransistorAmplifier::REFERENCE.error(&found)
         });
     }
+}
+
+/// The Runge-Kutta method, with `error` of the end state.
+fn check_explicit<S: Ode + Clone>(
+    name: &str,
+    bound: f64,
+    system: &S,
+    y0: &[f64],
+    t: f64,
+    atol: impl Fn(f64) -> Vec<f64>,
+    error: impl Fn(&[f64]) -> f64,
+) {
+    check(&format!("{name}, Dormand-Prince"), bound, |rtol| {
+        let options = rk::Options::new(rtol, atol(rtol));
+        error(&end(DormandPrince::new(system.clone(), 0.0, y0, &options).unwrap(), t))
+    });
+}
+
+#[test]
+fn by_runge_kutta() {
+    let largest = |found: &[f64], exact: &[f64]| {
+        found.iter().zip(exact).fold(0.0_f64, |error, (y, exact)| error.max((y - exact).abs()))
+    };
+    let even = |n| move |rtol| vec![rtol; n];
+
+    let (y0, t) = (Pendulum::Y0, Pendulum::PERIOD);
+    check_explicit("pendulum", 45.0, &Pendulum, &y0, t, even(4), |y| largest(y, &y0));
+
+    let (oscillator, t) = (DampedOscillator { damping: 0.1 }, 20.0);
+    let exact = oscillator.state(t);
+    check_explicit("oscillator", 5.0, &oscillator, &DampedOscillator::Y0, t, even(2), |y| {
+        largest(y, &exact)
+    });
+
+    // stiff: stability limits the steps
+    let Reference { t, y, .. } = Hires::REFERENCE;
+    let atol = |rtol: f64| y.iter().map(|y| rtol * y.abs()).collect();
+    check_explicit("HIRES", 2.5, &Hires::new(), &Hires::Y0, t, atol, |y| Hires::REFERENCE.error(y));
 }
 
 fn car_axis(alpha: f64, rtol: f64) -> Ida<CarAxis> {
