@@ -131,6 +131,14 @@ where
     WithParameters { equations: residual, parameters: parameters.into() }
 }
 
+impl<F> WithParameters<F> {
+    fn replace(&mut self, values: &[f64]) {
+        let (given, needed) = (values.len(), self.parameters.len());
+        assert!(given == needed, "set_parameters: {given} values for {needed} parameters");
+        self.parameters.copy_from_slice(values);
+    }
+}
+
 impl<F> Ode for WithParameters<F>
 where
     F: FnMut(f64, &[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
@@ -144,7 +152,7 @@ where
     }
 
     fn set_parameters(&mut self, values: &[f64]) {
-        self.parameters.copy_from_slice(values);
+        self.replace(values);
     }
 }
 
@@ -167,6 +175,29 @@ where
     }
 
     fn set_parameters(&mut self, values: &[f64]) {
-        self.parameters.copy_from_slice(values);
+        self.replace(values);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[should_panic(expected = "set_parameters: 1 values for 2 parameters")]
+    fn an_ode_takes_as_many_parameters_as_it_has() {
+        let mut line = with_parameters(|_t, _y, p, ydot| Ok(ydot[0] = p[0] + p[1]), [1.0, 2.0]);
+        Ode::set_parameters(&mut line, &[3.0]);
+    }
+
+    #[test]
+    #[should_panic(expected = "set_parameters: 3 values for 2 parameters")]
+    fn a_dae_takes_as_many_parameters_as_it_has() {
+        let residual = |_t: f64, _y: &[f64], yp: &[f64], p: &[f64], r: &mut [f64]| {
+            r[0] = p[0] + p[1] - yp[0];
+            Ok(())
+        };
+        let mut line = dae_with_parameters(residual, [1.0, 2.0]);
+        Dae::set_parameters(&mut line, &[3.0, 4.0, 5.0]);
     }
 }

@@ -129,6 +129,9 @@ pub trait Dae {
     }
 
     /// Gives the [`parameters`](Self::parameters) these values; there are as many.
+    ///
+    /// # Panics
+    /// May panic if there are not, as [`WithParameters`](super::WithParameters) does.
     fn set_parameters(&mut self, _values: &[f64]) {}
 }
 
