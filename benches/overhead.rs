@@ -1,4 +1,4 @@
-//! What CVODE costs through pliant, against the same runs in C (`benches/c/overhead.c`).
+//! What CVODE and IDA cost through pliant, against the same runs in C (`benches/c/overhead.c`).
 //!
 //! `cargo bench --bench overhead`; it needs a C compiler (`CC`, or else `cc`), and valgrind for the instructions. Both
 //! sides are programs of their own and take turns. Times are the least of all runs, from the first object made to
@@ -12,15 +12,28 @@ use std::time::Instant;
 
 use pliant::{
     ode::Ode,
-    samples::{Hires, Robertson, VanDerPol},
-    sundials::{Cvode, CvodeOptions, Integrator, Jacobian, LinearSolver, Statistics},
+    samples::{Brusselator, Hires, Pollution, Robertson, TransistorAmplifier, VanDerPol},
+    sundials::{
+        Cvode, CvodeOptions, Ida, IdaOptions, Integrator, Jacobian, LinearSolver, MassForm,
+        Statistics,
+    },
 };
 
 type Outcome<T> = Result<T, Box<dyn Error>>;
 
 /// Problem and linear solver.
-const CASES: [[&str; 2]; 4] =
-    [["hires", "dense"], ["hires", "klu"], ["robertson", "dense"], ["vanderpol", "dense"]];
+const CASES: [[&str; 2]; 8] = [
+    ["hires", "dense"],
+    ["hires", "klu"],
+    ["robertson", "dense"],
+    ["vanderpol", "dense"],
+    ["pollution", "dense"],
+    ["brusselator", "band"],
+    ["brusselator", "klu"],
+    ["amplifier", "dense"],
+];
+/// Points of the Brusselator.
+const POINTS: usize = 20;
 /// How often the sides take turns, and the runs of a turn.
 const TURNS: usize = 40;
 const RUNS: usize = 40;
@@ -35,31 +48,52 @@ const COUNTERS: [&str; 7] = [
     "nonlinear iterations",
     "nonlinear failures",
 ];
-const LIBRARIES: [&str; 7] = [
+const LIBRARIES: [&str; 11] = [
     "sundials_cvodes",
+    "sundials_idas",
     "sundials_nvecserial",
+    "sundials_sunmatrixband",
     "sundials_sunmatrixdense",
     "sundials_sunmatrixsparse",
+    "sundials_sunlinsolband",
     "sundials_sunlinsoldense",
     "sundials_sunlinsolklu",
     "klu",
+    "m",
 ];
 
 /// One run by pliant.
 fn run(problem: &str, solver: &str) -> Outcome<Statistics> {
-    let hires = Hires::new();
-    let newton = match solver {
-        "klu" => {
-            LinearSolver::Klu { pattern: hires.pattern().clone(), jacobian: Jacobian::Supplied }
+    let jacobian = Jacobian::Supplied;
+    let newton = match (problem, solver) {
+        ("hires", "klu") => LinearSolver::Klu { pattern: Hires::new().pattern().clone(), jacobian },
+        ("brusselator", "klu") => {
+            LinearSolver::Klu { pattern: Brusselator::new(POINTS).pattern().clone(), jacobian }
         }
-        _ => LinearSolver::Dense(Jacobian::Supplied),
+        (_, "band") => {
+            let bandwidth = Brusselator::BANDWIDTH;
+            LinearSolver::Band { lower: bandwidth, upper: bandwidth, jacobian }
+        }
+        _ => LinearSolver::Dense(jacobian),
     };
+    if problem == "amplifier" {
+        return amplifier(newton);
+    }
     let options = |atol: &[f64]| CvodeOptions::new(1e-8, atol.to_vec()).newton(newton);
     match problem {
-        "hires" => solve(hires, &Hires::Y0, Hires::REFERENCE.t, &options(&[1e-12; 8])),
+        "hires" => solve(Hires::new(), &Hires::Y0, Hires::REFERENCE.t, &options(&[1e-12; 8])),
         "robertson" => {
             let options = options(&[1e-14, 1e-19, 1e-10]);
             solve(Robertson::new(), &Robertson::Y0, Robertson::REFERENCE.t, &options)
+        }
+        "pollution" => {
+            let options = options(&[1e-12; 20]);
+            solve(Pollution::new(), &Pollution::Y0, Pollution::REFERENCE.t, &options)
+        }
+        "brusselator" => {
+            let system = Brusselator::new(POINTS);
+            let y0 = system.y0();
+            solve(system, &y0, Brusselator::REFERENCE_20.t, &options(&[1e-12; 2 * POINTS]))
         }
         _ => {
             let options = options(&[1e-12; 2]);
@@ -71,6 +105,15 @@ fn run(problem: &str, solver: &str) -> Outcome<Statistics> {
 fn solve(system: impl Ode, y0: &[f64], end: f64, options: &CvodeOptions) -> Outcome<Statistics> {
     let mut solver = Cvode::new(system, 0.0, y0, options)?;
     solver.solve_to(end)?;
+    Ok(solver.statistics())
+}
+
+fn amplifier(newton: LinearSolver) -> Outcome<Statistics> {
+    let system = MassForm::new(TransistorAmplifier, 8, &newton)?;
+    let (y0, slope) = (TransistorAmplifier::Y0, TransistorAmplifier::YP0);
+    let options = IdaOptions::new(1e-5, 1e-5).newton(newton).max_order(3);
+    let mut solver = Ida::new(system, 0.0, &y0, &slope, &options)?;
+    solver.solve_to(TransistorAmplifier::REFERENCE.t)?;
     Ok(solver.statistics())
 }
 
