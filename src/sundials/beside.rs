@@ -1,6 +1,8 @@
 //! What CVODES and IDAS carry beside the state.
 
-use super::{context::Context, ffi, linear::Linear, vector::Vector};
+use std::ptr;
+
+use super::{context::Context, ffi, functions::BackwardFunctions, linear::Linear, vector::Vector};
 use crate::integrate::Error;
 
 /// Integrals at the present time.
@@ -67,12 +69,22 @@ impl Vectors {
 
 /// The backward problem of an adjoint gradient, which C frees with the forward one, and what it uses.
 pub(super) struct Backward {
+    pub(super) functions: &'static BackwardFunctions,
     /// What C calls it.
     pub(super) which: i32,
     /// C uses it; here it is kept, and freed after the memory.
-    pub(super) _linear: Linear,
+    pub(super) linear: Linear,
     /// Where it starts, then where it ends.
     pub(super) lambda: Vector,
+    /// The time derivative of `lambda`, of a DAE only.
+    pub(super) slope: Option<Vector>,
     /// Integrals, if there are parameters.
     pub(super) gradient: Option<Vector>,
+}
+
+impl Backward {
+    /// The C vector of the time derivative; null for an ODE.
+    pub(super) fn raw_slope(&self) -> ffi::N_Vector {
+        self.slope.as_ref().map_or(ptr::null_mut(), Vector::raw)
+    }
 }

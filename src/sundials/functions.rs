@@ -142,6 +142,41 @@ pub(super) struct QuadratureFunctions {
     pub(super) get_evaluations: Get<i64>,
 }
 
+/// Gives lambda and lambda': (memory, problem, time, lambda, lambda'). An ODE has null for lambda'.
+pub(super) type GetBackward =
+    unsafe fn(*mut c_void, i32, *mut f64, ffi::N_Vector, ffi::N_Vector) -> i32;
+
+/// What CVODES and IDAS have for a way back in time: for problems that belong to the memory of the run forward and are
+/// known by a number.
+pub(super) struct BackwardFunctions {
+    /// What errors call the integrator.
+    pub(super) integrator: &'static str,
+    /// The integrator as it runs forward with checkpoints.
+    pub(super) forward: &'static Functions,
+    /// (memory, steps between checkpoints, interpolation)
+    pub(super) init_checkpoints: Named<unsafe extern "C" fn(*mut c_void, i64, i32) -> i32>,
+    pub(super) create: Named<unsafe fn(*mut c_void, *mut i32) -> i32>,
+    pub(super) vector_tolerances:
+        Named<unsafe extern "C" fn(*mut c_void, i32, f64, ffi::N_Vector) -> i32>,
+    pub(super) set_user_data: Named<unsafe extern "C" fn(*mut c_void, i32, *mut c_void) -> i32>,
+    pub(super) set_max_steps: Named<unsafe extern "C" fn(*mut c_void, i32, i64) -> i32>,
+    pub(super) set_linear_solver:
+        Named<unsafe extern "C" fn(*mut c_void, i32, ffi::SUNLinearSolver, ffi::SUNMatrix) -> i32>,
+    pub(super) set_quadrature_error_control:
+        Named<unsafe extern "C" fn(*mut c_void, i32, i32) -> i32>,
+    pub(super) quadrature_tolerances:
+        Named<unsafe extern "C" fn(*mut c_void, i32, f64, ffi::N_Vector) -> i32>,
+    /// (memory, target, task)
+    pub(super) solve: unsafe extern "C" fn(*mut c_void, f64, i32) -> i32,
+    pub(super) get: Named<GetBackward>,
+    pub(super) get_quadratures:
+        Named<unsafe extern "C" fn(*mut c_void, i32, *mut f64, ffi::N_Vector) -> i32>,
+    /// The memory of the backward problem.
+    pub(super) get_memory: unsafe extern "C" fn(*mut c_void, i32) -> *mut c_void,
+    pub(super) get_current_time: Get<f64>,
+    pub(super) get_current_order: Get<i32>,
+}
+
 // Tasks and codes that all integrators number alike: the shared code has CVODE's names for them.
 const _: () = {
     let alike = [
@@ -164,3 +199,6 @@ const _: () = {
         i += 1;
     }
 };
+
+// So is the interpolation between checkpoints.
+const _: () = assert!(ffi::CV_HERMITE == ffi::IDA_HERMITE);

@@ -1,14 +1,14 @@
-//! The Jacobian df/dy, evaluated for products with its transpose.
+//! Jacobians, evaluated for products with their transposes.
 
 use faer::MatMut;
 
 use crate::{
     input::InputError,
-    ode::{BandMut, Failure, Ode},
+    ode::{BandMut, Failure},
     sundials::{Jacobian, LinearSolver, Pattern, colouring::Colouring, matrix::Entries},
 };
 
-/// The Jacobian at one point, stored as the linear solver of the run forward has it.
+/// A Jacobian at one point, stored as the linear solver of the run forward has it.
 pub(super) struct StoredJacobian {
     forward: LinearSolver,
     n: usize,
@@ -39,7 +39,7 @@ impl StoredJacobian {
         Self { forward, n, values, colouring, moved, ahead, behind }
     }
 
-    /// The linear solver for -J^T.
+    /// The linear solver for transposed matrices.
     pub(super) fn backward_solver(&self) -> Result<LinearSolver, InputError> {
         match &self.forward {
             LinearSolver::Dense(_) => Ok(LinearSolver::Dense(Jacobian::Supplied)),
@@ -64,60 +64,52 @@ impl StoredJacobian {
         }
     }
 
-    /// Evaluates it at (t, y). `size` is the size of an unknown, for difference quotients.
-    pub(super) fn evaluate<S: Ode>(
-        &mut self,
-        system: &mut S,
-        t: f64,
-        y: &[f64],
-        size: impl Fn(usize) -> f64,
-    ) -> Result<(), Failure> {
-        let n = self.n;
-        self.values.fill(0.0);
-        let quotients = match &self.forward {
+    /// Whether the system supplies it.
+    pub(super) fn is_supplied(&self) -> bool {
+        match &self.forward {
             LinearSolver::Dense(jacobian)
             | LinearSolver::Band { jacobian, .. }
-            | LinearSolver::Klu { jacobian, .. } => *jacobian == Jacobian::DifferenceQuotients,
+            | LinearSolver::Klu { jacobian, .. } => *jacobian == Jacobian::Supplied,
             _ => false,
-        };
-        if quotients {
-            return self.quotients(system, t, y, size);
-        }
-        system.rhs(t, y, &mut self.ahead)?;
-        match &self.forward {
-            LinearSolver::Dense(_) => {
-                let matrix = MatMut::from_column_major_slice_mut(&mut self.values, n, n);
-                system.dense_jacobian(t, y, &self.ahead, matrix)
-            }
-            LinearSolver::Band { lower, upper, .. } => {
-                let (stride, values) = (lower + upper + 1, &mut self.values);
-                let band = BandMut::new(values, stride, *upper, *lower, *upper);
-                system.banded_jacobian(t, y, &self.ahead, band)
-            }
-            _ => system.sparse_jacobian(t, y, &self.ahead, &mut self.values),
         }
     }
 
-    /// Central differences, of as many columns at once as do not meet in any row.
-    fn quotients<S: Ode>(
+    /// Its entries, to be filled; zeros.
+    pub(super) fn entries(&mut self) -> Entries<'_> {
+        self.values.fill(0.0);
+        let values = &mut self.values;
+        match &self.forward {
+            LinearSolver::Dense(_) => {
+                Entries::Dense(MatMut::from_column_major_slice_mut(values, self.n, self.n))
+            }
+            LinearSolver::Band { lower, upper, .. } => {
+                let stride = lower + upper + 1;
+                Entries::Band(BandMut::new(values, stride, *upper, *lower, *upper))
+            }
+            _ => Entries::Sparse(values),
+        }
+    }
+
+    /// Makes it that of `evaluate` at `x` by central differences with these steps, of as many columns at once as do not
+    /// meet in any row.
+    pub(super) fn quotients(
         &mut self,
-        system: &mut S,
-        t: f64,
-        y: &[f64],
-        size: impl Fn(usize) -> f64,
+        x: &[f64],
+        step: impl Fn(usize) -> f64,
+        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
-        let step = |j: usize| f64::EPSILON.cbrt() * size(j);
+        self.values.fill(0.0);
         for colour in 0..self.colours() {
             for (sign, result) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
-                self.moved.copy_from_slice(y);
+                self.moved.copy_from_slice(x);
                 columns(&self.forward, self.colouring.as_ref(), self.n, colour, |j| {
                     self.moved[j] += sign * step(j);
                 });
-                system.rhs(t, &self.moved, result)?;
+                evaluate(&self.moved, result)?;
             }
             let (values, ahead, behind) = (&mut self.values, &self.ahead, &self.behind);
             columns(&self.forward, self.colouring.as_ref(), self.n, colour, |j| {
-                let distance = (y[j] + step(j)) - (y[j] - step(j));
+                let distance = (x[j] + step(j)) - (x[j] - step(j));
                 places(&self.forward, self.n, j, |i, place| {
                     values[place] = (ahead[i] - behind[i]) / distance;
                 });
@@ -135,30 +127,49 @@ impl StoredJacobian {
         }
     }
 
+    /// The numbers that are stored.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// Calls `visit` with row, column and value of each entry.
-    fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
+    pub(super) fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        self.each_place(|i, j, place| visit(i, j, self.values[place]));
+    }
+
+    /// Calls `visit` with row, column and place among the values of each entry.
+    pub(super) fn each_place(&self, mut visit: impl FnMut(usize, usize, usize)) {
         for j in 0..self.n {
-            places(&self.forward, self.n, j, |i, place| visit(i, j, self.values[place]));
+            places(&self.forward, self.n, j, |i, place| visit(i, j, place));
         }
     }
 
-    /// Writes J^T lambda.
-    pub(super) fn transposed_times(&self, lambda: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        self.each(|i, j, value| out[j] += value * lambda[i]);
+    /// Adds `factor` J^T lambda.
+    pub(super) fn add_transposed_times(&self, factor: f64, lambda: &[f64], out: &mut [f64]) {
+        self.each(|i, j, value| out[j] += factor * value * lambda[i]);
     }
 
-    /// Writes -J^T into the matrix of `backward`, which is this solver's.
-    pub(super) fn write_negative_transposed(&self, backward: &LinearSolver, entries: Entries<'_>) {
+    /// Writes the transpose of another matrix, which has `value` in a row and at a place of this one, into that of
+    /// `backward`, which is this solver's.
+    pub(super) fn write_transposed(
+        &self,
+        backward: &LinearSolver,
+        entries: Entries<'_>,
+        value: impl Fn(usize, usize) -> f64,
+    ) {
         match (entries, backward) {
-            (Entries::Dense(mut matrix), _) => self.each(|i, j, value| matrix[(j, i)] = -value),
-            (Entries::Band(mut band), _) => self.each(|i, j, value| band[(j, i)] = -value),
+            (Entries::Dense(mut matrix), _) => {
+                self.each_place(|i, j, place| matrix[(j, i)] = value(i, place));
+            }
+            (Entries::Band(mut band), _) => {
+                self.each_place(|i, j, place| band[(j, i)] = value(i, place));
+            }
             (Entries::Sparse(values), LinearSolver::Klu { pattern, .. }) => {
-                self.each(|i, j, value| {
-                    if let Some(place) = pattern.position(j, i) {
-                        values[place] = -value;
+                self.each_place(|i, j, place| {
+                    if let Some(to) = pattern.position(j, i) {
+                        values[to] = value(i, place);
                     }
-                })
+                });
             }
             _ => {}
         }

@@ -1,12 +1,12 @@
 //! Gradients of a functional of the solution with respect to many parameters, by one run back in time.
 
-mod callbacks;
+mod equations;
+mod gradient;
 mod jacobian;
+mod ode;
 mod options;
-mod run;
-mod setup;
-mod system;
+mod way_back;
 
+pub use gradient::Gradient;
+pub use ode::Adjoint;
 pub use options::AdjointOptions;
-pub use run::Gradient;
-pub use setup::Adjoint;

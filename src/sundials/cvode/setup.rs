@@ -6,7 +6,7 @@ use crate::{
     ode::Ode,
     sundials::{
         ffi,
-        functions::{Functions, QuadratureFunctions, SensitivityFunctions},
+        functions::{BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions},
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{jacobian, newton_rhs, newton_setup, project, quadratures, rhs, roots},
@@ -28,8 +28,34 @@ pub struct CvodeKind;
 
 static FUNCTIONS: Functions = TABLE;
 
-/// CVODES as it runs forward with checkpoints, for an adjoint problem.
-pub(in crate::sundials) static WITH_CHECKPOINTS: Functions = Functions {
+/// For an adjoint problem.
+pub(in crate::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
+    integrator: "CVODE on the way back",
+    forward: &WITH_CHECKPOINTS,
+    init_checkpoints: ("CVodeAdjInit", ffi::CVodeAdjInit),
+    create: ("CVodeCreateB", |memory, which| {
+        // SAFETY: whoever calls through the table vouches for the arguments.
+        unsafe { ffi::CVodeCreateB(memory, ffi::CV_BDF, which) }
+    }),
+    vector_tolerances: ("CVodeSVtolerancesB", ffi::CVodeSVtolerancesB),
+    set_user_data: ("CVodeSetUserDataB", ffi::CVodeSetUserDataB),
+    set_max_steps: ("CVodeSetMaxNumStepsB", ffi::CVodeSetMaxNumStepsB),
+    set_linear_solver: ("CVodeSetLinearSolverB", ffi::CVodeSetLinearSolverB),
+    set_quadrature_error_control: ("CVodeSetQuadErrConB", ffi::CVodeSetQuadErrConB),
+    quadrature_tolerances: ("CVodeQuadSVtolerancesB", ffi::CVodeQuadSVtolerancesB),
+    solve: ffi::CVodeB,
+    get: ("CVodeGetB", |memory, which, t, lambda, _| {
+        // SAFETY: as above.
+        unsafe { ffi::CVodeGetB(memory, which, t, lambda) }
+    }),
+    get_quadratures: ("CVodeGetQuadB", ffi::CVodeGetQuadB),
+    get_memory: ffi::CVodeGetAdjCVodeBmem,
+    get_current_time: ffi::CVodeGetCurrentTime,
+    get_current_order: ffi::CVodeGetCurrentOrder,
+};
+
+/// CVODES as it runs forward with checkpoints.
+static WITH_CHECKPOINTS: Functions = Functions {
     solve: ("CVodeF", |memory, target, t, y, _, task| {
         let mut checkpoints = 0;
         // SAFETY: whoever calls through the table vouches for the arguments.

@@ -76,13 +76,13 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode, F: Functional>(
         (host, slice(y, n))
     };
     // SAFETY: SUNDIALS passes the matrix that was made for this linear solver.
-    let entries = unsafe { matrix::entries(jacobian, &host.system.0.backward, host.n) };
+    let entries = unsafe { matrix::entries(jacobian, &host.system.0.equations.backward, host.n) };
     let outcome =
         host.guard(Callback::Adjoint, t, |system| system.0.backward_jacobian(t, y, entries));
     if outcome != 0 {
         return outcome;
     }
     // SAFETY: as above; the access through `entries` has ended.
-    let values = unsafe { matrix::stored(jacobian, &host.system.0.backward, host.n) };
+    let values = unsafe { matrix::stored(jacobian, &host.system.0.equations.backward, host.n) };
     host.check_finite(Callback::Adjoint, t, values)
 }

@@ -2,15 +2,14 @@
 
 use std::fmt;
 
-use super::{
-    options::AdjointOptions,
-    run::{Gradient, Run},
-    system::AdjointSystem,
-};
+use super::{run::Run, system::AdjointSystem};
 use crate::{
     integrate::{Error, check_start, check_time},
     ode::{Functional, Ode},
-    sundials::CvodeOptions,
+    sundials::{
+        CvodeOptions,
+        adjoint::{gradient::Gradient, options::AdjointOptions},
+    },
 };
 
 /// Gradients of a [`Functional`] of the solution of y' = f(t, y, p), with respect to any number of parameters and to
@@ -59,10 +58,10 @@ use crate::{
 ///
 /// User guide: chapter "Using CVODES for Adjoint Sensitivity Analysis".
 pub struct Adjoint<S, F> {
-    pub(super) system: AdjointSystem<S, F>,
-    pub(super) start: (f64, Vec<f64>),
-    pub(super) forward: CvodeOptions,
-    pub(super) options: AdjointOptions,
+    system: AdjointSystem<S, F>,
+    start: (f64, Vec<f64>),
+    forward: CvodeOptions,
+    options: AdjointOptions,
 }
 
 impl<S, F> fmt::Debug for Adjoint<S, F> {
@@ -91,8 +90,8 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
             let mend = "an adjoint gradient does not stop at events: leave them out";
             return Err(Error::input("root_count", system.root_count(), mend));
         }
-        let (solver, tolerances) = forward.for_adjoint(y0)?;
-        let system = AdjointSystem::new(system, functional, y0.len(), solver, tolerances, options)?;
+        let equations = forward.for_adjoint(y0)?;
+        let system = AdjointSystem::new(system, functional, y0.len(), equations, options)?;
         let (start, forward, options) = ((t0, y0.to_vec()), forward.clone(), options.clone());
         let mut adjoint = Self { system, start, forward, options };
         // finds what else can not be used
@@ -124,11 +123,11 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
     /// The system.
     #[must_use]
     pub fn system(&self) -> &S {
-        &self.system.system
+        &self.system.equations.system
     }
 
     /// The system, to be given other parameters; the next [`gradient`](Self::gradient) is theirs.
     pub fn system_mut(&mut self) -> &mut S {
-        &mut self.system.system
+        &mut self.system.equations.system
     }
 }

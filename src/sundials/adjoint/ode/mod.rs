@@ -1,0 +1,8 @@
+//! Of ordinary differential equations, by CVODES.
+
+mod callbacks;
+mod run;
+mod setup;
+mod system;
+
+pub use setup::Adjoint;
