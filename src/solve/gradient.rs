@@ -12,7 +12,7 @@ use crate::{
     input::InputError,
     integrate::check_finite,
     ode::{Borrowed, Failure, Functional, Slopes},
-    sundials::{Adjoint, AdjointOptions, Gradient},
+    sundials::{Adjoint, AdjointOptions, DaeAdjoint, Gradient},
     vector::dot,
 };
 
@@ -180,8 +180,10 @@ impl<F: Functional> WayBack<'_, '_, F> {
                 let system = Borrowed(system.as_mut());
                 Adjoint::new(system, piece, *t, y, &forward, back)?.gradient(to)?
             }
-            Equations::Dae { .. } => {
-                return Err(InputError::new("method", "Ida", "later").into());
+            Equations::Dae { system, differential, .. } => {
+                let forward = method.ida(options, sign, differential.clone());
+                let (forward, system) = (forward.max_steps(max_steps), Borrowed(system.as_mut()));
+                DaeAdjoint::new(system, piece, *t, y, yp, &forward, back)?.gradient(to)?
             }
         };
         gradient.value += part.value;

@@ -9,7 +9,7 @@ use super::{
     host::{Host, RETRY, STOP},
     krylov::{Krylov, KrylovMethod, Side},
     linear_solver::LinearSolver,
-    matrix::Matrix,
+    matrix::{self, Entries, Matrix},
     vector::{Vector, slice, slice_mut},
 };
 use crate::integrate::{Callback, Error};
@@ -65,6 +65,35 @@ impl Linear {
             // SAFETY: a solver with a matrix is made by `factored`; `&mut self` keeps others away.
             unsafe { forget_factors(self.solver.0) };
         }
+    }
+
+    /// Factorizes the matrix, after `fill` has written entries into it; whether it can be.
+    ///
+    /// # Safety
+    /// This was made for `kind` and for vectors of length `n`.
+    pub(super) unsafe fn factorize(
+        &mut self,
+        kind: &LinearSolver,
+        n: usize,
+        fill: impl FnOnce(Entries<'_>),
+    ) -> bool {
+        let (solver, matrix) = (self.solver(), self.matrix());
+        if matrix.is_null() {
+            return false;
+        }
+        // SAFETY: solver and matrix are alive and fit together, and the caller vouches for the kind of matrix; `&mut self`
+        // keeps others away, and the entries are gone when the solver works.
+        unsafe {
+            ffi::SUNMatZero(matrix);
+            fill(matrix::entries(matrix, kind, n));
+            ffi::SUNLinSolInitialize(solver) == 0 && ffi::SUNLinSolSetup(solver, matrix) == 0
+        }
+    }
+
+    /// Replaces the right-hand side `b` by the solution, after [`factorize`](Self::factorize); whether there is one.
+    pub(super) fn solve(&mut self, b: &mut Vector) -> bool {
+        // SAFETY: solver, matrix and vector are alive and fit together; direct solvers take one vector for both.
+        unsafe { ffi::SUNLinSolSolve(self.solver(), self.matrix(), b.raw(), b.raw(), 0.0) == 0 }
     }
 
     pub(super) fn solver(&self) -> ffi::SUNLinearSolver {

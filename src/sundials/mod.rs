@@ -38,8 +38,8 @@
 //!
 //! In all of them unknowns may have to keep their [`Sign`].
 //!
-//! Beside the state, [`Cvode`] and [`Ida`] carry integrals and [`Sensitivities`] along; [`Adjoint`] has gradients with respect
-//! to many parameters.
+//! Beside the state, [`Cvode`] and [`Ida`] carry integrals and [`Sensitivities`] along; [`Adjoint`] and
+//! [`DaeAdjoint`] have gradients with respect to many parameters.
 
 mod adjoint;
 mod arkode;
@@ -80,7 +80,7 @@ mod stop_time;
 mod vector;
 mod version;
 
-pub use adjoint::{Adjoint, AdjointOptions, Gradient};
+pub use adjoint::{Adjoint, AdjointOptions, DaeAdjoint, Gradient};
 pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
 pub use cvode::{Cvode, CvodeOptions, Multistep};
 pub use ida::{Ida, IdaOptions, InitialCondition};

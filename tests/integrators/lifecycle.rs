@@ -15,9 +15,9 @@ use pliant::{
     },
     samples::Robertson,
     sundials::{
-        Adjoint, AdjointOptions, Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida,
-        IdaOptions, InitialCondition, Integrator, Jacobian, Krylov, KrylovMethod, LinearSolver,
-        Multistep, Pattern, Preconditioner, Sensitivities, Side, Sign,
+        Adjoint, AdjointOptions, Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions,
+        DaeAdjoint, Ida, IdaOptions, InitialCondition, Integrator, Jacobian, Krylov, KrylovMethod,
+        LinearSolver, Multistep, Pattern, Preconditioner, Sensitivities, Side, Sign,
     },
 };
 
@@ -164,14 +164,30 @@ fn adjoint_solvers() {
         }
     }
     for solver in linear_solvers() {
-        let forward = CvodeOptions::new(1e-4, ATOL).newton(solver);
+        let forward = CvodeOptions::new(1e-4, ATOL).newton(solver.clone());
         let options = AdjointOptions::new(1e-4, 1e-6).checkpoint_steps(10);
+        let dae = IdaOptions::new(1e-4, ATOL)
+            .newton(solver.clone())
+            .differential(Robertson::DIFFERENTIAL);
         // what works on no matrix is refused, as it cannot be transposed
         if let Ok(mut adjoint) =
             Adjoint::new(Robertson::new(), End, 0.0, &Robertson::Y0, &forward, &options)
         {
             adjoint.gradient(0.4).unwrap();
             adjoint.gradient(0.2).unwrap();
+        }
+        let (y0, yp0) = (&Robertson::Y0, &Robertson::YP0);
+        if let Ok(mut adjoint) =
+            DaeAdjoint::new(Robertson::new(), End, 0.0, y0, yp0, &dae, &options)
+        {
+            adjoint.gradient(0.4).unwrap();
+            adjoint.gradient(0.2).unwrap();
+        }
+        let dae = dae.max_steps(3);
+        if let Ok(mut adjoint) =
+            DaeAdjoint::new(Robertson::new(), End, 0.0, y0, yp0, &dae, &options)
+        {
+            adjoint.gradient(0.4).unwrap_err();
         }
     }
 }

@@ -9,6 +9,7 @@ mod central_difference;
 mod checks;
 mod control;
 mod cvode;
+mod dae_adjoint;
 mod failures;
 mod golden_counts;
 mod ida;

@@ -1,5 +1,6 @@
 //! Gradients of a functional of the solution with respect to many parameters, by one run back in time.
 
+mod dae;
 mod equations;
 mod gradient;
 mod jacobian;
@@ -7,6 +8,7 @@ mod ode;
 mod options;
 mod way_back;
 
+pub use dae::DaeAdjoint;
 pub use gradient::Gradient;
 pub use ode::Adjoint;
 pub use options::AdjointOptions;

@@ -5,7 +5,7 @@ use crate::{
     integrate::{AbsoluteTolerance, Tolerances, check_count},
 };
 
-/// Options of the way back of an [`Adjoint`](super::Adjoint).
+/// Options of the way back of an [`Adjoint`](super::Adjoint) or a [`DaeAdjoint`](super::DaeAdjoint).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct AdjointOptions {
@@ -17,7 +17,7 @@ pub struct AdjointOptions {
 }
 
 impl AdjointOptions {
-    /// These tolerances for the adjoint lambda = dG/dy(t). Its linear solver is that of the run forward, transposed.
+    /// These tolerances for the adjoint lambda, which is dG/dy(t) of an ODE. Its linear solver is that of the run forward, transposed.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
             tolerances: Tolerances::new(rtol, atol),
@@ -28,7 +28,7 @@ impl AdjointOptions {
         }
     }
 
-    /// Tolerances of dG/dp, whose errors, too, decide on the step size on the way back (`CVodeQuadSVtolerancesB`). Default:
+    /// Tolerances of dG/dp, whose errors, too, decide on the step size on the way back (`CVodeQuadSVtolerancesB`, `IDAQuadSVtolerancesB`). Default:
     /// `rtol` of lambda, and its smallest `atol` divided by the size of the parameter, or by 1 for one that is zero.
     pub fn gradient_tolerances(mut self, rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         self.gradient_tolerances = Some(Tolerances::new(rtol, atol));
@@ -36,21 +36,21 @@ impl AdjointOptions {
     }
 
     /// Steps between two checkpoints: the states of so many steps are kept at once, and computed again between
-    /// two checkpoints (`CVodeAdjInit`). Default: 150.
+    /// two checkpoints (`CVodeAdjInit`, `IDAAdjInit`). Default: 150.
     pub fn checkpoint_steps(mut self, steps: u32) -> Self {
         self.checkpoint_steps = steps;
         self
     }
 
     /// (df/dy)^T lambda comes from [`Ode::adjoint_rhs`](crate::ode::Ode::adjoint_rhs). Default: from the Jacobian, supplied or by
-    /// difference quotients as the linear solver of the run forward has it.
+    /// difference quotients as the linear solver of the run forward has it. Of an ODE alone.
     pub fn supplied_rhs(mut self) -> Self {
         self.supplied_rhs = true;
         self
     }
 
     /// (df/dp)^T lambda comes from [`Ode::adjoint_parameters`](crate::ode::Ode::adjoint_parameters). Default: by central
-    /// differences, two evaluations for each parameter.
+    /// differences, two evaluations for each parameter. Of an ODE alone.
     pub fn supplied_parameters(mut self) -> Self {
         self.supplied_parameters = true;
         self
@@ -68,6 +68,18 @@ impl AdjointOptions {
             tolerances.check(&vec![0.0; parameters])?;
         }
         Ok(())
+    }
+
+    /// Refuses what only an ODE can supply.
+    pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
+        let supplied = [
+            ("supplied_rhs", self.supplied_rhs),
+            ("supplied_parameters", self.supplied_parameters),
+        ];
+        match supplied.into_iter().find(|(_, on)| *on) {
+            Some((name, _)) => Err(InputError::new(name, true, "an Ode has it, a Dae has not")),
+            None => Ok(()),
+        }
     }
 
     /// The tolerances of dG/dp, for these parameters.

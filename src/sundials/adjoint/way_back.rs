@@ -23,14 +23,17 @@ pub(super) struct Callbacks<I, J, Q> {
 
 impl<K, S> Solver<K, S> {
     /// Has the run forward keep checkpoints.
-    pub(super) fn keep_checkpoints(
+    ///
+    /// # Safety
+    /// The functions belong to this integrator.
+    pub(super) unsafe fn keep_checkpoints(
         &mut self,
         functions: &BackwardFunctions,
         options: &AdjointOptions,
     ) -> Result<(), Error> {
         let steps = i64::from(options.checkpoint_steps);
         let (name, init) = functions.init_checkpoints;
-        // SAFETY: the memory is alive; the values are plain numbers.
+        // SAFETY: the memory is alive, and the caller vouches for the function; the values are plain numbers.
         let code = unsafe { init(self.memory.raw, steps, ffi::CV_HERMITE) };
         self.host.accept(name, code)?;
         self.memory.functions = functions.forward;

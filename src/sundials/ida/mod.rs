@@ -5,5 +5,6 @@ mod setup;
 mod start;
 
 pub use options::IdaOptions;
+pub(super) use setup::BACKWARD;
 pub use setup::{Ida, IdaKind};
 pub use start::InitialCondition;

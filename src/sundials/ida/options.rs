@@ -48,8 +48,8 @@ impl IdaOptions {
     }
 
     /// For each unknown, whether its derivative occurs in the equations (`true`) or it is
-    /// algebraic (`false`). Needed by [`InitialCondition::Algebraic`] and
-    /// [`suppress_algebraic`](Self::suppress_algebraic). (`IDASetId`)
+    /// algebraic (`false`). Needed by [`InitialCondition::Algebraic`], by
+    /// [`suppress_algebraic`](Self::suppress_algebraic) and for adjoint gradients. (`IDASetId`)
     ///
     /// [`InitialCondition::Algebraic`]: super::InitialCondition::Algebraic
     pub fn differential(mut self, differential: impl Into<Vec<bool>>) -> Self {
@@ -69,6 +69,23 @@ impl IdaOptions {
     builder_methods!(sensitivities);
     step_options!();
     builder_methods!(limits);
+
+    /// What an adjoint problem needs to know: the linear solver, the tolerances, and which unknowns are differential.
+    pub(in crate::sundials) fn for_adjoint(
+        &self,
+        y0: &[f64],
+    ) -> Result<(&LinearSolver, &Tolerances, &[bool]), InputError> {
+        self.check(y0)?;
+        if self.sensitivities.is_some() {
+            let mend = "the run forward of an adjoint gradient needs none";
+            return Err(InputError::new("sensitivities", "given", mend));
+        }
+        let Some(differential) = &self.differential else {
+            let mend = "an adjoint gradient needs to know which unknowns are algebraic";
+            return Err(InputError::new("differential", "not given", mend));
+        };
+        Ok((&self.linear_solver, &self.tolerances, differential))
+    }
 
     pub(super) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;

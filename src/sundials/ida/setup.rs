@@ -8,7 +8,7 @@ use crate::{
         dae_callbacks::{jacobian, quadratures, residual, roots},
         dae_krylov::{jacobian_times, precondition_setup, precondition_solve},
         ffi,
-        functions::{Functions, QuadratureFunctions, SensitivityFunctions},
+        functions::{BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions},
         index::index,
         linear_solver::LinearSolver,
         sensitivity::{Access, all_residuals},
@@ -29,7 +29,45 @@ pub struct IdaKind {
     pub(super) knows_algebraic: bool,
 }
 
-static FUNCTIONS: Functions = Functions {
+static FUNCTIONS: Functions = TABLE;
+
+/// For an adjoint problem.
+pub(in crate::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
+    integrator: "IDA on the way back",
+    forward: &WITH_CHECKPOINTS,
+    init_checkpoints: ("IDAAdjInit", ffi::IDAAdjInit),
+    create: ("IDACreateB", |memory, which| {
+        // SAFETY: whoever calls through the table vouches for the arguments.
+        unsafe { ffi::IDACreateB(memory, which) }
+    }),
+    vector_tolerances: ("IDASVtolerancesB", ffi::IDASVtolerancesB),
+    set_user_data: ("IDASetUserDataB", ffi::IDASetUserDataB),
+    set_max_steps: ("IDASetMaxNumStepsB", ffi::IDASetMaxNumStepsB),
+    set_linear_solver: ("IDASetLinearSolverB", ffi::IDASetLinearSolverB),
+    set_quadrature_error_control: ("IDASetQuadErrConB", ffi::IDASetQuadErrConB),
+    quadrature_tolerances: ("IDAQuadSVtolerancesB", ffi::IDAQuadSVtolerancesB),
+    solve: ffi::IDASolveB,
+    get: ("IDAGetB", |memory, which, t, lambda, slope| {
+        // SAFETY: as above.
+        unsafe { ffi::IDAGetB(memory, which, t, lambda, slope) }
+    }),
+    get_quadratures: ("IDAGetQuadB", ffi::IDAGetQuadB),
+    get_memory: ffi::IDAGetAdjIDABmem,
+    get_current_time: ffi::IDAGetCurrentTime,
+    get_current_order: ffi::IDAGetCurrentOrder,
+};
+
+/// IDAS as it runs forward with checkpoints.
+static WITH_CHECKPOINTS: Functions = Functions {
+    solve: ("IDASolveF", |memory, target, t, y, yp, task| {
+        let mut checkpoints = 0;
+        // SAFETY: as above.
+        unsafe { ffi::IDASolveF(memory, target, t, y, yp, task, &raw mut checkpoints) }
+    }),
+    ..TABLE
+};
+
+const TABLE: Functions = Functions {
     integrator: "IDA",
     free: ffi::IDAFree,
     solve: ("IDASolve", |memory, target, t, y, yp, task| {

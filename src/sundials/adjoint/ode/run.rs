@@ -34,7 +34,8 @@ impl<'a, S: Ode, F: Functional> Run<'a, S, F> {
     ) -> Result<Self, Error> {
         system.equations.forget();
         let mut solver = Cvode::new(Borrowed(system), *t0, y0, forward)?;
-        solver.keep_checkpoints(&BACKWARD, options)?;
+        // SAFETY: the functions are those of CVODE.
+        unsafe { solver.keep_checkpoints(&BACKWARD, options)? };
         Ok(Self { solver, options, t0: *t0 })
     }
 

@@ -1,0 +1,9 @@
+//! Of differential-algebraic equations, by IDAS.
+
+mod callbacks;
+mod end;
+mod run;
+mod setup;
+mod system;
+
+pub use setup::DaeAdjoint;
