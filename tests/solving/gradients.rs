@@ -1,7 +1,9 @@
 //! Gradients of functionals, across events and breaks.
 
 use pliant::{
-    ode::{Borrowed, Failure, Functional, Ode, Slopes, with_parameters},
+    ode::{
+        Borrowed, Failure, Functional, Ode, Slopes, dae_with_parameters, with_mass, with_parameters,
+    },
     solve::{Event, Method, Options, Problem, Reason, gradient},
     sundials::{AdjointOptions, Gradient, Krylov, KrylovMethod, LinearSolver, Sensitivities},
 };
@@ -129,6 +131,85 @@ fn a_bouncing_ball() {
         let error = off(&found, &[p, start].concat(), |x| mixed([x[0], x[1]], [x[2], x[3]], end));
         println!("{method:?}: {error:e}");
         assert!(error < 2e-8, "{method:?}: {error:e} {found:?}");
+    }
+}
+
+/// The same ball as a DAE, with its acceleration as an algebraic unknown z, whose starting guess is wrong.
+#[test]
+fn a_bouncing_ball_as_a_dae() {
+    let (p, start, end) = ([9.81, 0.8], [10.0, 0.5], 4.2);
+    let fall = dae_with_parameters(
+        |_t, y, yp, p, r| {
+            r[0] = y[2] + p[0];
+            r[1] = yp[0] - y[1];
+            r[2] = 2.0 * (yp[1] - y[2]);
+            Ok(())
+        },
+        p,
+    );
+    let floor = Event::new(|_, y| y[0]).falling().action(|jump| jump.y[1] *= -jump.p[1]);
+    let problem = Problem::dae(fall, [start[0], start[1], 0.0], [0.0; 3])
+        .differential([true, true, false])
+        .event(floor);
+    let mut found = gradient(problem, Mixed, Method::Ida, (0.0, end), &tight(), &back()).unwrap();
+    assert_eq!(found.initial_state.pop(), Some(0.0), "of what follows from the others");
+    let error = off(&found, &[p, start].concat(), |x| mixed([x[0], x[1]], [x[2], x[3]], end));
+    println!("{error:e}");
+    assert!(error < 2e-8, "{error:e} {found:?}");
+}
+
+/// y' = -z, 0 = z - p0 y, as a DAE and as an ODE with a singular mass matrix. When z has fallen to p1, the action adds z to y; from
+/// t = 1.5 on z = 2 p0 y.
+#[test]
+fn events_and_actions_may_read_algebraic_unknowns() {
+    let (p, start) = ([0.9, 0.4], [1.5]);
+    let value = |x: &[f64]| {
+        let (p0, p1, y0) = (x[0], x[1], x[2]);
+        let integral =
+            |y: f64, rate: f64, t: f64| y * y * (1.0 - (-2.0 * rate * t).exp()) / (2.0 * rate);
+        let before = p1 / p0;
+        let tau = (y0 / before).ln() / p0;
+        let after = before + p1;
+        let late = after * (-p0 * (1.5 - tau)).exp();
+        integral(y0, p0, tau)
+            + integral(after, p0, 1.5 - tau)
+            + integral(late, 2.0 * p0, 0.3)
+            + late * (-0.6 * p0).exp()
+    };
+    let along = |problem: Problem<'static>| {
+        problem.breaks([1.5]).event(
+            Event::with_parameters(|_, y, p| y[1] - p[1])
+                .falling()
+                .action(|jump| jump.y[0] += jump.y[1]),
+        )
+    };
+    let factor = |t: f64| if t < 1.5 { 1.0 } else { 2.0 };
+    let dae = dae_with_parameters(
+        move |t, y, yp, p, r| {
+            r[0] = yp[0] + y[1];
+            r[1] = y[1] - factor(t) * p[0] * y[0];
+            Ok(())
+        },
+        p,
+    );
+    let ode = with_parameters(
+        move |t, y, p, f| {
+            f[0] = -y[1];
+            f[1] = y[1] - factor(t) * p[0] * y[0];
+            Ok(())
+        },
+        p,
+    );
+    let dae = Problem::dae(dae, [start[0], 0.0], [0.0; 2]).differential([true, false]);
+    let ode = Problem::ode(with_mass(ode, [1.0, 0.0]), [start[0], 0.0]);
+    for problem in [dae, ode] {
+        let problem = along(problem);
+        let mut found =
+            gradient(problem, Mixed, Method::Ida, (0.0, 1.8), &tight(), &back()).unwrap();
+        found.initial_state.pop();
+        let error = off(&found, &[&p[..], &start].concat(), value);
+        println!("{error:e}");
+        assert!(error < 2e-8, "{error:e} {found:?}");
     }
 }
 
