@@ -13,7 +13,8 @@ pub trait Integrator {
     /// Time of the state [`y`](Self::y).
     fn t(&self) -> f64;
 
-    /// The state at time [`t`](Self::t). After a failure it is the last one that was good.
+    /// The state at time [`t`](Self::t). After a failure it is the last one that was good; where numbers overflow,
+    /// that may be the one that the call began with.
     fn y(&self) -> &[f64];
 
     /// Integrates to time `t`, or to a root or the stop time if one comes first.

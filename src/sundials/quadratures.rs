@@ -125,12 +125,19 @@ impl<K, S> Solver<K, S> {
 
     /// Sets the integrals to zero, with a new start.
     pub(super) fn restart_quadratures(&mut self) -> Result<(), Error> {
+        if let Some(quadratures) = &mut self.quadratures {
+            quadratures.values.as_mut_slice().fill(0.0);
+        }
+        self.hand_over_quadratures()
+    }
+
+    /// Lets C start from the present integrals.
+    pub(super) fn hand_over_quadratures(&mut self) -> Result<(), Error> {
         let (Some(functions), Some(quadratures)) =
-            (self.memory.functions.quadratures, &mut self.quadratures)
+            (self.memory.functions.quadratures, &self.quadratures)
         else {
             return Ok(());
         };
-        quadratures.values.as_mut_slice().fill(0.0);
         let values = quadratures.values.raw();
         // SAFETY: the memory is alive and copies the vector.
         unsafe { self.set(functions.reinit, values) }

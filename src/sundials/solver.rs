@@ -45,8 +45,8 @@ pub struct Solver<K, S> {
     /// The time derivative of `y`, of a DAE only.
     pub(super) yp: Option<Vector>,
     pub(super) scratch: Vector,
-    /// y' where the first step starts from, of a DAE.
-    pub(super) first_slope: Vec<f64>,
+    /// As `scratch` is to `y`, to `yp`.
+    pub(super) slope_scratch: Option<Vector>,
     pub(super) quadratures: Option<Quadratures>,
     pub(super) sensitivities: Option<Sensitivity>,
     pub(super) host: HostBox<S>,
@@ -59,8 +59,9 @@ pub struct Solver<K, S> {
     pub(super) has_step: bool,
     /// Whether the last call failed in an integrator that gives the time of a stage then.
     pub(super) failed_within: bool,
-    /// Whether the first step of IDA has failed.
-    pub(super) failed_at_start: bool,
+    /// Whether C has to be told the present state before it goes on: after a first step of IDA that failed, or where
+    /// numbers overflowed.
+    pub(super) history_lost: bool,
     /// Degree of the polynomials between the steps, if it is not the order of the last step.
     pub(super) interpolant_degree: Option<u32>,
     pub(super) roots_found: Vec<i32>,
@@ -130,6 +131,7 @@ impl<K, S> Solver<K, S> {
         let y = Vector::from_slice(start.y, &context)?;
         let yp = start.yp.map(|yp| Vector::from_slice(yp, &context)).transpose()?;
         let scratch = Vector::from_slice(start.y, &context)?;
+        let slope_scratch = start.yp.map(|yp| Vector::from_slice(yp, &context)).transpose()?;
         let mut host = HostBox::new(Host::new(system, start.y.len(), root_count, solver));
         // Locals are dropped in reverse order, so on an error below the memory goes first.
         let memory = Memory { raw: create(y.raw(), context.raw()), functions };
@@ -149,7 +151,7 @@ impl<K, S> Solver<K, S> {
             y,
             yp,
             scratch,
-            first_slope: start.yp.unwrap_or_default().to_vec(),
+            slope_scratch,
             quadratures: None,
             sensitivities: None,
             host,
@@ -159,7 +161,7 @@ impl<K, S> Solver<K, S> {
             stop_time: StopTime::default(),
             has_step: false,
             failed_within: false,
-            failed_at_start: false,
+            history_lost: false,
             interpolant_degree: None,
             roots_found: vec![0; root_count],
             signs: Vec::new(),

@@ -1,6 +1,6 @@
 //! An integrator of SUNDIALS at work.
 
-use std::ffi::c_void;
+use std::{ffi::c_void, mem, ptr};
 
 use super::{ffi, signs::check_state, solver::Solver, vector::Vector};
 use crate::integrate::{
@@ -87,14 +87,11 @@ impl<K, S> Integrator for Solver<K, S> {
         check_finite("y", y)?;
         check_state(&self.signs, "y", y)?;
         self.y.as_mut_slice().copy_from_slice(y);
-        let (name, reinit) = self.memory.functions.reinit;
-        // SAFETY: memory and vectors are alive; the integrator copies the vectors.
-        let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
-        self.host.accept(name, code)?;
+        self.start_c(t)?;
         self.restart_quadratures()?;
         self.restart_sensitivities()?;
         self.t = t;
-        (self.has_step, self.failed_within, self.failed_at_start) = (false, false, false);
+        (self.has_step, self.failed_within, self.history_lost) = (false, false, false);
         let host = self.host.get_mut();
         host.step_end = host.step_end.and(Some(t));
         host.differences.iter_mut().for_each(|differences| differences.evaluations = 0);
@@ -157,16 +154,22 @@ impl<K, S> Solver<K, S> {
         }
         self.check_target(target, task)?;
         let functions = self.memory.functions;
+        if self.history_lost {
+            self.start_c(self.t)?;
+            self.hand_over_quadratures()?;
+            self.hand_over_sensitivities()?;
+            self.history_lost = false;
+        }
         if let Some(time) = self.stop_time.take_update(self.t, target) {
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_stop_time, time)? };
         }
         let (name, solve) = functions.solve;
-        let (memory, y, yp) = (self.memory.raw, self.y.raw(), self.raw_yp());
+        // C writes beside the present state, which is kept where it fails to give another
+        let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
+        let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
+        self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
         self.host.get_mut().troubles.clear();
-        if !self.has_step {
-            self.remember_start()?;
-        }
         // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
         // keeps others away while callbacks use the host.
         let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
@@ -175,8 +178,15 @@ impl<K, S> Solver<K, S> {
         if code < 0 {
             self.forget_factors();
         }
-        if !self.has_step {
-            self.restore_start();
+        if code >= 0 || self.has_step && self.is_finite_beside() {
+            mem::swap(&mut self.y, &mut self.scratch);
+            mem::swap(&mut self.yp, &mut self.slope_scratch);
+        } else if !self.has_step {
+            // IDA takes y' times the step for y' now
+            self.history_lost = self.yp.is_some();
+        } else if self.host.get().step_end.is_none() && !self.has_finite_history() {
+            self.t = before;
+            (self.has_step, self.failed_within, self.history_lost) = (false, true, true);
         }
         if let Some(end) = self.host.get().step_end.filter(|_| code < 0) {
             // the time of `y`; C has that of a stage, and would interpolate as if the step ended there
@@ -215,31 +225,28 @@ impl<K, S> Solver<K, S> {
         }
     }
 
-    /// Keeps the state that a first step starts from: IDA overwrites it by an interpolation between numbers that may have
-    /// overflown. After a first step that failed IDA has to be told the start again, or it would take y' times the step for y'.
-    fn remember_start(&mut self) -> Result<(), Error> {
-        if self.failed_at_start {
-            let (name, reinit) = self.memory.functions.reinit;
-            // SAFETY: memory and vectors are alive; the integrator copies the vectors.
-            let code = unsafe { reinit(self.memory.raw, self.t, self.y.raw(), self.raw_yp()) };
-            self.host.accept(name, code)?;
-            self.restart_quadratures()?;
-            self.restart_sensitivities()?;
-            self.failed_at_start = false;
-        }
-        self.scratch.as_mut_slice().copy_from_slice(self.y.as_slice());
-        if let Some(yp) = &self.yp {
-            self.first_slope.copy_from_slice(yp.as_slice());
-        }
-        Ok(())
+    /// Has C start at time `t` from the present state: `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
+    fn start_c(&mut self, t: f64) -> Result<(), Error> {
+        let (name, reinit) = self.memory.functions.reinit;
+        // SAFETY: memory and vectors are alive; the integrator copies the vectors.
+        let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
+        self.host.accept(name, code)
     }
 
-    fn restore_start(&mut self) {
-        self.y.as_mut_slice().copy_from_slice(self.scratch.as_slice());
-        if let Some(yp) = &mut self.yp {
-            yp.as_mut_slice().copy_from_slice(&self.first_slope);
-            self.failed_at_start = true;
-        }
+    /// Whether the state that C has written is one.
+    fn is_finite_beside(&self) -> bool {
+        let vectors = [Some(&self.scratch), self.slope_scratch.as_ref()];
+        vectors.into_iter().flatten().all(|vector| vector.as_slice().iter().all(|y| y.is_finite()))
+    }
+
+    /// Whether C still has a state to go on from. It predicts by sums of its history, in place, and takes them back after a
+    /// failure: sums that overflowed leave NaN.
+    fn has_finite_history(&mut self) -> bool {
+        let (_, get_dky) = self.memory.functions.get_dky;
+        let t = self.step_statistics().current_time;
+        // SAFETY: memory and vector are alive; CVODE and IDA call no callback here.
+        let code = unsafe { get_dky(self.memory.raw, t, 0, self.scratch.raw()) };
+        code >= 0 && self.scratch.as_slice().iter().all(|y| y.is_finite())
     }
 
     /// Reads y and y' of a DAE anew: single steps of IDA return them as they were before unknowns were put

@@ -5,7 +5,7 @@ use pliant::{
     ode::{BandMut, Failure, Ode, with_mass},
     sundials::{
         Arkode, ArkodeOptions, Cvode, CvodeOptions, Ida, IdaOptions, Integrator, Jacobian,
-        LinearSolver, MassForm, Pattern,
+        LinearSolver, MassForm, Multistep, Pattern,
     },
 };
 
@@ -91,5 +91,56 @@ fn called_again_after_a_jacobian_failed_the_matrix_is_made_anew() {
         let form = MassForm::new(mass, 4, &newton).unwrap();
         let options = IdaOptions::new(1e-6, 1e-8).newton(newton);
         check(Ida::new(form, 0.0, &y0, &[1000.0; 4], &options).unwrap());
+    }
+}
+
+/// y' = y with its integral.
+struct Growth;
+
+impl Ode for Growth {
+    fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        ydot[0] = y[0];
+        Ok(())
+    }
+
+    fn quadrature_count(&self) -> usize {
+        1
+    }
+
+    fn quadratures(&mut self, _t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+        qdot[0] = y[0];
+        Ok(())
+    }
+}
+
+/// From 1 it overflows at t = 709.8, in the prediction of a step, which C adds to its history and takes off again.
+#[test]
+fn where_numbers_overflow_the_last_good_state_is_kept() {
+    for method in [Multistep::Bdf, Multistep::Adams] {
+        let options = CvodeOptions::new(1e-6, 1e-8).method(method).max_steps(20_000);
+        let mut solver = Cvode::new(Growth, 0.0, &[1.0], &options).unwrap();
+        solver.solve_to(600.0).unwrap();
+        let state = |solver: &Cvode<Growth>| (solver.t(), solver.y()[0], solver.quadratures()[0]);
+        let before = state(&solver);
+        for _ in 0..2 {
+            solver.solve_to(1000.0).unwrap_err();
+            assert_eq!(state(&solver), before);
+            let mut y = [0.0];
+            solver.interpolate(solver.t(), 0, &mut y).unwrap();
+            assert_eq!(y[0], before.1);
+        }
+        // it goes on from there, with its integral
+        solver.solve_to(601.0).unwrap();
+        let (t, y, integral) = state(&solver);
+        println!("{:e} {:e}", y / before.1 / 1f64.exp() - 1.0, integral / y - 1.0);
+        assert!(t == 601.0 && (y / before.1 / 1f64.exp() - 1.0).abs() < 3e-5);
+        assert!((integral / y - 1.0).abs() < 1e-6);
+
+        let mut last = state(&solver);
+        while solver.step(1000.0).is_ok() {
+            last = state(&solver);
+        }
+        assert_eq!(state(&solver), last);
+        assert!(last.1 > 1e308, "{last:?}");
     }
 }

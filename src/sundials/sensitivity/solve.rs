@@ -220,7 +220,7 @@ impl<K, S> Solver<K, S> {
     }
 
     /// Lets C start from the present sensitivities.
-    fn hand_over_sensitivities(&mut self) -> Result<(), Error> {
+    pub(in crate::sundials) fn hand_over_sensitivities(&mut self) -> Result<(), Error> {
         let (Some(functions), Some(sensitivities)) =
             (self.memory.functions.sensitivities, &mut self.sensitivities)
         else {
