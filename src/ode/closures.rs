@@ -186,7 +186,13 @@ mod tests {
     #[test]
     #[should_panic(expected = "set_parameters: 1 values for 2 parameters")]
     fn an_ode_takes_as_many_parameters_as_it_has() {
-        let mut line = with_parameters(|_t, _y, p, ydot| Ok(ydot[0] = p[0] + p[1]), [1.0, 2.0]);
+        let mut line = with_parameters(
+            |_t, _y, p, ydot| {
+                ydot[0] = p[0] + p[1];
+                Ok(())
+            },
+            [1.0, 2.0],
+        );
         Ode::set_parameters(&mut line, &[3.0]);
     }
 

@@ -14,7 +14,6 @@ use crate::{
         ffi,
         ida::BACKWARD,
         linear::Linear,
-        vector::Vector,
     },
 };
 
