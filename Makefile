@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench advice charts stability peers pictures docs valgrind clean
+.PHONY: help setup demo test bench advice charts stability peers pictures docs valgrind miri clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -52,6 +52,14 @@ docs: setup ## Documentation of the library
 valgrind: ## Thousands of SUNDIALS solvers under valgrind: no leak, no invalid access
 	@scripts/setup.sh valgrind
 	cargo test --test integrators lifecycle --config 'target."cfg(all())".runner = "$(VALGRIND)"'
+
+# What calls no C; it takes `rustup toolchain install nightly --component miri`. Runs are compared bit by bit, which
+# the noise that Miri adds to powers and sines would change.
+miri: export MIRIFLAGS := -Zmiri-deterministic-floats
+miri: setup ## Some tests of the parts without C under Miri: no undefined behaviour, no data race
+	cargo +nightly miri test --no-default-features --test integrators -- \
+		rk::failures rk::steps patterns --skip stability --skip klu
+	cargo +nightly miri test --no-default-features --test solving -- breaks ensembles
 
 clean: ## Remove everything built and every picture made
 	cargo clean
