@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::error::Reason;
-use crate::input::InputError;
+use crate::{input::InputError, integrate::check_finite};
 
 /// Which changes of sign of an event function count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -179,4 +179,14 @@ pub(super) fn check_crosses(event: usize, t: f64, crosses: bool) -> Result<(), I
     }
     let mend = "where its function only touches zero, the solution has no derivatives";
     Err(InputError::new(format!("event {event} at t = {t:?}"), "touching", mend))
+}
+
+/// Stops derivatives that are not finite behind an action: one that reads y', of a DAE, was given NaN for it, as differences
+/// along the state know nothing of how that changes.
+pub(super) fn check_landed(input: &str, slopes: &[f64], of_dae: bool) -> Result<(), InputError> {
+    if of_dae && slopes.iter().any(|slope| slope.is_nan()) {
+        let mend = "with derivatives of a DAE an action reads y, t and p alone, not yp";
+        return Err(InputError::new(input, "NaN", mend));
+    }
+    check_finite(input, slopes)
 }

@@ -2,7 +2,7 @@
 
 use super::{
     error::Reason,
-    event::{Jump, check_crosses},
+    event::{Jump, check_crosses, check_landed},
     history::{Act, Passage, Place, Stage, follow},
     method::Method,
     options::Options,
@@ -218,8 +218,9 @@ impl<F: Functional> WayBack<'_, '_, F> {
             let slope = self.derivative(passage, size_or_one(at.p[k]), |place, d| place.p[k] += d);
             gradient.parameters[k] = dot(&weights, &slope);
         }
-        check_finite("gradient by y at a jump", &gradient.initial_state)?;
-        check_finite("gradient by p at a jump", &gradient.parameters)?;
+        let of_dae = !at.yp.is_empty();
+        check_landed("gradient by y at a jump", &gradient.initial_state, of_dae)?;
+        check_landed("gradient by p at a jump", &gradient.parameters, of_dae)?;
         Ok(())
     }
 

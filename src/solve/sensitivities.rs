@@ -2,8 +2,12 @@
 
 use faer::{MatMut, MatRef};
 
-use super::{engine::Engine, error::Reason, event::Jump};
-use crate::{input::InputError, integrate::check_finite, sundials::Sensitivities};
+use super::{
+    engine::Engine,
+    error::Reason,
+    event::{Jump, check_landed},
+};
+use crate::{input::InputError, sundials::Sensitivities};
 
 /// The sensitivities dy/dp of a run, to some of the parameters of its equations.
 pub(super) struct Carried {
@@ -112,11 +116,7 @@ impl Carried {
                 s[i] = (ahead[i] - behind[i]) / (2.0 * distance) - right[i] * tau;
             }
         }
-        if at.of_dae && self.s.iter().any(|s| s.is_nan()) {
-            let mend = "with sensitivities of a DAE an action reads y, t and p alone, not yp";
-            return Err(InputError::new("sensitivities after the jump", "NaN", mend).into());
-        }
-        Ok(check_finite("sensitivities after the jump", &self.s)?)
+        Ok(check_landed("sensitivities after the jump", &self.s, at.of_dae)?)
     }
 
     /// Starts from others than zero.

@@ -384,4 +384,16 @@ fn what_has_no_gradient_is_refused() {
     let problem = ball(p, [10.0 - 0.5 * 9.81 * 0.25, 0.5 * 9.81]).event(top);
     let text = refused(problem, Method::Bdf, &tight());
     assert!(text.contains("only touches zero"), "{text}");
+    let dae = dae_with_parameters(
+        |_t, y, yp, p, r| {
+            r[0] = yp[0] + p[0] * y[0];
+            Ok(())
+        },
+        [2.0],
+    );
+    let problem = Problem::dae(dae, [1.0], [-2.0])
+        .differential([true])
+        .break_with(0.5, |jump| jump.y[0] = -jump.yp[0]);
+    let text = refused(problem, Method::Ida, &tight());
+    assert!(text.contains("not yp"), "{text}");
 }
