@@ -57,6 +57,8 @@ mod indicator;
 mod input;
 pub mod integrate;
 #[cfg(feature = "bodies")]
+mod lane;
+#[cfg(feature = "bodies")]
 pub mod material;
 #[cfg(feature = "bodies")]
 pub mod mesh;

@@ -1,24 +1,38 @@
 //! Numbers and small dense matrices: what the formulas at one point of a cell are written in.
 //!
-//! Sums begin with -0, the zero that changes nothing it is added to, so that the compiler leaves out
-//! their first addition. Loops, and not `map` or `from_fn` of arrays, which it does not always inline.
+//! Loops, and no closures: what is not compiled in place loses the instructions for several numbers
+//! at once.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// A real number: `f64`, or a lane of several that are computed at once.
+/// A real number: `f64`, or one for each of several cells, computed at once.
 pub(crate) trait Real:
-    Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + AddAssign
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Add<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + AddAssign
 {
     /// The square root.
     fn sqrt(self) -> Self;
+
+    /// Another number, of this kind.
+    fn constant(self, number: f64) -> Self;
 }
 
 impl Real for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn constant(self, number: f64) -> Self {
+        number
     }
 }
 
@@ -28,7 +42,11 @@ pub(crate) type Matrix<T, const R: usize, const C: usize> = [[T; R]; C];
 /// a . b
 #[inline(always)]
 pub(crate) fn dot<T: Real, const D: usize>(a: &[T; D], b: &[T; D]) -> T {
-    (0..D).fold(T::from(-0.0), |sum, i| sum + a[i] * b[i])
+    let mut sum = a[0] * b[0];
+    for i in 1..D {
+        sum += a[i] * b[i];
+    }
+    sum
 }
 
 /// A x
@@ -37,9 +55,12 @@ pub(crate) fn apply<T: Real, const R: usize, const C: usize>(
     a: &Matrix<T, R, C>,
     x: &[T; C],
 ) -> [T; R] {
-    let mut y = [T::from(-0.0); R];
-    for k in 0..C {
-        (0..R).for_each(|i| y[i] += a[k][i] * x[k]);
+    let mut y = a[0];
+    for i in 0..R {
+        y[i] = a[0][i] * x[0];
+        for k in 1..C {
+            y[i] += a[k][i] * x[k];
+        }
     }
     y
 }
@@ -50,8 +71,10 @@ pub(crate) fn product<T: Real, const R: usize, const K: usize, const C: usize>(
     a: &Matrix<T, R, K>,
     b: &[[T; K]; C],
 ) -> Matrix<T, R, C> {
-    let mut product = [[T::from(-0.0); R]; C];
-    (0..C).for_each(|j| product[j] = apply(a, &b[j]));
+    let mut product = [a[0]; C];
+    for j in 0..C {
+        product[j] = apply(a, &b[j]);
+    }
     product
 }
 
@@ -75,47 +98,54 @@ pub(crate) fn product_transposed<T: Real, const R: usize, const K: usize, const 
     a: &Matrix<T, R, K>,
     b: &Matrix<T, C, K>,
 ) -> Matrix<T, R, C> {
-    let mut product = [[T::from(-0.0); R]; C];
+    let mut product = [a[0]; C];
     for j in 0..C {
-        for k in 0..K {
-            (0..R).for_each(|i| product[j][i] += a[k][i] * b[k][j]);
+        for i in 0..R {
+            product[j][i] = a[0][i] * b[0][j];
+            for k in 1..K {
+                product[j][i] += a[k][i] * b[k][j];
+            }
         }
     }
     product
 }
 
-/// The symmetric matrix with `entry` at each row and column not beyond it.
-#[inline(always)]
-pub(crate) fn symmetric<T: Real, const M: usize>(
-    entry: impl Fn(usize, usize) -> T,
-) -> Matrix<T, M, M> {
-    let mut matrix = [[T::from(0.0); M]; M];
-    for j in 0..M {
-        for k in 0..=j {
-            matrix[j][k] = entry(j, k);
-            matrix[k][j] = matrix[j][k];
+/// The matrix of numbers `like` one, with `entry` at each row and column not beyond it, made symmetric. (A macro, as no closure can be told to be
+/// compiled in place.)
+macro_rules! symmetric {
+    ($like:expr; $j:ident, $k:ident => $entry:expr) => {{
+        let mut matrix = [[$like; M]; M];
+        for $j in 0..M {
+            for $k in 0..=$j {
+                matrix[$j][$k] = $entry;
+                matrix[$k][$j] = matrix[$j][$k];
+            }
         }
-    }
-    matrix
+        matrix
+    }};
 }
+pub(crate) use symmetric;
 
 /// Sum of the diagonal.
 #[inline(always)]
 pub(crate) fn trace<T: Real, const M: usize>(matrix: &Matrix<T, M, M>) -> T {
-    (0..M).fold(T::from(-0.0), |sum, j| sum + matrix[j][j])
+    let mut sum = matrix[0][0];
+    for j in 1..M {
+        sum += matrix[j][j];
+    }
+    sum
 }
 
 /// Determinant of a matrix of at most 3 rows.
 #[inline(always)]
 pub(crate) fn determinant<T: Real, const M: usize>(matrix: &Matrix<T, M, M>) -> T {
-    let m = |i: usize, j: usize| matrix[j][i];
     match M {
-        1 => m(0, 0),
-        2 => m(0, 0) * m(1, 1) - m(0, 1) * m(1, 0),
+        1 => matrix[0][0],
+        2 => matrix[0][0] * matrix[1][1] - matrix[1][0] * matrix[0][1],
         _ => {
-            m(0, 0) * (m(1, 1) * m(2, 2) - m(1, 2) * m(2, 1))
-                - m(0, 1) * (m(1, 0) * m(2, 2) - m(1, 2) * m(2, 0))
-                + m(0, 2) * (m(1, 0) * m(2, 1) - m(1, 1) * m(2, 0))
+            matrix[0][0] * (matrix[1][1] * matrix[2][2] - matrix[2][1] * matrix[1][2])
+                - matrix[1][0] * (matrix[0][1] * matrix[2][2] - matrix[2][1] * matrix[0][2])
+                + matrix[2][0] * (matrix[0][1] * matrix[1][2] - matrix[1][1] * matrix[0][2])
         }
     }
 }

@@ -6,19 +6,25 @@
 //!
 //! What elements are good for is in chapters: their inertia, forces, tangents and fields.
 
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
+
+use pulp::Simd;
+
 use super::shares::Shares;
 use crate::element::{
     MassPoint, ReferenceCell, StrainPoint, extrapolation, mass_points, strain_points,
 };
 use crate::input::InputError;
+use crate::lane::{Abreast, Lane, SIDE_BY_SIDE};
 use crate::mesh::Mesh;
-use crate::tensor::Matrix;
+use crate::tensor::{Matrix, Real};
 
 /// Elements of `N` nodes, dimension `M` and `Q` strain points in a space of dimension `D`.
 pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, const Q: usize> {
     pub(super) nodes: Vec<[usize; N]>,
-    /// Strain points, those of one cell after those of the other; volumes times section.
-    points: Vec<StrainPoint<N, M, D>>,
+    /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes times section.
+    /// Cells that are missing at the end repeat the last one.
+    points: Vec<StrainPoint<Abreast, N, M, D>>,
     /// Shape functions at the strain points of a cell.
     pub(super) values: [[f64; N]; Q],
     /// What values at the strain points of a cell count for at each of its nodes.
@@ -56,6 +62,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             products.push(product);
             nodes.push(std::array::from_fn(|a| cell[a]));
         }
+        let points = side_by_side::<N, M, D, Q>(&points);
         let values = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
         let quadratic = mesh.kind().is_quadratic();
         let shares = Shares::new(&nodes, mesh.node_count());
@@ -63,23 +70,104 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         Ok(Self { nodes, points, values, extrapolation, products, quadratic, shares })
     }
 
-    /// The strain points of each cell.
-    pub(super) fn points(&self) -> &[[StrainPoint<N, M, D>; Q]] {
+    /// The strain points of [`SIDE_BY_SIDE`] cells at once, from those of the first cells on.
+    pub(super) fn abreast(&self) -> &[[StrainPoint<Abreast, N, M, D>; Q]] {
         self.points.as_chunks::<Q>().0
     }
+
+    /// The strain points of a cell.
+    #[inline(always)]
+    pub(super) fn points(&self, cell: usize) -> impl Iterator<Item = StrainPoint<f64, N, M, D>> {
+        let lane = cell % SIDE_BY_SIDE;
+        self.abreast()[cell / SIDE_BY_SIDE].iter().map(move |point| point.of_cell(lane))
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize> StrainPoint<Abreast, N, M, D> {
+    /// Those of as many cells as a register holds, from number `part` of these registers.
+    #[inline(always)]
+    pub(super) fn lane<S: Simd>(&self, simd: S, part: usize) -> StrainPoint<Lane<S>, N, M, D> {
+        let zero = Lane::splat(simd, 0.0);
+        let (mut gradients, mut frame) = ([[zero; M]; N], [[zero; D]; M]);
+        for j in 0..M {
+            for a in 0..N {
+                gradients[a][j] = Lane::load(simd, &self.gradients[a][j].0, part);
+            }
+            for i in 0..D {
+                frame[j][i] = Lane::load(simd, &self.frame[j][i].0, part);
+            }
+        }
+        StrainPoint { gradients, frame, volume: Lane::load(simd, &self.volume.0, part) }
+    }
+
+    /// That of one of the cells.
+    #[inline(always)]
+    fn of_cell(&self, lane: usize) -> StrainPoint<f64, N, M, D> {
+        let (mut gradients, mut frame) = ([[0.0; M]; N], [[0.0; D]; M]);
+        for j in 0..M {
+            (0..N).for_each(|a| gradients[a][j] = self.gradients[a][j].0[lane]);
+            (0..D).for_each(|i| frame[j][i] = self.frame[j][i].0[lane]);
+        }
+        StrainPoint { gradients, frame, volume: self.volume.0[lane] }
+    }
+}
+
+/// The points of cells, `Q` of each, in lanes.
+fn side_by_side<const N: usize, const M: usize, const D: usize, const Q: usize>(
+    points: &[StrainPoint<f64, N, M, D>],
+) -> Vec<StrainPoint<Abreast, N, M, D>> {
+    let cells = points.as_chunks::<Q>().0;
+    let mut lanes = Vec::with_capacity(Q * cells.len().div_ceil(SIDE_BY_SIDE));
+    for cells in cells.chunks(SIDE_BY_SIDE) {
+        for q in 0..Q {
+            let of_lane = |lane: usize| &cells[lane.min(cells.len() - 1)][q];
+            let each = |number: &dyn Fn(&StrainPoint<f64, N, M, D>) -> f64| {
+                Abreast(std::array::from_fn(|lane| number(of_lane(lane))))
+            };
+            lanes.push(StrainPoint {
+                gradients: std::array::from_fn(|a| {
+                    std::array::from_fn(|j| each(&|point| point.gradients[a][j]))
+                }),
+                frame: std::array::from_fn(|j| {
+                    std::array::from_fn(|i| each(&|point| point.frame[j][i]))
+                }),
+                volume: each(&|point| point.volume),
+            });
+        }
+    }
+    lanes
 }
 
 /// H = sum x_a g_a^T, with the vectors x of some nodes and the gradients g of their shape functions.
 #[inline(always)]
-pub(super) fn gradient<const M: usize, const D: usize>(
-    x: &[[f64; D]],
-    gradients: &[[f64; M]],
-) -> Matrix<f64, D, M> {
-    let mut h = [[-0.0; D]; M];
-    for (j, column) in h.iter_mut().enumerate() {
-        for (x, g) in x.iter().zip(gradients) {
-            for i in 0..D {
-                column[i] += x[i] * g[j];
+pub(super) fn gradient<T: Real, const N: usize, const M: usize, const D: usize>(
+    x: &[[T; D]; N],
+    gradients: &[[T; M]; N],
+) -> Matrix<T, D, M> {
+    let mut h = [x[0]; M];
+    for j in 0..M {
+        for i in 0..D {
+            h[j][i] = x[0][i] * gradients[0][j];
+            for a in 1..N {
+                h[j][i] += x[a][i] * gradients[a][j];
+            }
+        }
+    }
+    h
+}
+
+/// The same with vectors relative to that of the first node, which is left out.
+#[inline(always)]
+pub(super) fn gradient_of_relative<T: Real, const N: usize, const M: usize, const D: usize>(
+    x: &[[T; D]; N],
+    gradients: &[[T; M]; N],
+) -> Matrix<T, D, M> {
+    let mut h = [x[1]; M];
+    for j in 0..M {
+        for i in 0..D {
+            h[j][i] = x[1][i] * gradients[1][j];
+            for a in 2..N {
+                h[j][i] += x[a][i] * gradients[a][j];
             }
         }
     }

@@ -21,7 +21,6 @@ pub(super) use nodal::{Probe, nodal_fields};
 
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
-use crate::element::StrainPoint;
 use crate::material::{Deformation, ElasticLaw, with_law};
 use crate::vector::norm;
 
@@ -131,7 +130,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
         let of_cell = |cell| {
             let of_point = |(volume, at): (f64, Deformation<f64, M, D>)| {
                 let shape = in_space(&SMatrix::from(at.gradient()));
-                let frame = in_space(&SMatrix::from(*at.frame()));
+                let frame = in_space(&SMatrix::from(at.frame()));
                 (shape * frame.transpose() + normal(&shape) * normal(&frame).transpose()) * volume
             };
             rotation::<M>(&self.deformed(cell, u).map(of_point).sum())
@@ -154,8 +153,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     }
 
     fn volumes(&self) -> Vec<f64> {
-        let volume = |points: &[StrainPoint<N, M, D>; Q]| points.iter().map(|p| p.volume).sum();
-        self.points().iter().map(volume).collect()
+        let of_cell = |cell| self.points(cell).map(|point| point.volume).sum();
+        (0..self.nodes.len()).map(of_cell).collect()
     }
 }
 
@@ -165,12 +164,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         &self,
         cell: usize,
         u: &[f64],
-    ) -> impl Iterator<Item = (f64, Deformation<'_, f64, M, D>)> {
+    ) -> impl Iterator<Item = (f64, Deformation<f64, M, D>)> {
         let (u, nodes) = (u.as_chunks::<D>().0, &self.nodes[cell]);
         let of_nodes = nodes.map(|node| u[node]);
-        self.points()[cell].iter().map(move |point| {
+        self.points(cell).map(move |point| {
             let h = gradient(&of_nodes, &point.gradients);
-            (point.volume, Deformation::new(&point.frame, h))
+            (point.volume, Deformation::new(point.frame, h))
         })
     }
 }
@@ -204,17 +203,17 @@ struct PointField {
 impl PointField {
     fn new<L: ElasticLaw, const M: usize, const D: usize>(
         law: &L,
-        at: &Deformation<'_, f64, M, D>,
+        at: &Deformation<f64, M, D>,
     ) -> Self {
         // where strains are small the present shape counts as the natural one
         let (twice_strain, shape, swelling) = match L::SMALL_STRAIN {
-            true => (at.twice_cauchy(), *at.frame(), 1.0),
+            true => (at.twice_cauchy(), at.frame(), 1.0),
             false => (at.twice_green(), at.gradient(), at.stretch()),
         };
         let strain = SMatrix::from(twice_strain) * 0.5;
         let [strain_across, stress_across] = law.across(at);
         let (frame, shape) =
-            (in_space(&SMatrix::from(*at.frame())), in_space(&SMatrix::from(shape)));
+            (in_space(&SMatrix::from(at.frame())), in_space(&SMatrix::from(shape)));
         let piola = in_space(&SMatrix::from(law.stress(at, 1.0)));
         let tensors = Tensors {
             strain: frame * strain * frame.transpose() + normal_part(&frame) * strain_across,

@@ -1,8 +1,9 @@
 //! The forces of all elements: the loop in which explicit methods spend their time.
 //!
-//! It is written in plain arrays, column by column, which the compiler turns into less than half the
-//! instructions that it makes of products of small matrices. Sums begin with -0, the zero that
-//! changes nothing it is added to, so that their first addition is left out.
+//! It is compiled for each kind of machine (`pulp`), which computes as many cells at once as its registers hold numbers;
+//! the forces of these cells are added to the nodes one cell after the other. So results are the same to the last bit on
+//! all machines. What the loop calls has to be compiled in place: a function of its own would be one for the
+//! oldest machine.
 //!
 //! The shape functions of a cell add up to 1 and their gradients to 0. So displacements count
 //! relative to the first node, whose force balances those on the others: less work, and forces far
@@ -12,15 +13,16 @@
 
 use std::ops::Range;
 
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::elements::{ElementsOf, gradient};
+use super::elements::{ElementsOf, gradient_of_relative};
 use super::regions::Regions;
-use crate::element::StrainPoint;
 use crate::force::NodalForces;
+use crate::lane::{Lane, SIDE_BY_SIDE};
 use crate::material::{Deformation, ElasticLaw, ViscousLaw, with_law};
 use crate::ode::Failure;
-use crate::tensor::Matrix;
+use crate::tensor::{Matrix, Real};
 
 /// Which forces are nonlinear, and computed element by element; the others have constant matrices.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -60,15 +62,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             self.share_out(&mut forces.conservative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, substance)| {
                     with_law!(substance.elastic, law => {
-                        self.add(cells, [u], first, forces, |point, [h]| {
-                            let at = Deformation::new(&point.frame, h);
-                            let domain = law.domain(&at);
-                            // not `domain <= 0`, which NaN is not
-                            match domain > 0.0 {
-                                true => Ok(law.stress(&at, point.volume)),
-                                false => Err(law.outside(domain)),
-                            }
-                        })
+                        self.add(cells, [u], first, forces, ElasticPull(&law))
                     })
                 })
             })?;
@@ -76,10 +70,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, substance)| {
-                    self.add(cells, [u, v], first, forces, |point, [h, rate]| {
-                        let at = Deformation::new(&point.frame, h);
-                        Ok(substance.viscous.stress(&at, &rate, point.volume))
-                    })
+                    self.add(cells, [u, v], first, forces, ViscousPull(&substance.viscous))
                 })
             })?;
         }
@@ -107,38 +98,190 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         failed.map_or(Ok(()), Err)
     }
 
-    /// Adds the forces of `cells` to those on the nodes from `first` on. `stress` gives P times the
-    /// volume of a point, or says what is wrong there, from the gradients of the `fields`.
-    #[inline(always)]
+    /// Adds the forces of `cells` to those on the nodes from `first` on, by the `fields` that `pull` asks for: in the order of
+    /// cells, whatever the machine computes at once.
     fn add<const K: usize>(
         &self,
         cells: Range<usize>,
         fields: [&[[f64; D]]; K],
         first: usize,
         forces: &mut [[f64; D]],
-        stress: impl Fn(
-            &StrainPoint<N, M, D>,
-            [Matrix<f64, D, M>; K],
-        ) -> Result<Matrix<f64, D, M>, String>,
+        pull: impl Pull<K>,
     ) -> Result<(), Failure> {
-        let points = &self.points()[cells.clone()];
-        for ((nodes, points), cell) in self.nodes[cells.clone()].iter().zip(points).zip(cells) {
+        Arch::new().dispatch(Pass { elements: self, cells, fields, first, forces, pull })
+    }
+
+    /// Says what is wrong with the first of `cells` that is outside the domain.
+    #[cold]
+    fn outside<const K: usize>(
+        &self,
+        cells: Range<usize>,
+        fields: [&[[f64; D]]; K],
+        pull: &impl Pull<K>,
+    ) -> Result<(), Failure> {
+        for cell in cells {
+            let nodes = &self.nodes[cell];
             let mut x = [[[0.0; D]; N]; K];
             (0..K).for_each(|k| x[k] = relative(nodes, fields[k]));
-            let mut pull = [[-0.0; D]; N];
-            for point in points {
+            for point in self.points(cell) {
                 let mut gradients = [[[0.0; D]; M]; K];
-                (0..K).for_each(|k| gradients[k] = gradient(&x[k][1..], &point.gradients[1..]));
-                let stress = stress(point, gradients).map_err(|problem| {
-                    let nodes = nodes.map(|node| node + 1);
+                (0..K).for_each(|k| gradients[k] = gradient_of_relative(&x[k], &point.gradients));
+                let domain = pull.domain(&Deformation::new(point.frame, gradients[0]));
+                // which NaN is not
+                let is_inside = domain > 0.0;
+                if !is_inside {
+                    let (nodes, problem) = (nodes.map(|node| node + 1), pull.outside(domain));
                     let problem = format!("cell {} (nodes {nodes:?}) {problem}", cell + 1);
-                    Failure::Recoverable(problem)
-                })?;
-                collect(point, &stress, &mut pull);
+                    return Err(Failure::Recoverable(problem));
+                }
             }
-            subtract(nodes, &pull, first, forces);
         }
         Ok(())
+    }
+}
+
+/// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
+trait Pull<const K: usize> {
+    /// P times the `volume` of the point.
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        point: (Matrix<T, D, M>, T),
+        gradients: &[Matrix<T, D, M>; K],
+    ) -> Matrix<T, D, M>;
+
+    /// A number above 0 where that has meaning.
+    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        at.h[0][0].constant(1.0)
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        domain.to_string()
+    }
+}
+
+struct ElasticPull<'l, L>(&'l L);
+
+impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        (frame, volume): (Matrix<T, D, M>, T),
+        [h]: &[Matrix<T, D, M>; 1],
+    ) -> Matrix<T, D, M> {
+        self.0.stress(&Deformation::new(frame, *h), volume)
+    }
+
+    #[inline(always)]
+    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        self.0.domain(at)
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        self.0.outside(domain)
+    }
+}
+
+struct ViscousPull<'l, L>(&'l L);
+
+impl<L: ViscousLaw> Pull<2> for ViscousPull<'_, L> {
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        (frame, volume): (Matrix<T, D, M>, T),
+        [h, rate]: &[Matrix<T, D, M>; 2],
+    ) -> Matrix<T, D, M> {
+        self.0.stress(&Deformation::new(frame, *h), rate, volume)
+    }
+}
+
+/// The forces of a run of cells of one law, compiled for each kind of machine.
+struct Pass<'a, P, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize> {
+    elements: &'a ElementsOf<N, M, D, Q>,
+    cells: Range<usize>,
+    fields: [&'a [[f64; D]]; K],
+    first: usize,
+    forces: &'a mut [[f64; D]],
+    pull: P,
+}
+
+impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize>
+    WithSimd for Pass<'_, P, N, M, D, Q, K>
+{
+    type Output = Result<(), Failure>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Result<(), Failure> {
+        let Self { elements, cells, fields, first, forces, pull } = self;
+        let (nodes, abreast) = (&elements.nodes[..], elements.abreast());
+        let (zero, last) = (Lane::splat(simd, 0.0), nodes.len() - 1);
+        for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
+            let start = register * S::F64_LANES;
+            let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
+            let mut of_cells = [&nodes[start]; SIDE_BY_SIDE];
+            for lane in 1..S::F64_LANES {
+                of_cells[lane] = &nodes[last.min(start + lane)];
+            }
+            let mut x = [[[zero; D]; N]; K];
+            for k in 0..K {
+                gather(simd, &of_cells, fields[k], &mut x[k]);
+            }
+            let mut pulls = [[Lane::splat(simd, -0.0); D]; N];
+            let mut is_inside = true;
+            for point in &abreast[block] {
+                let point = point.lane(simd, part);
+                let mut gradients = [[[zero; D]; M]; K];
+                for k in 0..K {
+                    gradients[k] = gradient_of_relative(&x[k], &point.gradients);
+                }
+                is_inside &=
+                    pull.domain(&Deformation::new(point.frame, gradients[0])).are_positive();
+                let stress = pull.stress((point.frame, point.volume), &gradients);
+                collect(&point.gradients, &stress, &mut pulls);
+            }
+            let active = cells.start.max(start)..cells.end.min(start + S::F64_LANES);
+            if !is_inside {
+                elements.outside(active.clone(), fields, &pull)?;
+            }
+            let mut numbers = [[[0.0; SIDE_BY_SIDE]; D]; N];
+            for a in 1..N {
+                for i in 0..D {
+                    pulls[a][i].store(&mut numbers[a][i]);
+                }
+            }
+            for cell in active {
+                subtract(&nodes[cell], &numbers, cell - start, first, forces);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The vectors of the nodes of some cells, less those of their first ones.
+#[inline(always)]
+fn gather<S: Simd, const N: usize, const D: usize>(
+    simd: S,
+    cells: &[&[usize; N]; SIDE_BY_SIDE],
+    x: &[[f64; D]],
+    out: &mut [[Lane<S>; D]; N],
+) {
+    let [c0, c1, c2, c3, c4, c5, c6, c7] = cells;
+    let mut first = out[0];
+    for a in 0..N {
+        // no more than the register holds
+        let at = |lane: usize, cell: &[usize; N]| {
+            if lane < S::F64_LANES { x[cell[a]] } else { [0.0; D] }
+        };
+        let [n0, n1, n2, n3] = [at(0, c0), at(1, c1), at(2, c2), at(3, c3)];
+        let [n4, n5, n6, n7] = [at(4, c4), at(5, c5), at(6, c6), at(7, c7)];
+        for i in 0..D {
+            let numbers = [n0[i], n1[i], n2[i], n3[i], n4[i], n5[i], n6[i], n7[i]];
+            let of_cells = Lane::load(simd, &numbers, 0);
+            if a == 0 {
+                first[i] = of_cells;
+            } else {
+                out[a][i] = of_cells - first[i];
+            }
+        }
     }
 }
 
@@ -158,37 +301,44 @@ fn relative<const N: usize, const D: usize>(nodes: &[usize; N], x: &[[f64; D]]) 
 
 /// Adds P g_a to the forces of all nodes but the first.
 #[inline(always)]
-fn collect<const N: usize, const M: usize, const D: usize>(
-    point: &StrainPoint<N, M, D>,
-    stress: &Matrix<f64, D, M>,
-    pull: &mut [[f64; D]; N],
+fn collect<T: Real, const N: usize, const M: usize, const D: usize>(
+    gradients: &[[T; M]; N],
+    stress: &Matrix<T, D, M>,
+    pull: &mut [[T; D]; N],
 ) {
     for a in 1..N {
         for j in 0..M {
             for i in 0..D {
-                pull[a][i] += stress[j][i] * point.gradients[a][j];
+                pull[a][i] += stress[j][i] * gradients[a][j];
             }
         }
     }
 }
 
-/// Subtracts the forces of a cell from those on a share of the nodes, which begins with node `first`;
+/// Subtracts the forces of one cell of a lane from those on a share of the nodes, which begins with node `first`;
 /// the first node of the cell gets what balances the others.
 #[inline(always)]
 fn subtract<const N: usize, const D: usize>(
     nodes: &[usize; N],
-    pull: &[[f64; D]; N],
+    pulls: &[[[f64; SIDE_BY_SIDE]; D]; N],
+    lane: usize,
     first: usize,
     forces: &mut [[f64; D]],
 ) {
     let mut sum = [-0.0; D];
     for a in 1..N {
-        (0..D).for_each(|i| sum[i] += pull[a][i]);
+        for i in 0..D {
+            sum[i] += pulls[a][i][lane];
+        }
         if let Some(on_node) = forces.get_mut(nodes[a].wrapping_sub(first)) {
-            (0..D).for_each(|i| on_node[i] -= pull[a][i]);
+            for i in 0..D {
+                on_node[i] -= pulls[a][i][lane];
+            }
         }
     }
     if let Some(on_first) = forces.get_mut(nodes[0].wrapping_sub(first)) {
-        (0..D).for_each(|i| on_first[i] += sum[i]);
+        for i in 0..D {
+            on_first[i] += sum[i];
+        }
     }
 }

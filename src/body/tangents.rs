@@ -38,10 +38,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         stiffness: &mut BlockMatrix,
     ) {
         let mut stiffness = stiffness.rows_mut();
-        for (cell, (nodes, points)) in self.nodes.iter().zip(self.points()).enumerate() {
+        for (cell, nodes) in self.nodes.iter().enumerate() {
             let law = Linear(hooke(regions.of(cell)));
-            for point in points {
-                let rest = Deformation::new(&point.frame, [[0.0; D]; M]);
+            for point in self.points(cell) {
+                let rest = Deformation::new(point.frame, [[0.0; D]; M]);
                 scatter(nodes, &mut stiffness, law.tangent(&rest, &point.gradients, point.volume));
             }
         }
@@ -60,14 +60,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         let add = |share: usize, mut stiffness: Rows<'_>, mut damping: Rows<'_>| {
             for cell in self.shares.cells[share].iter().cloned().flatten() {
                 let (nodes, substance) = (&self.nodes[cell], regions.of(cell));
-                for point in &self.points()[cell] {
+                for point in self.points(cell) {
                     let (g, volume) = (&point.gradients, point.volume);
                     let of_nodes = |x: &[[f64; D]]| {
                         let mut at_nodes = [[0.0; D]; N];
                         (0..N).for_each(|a| at_nodes[a] = x[nodes[a]]);
                         gradient(&at_nodes, g)
                     };
-                    let at = Deformation::new(&point.frame, of_nodes(u));
+                    let at = Deformation::new(point.frame, of_nodes(u));
                     if terms.elastic {
                         with_law!(substance.elastic, law => {
                             scatter(nodes, &mut stiffness, law.tangent(&at, g, volume));

@@ -63,16 +63,16 @@ macro_rules! with_element {
 }
 pub(crate) use with_element;
 
-/// A quadrature point for strain.
-#[derive(Debug, Clone)]
-pub(crate) struct StrainPoint<const N: usize, const M: usize, const D: usize> {
+/// A quadrature point for strain, or such points of several cells.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StrainPoint<T, const N: usize, const M: usize, const D: usize> {
     /// Gradients g_a of the shape functions (1/m), in the coordinates of the cell.
-    pub gradients: [[f64; M]; N],
+    pub gradients: [[T; M]; N],
     /// Derivative F_0 of the undeformed position by the coordinates of the cell: the identity where the
     /// cell fills space, else its tangent frame.
-    pub frame: Matrix<f64, D, M>,
+    pub frame: Matrix<T, D, M>,
     /// Length, area or volume that the point stands for (m, m^2, m^3).
-    pub volume: f64,
+    pub volume: T,
 }
 
 /// A quadrature point for inertia: values of the shape functions and volume.
@@ -90,7 +90,7 @@ pub(crate) fn strain_points<
     const D: usize,
 >(
     nodes: &[[f64; D]; N],
-) -> Result<Vec<StrainPoint<N, M, D>>, f64> {
+) -> Result<Vec<StrainPoint<f64, N, M, D>>, f64> {
     let smallest = 1e-12 * size(nodes).powi(M as i32);
     let point = |&(xi, weight): &([f64; M], f64)| {
         let derivatives = C::derivatives(xi).map(SVector::from);

@@ -1,5 +1,7 @@
 //! Hooke's law: the isotropic linear formula between strain and stress that several laws share.
 
+#![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
+
 use super::law::Block;
 use crate::tensor::{Matrix, Real, dot, product, product_transposed, symmetric, times, trace};
 
@@ -54,10 +56,13 @@ impl Hooke {
     /// lambda tr(E)^2 / 2 + mu E : E of 2 E
     #[inline(always)]
     pub(crate) fn energy<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> T {
-        let strain = times(*twice, T::from(0.5));
+        let strain = times(*twice, twice[0][0].constant(0.5));
         let trace = trace(&strain);
-        let square = strain.iter().fold(T::from(-0.0), |sum, column| sum + dot(column, column));
-        T::from(0.5 * self.lame.lambda) * trace * trace + T::from(self.lame.mu) * square
+        let mut square = dot(&strain[0], &strain[0]);
+        for j in 1..M {
+            square += dot(&strain[j], &strain[j]);
+        }
+        trace * (0.5 * self.lame.lambda) * trace + square * self.lame.mu
     }
 
     /// lambda tr(E) I + 2 mu E, times `weight`, of 2 E
@@ -67,19 +72,23 @@ impl Hooke {
         twice: &Matrix<T, M, M>,
         weight: T,
     ) -> Matrix<T, M, M> {
-        let mean = T::from(0.5 * self.lame.lambda) * weight * trace(twice);
-        let shear = T::from(self.lame.mu) * weight;
-        symmetric(|j, k| shear * twice[j][k] + if j == k { mean } else { T::from(-0.0) })
+        let mean = weight * (0.5 * self.lame.lambda) * trace(twice);
+        let shear = weight * self.lame.mu;
+        symmetric!(mean; j, k => match j == k {
+            true => shear * twice[j][k] + mean,
+            false => shear * twice[j][k],
+        })
     }
 
     /// Strain and stress across a cell with 2 E along it.
     #[inline(always)]
     pub(super) fn across<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> [T; 2] {
         let Lame { lambda, mu } = self.lame;
-        let swelling = T::from(0.5) * trace(twice);
+        let swelling = trace(twice) * 0.5;
+        let zero = swelling.constant(0.0);
         match self.across {
-            Plane::Strain => [T::from(0.0), T::from(lambda) * swelling],
-            Plane::Stress => [T::from(-lambda / (2.0 * mu)) * swelling, T::from(0.0)],
+            Plane::Strain => [zero, swelling * lambda],
+            Plane::Stress => [swelling * (-lambda / (2.0 * mu)), zero],
         }
     }
 }
@@ -106,9 +115,9 @@ impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Spread<'a, T, 
     #[inline(always)]
     pub(super) fn material(&self, lame: Lame, a: usize, b: usize) -> Block<T, D> {
         let (fa, fb) = (&self.along[a], &self.along[b]);
-        let (lambda, mu) = (T::from(lame.lambda), T::from(lame.mu));
+        let Lame { lambda, mu } = lame;
         let stretch = dot(&self.gradients[a], &self.gradients[b]);
-        let mut block = [[T::from(0.0); D]; D];
+        let mut block = [[stretch; D]; D];
         for i in 0..D {
             for k in 0..D {
                 let shear = self.square[i][k] * stretch + fb[i] * fa[k];

@@ -17,12 +17,12 @@ pub(crate) trait ElasticLaw {
     const SMALL_STRAIN: bool = false;
 
     /// W (J/m^3)
-    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<'_, T, M, D>) -> T;
+    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T;
 
     /// First Piola stress P = dW/dF (Pa), times `weight`, the volume of the point.
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         weight: T,
     ) -> Matrix<T, D, M>;
 
@@ -30,20 +30,17 @@ pub(crate) trait ElasticLaw {
     /// block of nodes a and b has the entries sum_jl g_a[j] dP_ij/dF_kl g_b[l], times `weight`.
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Fn(usize, usize) -> Block<T, D>;
 
     /// Strain and stress (Pa) across a cell that does not fill space.
-    fn across<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<'_, T, M, D>,
-    ) -> [T; 2];
+    fn across<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> [T; 2];
 
     /// A number above 0 where the law has meaning, such as det F.
-    fn domain<T: Real, const M: usize, const D: usize>(&self, _at: &Deformation<'_, T, M, D>) -> T {
-        T::from(1.0)
+    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        at.h[0][0].constant(1.0)
     }
 
     /// Says of a cell whose `domain` is not above 0 what happened to it.
@@ -57,7 +54,7 @@ pub(crate) trait ViscousLaw {
     /// First Piola stress P (Pa), times `weight`, the volume of the point.
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
         weight: T,
     ) -> Matrix<T, D, M>;
@@ -65,7 +62,7 @@ pub(crate) trait ViscousLaw {
     /// dP/dF, as [`ElasticLaw::tangent`].
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
         gradients: &[[T; M]; N],
         weight: T,
@@ -74,7 +71,7 @@ pub(crate) trait ViscousLaw {
     /// dP/dF', likewise.
     fn rate_tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Fn(usize, usize) -> Block<T, D>;

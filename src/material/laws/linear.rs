@@ -13,35 +13,32 @@ impl ElasticLaw for Linear {
     const SMALL_STRAIN: bool = true;
 
     #[inline(always)]
-    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<'_, T, M, D>) -> T {
+    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
         self.0.energy(&at.twice_cauchy())
     }
 
     #[inline(always)]
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         weight: T,
     ) -> Matrix<T, D, M> {
-        product(at.frame(), &self.0.stress(&at.twice_cauchy(), weight))
+        product(&at.frame(), &self.0.stress(&at.twice_cauchy(), weight))
     }
 
     #[inline(always)]
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Fn(usize, usize) -> Block<T, D> {
-        let spread = Spread::new(at.frame(), gradients);
+        let spread = Spread::new(&at.frame(), gradients);
         move |a, b| times(spread.material(self.0.lame, a, b), weight)
     }
 
     #[inline(always)]
-    fn across<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<'_, T, M, D>,
-    ) -> [T; 2] {
+    fn across<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> [T; 2] {
         self.0.across(&at.twice_cauchy())
     }
 }

@@ -1,7 +1,7 @@
 //! Objective viscosity: Hooke's law, with viscous moduli, for the rate of Green's strain.
 
 use crate::material::deformation::Deformation;
-use crate::material::hooke::{Hooke, Spread};
+use crate::material::hooke::{Hooke, Lame, Spread};
 use crate::material::law::{Block, ViscousLaw};
 use crate::tensor::{Matrix, Real, dot, product, product_transposed, times};
 
@@ -14,7 +14,7 @@ impl ViscousLaw for ObjectiveViscosity {
     #[inline(always)]
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
         weight: T,
     ) -> Matrix<T, D, M> {
@@ -26,7 +26,7 @@ impl ViscousLaw for ObjectiveViscosity {
     #[inline(always)]
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
         gradients: &[[T; M]; N],
         weight: T,
@@ -35,14 +35,14 @@ impl ViscousLaw for ObjectiveViscosity {
         let spread = Spread::new(&f, gradients);
         let moving = product(rate, gradients);
         let mixed = product_transposed(rate, &f);
-        let stress = self.0.stress(&at.twice_green_rate(rate), T::from(1.0));
+        let stress = self.0.stress(&at.twice_green_rate(rate), weight.constant(1.0));
         let pulls = product(&stress, gradients);
-        let (lambda, mu) = (T::from(self.0.lame.lambda), T::from(self.0.lame.mu));
+        let Lame { lambda, mu } = self.0.lame;
         move |a, b| {
             let stretch = dot(&gradients[a], &gradients[b]);
             let geometric = dot(&gradients[a], &pulls[b]);
             let along = &spread.along;
-            let mut block = [[T::from(0.0); D]; D];
+            let mut block = [[weight.constant(0.0); D]; D];
             for i in 0..D {
                 block[i][i] += geometric;
                 for k in 0..D {
@@ -58,7 +58,7 @@ impl ViscousLaw for ObjectiveViscosity {
     #[inline(always)]
     fn rate_tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Fn(usize, usize) -> Block<T, D> {

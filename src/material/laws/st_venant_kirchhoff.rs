@@ -11,14 +11,14 @@ pub(crate) struct StVenantKirchhoff(pub(super) Hooke);
 
 impl ElasticLaw for StVenantKirchhoff {
     #[inline(always)]
-    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<'_, T, M, D>) -> T {
+    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
         self.0.energy(&at.twice_green())
     }
 
     #[inline(always)]
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         weight: T,
     ) -> Matrix<T, D, M> {
         product(&at.gradient(), &self.0.stress(&at.twice_green(), weight))
@@ -28,12 +28,12 @@ impl ElasticLaw for StVenantKirchhoff {
     #[inline(always)]
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<'_, T, M, D>,
+        at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Fn(usize, usize) -> Block<T, D> {
         let spread = Spread::new(&at.gradient(), gradients);
-        let stress = self.0.stress(&at.twice_green(), T::from(1.0));
+        let stress = self.0.stress(&at.twice_green(), weight.constant(1.0));
         let pulls = product(&stress, gradients);
         move |a, b| {
             let mut block = spread.material(self.0.lame, a, b);
@@ -44,15 +44,12 @@ impl ElasticLaw for StVenantKirchhoff {
     }
 
     #[inline(always)]
-    fn across<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<'_, T, M, D>,
-    ) -> [T; 2] {
+    fn across<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> [T; 2] {
         self.0.across(&at.twice_green())
     }
 
     #[inline(always)]
-    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<'_, T, M, D>) -> T {
+    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
         at.stretch()
     }
 

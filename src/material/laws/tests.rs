@@ -2,10 +2,12 @@
 //! every dimension in every space.
 
 use nalgebra::{Rotation3, Vector3};
+use pulp::{Arch, Scalar, Simd, WithSimd};
 
 use super::*;
+use crate::lane::{Lane, SIDE_BY_SIDE};
 use crate::material::{Deformation, ElasticLaw, Lame, Plane, ViscousLaw};
-use crate::tensor::{Matrix, Real, dot, product};
+use crate::tensor::{Matrix, dot, product};
 
 /// Moduli of a soft material, Pa.
 const LAME: Lame = Lame { lambda: 2.0, mu: 1.0 };
@@ -120,14 +122,14 @@ fn stresses_and_tangents_are_derivatives() {
         {
             let h = noise(0.3, seed);
             with_law!(law(strain, M), law => {
-                assert!(law.domain(&Deformation::new(&frame, h)) > 0.0);
+                assert!(law.domain(&Deformation::new(frame, h)) > 0.0);
                 let units = units();
                 are_derivatives(
                     &format!("{strain:?}"),
                     &h,
-                    |h| law.energy(&Deformation::new(&frame, *h)),
-                    |h| law.stress(&Deformation::new(&frame, *h), 1.0),
-                    law.tangent(&Deformation::new(&frame, h), &units, 1.0),
+                    |h| law.energy(&Deformation::new(frame, *h)),
+                    |h| law.stress(&Deformation::new(frame, *h), 1.0),
+                    law.tangent(&Deformation::new(frame, h), &units, 1.0),
                 );
             });
         }
@@ -141,7 +143,7 @@ fn viscous_stresses_and_tangents_are_derivatives() {
     fn check<const M: usize, const D: usize>() {
         let law = ObjectiveViscosity(Hooke::new(LAME, M, Plane::Strain));
         let (frame, h, rate) = (frame::<M, D>(), noise(0.3, 5.0), noise(1.0, 40.0));
-        let (at, units) = (Deformation::new(&frame, h), units());
+        let (at, units) = (Deformation::new(frame, h), units());
         are_derivatives(
             "objective viscosity, by the rate",
             &rate,
@@ -149,7 +151,7 @@ fn viscous_stresses_and_tangents_are_derivatives() {
             |rate| law.stress(&at, rate, 1.0),
             law.rate_tangent(&at, &units, 1.0),
         );
-        let stress = |h: &Matrix<f64, D, M>| law.stress(&Deformation::new(&frame, *h), &rate, 1.0);
+        let stress = |h: &Matrix<f64, D, M>| law.stress(&Deformation::new(frame, *h), &rate, 1.0);
         let block = law.tangent(&at, &rate, &units, 1.0);
         for place in (0..D).flat_map(|i| (0..M).map(move |j| [i, j])) {
             is_tangent("objective viscosity", &h, &stress, &block, place);
@@ -166,12 +168,12 @@ fn laws_do_not_see_rotations() {
         let frame = frame::<M, D>();
         for strain in LAWS {
             let h = noise(0.3, 9.0);
-            let f = Deformation::new(&frame, h).gradient();
+            let f = Deformation::new(frame, h).gradient();
             let mut turned = rotated(&f);
             for (turned, frame) in turned.iter_mut().zip(&frame) {
                 turned.iter_mut().zip(frame).for_each(|(x, x_0)| *x -= x_0);
             }
-            let [at, after] = [h, turned].map(|h| Deformation::new(&frame, h));
+            let [at, after] = [h, turned].map(|h| Deformation::new(frame, h));
             with_law!(law(strain, M), law => {
                 let apart = (law.energy(&after) - law.energy(&at)).abs();
                 if strain == Strain::Cauchy && D > 1 {
@@ -186,7 +188,7 @@ fn laws_do_not_see_rotations() {
             });
         }
         let viscous = ObjectiveViscosity(Hooke::new(LAME, M, Plane::Strain));
-        let (at, rate) = (Deformation::new(&frame, noise(0.3, 9.0)), noise(1.0, 3.0));
+        let (at, rate) = (Deformation::new(frame, noise(0.3, 9.0)), noise(1.0, 3.0));
         let f = at.gradient();
         if D > 1 {
             // spinning about an axis: F' = W F with a skew W
@@ -213,7 +215,7 @@ fn farthest<const R: usize, const C: usize>(a: &Matrix<f64, R, C>, b: &Matrix<f6
 fn laws_are_linear_elasticity_at_small_strains() {
     fn check<const M: usize, const D: usize>() {
         let (frame, size) = (frame::<M, D>(), 1e-7);
-        let at = Deformation::new(&frame, noise(size, 70.0));
+        let at = Deformation::new(frame, noise(size, 70.0));
         let linear = Linear(Hooke::new(LAME, M, Plane::Strain));
         let Lame { lambda, mu } = linear.0.lame;
         // the closed form, entry by entry
@@ -231,7 +233,7 @@ fn laws_are_linear_elasticity_at_small_strains() {
                 assert!(apart.abs() < 10.0 * size, "{strain:?} {M} in {D}: energy {apart:e}");
                 let apart = farthest(&law.stress(&at, 1.0), &stress);
                 assert!(apart < 20.0 * size * size, "{strain:?} {M} in {D}: stress {apart:e}");
-                let rest = Deformation::new(&frame, [[0.0; D]; M]);
+                let rest = Deformation::new(frame, [[0.0; D]; M]);
                 let units = units();
                 let (own, hooke) = (law.tangent(&rest, &units, 1.0), linear.tangent(&rest, &units, 1.0));
                 for (a, b) in (0..M).flat_map(|a| (0..M).map(move |b| (a, b))) {
@@ -244,65 +246,59 @@ fn laws_are_linear_elasticity_at_small_strains() {
     in_all_dimensions!(check);
 }
 
-/// Two points at once, as forces of several cells will be computed.
-#[derive(Clone, Copy)]
-struct Pair([f64; 2]);
+/// Laws at the points of as many cells as a register of the machine holds.
+struct AtOnce<const M: usize, const D: usize>;
 
-impl From<f64> for Pair {
-    fn from(x: f64) -> Self {
-        Self([x; 2])
-    }
-}
+impl<const M: usize, const D: usize> WithSimd for AtOnce<M, D> {
+    type Output = ();
 
-macro_rules! by_parts {
-    ($($trait:ident $function:ident $operator:tt),*) => {$(
-        impl std::ops::$trait for Pair {
-            type Output = Self;
-            fn $function(self, other: Self) -> Self {
-                Self([self.0[0] $operator other.0[0], self.0[1] $operator other.0[1]])
+    fn with_simd<S: Simd>(self, simd: S) {
+        let frame = frame::<M, D>();
+        let mut points: [Matrix<f64, D, M>; SIDE_BY_SIDE] =
+            std::array::from_fn(|lane| noise(0.3, 11.0 + 39.0 * lane as f64));
+        points[1][0] = std::array::from_fn(|i| points[1][0][i] - 3.0 * frame[0][i]);
+        let volumes: [f64; SIDE_BY_SIDE] = std::array::from_fn(|lane| 0.3 + 0.1 * lane as f64);
+        for part in 0..SIDE_BY_SIDE / S::F64_LANES {
+            let load = |number: &dyn Fn(usize) -> f64| {
+                Lane::load(simd, &std::array::from_fn(number), part)
+            };
+            let h: Matrix<Lane<S>, D, M> =
+                std::array::from_fn(|j| std::array::from_fn(|i| load(&|lane| points[lane][j][i])));
+            let frames = frame.map(|column| column.map(|entry| load(&|_| entry)));
+            let (at, volume) = (Deformation::new(frames, h), load(&|lane| volumes[lane]));
+            let numbers = |lanes: Lane<S>| {
+                let mut numbers = [0.0; SIDE_BY_SIDE];
+                lanes.store(&mut numbers);
+                numbers
+            };
+            for strain in LAWS {
+                with_law!(law(strain, M), law => {
+                    let energy = numbers(law.energy(&at));
+                    let domain = numbers(law.domain(&at));
+                    let stress = law.stress(&at, volume).map(|column| column.map(numbers));
+                    for lane in 0..S::F64_LANES {
+                        let k = part * S::F64_LANES + lane;
+                        let one = Deformation::new(frame, points[k]);
+                        assert_eq!(energy[lane], law.energy(&one));
+                        assert_eq!(domain[lane], law.domain(&one));
+                        let own = stress.map(|column| column.map(|entry| entry[lane]));
+                        assert_eq!(own, law.stress(&one, volumes[k]), "{strain:?} {M} in {D}");
+                    }
+                    let inside = (0..S::F64_LANES).all(|lane| domain[lane] > 0.0);
+                    assert_eq!(law.domain(&at).are_positive(), inside);
+                });
             }
         }
-    )*};
-}
-by_parts!(Add add +, Sub sub -, Mul mul *);
-
-impl std::ops::AddAssign for Pair {
-    fn add_assign(&mut self, other: Self) {
-        *self = *self + other;
     }
 }
 
-impl Real for Pair {
-    fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
-    }
-}
-
-/// Laws are the same formula over any number: two points at once, bit for bit as one after the other,
+/// Laws are the same formula over any number: several points at once, bit for bit as one after the other,
 /// one of them outside the domain.
 #[test]
 fn several_points_at_once() {
     fn check<const M: usize, const D: usize>() {
-        let frame = frame::<M, D>();
-        let mut points = [noise(0.3, 11.0), noise(0.3, 50.0)];
-        points[1][0] = std::array::from_fn(|i| points[1][0][i] - 3.0 * frame[0][i]);
-        let lanes: Matrix<Pair, D, M> =
-            std::array::from_fn(|j| std::array::from_fn(|i| Pair(points.map(|point| point[j][i]))));
-        let frames = frame.map(|column| column.map(Pair::from));
-        let at = Deformation::new(&frames, lanes);
-        for strain in LAWS {
-            with_law!(law(strain, M), law => {
-                let (energy, stress) = (law.energy(&at), law.stress(&at, Pair([0.3, 0.7])));
-                let domain = law.domain(&at);
-                for (lane, h) in points.into_iter().enumerate() {
-                    let one = Deformation::new(&frame, h);
-                    assert_eq!(energy.0[lane], law.energy(&one));
-                    assert_eq!(domain.0[lane], law.domain(&one));
-                    let own = stress.map(|column| column.map(|entry| entry.0[lane]));
-                    assert_eq!(own, law.stress(&one, [0.3, 0.7][lane]), "{strain:?} {M} in {D}");
-                }
-            });
-        }
+        Arch::new().dispatch(AtOnce::<M, D>);
+        AtOnce::<M, D>.with_simd(Scalar);
     }
     in_all_dimensions!(check);
 }
@@ -312,7 +308,7 @@ fn several_points_at_once() {
 fn what_is_inverted_is_outside_the_domain() {
     let frame = units::<2>();
     let law = StVenantKirchhoff(Hooke::new(LAME, 2, Plane::Strain));
-    let turned = Deformation::new(&frame, [[-1.5, 0.0], [0.0, 0.0]]);
+    let turned = Deformation::new(frame, [[-1.5, 0.0], [0.0, 0.0]]);
     assert_eq!(law.domain(&turned), -0.5);
     assert!(law.outside(-0.5).starts_with("is inverted, det F = -0.500: St. Venant-Kirchhoff"));
 }
