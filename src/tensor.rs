@@ -55,6 +55,7 @@ pub(crate) fn apply<T: Real, const R: usize, const C: usize>(
     a: &Matrix<T, R, C>,
     x: &[T; C],
 ) -> [T; R] {
+    // any numbers, which are all replaced
     let mut y = a[0];
     for i in 0..R {
         y[i] = a[0][i] * x[0];

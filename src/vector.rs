@@ -5,6 +5,11 @@ pub(crate) fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }
 
+/// The size of a number, or 1 of zero: what changes of it are measured by.
+pub(crate) fn size_or_one(x: f64) -> f64 {
+    if x == 0.0 { 1.0 } else { x.abs() }
+}
+
 /// a . b, summed up in interleaved parts, for speed.
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<8>(), b.as_chunks::<8>());

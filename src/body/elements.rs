@@ -138,35 +138,19 @@ fn side_by_side<const N: usize, const M: usize, const D: usize, const Q: usize>(
     lanes
 }
 
-/// H = sum x_a g_a^T, with the vectors x of some nodes and the gradients g of their shape functions.
+/// H = sum x_a g_a^T, with the vectors x of the nodes from number `first` on and the gradients g of their shape functions:
+/// from 1 on, if they are relative to that of the first node.
 #[inline(always)]
 pub(super) fn gradient<T: Real, const N: usize, const M: usize, const D: usize>(
+    first: usize,
     x: &[[T; D]; N],
     gradients: &[[T; M]; N],
 ) -> Matrix<T, D, M> {
-    let mut h = [x[0]; M];
+    let mut h = [x[first]; M];
     for j in 0..M {
         for i in 0..D {
-            h[j][i] = x[0][i] * gradients[0][j];
-            for a in 1..N {
-                h[j][i] += x[a][i] * gradients[a][j];
-            }
-        }
-    }
-    h
-}
-
-/// The same with vectors relative to that of the first node, which is left out.
-#[inline(always)]
-pub(super) fn gradient_of_relative<T: Real, const N: usize, const M: usize, const D: usize>(
-    x: &[[T; D]; N],
-    gradients: &[[T; M]; N],
-) -> Matrix<T, D, M> {
-    let mut h = [x[1]; M];
-    for j in 0..M {
-        for i in 0..D {
-            h[j][i] = x[1][i] * gradients[1][j];
-            for a in 2..N {
+            h[j][i] = x[first][i] * gradients[first][j];
+            for a in first + 1..N {
                 h[j][i] += x[a][i] * gradients[a][j];
             }
         }

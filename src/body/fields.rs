@@ -168,7 +168,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let (u, nodes) = (u.as_chunks::<D>().0, &self.nodes[cell]);
         let of_nodes = nodes.map(|node| u[node]);
         self.points(cell).map(move |point| {
-            let h = gradient(&of_nodes, &point.gradients);
+            let h = gradient(0, &of_nodes, &point.gradients);
             (point.volume, Deformation::new(point.frame, h))
         })
     }

@@ -16,7 +16,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::elements::{ElementsOf, gradient_of_relative};
+use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
@@ -125,7 +125,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             (0..K).for_each(|k| x[k] = relative(nodes, fields[k]));
             for point in self.points(cell) {
                 let mut gradients = [[[0.0; D]; M]; K];
-                (0..K).for_each(|k| gradients[k] = gradient_of_relative(&x[k], &point.gradients));
+                (0..K).for_each(|k| gradients[k] = gradient(1, &x[k], &point.gradients));
                 let domain = pull.domain(&Deformation::new(point.frame, gradients[0]));
                 // which NaN is not
                 let is_inside = domain > 0.0;
@@ -213,10 +213,11 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
     fn with_simd<S: Simd>(self, simd: S) -> Result<(), Failure> {
         let Self { elements, cells, fields, first, forces, pull } = self;
         let (nodes, abreast) = (&elements.nodes[..], elements.abreast());
-        let (zero, last) = (Lane::splat(simd, 0.0), nodes.len() - 1);
+        let zero = Lane::splat(simd, 0.0);
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
             let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
+            let last = nodes.len() - 1;
             let mut of_cells = [&nodes[start]; SIDE_BY_SIDE];
             for lane in 1..S::F64_LANES {
                 of_cells[lane] = &nodes[last.min(start + lane)];
@@ -231,7 +232,7 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
                 let point = point.lane(simd, part);
                 let mut gradients = [[[zero; D]; M]; K];
                 for k in 0..K {
-                    gradients[k] = gradient_of_relative(&x[k], &point.gradients);
+                    gradients[k] = gradient(1, &x[k], &point.gradients);
                 }
                 is_inside &=
                     pull.domain(&Deformation::new(point.frame, gradients[0])).are_positive();

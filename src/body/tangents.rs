@@ -65,7 +65,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
                     let of_nodes = |x: &[[f64; D]]| {
                         let mut at_nodes = [[0.0; D]; N];
                         (0..N).for_each(|a| at_nodes[a] = x[nodes[a]]);
-                        gradient(&at_nodes, g)
+                        gradient(0, &at_nodes, g)
                     };
                     let at = Deformation::new(point.frame, of_nodes(u));
                     if terms.elastic {

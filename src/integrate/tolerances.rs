@@ -1,6 +1,6 @@
 //! Tolerances of the local error.
 
-use crate::input::InputError;
+use crate::{input::InputError, vector::size_or_one};
 
 /// Absolute tolerance: one number for all unknowns, or one for each.
 ///
@@ -91,6 +91,11 @@ impl Tolerances {
             AbsoluteTolerance::Scalar(atol) => *atol,
             AbsoluteTolerance::Vector(atol) => atol[unknown],
         }
+    }
+
+    /// The size of an unknown with the value `y`: its own and that below which it is noise, or 1.
+    pub(crate) fn size_of(&self, unknown: usize, y: f64) -> f64 {
+        size_or_one(y.abs() + self.atol_of(unknown) / self.rtol)
     }
 
     /// The smallest absolute tolerance that is not zero, or `rtol` if all are: for numbers beside the unknowns.

@@ -10,10 +10,9 @@ use super::{
 };
 use crate::{
     input::InputError,
-    integrate::check_finite,
     ode::{Borrowed, Failure, Functional, Slopes},
     sundials::{Adjoint, AdjointOptions, DaeAdjoint, Gradient},
-    vector::dot,
+    vector::{dot, size_or_one},
 };
 
 /// Value and gradient of a functional of the solution of `problem` over `span`, with respect to the parameters of its equations
@@ -146,14 +145,9 @@ impl<F: Functional> Functional for Piece<'_, F> {
 impl<F: Functional> WayBack<'_, '_, F> {
     /// From the end to the start.
     fn gradient(&mut self, stages: &[Stage], end: &Place) -> Result<Gradient, Reason> {
-        let (mut by_y, mut by_p) = (vec![0.0; end.y.len()], vec![0.0; end.p.len()]);
-        let slopes = Slopes { y: &mut by_y, p: &mut by_p };
-        let value = self.functional.terminal(end.t, &end.y, &end.p, Some(slopes));
-        let value = value.map_err(|failure| unknown("terminal functional", failure))?;
-        check_finite("terminal functional", &[value])?;
-        check_finite("terminal slopes by y", &by_y)?;
-        check_finite("terminal slopes by p", &by_p)?;
-        let mut gradient = Gradient { value, parameters: by_p, initial_state: by_y };
+        let start = Gradient::at_end(&mut self.functional, end.t, &end.y, &end.p);
+        let start = start.map_err(|failure| unknown("terminal functional", failure))?;
+        let mut gradient = start.check()?;
         for stage in stages.iter().rev() {
             match stage {
                 Stage::Smooth { from, to } => self.integrate(from, *to, &mut gradient)?,
@@ -211,7 +205,8 @@ impl<F: Functional> WayBack<'_, '_, F> {
             weights[along.len() - 1] = -gain / rate;
         }
         for i in 0..at.y.len() {
-            let slope = self.derivative(passage, self.size(i, at), |place, d| place.y[i] += d);
+            let size = self.options.tolerances.size_of(i, at.y[i]);
+            let slope = self.derivative(passage, size, |place, d| place.y[i] += d);
             gradient.initial_state[i] = dot(&weights, &slope);
         }
         for k in 0..at.p.len() {
@@ -293,15 +288,12 @@ impl<F: Functional> WayBack<'_, '_, F> {
         ahead
     }
 
-    /// The size of an unknown.
-    fn size(&self, i: usize, at: &Place) -> f64 {
-        let tolerances = &self.options.tolerances;
-        size_or_one(at.y[i].abs() + tolerances.atol_of(i) / tolerances.rtol)
-    }
-
     /// The time in which the state changes by its size.
     fn unit_of_time(&self, at: &Place, slope: &[f64]) -> f64 {
-        let times = slope.iter().enumerate().map(|(i, slope)| self.size(i, at) / slope.abs());
+        let times = slope
+            .iter()
+            .enumerate()
+            .map(|(i, slope)| self.options.tolerances.size_of(i, at.y[i]) / slope.abs());
         times.fold((self.span.1 - self.span.0).abs(), f64::min)
     }
 }
@@ -309,8 +301,4 @@ impl<F: Functional> WayBack<'_, '_, F> {
 /// An error of what has no value.
 fn unknown(input: &str, failure: Failure) -> InputError {
     InputError::new(input, failure.into_error(), "the gradient needs its value there")
-}
-
-fn size_or_one(x: f64) -> f64 {
-    if x == 0.0 { 1.0 } else { x.abs() }
 }

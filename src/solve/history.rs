@@ -142,7 +142,6 @@ pub(super) fn follow(
         from = here;
     }
     let here = Place::of(&run);
-    let crosses = run.occurred.last().is_none_or(|last| last.sign != 0);
     let ending = match run.end() {
         Some(End::Event(i)) => Some(i),
         _ => None,
@@ -156,6 +155,7 @@ pub(super) fn follow(
                 stages.push(Stage::Smooth { from, to: here.t });
             }
             if let Some(i) = ending {
+                let crosses = run.occurred.iter().all(|at| at.event != i || at.sign != 0);
                 let (before, after) = (here.clone(), here.clone());
                 let acts = Vec::new();
                 let timed_by = Some(i);

@@ -150,7 +150,6 @@ impl Method {
         y: &[f64],
         options: &Options,
     ) -> Result<Box<dyn Engine + 'a>, Error> {
-        self.check(options, &equations)?;
         let Tolerances { rtol, atol } = options.tolerances.clone();
         let system = match self.take(equations, t, y.len(), options)? {
             Equations::Dae { system, yp, differential } => {
@@ -195,7 +194,8 @@ impl Method {
         let built = ordered!(IdaOptions::new(rtol, atol), options, sign);
         differential.into_iter().fold(built, IdaOptions::differential)
     }
-    /// The equations as this method takes them: IDA those with a mass matrix as a DAE.
+    /// The equations as this method takes them, IDA those with a mass matrix as a DAE; refuses what it does not take, and
+    /// options that it does not have.
     pub(super) fn take<'a>(
         self,
         equations: Equations<'a>,
@@ -203,6 +203,7 @@ impl Method {
         n: usize,
         options: &Options,
     ) -> Result<Equations<'a>, Error> {
+        self.check(options, &equations)?;
         match equations {
             Equations::Ode(system) if self == Self::Ida => {
                 let dense = LinearSolver::Dense(Jacobian::DifferenceQuotients);

@@ -7,7 +7,7 @@ use super::{
     error::Reason,
     event::{Jump, check_landed},
 };
-use crate::{input::InputError, sundials::Sensitivities};
+use crate::{input::InputError, sundials::Sensitivities, vector::size_or_one};
 
 /// The sensitivities dy/dp of a run, to some of the parameters of its equations.
 pub(super) struct Carried {
@@ -79,7 +79,7 @@ impl Carried {
         };
         let rate = along((1.0, at.slopes[0], None), at.h);
         let columns = self.parameters.iter().zip(self.s.chunks(at.before.len()));
-        columns.map(|(&k, s)| -along((0.0, s, Some(k)), scale(at.p[k])) / rate).collect()
+        columns.map(|(&k, s)| -along((0.0, s, Some(k)), size_or_one(at.p[k])) / rate).collect()
     }
 
     /// Carries them across a jump y+ = a(t, y, p) by `act`, at a time with the derivatives `taus`.
@@ -104,7 +104,7 @@ impl Carried {
         self.before = Some(self.s.clone());
         for ((&tau, &k), s) in taus.iter().zip(&self.parameters).zip(self.s.chunks_mut(n)) {
             let direction: Vec<f64> = s.iter().zip(left).map(|(s, f)| s + f * tau).collect();
-            let distance = f64::EPSILON.cbrt() * scale(at.p[k]);
+            let distance = f64::EPSILON.cbrt() * size_or_one(at.p[k]);
             let mut landed = |distance: f64| {
                 let (t, mut y, mut p) = at.moved(&(tau, &direction, Some(k)), distance);
                 unknown.fill(f64::NAN);
@@ -136,9 +136,4 @@ impl Carried {
         let s = MatRef::from_column_major_slice(&self.s, self.s.len() / columns, columns);
         Ok(engine.set_sensitivities(s)?)
     }
-}
-
-/// The size of a parameter.
-fn scale(p: f64) -> f64 {
-    if p == 0.0 { 1.0 } else { p.abs() }
 }

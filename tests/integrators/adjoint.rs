@@ -11,6 +11,8 @@ use pliant::{
     },
 };
 
+use crate::support::End;
+
 /// Robertson's reactions with their three rates as parameters, and everything supplied.
 struct Reactions {
     p: [f64; 3],
@@ -225,23 +227,6 @@ fn robertson_backward_and_forward_agree() {
     }
 }
 
-/// G = y0(T).
-struct End;
-impl Functional for End {
-    fn terminal(
-        &mut self,
-        _t: f64,
-        y: &[f64],
-        _p: &[f64],
-        slopes: Option<Slopes<'_>>,
-    ) -> Result<f64, Failure> {
-        if let Some(slopes) = slopes {
-            slopes.y[0] = 1.0;
-        }
-        Ok(y[0])
-    }
-}
-
 /// An oscillator x'' = -w^2 x: G = x(T), in w, x0 and v0, in both directions of time.
 #[test]
 fn an_oscillator_in_closed_form() {
@@ -336,6 +321,7 @@ fn unusable_input_is_named() {
     };
     assert!(refused(&forward.clone().newton(LinearSolver::Custom), &back).contains("entries"));
     assert!(refused(&forward.clone().fixed_point(0), &back).contains("Newton"));
+    assert!(refused(&forward.clone().project(), &back).contains("project"));
     let sensitivities = forward.clone().sensitivities(Sensitivities::of([0]));
     assert!(refused(&sensitivities, &back).contains("sensitivities"));
     assert!(refused(&forward, &back.clone().checkpoint_steps(0)).contains("checkpoint_steps"));

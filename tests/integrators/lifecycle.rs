@@ -8,11 +8,9 @@ use std::{
     panic::{self, AssertUnwindSafe, catch_unwind},
 };
 
-use crate::support::OwnSolver;
+use crate::support::{End, OwnSolver};
 use pliant::{
-    ode::{
-        Failure, Functional, MassMatrix, Slopes, dae_with_parameters, with_mass, with_parameters,
-    },
+    ode::{Failure, MassMatrix, dae_with_parameters, with_mass, with_parameters},
     samples::Robertson,
     sundials::{
         Adjoint, AdjointOptions, Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions,
@@ -148,21 +146,6 @@ fn solvers_with_sensitivities() {
 
 /// Backward problems go before the forward ones.
 fn adjoint_solvers() {
-    struct End;
-    impl Functional for End {
-        fn terminal(
-            &mut self,
-            _t: f64,
-            y: &[f64],
-            _p: &[f64],
-            slopes: Option<Slopes<'_>>,
-        ) -> Result<f64, Failure> {
-            if let Some(slopes) = slopes {
-                slopes.y[0] = 1.0;
-            }
-            Ok(y[0])
-        }
-    }
     for solver in linear_solvers() {
         let forward = CvodeOptions::new(1e-4, ATOL).newton(solver.clone());
         let options = AdjointOptions::new(1e-4, 1e-6).checkpoint_steps(10);

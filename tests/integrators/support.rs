@@ -4,7 +4,25 @@ use faer::{
     Mat,
     linalg::solvers::{PartialPivLu, Solve},
 };
-use pliant::ode::{Dae, Failure, Ode};
+use pliant::ode::{Dae, Failure, Functional, Ode, Slopes};
+
+/// The functional G = y0(T).
+pub struct End;
+
+impl Functional for End {
+    fn terminal(
+        &mut self,
+        _t: f64,
+        y: &[f64],
+        _p: &[f64],
+        slopes: Option<Slopes<'_>>,
+    ) -> Result<f64, Failure> {
+        if let Some(slopes) = slopes {
+            slopes.y[0] = 1.0;
+        }
+        Ok(y[0])
+    }
+}
 
 /// A system that solves Newton's linear systems itself, by a dense LU of its own Jacobian.
 pub struct OwnSolver<S> {

@@ -8,7 +8,7 @@ use pliant::{
     sundials::{AdjointOptions, Gradient, Krylov, KrylovMethod, LinearSolver, Sensitivities},
 };
 
-use crate::support::tight;
+use crate::support::{fall_under, tight};
 
 const MULTISTEP: [Method; 2] = [Method::Bdf, Method::Adams];
 
@@ -64,16 +64,8 @@ fn back() -> AdjointOptions {
 
 /// The ball of gravity p0 that keeps the part p1 of its speed at the floor.
 fn ball<'a>(p: [f64; 2], start: [f64; 2]) -> Problem<'a> {
-    let fall = with_parameters(
-        |_t, y, p, ydot| {
-            ydot[0] = y[1];
-            ydot[1] = -p[0];
-            Ok(())
-        },
-        p,
-    );
     let floor = Event::new(|_, y| y[0]).falling().action(|jump| jump.y[1] *= -jump.p[1]);
-    Problem::ode(fall, start).event(floor)
+    Problem::ode(fall_under(p), start).event(floor)
 }
 
 /// y0(T) + integral of y0^2 of the ball that falls and bounces, in closed form, by its parabolas.
@@ -220,15 +212,7 @@ fn the_time_of_an_event() {
     let value = |x: &[f64]| (x[3] + (x[3] * x[3] + 2.0 * x[0] * x[2]).sqrt()) / x[0];
     for method in MULTISTEP {
         let stop = Event::new(|_, y| y[0]).falling().terminal();
-        let fall = with_parameters(
-            |_t, y, p, ydot| {
-                ydot[0] = y[1];
-                ydot[1] = -p[0];
-                Ok(())
-            },
-            p,
-        );
-        let problem = Problem::ode(fall, start).event(stop);
+        let problem = Problem::ode(fall_under(p), start).event(stop);
         let found = gradient(problem, Time, method, (0.0, 9.0), &tight(), &back()).unwrap();
         let error = off(&found, &[p, start].concat(), value);
         println!("{method:?}: {error:e}");

@@ -6,7 +6,7 @@ use pliant::{
     sundials::Sensitivities,
 };
 
-use crate::support::tight;
+use crate::support::{fall_under, tight};
 
 fn decay<'a>() -> Problem<'a> {
     let equations = with_parameters(
@@ -58,16 +58,8 @@ fn height(t: f64, [g, e]: [f64; 2]) -> f64 {
 fn a_bounce_is_followed() {
     let p = [9.81, 0.8];
     for method in [Method::Bdf, Method::Adams] {
-        let ball = with_parameters(
-            |_t, y, p, ydot| {
-                ydot[0] = y[1];
-                ydot[1] = -p[0];
-                Ok(())
-            },
-            p,
-        );
         let floor = Event::new(|_, y| y[0]).falling().action(|jump| jump.y[1] *= -jump.p[1]);
-        let problem = Problem::ode(ball, [10.0, 0.0]).event(floor);
+        let problem = Problem::ode(fall_under(p), [10.0, 0.0]).event(floor);
         let options = tight().sensitivities(Sensitivities::of([0, 1]));
         let solution = solve(problem, method, (0.0, 4.2), &options).unwrap();
         assert_eq!(solution.events().len(), 2);
@@ -211,15 +203,8 @@ fn what_cannot_be_followed_is_refused() {
     let text = solve(problem, Method::Ida, (0.0, 1.0), &options).unwrap_err().to_string();
     assert!(text.contains("not yp"), "{text}");
     // the top of a flight is touched, and no crossing of it
-    let fall = with_parameters(
-        |_t, y, p, ydot| {
-            ydot.copy_from_slice(&[y[1], -p[0]]);
-            Ok(())
-        },
-        [8.0],
-    );
     let top = Event::new(|_, y| y[0] - 1.0).touching(1e-3).action(|jump| jump.y[1] = -1.0);
-    let problem = Problem::ode(fall, [0.0, 4.0]).event(top);
+    let problem = Problem::ode(fall_under([8.0, 0.0]), [0.0, 4.0]).event(top);
     let text = solve(problem, Method::Bdf, (0.0, 1.0), &options).unwrap_err().to_string();
     assert!(text.contains("only touches zero"), "{text}");
 }

@@ -1,7 +1,7 @@
 //! Problems with closed forms, and all methods.
 
 use pliant::{
-    ode::Failure,
+    ode::{Failure, Ode, with_parameters},
     solve::{Method, Options, Problem},
     sundials::ButcherTable,
 };
@@ -32,6 +32,18 @@ pub fn fall(_t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
     ydot[0] = y[1];
     ydot[1] = -G;
     Ok(())
+}
+
+/// The same under the gravity p0; what p1 is, events know.
+pub fn fall_under<'a>(p: [f64; 2]) -> impl Ode + 'a {
+    with_parameters(
+        |_t, y, p, ydot| {
+            ydot[0] = y[1];
+            ydot[1] = -p[0];
+            Ok(())
+        },
+        p,
+    )
 }
 
 /// y'' = -y: y = (sin t, cos t) from (0, 1).

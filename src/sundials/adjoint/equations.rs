@@ -5,9 +5,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use super::{gradient::Gradient, jacobian::StoredJacobian};
 use crate::{
     input::InputError,
-    integrate::{Callback, Cause, Error, IntegrationError, Tolerances, check_finite},
+    integrate::{Callback, Cause, Error, IntegrationError, Tolerances},
     ode::{Failure, Functional, Slopes},
     sundials::{LinearSolver, matrix::Entries, sensitivity::Access},
+    vector::size_or_one,
 };
 
 /// A system and a functional, with room for their derivatives.
@@ -70,7 +71,7 @@ impl<S, F: Functional> Equations<S, F> {
 
     /// How large unknown `j` is, for difference quotients, where its value is `y`.
     pub(super) fn size(&self, j: usize, y: f64) -> f64 {
-        size(&self.tolerances, j, y)
+        self.tolerances.size_of(j, y)
     }
 
     /// Makes the Jacobian that of the equations at (t, y), unless it is: by `supplied`, which gets room for n numbers,
@@ -90,7 +91,7 @@ impl<S, F: Functional> Equations<S, F> {
         if jacobian.is_supplied() {
             supplied(system, jacobian.entries(), ahead)?;
         } else {
-            let step = |j: usize| f64::EPSILON.cbrt() * size(tolerances, j, y[j]);
+            let step = |j: usize| f64::EPSILON.cbrt() * tolerances.size_of(j, y[j]);
             jacobian.quotients(y, step, |y, out| evaluate(system, y, out))?;
         }
         self.jacobian_time = Some(t);
@@ -119,16 +120,8 @@ impl<S, F: Functional> Equations<S, F> {
         y: &[f64],
     ) -> Result<Gradient, Error> {
         let p = (self.access.get)(&self.system);
-        let (mut by_y, mut by_p) = (vec![0.0; y.len()], vec![0.0; p.len()]);
-        let slopes = Slopes { y: &mut by_y, p: &mut by_p };
-        let value = self
-            .functional
-            .terminal(t, y, p, Some(slopes))
-            .map_err(|failure| refused(integrator, t, failure))?;
-        check_finite("terminal functional", &[value])?;
-        check_finite("terminal slopes by y", &by_y)?;
-        check_finite("terminal slopes by p", &by_p)?;
-        Ok(Gradient { value, parameters: by_p, initial_state: by_y })
+        let end = Gradient::at_end(&mut self.functional, t, y, p);
+        Ok(end.map_err(|failure| refused(integrator, t, failure))?.check()?)
     }
 
     /// Writes the product of lambda with the derivatives of `evaluate` by p, by central differences; parameters are put
@@ -144,7 +137,7 @@ impl<S, F: Functional> Equations<S, F> {
         let outcome = catch_unwind(AssertUnwindSafe(|| {
             for (i, out) in out.iter_mut().enumerate() {
                 let p = self.p[i];
-                let step = f64::EPSILON.cbrt() * if p == 0.0 { 1.0 } else { p.abs() };
+                let step = f64::EPSILON.cbrt() * size_or_one(p);
                 for (p, result) in [(p + step, &mut self.ahead), (p - step, &mut self.behind)] {
                     self.trial.copy_from_slice(&self.p);
                     self.trial[i] = p;
@@ -159,13 +152,6 @@ impl<S, F: Functional> Equations<S, F> {
         }));
         set(&mut self.system, &self.p);
         outcome.unwrap_or_else(|panic| resume_unwind(panic))
-    }
-}
-
-fn size(tolerances: &Tolerances, j: usize, y: f64) -> f64 {
-    match y.abs() + tolerances.atol_of(j) / tolerances.rtol {
-        0.0 => 1.0,
-        size => size,
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::{
     input::InputError,
     integrate::{AbsoluteTolerance, Tolerances, check_count},
+    vector::size_or_one,
 };
 
 /// Options of the way back of an [`Adjoint`](super::Adjoint) or a [`DaeAdjoint`](super::DaeAdjoint).
@@ -88,7 +89,9 @@ impl AdjointOptions {
             return tolerances.clone();
         }
         let (rtol, least) = (self.tolerances.rtol, self.tolerances.least_atol());
-        let size = |p: &f64| if *p == 0.0 { 1.0 } else { p.abs() };
-        Tolerances::new(rtol, parameters.iter().map(|p| least / size(p)).collect::<Vec<_>>())
+        Tolerances::new(
+            rtol,
+            parameters.iter().map(|p| least / size_or_one(*p)).collect::<Vec<_>>(),
+        )
     }
 }

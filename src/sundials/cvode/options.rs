@@ -100,6 +100,10 @@ impl CvodeOptions {
             let mend = "the run forward of an adjoint gradient needs none";
             return Err(InputError::new("sensitivities", "given", mend));
         }
+        if self.project {
+            let mend = "an adjoint gradient knows nothing of projections: leave them out";
+            return Err(InputError::new("project", true, mend));
+        }
         let Some(solver) = self.nonlinear.linear_solver() else {
             let mend = "an adjoint gradient needs a Newton iteration";
             return Err(InputError::new("nonlinear solver", "fixed_point", mend));

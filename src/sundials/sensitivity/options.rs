@@ -1,6 +1,6 @@
 //! Which sensitivities are computed, and how.
 
-use crate::{input::InputError, integrate::check_finite};
+use crate::{input::InputError, integrate::check_finite, vector::size_or_one};
 
 /// How the equations of the sensitivities are solved together with those of the state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -131,10 +131,7 @@ impl Sensitivities {
         }
         check_finite("parameters", parameters)?;
         let Some(scales) = &self.scales else {
-            let scale = |&place: &usize| match parameters[place].abs() {
-                0.0 => 1.0,
-                size => size,
-            };
+            let scale = |&place: &usize| size_or_one(parameters[place]);
             return Ok(self.parameters.iter().map(scale).collect());
         };
         if scales.len() != self.parameters.len() {
