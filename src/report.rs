@@ -17,6 +17,8 @@ pub struct Report {
     pub method: Method,
     /// Relative tolerance.
     pub rtol: f64,
+    /// Absolute tolerance of displacements (m).
+    pub atol_position: f64,
     /// Rate of the constraint stabilization (1/s).
     pub alpha: f64,
     /// Unknowns of the integrator, in the last phase.

@@ -7,7 +7,7 @@
 //! - `{LINE / LINE at ERROR}`: how many times longer the first one takes;
 //! - `{error of LINE at POINT}`, `{energy of LINE at POINT}`, `{steps of LINE at POINT}`,
 //!   `{seconds of LINE at POINT}`: of a run;
-//! - `{fastest}`, `{auto}`: the tables over all problems.
+//! - `{fastest}`, `{auto}`, `{asked}`: the tables over all problems.
 
 use std::fmt::Write;
 use std::fs;
@@ -21,6 +21,11 @@ const JUDGED: [&str; 3] = ["1e-3", "1e-5", "1e-7"];
 
 /// Times as long as the fastest method that the automatic choice should take at most, and may.
 const TARGETS: [f64; 2] = [1.5, 3.0];
+
+/// Relative tolerances at which the error of the automatic choice is compared with what was asked for, and the least and the
+/// most that it should be of it.
+const ASKED: [&str; 6] = ["1e-2", "1e-3", "1e-4", "1e-5", "1e-6", "1e-7"];
+const CALIBRATED: [f64; 2] = [0.1, 3.0];
 
 /// A problem and what was found.
 pub struct Section {
@@ -73,8 +78,8 @@ pub fn write(path: &Path, page: &str) -> Result<(), Error> {
 /// The page in Markdown, with charts at `charts`.
 pub fn page(readings: &str, charts: &str, sections: &[Section]) -> String {
     let before = readings.split("\n### ").next().unwrap_or_default();
-    let mut page =
-        before.replace("{fastest}", &fastest(sections)).replace("{auto}", &auto(sections));
+    let tables = before.replace("{fastest}", &fastest(sections)).replace("{auto}", &auto(sections));
+    let mut page = tables.replace("{asked}", &asked(sections));
     sections.iter().for_each(|section| page += &section.text(readings, charts));
     page
 }
@@ -205,6 +210,36 @@ fn auto(sections: &[Section]) -> String {
         TARGETS[0], TARGETS[1]
     )
     .unwrap();
+    table
+}
+
+/// The error of the automatic choice over its tolerance.
+fn asked(sections: &[Section]) -> String {
+    let mut table = format!("| problem | {} |\n| --- |", ASKED.join(" | "));
+    ASKED.iter().for_each(|_| table += " --- |");
+    let mut ratios = Vec::new();
+    for Section { title, findings, .. } in methods(sections) {
+        let Some(auto) = findings.lines().iter().find(|line| line.name == "auto") else { continue };
+        write!(table, "\n| {title} |").unwrap();
+        for point in ASKED {
+            let row = row(auto, point).filter(|row| row.is_resolved());
+            let ratio = row.and_then(|row| Some(row.error? / row.rtol));
+            let cell = match ratio {
+                Some(ratio) if (CALIBRATED[0]..=CALIBRATED[1]).contains(&ratio) => {
+                    format!("{ratio:.2}")
+                }
+                Some(ratio) => format!("**{ratio:.2}**"),
+                None => "–".into(),
+            };
+            write!(table, " {cell} |").unwrap();
+            ratios.extend(ratio);
+        }
+    }
+    let [least, most] = CALIBRATED;
+    let below = ratios.iter().filter(|ratio| **ratio < least).count();
+    let above = ratios.iter().filter(|ratio| **ratio > most).count();
+    let all = ratios.len();
+    write!(table, "\n\nOf {all} ratios {below} are below {least}, {above} above {most}.").unwrap();
     table
 }
 

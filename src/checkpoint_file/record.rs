@@ -11,7 +11,7 @@ use crate::simulate::{Checkpoint, Choice, Kept};
 use crate::state::State;
 
 /// Format of the files that this version writes and reads.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// What a file says that it is.
 pub(super) const WHAT: &str = "pliant checkpoint";
@@ -65,6 +65,7 @@ pub(super) struct Record {
 struct Chosen {
     method: String,
     max_order: Option<u32>,
+    tolerance_part: f64,
     reason: String,
     explicit_step: Option<f64>,
     central_step: Option<f64>,
@@ -168,11 +169,13 @@ impl Record {
 
 impl From<Choice> for Chosen {
     fn from(choice: Choice) -> Self {
-        let Choice { method, max_order, reason, explicit_step, central_step, patience } = choice;
+        let Choice { method, max_order, part, reason, explicit_step, central_step, patience } =
+            choice;
         let bounded = |step: f64| Some(step).filter(|step| step.is_finite());
         Self {
             method: method.name().into(),
             max_order,
+            tolerance_part: part,
             reason,
             explicit_step: bounded(explicit_step),
             central_step: bounded(central_step),
@@ -186,6 +189,7 @@ impl Chosen {
         Ok(Choice {
             method: self.method.parse::<Method>().map_err(|error| error.to_string())?,
             max_order: self.max_order,
+            part: self.tolerance_part,
             reason: self.reason,
             explicit_step: self.explicit_step.unwrap_or(f64::INFINITY),
             central_step: self.central_step.unwrap_or(f64::INFINITY),

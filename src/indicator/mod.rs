@@ -12,6 +12,7 @@
 //! | [`touch`]: how deep nodes are inside obstacles | half a cell, 2 % of the body |
 //! | [`touch`]: obstacles with friction that are met in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never met | none |
+//! | [`pace`]: absolute tolerance of displacements | 1 % of the way that nodes go, or 10 `rtol` |
 //!
 //! Those are measured at the end of each run, and before it as far as they need none. Others take longer, or are no cause
 //! for a warning by themselves: [`Trajectory::indicators`], `pliant check --look`. (+) means that less would do below the limit.
@@ -128,6 +129,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let missed = || touch::missed(&meetings, touch::Reach::between(scene, &samples));
     let measured = scene.indicators().into_iter().chain(of_cells(trajectory, &samples));
     let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(pace::tolerance(trajectory, &samples));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
 

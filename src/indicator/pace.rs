@@ -1,4 +1,5 @@
-//! How fast a motion is: whether statics would do, and what its vibrations say for a method.
+//! How fast and how large a motion is: whether statics would do, what its vibrations say for a method, and whether
+//! tolerances see it.
 
 use super::rigid::travel;
 use crate::input::{percent, short, told};
@@ -10,6 +11,11 @@ use crate::trajectory::{Sample, Trajectory};
 const STATIC: f64 = 0.01;
 /// Errors of constraints, over the way that nodes go.
 const MOST_DRIFT: f64 = 1e-3;
+/// Absolute tolerance of displacements over the way that nodes go, and how many times `rtol` that may be in any case.
+const MOST_TOLERANCE: f64 = 0.01;
+const TIMES_ASKED: f64 = 10.0;
+/// What moves less than this part of the body's size is at rest, but for rounding.
+const REST: f64 = 1e-9;
 /// Damping ratios below which vibrations go on and on, and from which on there are none.
 const LASTING: f64 = 0.006;
 const CREEPING: f64 = 1.0;
@@ -84,4 +90,27 @@ pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indi
     );
     let beyond = || format!("{said}: raise alpha, or lower rtol");
     Some(Indicator::trusted("drift", (part, "1"), [0.0, MOST_DRIFT], || said.clone(), beyond))
+}
+
+/// Whether the tolerance of displacements is small beside them.
+pub(super) fn tolerance(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+    let (tolerance, body) = (trajectory.report().atol_position, trajectory.body());
+    let way = travel(body, samples);
+    if way <= REST * body.mesh().size() {
+        return None;
+    }
+    let (part, most) =
+        (tolerance / way, MOST_TOLERANCE.max(TIMES_ASKED * trajectory.report().rtol));
+    let said = format!(
+        "displacements have the absolute tolerance {} m, {} of the way that nodes go (limit: {})",
+        short(tolerance),
+        percent(part),
+        percent(most)
+    );
+    let beyond = || {
+        let enough = short(0.1 * most * way);
+        format!("{said}, and errors may be as large: set atol_position to {enough} m or below")
+    };
+    let limits = [0.0, most];
+    Some(Indicator::trusted("tolerance", (part, "1"), limits, || said.clone(), beyond))
 }

@@ -10,7 +10,9 @@ pub struct Settings {
     /// Integration method. Default: [`Method::Auto`].
     pub method: Method,
     /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
-    /// `rtol |y| + atol` in the root mean square over displacements and velocities. Default: 1e-5.
+    /// `rtol |y| + atol` in the root mean square over displacements and velocities. Errors of steps add up: that of the
+    /// whole motion may be twenty times as large. [`Method::Auto`] gives the method that it chooses a fifth of the
+    /// tolerances or less, so that the motion is about as precise as `rtol` says. Default: 1e-5.
     pub rtol: f64,
     /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the body's size,
     /// so that smaller displacements count as that large.
@@ -91,6 +93,16 @@ impl Settings {
                 Err(InputError::new("max_steps", 0, "allow one step at least"))
             }
             _ => Ok(()),
+        }
+    }
+
+    /// The same with all tolerances times `part`.
+    pub(crate) fn tightened(&self, part: f64) -> Self {
+        Self {
+            rtol: part * self.rtol,
+            atol_position: self.atol_position.map(|atol| part * atol),
+            atol_velocity: self.atol_velocity.map(|atol| part * atol),
+            ..self.clone()
         }
     }
 

@@ -7,7 +7,7 @@ use super::checkpoint::{Checkpoint, Kept};
 use super::records;
 use super::simulation::Simulation;
 use crate::error::Error;
-use crate::input::{InputError, not_negative};
+use crate::input::{InputError, not_negative, positive};
 use crate::scene::Scene;
 use crate::settings::{Method, Settings};
 
@@ -15,6 +15,8 @@ use crate::settings::{Method, Settings};
 pub(crate) struct Choice {
     pub(crate) method: Method,
     pub(crate) max_order: Option<u32>,
+    /// Part of the tolerances asked for that the method is given.
+    pub(crate) part: f64,
     pub(crate) reason: String,
     /// Longest stable steps of explicit Runge-Kutta and of central differences (s), and steps after which the
     /// implicit method is tried again: see [`Plan`].
@@ -34,10 +36,11 @@ impl Checkpoint {
 
     /// The method, if it was chosen.
     pub(crate) fn choice(&self) -> Option<Choice> {
-        let Plan { settings, reason, explicit_step, central_step, patience, .. } = &self.plan;
+        let Plan { settings, part, reason, explicit_step, central_step, patience, .. } = &self.plan;
         Some(Choice {
             method: settings.method,
             max_order: settings.max_order,
+            part: *part,
             reason: reason.clone()?,
             explicit_step: *explicit_step,
             central_step: *central_step,
@@ -49,19 +52,20 @@ impl Checkpoint {
 impl Choice {
     /// The plan that this was, under the settings `asked`.
     fn plan(self, asked: &Settings) -> Result<Plan, InputError> {
-        let Self { method, max_order, reason, explicit_step, central_step, patience } = self;
+        let Self { method, max_order, part, reason, explicit_step, central_step, patience } = self;
         if method == Method::Auto {
             return Err(InputError::new("chosen method", method, "it must be one of the others"));
         }
-        let settings = Settings { method, max_order, ..asked.clone() };
+        positive("part of the tolerances", part, "")?;
+        let settings = Settings { method, max_order, ..asked.tightened(part) };
         // a flag for BDF alone, which may have been chosen before
         Settings { stability_limit_detection: false, ..settings.clone() }.validate()?;
         for step in [explicit_step, central_step].into_iter().filter(|step| step.is_finite()) {
             not_negative("longest stable step", step, "s")?;
         }
         let reason = Some(reason);
-        let max_order = asked.max_order;
-        Ok(Plan { settings, max_order, reason, explicit_step, central_step, patience })
+        let asked = asked.clone();
+        Ok(Plan { settings, asked, part, reason, explicit_step, central_step, patience })
     }
 }
 

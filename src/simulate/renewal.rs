@@ -324,7 +324,7 @@ impl Run {
     }
 
     /// Finds where the legs of the phase in force end from now on.
-    fn find_stops(&mut self) {
+    pub(super) fn find_stops(&mut self) {
         let mut stops = self.phase.breaks(self.scene.obstacles());
         stops.retain(|&stop| self.time < stop && stop < self.phase.until);
         stops.push(self.phase.until);

@@ -24,7 +24,7 @@ use crate::model::Model;
 use crate::ode::Failure;
 use crate::report::{Report, creation};
 use crate::scene::{Phase, Scene};
-use crate::settings::{AbsoluteTolerances, Settings};
+use crate::settings::Settings;
 use crate::state::ENERGIES;
 use crate::system::System;
 use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
@@ -37,7 +37,8 @@ pub(super) struct Run {
     pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
     pub(super) sensors: Sensors,
-    atol: AbsoluteTolerances,
+    /// Absolute tolerance of displacements as it was asked for (m).
+    atol_position: f64,
     /// Started with the run.
     clock: Instant,
     /// The phase in force, as commands have changed it, and its number.
@@ -71,6 +72,9 @@ pub(super) struct Run {
 /// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
 const WATCH: usize = 32;
 
+/// Part of the largest energy that methods may have created in a state that others go on from.
+const CLEAN: f64 = 0.001;
+
 impl Run {
     /// A run of `scene` under the `forces` of its first phase, at its start.
     pub(super) fn new(
@@ -93,9 +97,11 @@ impl Run {
             let reason = "the energies are beyond the range of double precision";
             return Err(scene.bad_start(Failure::Recoverable(reason.into())).into());
         }
+        let atol_position = settings.tolerances(scene).position;
         let report = Report {
             method: settings.method,
             rtol: settings.rtol,
+            atol_position,
             alpha: settings.alpha,
             ..Report::default()
         };
@@ -117,7 +123,7 @@ impl Run {
             gauges: Arc::new(gauges),
             sampling: sampling.clone(),
             sensors,
-            atol: settings.tolerances(scene),
+            atol_position,
             clock,
             time: 0.0,
             state,
@@ -183,6 +189,8 @@ impl Run {
                 }
                 Some(Ending::Doubtful { instead }) => {
                     self.go_back();
+                    self.find_stops();
+                    self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
                     self.stage.follow(instead);
                     self.begin_events(&system);
                 }
@@ -196,8 +204,9 @@ impl Run {
         }
         system.forget_counts();
         let (settings, end) = (&self.stage.plan.settings, self.stop());
+        let atol = settings.tolerances(&self.scene);
         let first = self.stage.first_step.take();
-        match stepper::start(system, settings, &self.atol, [self.time, end], first, &self.state) {
+        match stepper::start(system, settings, &atol, [self.time, end], first, &self.state) {
             Ok(stepper) => self.at = At::Work(Work::new(stepper, self.time, end)),
             Err(source) => return Err(self.failure(source, 0.0)),
         }
@@ -258,7 +267,8 @@ impl Run {
     fn begin(&mut self, system: &System) {
         self.begin_events(system);
         let balance = energy(system, self.time, &self.state).balance();
-        if self.created(balance).is_some() {
+        let (created, scale) = self.created(balance);
+        if creation(created, scale).is_some() {
             self.balance = balance;
         }
         self.remember();
@@ -291,10 +301,13 @@ impl Run {
             let energy = energy(work.stepper.system(), self.time, &self.state);
             self.trajectory.note_energy(&energy);
             if self.stage.plan.is_on_trial() {
-                let created = self.created(energy.balance());
-                match created.and_then(|trouble| self.stage.plan.instead(&trouble)) {
+                let (created, scale) = self.created(energy.balance());
+                let trouble = creation(created, scale);
+                match trouble.and_then(|trouble| self.stage.plan.instead(&trouble)) {
                     Some(instead) => return Ok(Some(Ending::Doubtful { instead })),
-                    None => self.remember(),
+                    // what another method would begin with
+                    None if created < CLEAN * scale => self.remember(),
+                    None => {}
                 }
             }
         }
@@ -313,10 +326,10 @@ impl Run {
         Ok((self.time >= self.stage.leg.end()).then_some(Ending::Reached))
     }
 
-    /// What the methods have created if the energy balance is now `balance` (J), if it is too much.
-    fn created(&self, balance: f64) -> Option<String> {
+    /// What the methods have created if the energy balance is now `balance`, and the scale of it (J).
+    fn created(&self, balance: f64) -> (f64, f64) {
         let scale = self.trajectory.report.energy_scale.max(self.least_energy);
-        creation(balance - self.balance, scale)
+        (balance - self.balance, scale)
     }
 
     /// Keeps the present state to go back to.
@@ -343,7 +356,7 @@ impl Run {
         let stepper = &mut **stepper;
         let reached = stepper.step(*stop)?;
         let times = [self.time, reached];
-        let (events, tolerance) = (&mut self.stage.leg.events, self.atol.position);
+        let (events, tolerance) = (&mut self.stage.leg.events, self.atol_position);
         let event = match events.met(stepper, &self.state, times, tolerance, sample)? {
             Met::Nothing => None,
             Met::Event(t) => Some(t),
@@ -399,7 +412,7 @@ impl Run {
             gauges: self.gauges.clone(),
             sampling: self.sampling.clone(),
             sensors: self.sensors.clone(),
-            atol: self.atol,
+            atol_position: self.atol_position,
             clock: Instant::now(),
             phase: self.phase.clone(),
             number: self.number,

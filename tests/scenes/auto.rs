@@ -46,8 +46,9 @@ fn what_creeps_tells_nothing_of_vibrations() {
     assert_eq!(walks.method, Method::Arkode);
     let reason = walks.reason.as_deref().unwrap();
     assert!(reason.contains("overdamped"), "{reason}");
+    // at what of the tolerance ARKODE is given
     let bdf =
-        run(&scene, &Settings { method: Method::CvodeBdf, rtol: 1e-3, ..Settings::default() });
+        run(&scene, &Settings { method: Method::CvodeBdf, rtol: 2e-4, ..Settings::default() });
     let bdf = &bdf.report().phases[1];
     // a step of ARKODE costs about ten of BDF
     assert!(10 * walks.counts.steps < bdf.counts.steps, "{walks:?} {bdf:?}");
@@ -95,6 +96,42 @@ fn errors_shrink_with_rtol() {
     assert!(errors[1] < 0.1 * errors[0] && errors[2] < 0.1 * errors[1], "{errors:?}");
 }
 
+/// The error of the motion over `rtol`: root mean square over nodes and times, beside the motion.
+fn error_over_rtol(scene: &Scene, rtol: f64, reference: &Trajectory) -> f64 {
+    let times = Sampling::every(0.02 * scene.end());
+    let motion = scene.simulate(&auto(rtol), &times).unwrap();
+    let [mut error, mut size] = [0.0; 2];
+    for (a, b) in motion.samples().iter().zip(reference.samples()) {
+        assert_eq!(a.time, b.time);
+        error += a.u.iter().zip(&b.u).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        size += b.u.iter().map(|b| b * b).sum::<f64>();
+    }
+    (error / size).sqrt() / rtol
+}
+
+/// Errors of a motion are about what was asked for, whatever its method, its damping and the tolerance.
+#[test]
+fn rtol_is_the_error_of_the_motion() {
+    let clamped = |viscosity| {
+        ClampedBeam { viscosity, nodes: [18, 2], until: 1.0, ..ClampedBeam::default() }.scene()
+    };
+    let scenes = [
+        ("pressed square, ARKODE", samples::square_press(4)),
+        ("sheared block, BDF", samples::report_8()),
+        ("undamped beam, ARKODE", clamped(0.0)),
+        ("damped beam, BDF", clamped(4000.0)),
+    ];
+    for (name, scene) in scenes {
+        let scene = scene.unwrap();
+        let fine =
+            Settings { method: Method::Arkode, max_order: Some(5), rtol: 1e-9, ..auto(1e-9) };
+        let reference = scene.simulate(&fine, &Sampling::every(0.02 * scene.end())).unwrap();
+        let ratios = [1e-2, 1e-3, 1e-4, 1e-5].map(|rtol| error_over_rtol(&scene, rtol, &reference));
+        println!("{name}: {ratios:.2?}");
+        assert!(ratios.iter().all(|ratio| (0.1..=3.0).contains(ratio)), "{name}: {ratios:?}");
+    }
+}
+
 /// An undamped beam under sudden gravity: orders 3 to 5 of BDF are unstable for its vibrations.
 fn undamped() -> Scene {
     let mesh = Mesh::rectangle([0.35, 0.02], [36, 3], Cells::Triangles).unwrap();
@@ -116,8 +153,9 @@ fn a_choice_that_creates_energy_is_revoked() {
     let scene = Scene::new(body)
         .initial_velocity(|x| vec![if x[0] > 0.15 { 1.0 } else { 0.0 }])
         .phase(Phase::until(0.5).hold("left"));
-    let motion = run(&scene, &auto(1e-3));
+    let motion = run(&scene, &auto(1e-2));
     let reason = motion.report().phases[0].reason.as_deref().unwrap();
+    println!("{reason}");
     assert!(reason.contains("created"), "{reason}");
     assert_eq!(motion.report().warnings(), Vec::<String>::new());
     let reference = Settings { method: Method::Rk, rtol: 1e-9, ..Settings::default() };

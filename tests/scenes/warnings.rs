@@ -31,6 +31,29 @@ fn only(warnings: &[String], parts: &[&str]) {
 
 const NONE: Vec<String> = Vec::new();
 
+/// Displacements of some micrometres, which count as a millimetre. What the warning says to set is enough.
+#[test]
+fn motions_below_their_tolerance() {
+    let told = |gravity: f64, atol_position| {
+        let body = square(Cells::Triangles, SOFT).build().unwrap();
+        let scene =
+            Scene::new(body).gravity([0.0, gravity]).phase(Phase::until(0.2).hold("bottom"));
+        let settings = Settings { rtol: 1e-3, atol_position, ..Settings::default() };
+        let motion = scene.simulate(&settings, &Sampling::every(0.02)).unwrap();
+        let mut warnings = motion.report().warnings();
+        // what is too rough may create energy, too
+        warnings.retain(|warning| warning.contains("absolute tolerance"));
+        warnings
+    };
+    let warnings = told(-0.02, None);
+    only(&warnings, &["of the way that nodes go (limit: 1 %)", "set atol_position to"]);
+    let enough = warnings[0].split("set atol_position to ").nth(1).unwrap();
+    let enough: f64 = enough.split(' ').next().unwrap().parse().unwrap();
+    assert_eq!(told(-0.02, Some(enough)), NONE);
+    // a strong field moves it far enough
+    assert_eq!(told(-2.0, None), NONE);
+}
+
 /// A square that begins turned by an angle and has no time to move: all cells have turned by that angle.
 #[test]
 fn rotations_under_cauchy_strain() {
