@@ -35,7 +35,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
             Key::new("nodes", Holds::Count, "the number of nodes").required(),
         ],
     },
-    Kind { word: "rectangle", about: "a grid along x and y", keys: &[SIZE, NODES, CELLS] },
+    Kind { word: "rectangle", about: "a grid along x and y", keys: &[SIZE, NODES, CELLS, grading(2)] },
     Kind { word: "ring", about: "a grid around a circle", keys: ROUND },
     Kind { word: "half-ring", about: "its upper half", keys: ROUND },
     Kind {
@@ -54,6 +54,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
             )
             .law("`auto` is `tetrahedra10`, quadratic.")
             .required(),
+            grading(3),
         ],
     },
     Kind {
@@ -80,6 +81,14 @@ const CELLS: Key = Key::new(
 .law("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well, and \
       `auto` is those.")
 .required();
+const fn grading(axes: usize) -> Key {
+    let about = "the length of the last cell along each axis by that of the first one";
+    Key::new("grading", Holds::Array(&Holds::Number, axes), about)
+        .in_unit("1")
+        .law("Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine end where \
+              stress is: a clamp on the left asks for a number above 1.")
+        .default("1 along each axis: equal cells")
+}
 const ROUND: &[Key] = &[
     Key::number("inner", "the inner radius", "m").required(),
     Key::number("outer", "the outer radius", "m").required(),
@@ -141,9 +150,10 @@ fn generate(table: &Table) -> Result<Mesh, Error> {
     let cells = |value: &Value| value.word(&plane_cells());
     Ok(match table.kind() {
         "bar" => Mesh::bar(number("length")?, table.required("nodes", Value::count)?)?,
-        "rectangle" => Mesh::rectangle(
+        "rectangle" => Mesh::graded_rectangle(
             table.required("size", Value::array)?,
             table.required("nodes", Value::counts)?,
+            table.optional("grading", Value::array)?.unwrap_or([1.0; 2]),
             table.required("cells", cells)?,
         )?,
         round @ ("ring" | "half-ring") => {
@@ -155,9 +165,10 @@ fn generate(table: &Table) -> Result<Mesh, Error> {
                 _ => Mesh::half_ring(inner, outer, nodes, cells)?,
             }
         }
-        "cuboid" => Mesh::cuboid(
+        "cuboid" => Mesh::graded_cuboid(
             table.required("size", Value::array)?,
             table.required("nodes", Value::counts)?,
+            table.optional("grading", Value::array)?.unwrap_or([1.0; 3]),
             table.required("cells", |value| value.word(&SOLID_CELLS))?,
         )?,
         _ => table.required("file", |value| {

@@ -250,10 +250,11 @@ fn of_motion() {
         initial = { spin = [1.0, 0.0, -2.0] }
         phase = { until = 0.02, rotate = { nodes = 1, centre = [0.1, 0.0, 0.0], axis = [0.0, 3.0, 4.0], rate = 5.0 } }
         [body]
-        mesh = { kind = "cuboid", size = [0.1, 0.1, 0.1], nodes = [2, 2, 2], cells = "hexahedra" }
+        mesh = { kind = "cuboid", size = [0.1, 0.1, 0.1], nodes = [3, 2, 3], cells = "hexahedra", grading = [3, 1, 0.5] }
         "#,
     );
-    let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], SolidCells::Hexahedra).unwrap();
+    let (size, grading) = ([0.1, 0.1, 0.1], [3.0, 1.0, 0.5]);
+    let mesh = Mesh::graded_cuboid(size, [3, 2, 3], grading, SolidCells::Hexahedra).unwrap();
     let scene = Scene::new(Body::new(mesh, rubber).build().unwrap())
         .spin([1.0, 0.0, -2.0])
         .phase(Phase::until(0.02).rotate([1], [0.1, 0.0, 0.0], [0.0, 3.0, 4.0]));
@@ -267,7 +268,7 @@ fn of_lists() {
         r#"
         gravity = [0.0, -9.8]
         [body]
-        mesh = { kind = "rectangle", size = [0.1, 0.1], nodes = [3, 3], cells = "rectangles", origin = [0.0, 0.01] }
+        mesh = { kind = "rectangle", size = [0.1, 0.1], nodes = [3, 3], cells = "rectangles", origin = [0.0, 0.01], grading = [1, 2] }
         thickness = 0.01
         material = { density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 100.0 }
         [[obstacle]]
@@ -293,7 +294,7 @@ fn of_lists() {
     );
     let (file, rubber) =
         (file.unwrap(), Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 100.0 });
-    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles).unwrap();
+    let mesh = Mesh::graded_rectangle([0.1, 0.1], [3, 3], [1.0, 2.0], Cells::Rectangles).unwrap();
     let body = Body::new(mesh.translated(&[0.0, 0.01]).unwrap(), rubber).thickness(0.01);
     let floor = Obstacle::union([
         Shape::half_plane([0.0, 0.0], [0.0, 2.0]),

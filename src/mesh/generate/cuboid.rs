@@ -1,7 +1,7 @@
 //! Cuboids.
 
 use super::grid::Grid;
-use super::{check_nodes, grid_line};
+use super::{check_grading, check_nodes, grid_lines};
 use crate::input::{InputError, positive};
 use crate::mesh::{CellKind, Mesh};
 
@@ -52,10 +52,26 @@ impl Mesh {
         nodes: [usize; 3],
         cells: SolidCells,
     ) -> Result<Self, InputError> {
+        Self::graded_cuboid(size, nodes, [1.0; 3], cells)
+    }
+
+    /// A [cuboid](Self::cuboid) with cells that get longer or shorter along its axes: along each, the last one is
+    /// `grading` times as long as the first, and each by the same factor as the one before it. Mid nodes are in the
+    /// middles of edges.
+    ///
+    /// # Errors
+    /// As [`cuboid`](Self::cuboid); a grading that is not within 1e-4 and 1e4, or is not 1 for one cell alone.
+    pub fn graded_cuboid(
+        size: [f64; 3],
+        nodes: [usize; 3],
+        grading: [f64; 3],
+        cells: SolidCells,
+    ) -> Result<Self, InputError> {
         for (axis, &length) in size.iter().enumerate() {
             positive(&format!("cuboid.size[{axis}]"), length, "m")?;
         }
         check_nodes("cuboid", nodes)?;
+        check_grading("cuboid", nodes, grading)?;
         let quadratic = cells == SolidCells::Tetrahedra10;
         let grid = Grid::new(nodes.map(|count| count - 1), false, quadratic);
         let (kind, connectivity) = match cells {
@@ -69,9 +85,8 @@ impl Mesh {
                 (CellKind::Tetrahedron10, grid.divide(CellKind::Tetrahedron10, |_| &TETRAHEDRA))
             }
         };
-        let position = |place: &[usize; 3]| {
-            [0, 1, 2].map(|i| grid_line(place[i], grid.steps * (nodes[i] - 1), size[i]))
-        };
+        let lines = [0, 1, 2].map(|i| grid_lines(nodes[i] - 1, grid.steps, size[i], grading[i]));
+        let position = |place: &[usize; 3]| [0, 1, 2].map(|i| lines[i][place[i]]);
         let positions = grid.places.iter().flat_map(position).collect();
         let mut mesh = Mesh::new(3, positions, kind, connectivity)?;
         for (axis, [least, greatest]) in

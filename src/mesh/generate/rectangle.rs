@@ -1,7 +1,7 @@
 //! Rectangles.
 
 use super::grid::{Cells, Diagonal, Grid};
-use super::{check_nodes, grid_line};
+use super::{check_grading, check_nodes, grid_lines};
 use crate::input::{InputError, positive};
 use crate::mesh::Mesh;
 
@@ -13,13 +13,37 @@ impl Mesh {
     /// # Errors
     /// A side that is not above 0, fewer than 2 nodes along a side.
     pub fn rectangle(size: [f64; 2], nodes: [usize; 2], cells: Cells) -> Result<Self, InputError> {
+        Self::graded_rectangle(size, nodes, [1.0; 2], cells)
+    }
+
+    /// A [rectangle](Self::rectangle) with cells that get longer or shorter along its axes: along each, the last one
+    /// is `grading` times as long as the first, and each by the same factor as the one before it. Mid nodes are in the
+    /// middles of edges.
+    ///
+    /// ```
+    /// use pliant::{Cells, Mesh};
+    ///
+    /// // columns of 1 cm, 2 cm and 4 cm
+    /// let mesh = Mesh::graded_rectangle([0.07, 0.02], [4, 2], [4.0, 1.0], Cells::Rectangles)?;
+    /// assert!((mesh.position(1)[0] - 0.01).abs() < 1e-15);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`rectangle`](Self::rectangle); a grading that is not within 1e-4 and 1e4, or is not 1 for one cell alone.
+    pub fn graded_rectangle(
+        size: [f64; 2],
+        nodes: [usize; 2],
+        grading: [f64; 2],
+        cells: Cells,
+    ) -> Result<Self, InputError> {
         positive("rectangle.size[0]", size[0], "m")?;
         positive("rectangle.size[1]", size[1], "m")?;
         check_nodes("rectangle", nodes)?;
+        check_grading("rectangle", nodes, grading)?;
         let grid = Grid::new(nodes.map(|count| count - 1), false, cells == Cells::Triangles6);
-        let position = |place: [usize; 2]| {
-            [0, 1].map(|i| grid_line(place[i], grid.steps * (nodes[i] - 1), size[i]))
-        };
+        let lines = [0, 1].map(|i| grid_lines(nodes[i] - 1, grid.steps, size[i], grading[i]));
+        let position = |place: [usize; 2]| [0, 1].map(|i| lines[i][place[i]]);
         let mut mesh = grid.mesh(cells, Diagonal::Falling, position)?;
         for (name, axis, greatest) in
             [("bottom", 1, false), ("top", 1, true), ("left", 0, false), ("right", 0, true)]

@@ -1,6 +1,7 @@
 //! Mesh generators: numbering, counts, volumes, boundaries, and how they meet bad input.
 
 mod boundaries;
+mod grading;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
