@@ -32,7 +32,16 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
         (CellKind::Triangle6, wedge.to_vec(), (0..6).collect()),
         (CellKind::Quadrilateral, square.to_vec(), (0..4).collect()),
         (CellKind::Tetrahedron, solid.to_vec(), (0..4).collect()),
-        (CellKind::Tetrahedron10, tetrahedron10(&solid), (0..10).collect()),
+        (
+            CellKind::Tetrahedron10,
+            with_mid_nodes(CellKind::Tetrahedron10, &solid, 0.03),
+            (0..10).collect(),
+        ),
+        (
+            CellKind::Hexahedron20,
+            with_mid_nodes(CellKind::Hexahedron20, &brick, 0.0),
+            (0..20).collect(),
+        ),
         (CellKind::Hexahedron, brick, (0..8).collect()),
     ];
     let mut bodies = Vec::new();
@@ -63,13 +72,14 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
     bodies
 }
 
-/// The corners of a tetrahedron and the middles of its edges, somewhat bent.
-fn tetrahedron10(corners: &[f64; 12]) -> Vec<f64> {
-    let edges = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+/// The corners of a solid and the middles of its edges, off by `bend` or less. (The strain points of bent hexahedra do not count
+/// their volumes exactly.)
+fn with_mid_nodes(kind: CellKind, corners: &[f64], bend: f64) -> Vec<f64> {
     let mut positions = corners.to_vec();
-    for (k, [a, b]) in edges.into_iter().enumerate() {
+    for (k, edge) in kind.edges().iter().enumerate() {
+        let [a, b] = [edge[0], edge[1]];
         for i in 0..3 {
-            let bend = 0.03 * (k as f64 + 2.0 * i as f64).sin();
+            let bend = bend * (k as f64 + 2.0 * i as f64).sin();
             positions.push(0.5 * (corners[3 * a + i] + corners[3 * b + i]) + bend);
         }
     }

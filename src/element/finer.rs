@@ -55,12 +55,12 @@ impl Mesh {
         self.divided().mesh
     }
 
-    /// The same mesh with quadratic cells: triangles and tetrahedra get a node in the middle of each edge,
+    /// The same mesh with quadratic cells: triangles, tetrahedra and hexahedra get a node in the middle of each edge,
     /// quadrilaterals are divided into two such triangles first. Nodes keep their numbers, as in
     /// [`halved`](Self::halved).
     ///
     /// # Errors
-    /// Cells that are quadratic, or of which there are none that are (segments, hexahedra).
+    /// Cells that are quadratic, or of which there are none that are (segments).
     pub fn quadratic(&self) -> Result<Self, InputError> {
         self.elevated().map(|finer| finer.mesh)
     }
@@ -77,8 +77,9 @@ impl Mesh {
             CellKind::Triangle => (CellKind::Triangle6, &[&[0, 1, 2]]),
             CellKind::Quadrilateral => (CellKind::Triangle6, &[&[0, 1, 2], &[0, 2, 3]]),
             CellKind::Tetrahedron => (CellKind::Tetrahedron10, &[&[0, 1, 2, 3]]),
+            CellKind::Hexahedron => (CellKind::Hexahedron20, &[&[0, 1, 2, 3, 4, 5, 6, 7]]),
             kind => {
-                let mend = "triangles, quadrilaterals and tetrahedra of linear shape functions get mid nodes";
+                let mend = "triangles, quadrilaterals, tetrahedra and hexahedra of linear shape functions get mid nodes";
                 return Err(InputError::new("cells", kind.name(), mend));
             }
         };
@@ -239,6 +240,7 @@ fn linear(kind: CellKind) -> CellKind {
     match kind {
         CellKind::Triangle6 => CellKind::Triangle,
         CellKind::Tetrahedron10 => CellKind::Tetrahedron,
+        CellKind::Hexahedron20 => CellKind::Hexahedron,
         kind => kind,
     }
 }

@@ -9,8 +9,10 @@
 
 mod finer;
 mod hexahedron;
+mod hexahedron20;
 mod place;
 mod quadrilateral;
+mod quadrilateral8;
 mod recovery;
 mod reference;
 mod segment;
@@ -26,8 +28,10 @@ use nalgebra::{SMatrix, SVector};
 
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
+pub(crate) use hexahedron20::Hexahedron20;
 pub(crate) use place::shares_at;
 pub(crate) use quadrilateral::Quadrilateral;
+pub(crate) use quadrilateral8::Quadrilateral8;
 pub(crate) use recovery::extrapolation;
 pub(crate) use reference::ReferenceCell;
 pub(crate) use segment::Segment;
@@ -58,6 +62,7 @@ macro_rules! with_element {
             (Kind::Tetrahedron, _) => $function::<Tetrahedron, 4, 3, 3, 1>($($argument),*),
             (Kind::Tetrahedron10, _) => $function::<Tetrahedron10, 10, 3, 3, 4>($($argument),*),
             (Kind::Hexahedron, _) => $function::<Hexahedron, 8, 3, 3, 8>($($argument),*),
+            (Kind::Hexahedron20, _) => $function::<Hexahedron20, 20, 3, 3, 14>($($argument),*),
         }
     }};
 }

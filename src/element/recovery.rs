@@ -1,12 +1,12 @@
 //! From strain points to nodes.
 
-use nalgebra::SMatrix;
+use nalgebra::DMatrix;
 
 use super::ReferenceCell;
 
 /// What values at the `Q` strain points of a cell count for at each of its nodes: row a has their factors in the value
 /// at node a of the polynomial through them, constant for one point, else linear in a simplex and along each axis of
-/// a cube.
+/// a cube; of more points than that has coefficients, of the one nearest to them by least squares.
 pub(crate) fn extrapolation<
     C: ReferenceCell<N, M>,
     const N: usize,
@@ -22,8 +22,13 @@ pub(crate) fn extrapolation<
         });
         factors.map(|axis| xi[axis]).product()
     };
-    let at_points = SMatrix::<f64, Q, Q>::from_fn(|p, q| term(q, &C::STIFFNESS_RULE[p].0));
-    let inverse = at_points.try_inverse().expect("the strain points of a cell lie apart");
-    C::NODES
-        .map(|node| std::array::from_fn(|p| (0..Q).map(|q| term(q, &node) * inverse[(q, p)]).sum()))
+    let terms = Q.min(1 << M);
+    let at_points = DMatrix::from_fn(Q, terms, |p, q| term(q, &C::STIFFNESS_RULE[p].0));
+    let inverse = match terms == Q {
+        true => at_points.try_inverse(),
+        false => at_points.tr_mul(&at_points).try_inverse().map(|x| x * at_points.transpose()),
+    };
+    let inverse = inverse.expect("the strain points of a cell lie apart");
+    let factor = |node: &[f64; M], p| (0..terms).map(|q| term(q, node) * inverse[(q, p)]).sum();
+    C::NODES.map(|node| std::array::from_fn(|p| factor(&node, p)))
 }

@@ -10,6 +10,8 @@ enum Exact {
     Simplex(usize),
     /// Polynomials of this degree in each coordinate over the unit cube.
     Cube(usize),
+    /// Polynomials of this degree over the unit cube.
+    WholeCube(usize),
 }
 
 #[test]
@@ -59,6 +61,49 @@ fn hexahedron() {
     check::<Hexahedron, 8, 3>(CellKind::Hexahedron, [Exact::Cube(3); 2]);
 }
 
+#[test]
+fn hexahedron20() {
+    let exact = [Exact::WholeCube(5), Exact::Cube(5)];
+    check::<Hexahedron20, 20, 3>(CellKind::Hexahedron20, exact);
+}
+
+/// A face only, which is no kind of cell.
+#[test]
+fn quadrilateral8() {
+    for (a, x) in Quadrilateral8::NODES.into_iter().enumerate() {
+        let one_at_its_node = std::array::from_fn(|b| if a == b { 1.0 } else { 0.0 });
+        assert_eq!(Quadrilateral8::values(x), one_at_its_node);
+    }
+    [[0.2, 0.5], [0.31, 0.9]].into_iter().for_each(shapes_at::<Quadrilateral8, 8, 2>);
+    rule_is_exact(Quadrilateral8::STIFFNESS_RULE, Exact::Cube(3));
+    rule_is_exact(Quadrilateral8::MASS_RULE, Exact::Cube(5));
+}
+
+/// The motion of a hexahedron of 20 nodes that Gauss's points, two along each axis, do not see, and the points of its own rule do:
+/// u = (x (3 y^2 - 1), -y (3 x^2 - 1), 0) (1 + z), in coordinates from -1 to 1.
+#[test]
+fn hexahedron20_needs_more_than_8_points() {
+    let u = Hexahedron20::NODES.map(|node| {
+        let [x, y, z] = node.map(|x| 2.0 * x - 1.0);
+        [x * (3.0 * y * y - 1.0) * (1.0 + z), -y * (3.0 * x * x - 1.0) * (1.0 + z), 0.0]
+    });
+    let largest = |rule: &[([f64; 3], f64)]| {
+        let mut largest = 0.0_f64;
+        for (xi, _) in rule {
+            let slopes = Hexahedron20::derivatives(*xi);
+            let slope = |i: usize, j: usize| -> f64 {
+                u.iter().zip(&slopes).map(|(u, slopes)| u[i] * slopes[j]).sum()
+            };
+            for (i, j) in (0..9).map(|k| (k % 3, k / 3)) {
+                largest = largest.max((slope(i, j) + slope(j, i)).abs());
+            }
+        }
+        largest
+    };
+    assert!(largest(Hexahedron::STIFFNESS_RULE) < 1e-14);
+    assert!(largest(Hexahedron20::STIFFNESS_RULE) > 1.0);
+}
+
 fn check<C: ReferenceCell<N, M>, const N: usize, const M: usize>(
     kind: CellKind,
     [stiffness, mass]: [Exact; 2],
@@ -77,7 +122,7 @@ fn reference_nodes<const M: usize>(kind: CellKind, shape: Exact) -> Vec<[f64; M]
     let unit = |axis: usize| std::array::from_fn(|i| if i == axis { 1.0 } else { 0.0 });
     let mut nodes: Vec<[f64; M]> = match shape {
         Exact::Simplex(_) => [[0.0; M]].into_iter().chain((0..M).map(unit)).collect(),
-        Exact::Cube(_) => {
+        Exact::Cube(_) | Exact::WholeCube(_) => {
             let square = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
             let corner = |k: usize| {
                 let [x, y] = square[k % 4];
@@ -131,7 +176,7 @@ fn shapes_at<C: ReferenceCell<N, M>, const N: usize, const M: usize>(xi: [f64; M
 fn rule_is_exact<const M: usize>(rule: &[([f64; M], f64)], exact: Exact) {
     assert!(rule.iter().all(|(_, weight)| *weight > 0.0));
     let degree = match exact {
-        Exact::Simplex(degree) | Exact::Cube(degree) => degree,
+        Exact::Simplex(degree) | Exact::Cube(degree) | Exact::WholeCube(degree) => degree,
     };
     let mut beyond = 0.0_f64;
     for index in 0..(degree + 2).pow(M as u32) {
@@ -144,10 +189,8 @@ fn rule_is_exact<const M: usize>(rule: &[([f64; M], f64)], exact: Exact) {
                 let product: f64 = powers.iter().map(|&k| factorial(k)).product();
                 (product / factorial(total + M), total)
             }
-            Exact::Cube(_) => {
-                let product: f64 = powers.iter().map(|&k| 1.0 / (k + 1) as f64).product();
-                (product, powers.iter().fold(0, |most, &k| most.max(k)))
-            }
+            Exact::Cube(_) => (over_cube(powers), powers.into_iter().fold(0, usize::max)),
+            Exact::WholeCube(_) => (over_cube(powers), total),
         };
         let monomial = |xi: &[f64; M]| -> f64 {
             xi.iter().zip(powers).map(|(x, k)| x.powi(k as i32)).product()
@@ -161,6 +204,11 @@ fn rule_is_exact<const M: usize>(rule: &[([f64; M], f64)], exact: Exact) {
         }
     }
     assert!(beyond > 1e-6, "the rule is exact beyond degree {degree}");
+}
+
+/// The integral of a monomial over the unit cube.
+fn over_cube<const M: usize>(powers: [usize; M]) -> f64 {
+    powers.iter().map(|&k| 1.0 / (k + 1) as f64).product()
 }
 
 fn factorial(n: usize) -> f64 {

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::surface::section;
 use crate::body::Body;
-use crate::element::{Quadrilateral, ReferenceCell, Segment, Segment3, Triangle, Triangle6};
+use crate::element::{
+    Quadrilateral, Quadrilateral8, ReferenceCell, Segment, Segment3, Triangle, Triangle6,
+};
 use crate::mesh::{Face, FaceKind, Mesh};
 use crate::vector::{cross, norm};
 
 /// Nodes of a face at most.
-pub(super) const MOST_NODES: usize = 6;
+pub(super) const MOST_NODES: usize = 8;
 
 /// A quadrature point of a reference face; what a face has not is 0.
 pub(super) struct FacePoint {
@@ -24,7 +26,7 @@ pub(super) struct FacePoint {
 pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
     match kind {
         FaceKind::Point => {
-            let values = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+            let values = std::array::from_fn(|a| if a == 0 { 1.0 } else { 0.0 });
             vec![FacePoint { values, derivatives: [[0.0; 2]; MOST_NODES], weight: 1.0 }]
         }
         FaceKind::Segment => points_of::<Segment, 2, 1>(),
@@ -32,6 +34,7 @@ pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
         FaceKind::Triangle => points_of::<Triangle, 3, 2>(),
         FaceKind::Triangle6 => points_of::<Triangle6, 6, 2>(),
         FaceKind::Quadrilateral => points_of::<Quadrilateral, 4, 2>(),
+        FaceKind::Quadrilateral8 => points_of::<Quadrilateral8, 8, 2>(),
     }
 }
 

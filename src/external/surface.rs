@@ -44,10 +44,10 @@ pub(super) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
 /// touch.
 pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     let (mesh, section) = (body.mesh(), section(body)?);
-    let (parts, weight) = pieces(mesh.face_kind());
+    let parts = pieces(mesh.face_kind());
     let mut points = Vec::new();
     for face in mesh.boundary_faces() {
-        for part in parts {
+        for (part, weight) in parts.clone() {
             let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
             let area = weight * section * measure(body, &corners);
             let rule: &[&[f64]] = match corners.len() {
@@ -89,16 +89,21 @@ fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
 }
 
 /// A face, cut into points, segments or triangles by their local nodes, and the weight of each: a
-/// quadrilateral is cut along both diagonals.
-pub(super) fn pieces(face: FaceKind) -> (&'static [&'static [usize]], f64) {
-    match face {
-        FaceKind::Point => (&[&[0]], 1.0),
-        FaceKind::Segment => (&[&[0, 1]], 1.0),
-        FaceKind::Segment3 => (&[&[0, 2], &[2, 1]], 1.0),
-        FaceKind::Triangle => (&[&[0, 1, 2]], 1.0),
-        FaceKind::Quadrilateral => (&[&[0, 1, 2], &[0, 2, 3], &[1, 2, 3], &[1, 3, 0]], 0.5),
-        FaceKind::Triangle6 => (&[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]], 1.0),
-    }
+/// quadrilateral is cut along both diagonals, and so is the middle of one with mid nodes.
+pub(super) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], f64)> + Clone {
+    let (whole, halves): (&'static [&'static [usize]], &'static [&'static [usize]]) = match face {
+        FaceKind::Point => (&[&[0]], &[]),
+        FaceKind::Segment => (&[&[0, 1]], &[]),
+        FaceKind::Segment3 => (&[&[0, 2], &[2, 1]], &[]),
+        FaceKind::Triangle => (&[&[0, 1, 2]], &[]),
+        FaceKind::Quadrilateral => (&[], &[&[0, 1, 2], &[0, 2, 3], &[1, 2, 3], &[1, 3, 0]]),
+        FaceKind::Triangle6 => (&[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]], &[]),
+        FaceKind::Quadrilateral8 => (
+            &[&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7]],
+            &[&[4, 5, 6], &[4, 6, 7], &[5, 6, 7], &[5, 7, 4]],
+        ),
+    };
+    whole.iter().map(|part| (*part, 1.0)).chain(halves.iter().map(|part| (*part, 0.5)))
 }
 
 /// Length of a segment, area of a triangle, 1 of a point.
@@ -143,7 +148,12 @@ mod tests {
                 .unwrap();
             assert_total(&body, 0.01);
         }
-        for cells in [SolidCells::Tetrahedra, SolidCells::Hexahedra, SolidCells::Tetrahedra10] {
+        for cells in [
+            SolidCells::Tetrahedra,
+            SolidCells::Hexahedra,
+            SolidCells::Tetrahedra10,
+            SolidCells::Hexahedra20,
+        ] {
             let mesh = Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells).unwrap();
             assert_total(
                 &Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).build().unwrap(),

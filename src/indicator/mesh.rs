@@ -80,10 +80,17 @@ pub(super) fn quadratic_cells(kind: CellKind) -> Option<&'static str> {
             Some("quadratic cells (\"triangles6\"; in Gmsh: Mesh.ElementOrder = 2)")
         }
         CellKind::Quadrilateral => Some("quadratic cells (\"triangles6\")"),
-        CellKind::Tetrahedron | CellKind::Hexahedron => {
+        CellKind::Tetrahedron => {
             Some("quadratic cells (\"tetrahedra10\"; in Gmsh: Mesh.ElementOrder = 2)")
         }
-        CellKind::Segment | CellKind::Triangle6 | CellKind::Tetrahedron10 => None,
+        CellKind::Hexahedron => Some(
+            "quadratic cells (\"hexahedra20\" or \"tetrahedra10\"; in Gmsh: Mesh.ElementOrder = 2 and, for hexahedra, \
+             Mesh.SecondOrderIncomplete = 1)",
+        ),
+        CellKind::Segment
+        | CellKind::Triangle6
+        | CellKind::Tetrahedron10
+        | CellKind::Hexahedron20 => None,
     }
 }
 

@@ -36,6 +36,8 @@ pub(crate) enum FaceKind {
     /// With mid nodes.
     Triangle6,
     Quadrilateral,
+    /// With mid nodes.
+    Quadrilateral8,
 }
 
 impl FaceKind {
@@ -44,7 +46,7 @@ impl FaceKind {
         match self {
             Self::Point => 0,
             Self::Segment | Self::Segment3 => 1,
-            Self::Triangle | Self::Triangle6 | Self::Quadrilateral => 2,
+            Self::Triangle | Self::Triangle6 | Self::Quadrilateral | Self::Quadrilateral8 => 2,
         }
     }
 }
@@ -197,6 +199,41 @@ cell_kinds! {
         turned_over: &[0, 3, 2, 1, 4, 7, 6, 5],
         neighbours: &[1, 3, 4],
         gmsh: (5, &[0, 1, 2, 3, 4, 5, 6, 7]),
+    },
+    /// Twenty nodes: the corners as in [`CellKind::Hexahedron`], then the middles of the edges 1-2, 2-3, 3-4, 4-1,
+    /// 5-6, 6-7, 7-8, 8-5, 1-5, 2-6, 3-7, 4-8.
+    Hexahedron20 => Shape {
+        name: "hexahedra of 20 nodes",
+        dimension: 3,
+        nodes: 20,
+        quadratic: true,
+        as_face: None,
+        face: FaceKind::Quadrilateral8,
+        faces: &[
+            &[0, 3, 2, 1, 11, 10, 9, 8],
+            &[4, 5, 6, 7, 12, 13, 14, 15],
+            &[0, 1, 5, 4, 8, 17, 12, 16],
+            &[1, 2, 6, 5, 9, 18, 13, 17],
+            &[2, 3, 7, 6, 10, 19, 14, 18],
+            &[3, 0, 4, 7, 11, 16, 15, 19],
+        ],
+        edges: &[
+            &[0, 1, 8],
+            &[1, 2, 9],
+            &[2, 3, 10],
+            &[3, 0, 11],
+            &[4, 5, 12],
+            &[5, 6, 13],
+            &[6, 7, 14],
+            &[7, 4, 15],
+            &[0, 4, 16],
+            &[1, 5, 17],
+            &[2, 6, 18],
+            &[3, 7, 19],
+        ],
+        turned_over: &[0, 3, 2, 1, 4, 7, 6, 5, 11, 10, 9, 8, 15, 14, 13, 12, 16, 19, 18, 17],
+        neighbours: &[1, 3, 4],
+        gmsh: (17, &[0, 1, 2, 3, 4, 5, 6, 7, 8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15]),
     },
 }
 

@@ -21,7 +21,7 @@ impl Mesh {
     ///
     /// - **Cells** are the elements of the highest dimension, in the order of the file. All must be
     ///   of one kind: lines of 2 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4
-    ///   or 10, hexahedra of 8. If physical groups exist, Gmsh saves the elements in them only.
+    ///   or 10, hexahedra of 8 or 20 (`Mesh.SecondOrderIncomplete = 1`). If physical groups exist, Gmsh saves the elements in them only.
     /// - **Nodes** keep the order of the file; those that belong to no cell (points of the
     ///   geometry, centres of circles) are left out, and the others count on without gaps. A file
     ///   without such nodes whose tags ascend from 1, as Gmsh writes them after meshing, keeps its
@@ -136,7 +136,7 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
         [] => Err("it has no elements".into()),
         [only] => cell_kind(only.0).ok_or_else(|| {
             let known: Vec<&str> = CellKind::ALL.iter().map(|kind| kind.name()).collect();
-            let mend = "(in Gmsh: Mesh.ElementOrder)";
+            let mend = "(in Gmsh: Mesh.ElementOrder; Mesh.SecondOrderIncomplete = 1 for hexahedra of 20 nodes)";
             format!("it has {}: cells may be {} {mend}", words(only), known.join(", "))
         }),
         several => {

@@ -105,6 +105,7 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
         CellKind::Tetrahedron => CellType::Tetra,
         CellKind::Tetrahedron10 => CellType::QuadraticTetra,
         CellKind::Hexahedron => CellType::Hexahedron,
+        CellKind::Hexahedron20 => CellType::QuadraticHexahedron,
     };
     let corners = mesh.kind().nodes() as u64;
     Ok(Vtk {

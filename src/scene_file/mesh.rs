@@ -65,7 +65,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
     },
 ]);
 
-const FINER: &str = "Triangles and tetrahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
+const FINER: &str = "Triangles, tetrahedra and hexahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
      those of the mesh without this; where several nodes are held, moved or under tractions, those between them are, too. Forces \
      on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared out.";
 
@@ -102,10 +102,11 @@ fn plane_cells() -> Vec<(&'static str, Cells)> {
     let named = Cells::ALL.map(|cells| (cells.name(), cells));
     named.into_iter().chain([(AUTO, Cells::Triangles6)]).collect()
 }
-const SOLID_CELLS: [(&str, SolidCells); 4] = [
+const SOLID_CELLS: [(&str, SolidCells); 5] = [
     ("tetrahedra", SolidCells::Tetrahedra),
     ("hexahedra", SolidCells::Hexahedra),
     ("tetrahedra10", SolidCells::Tetrahedra10),
+    ("hexahedra20", SolidCells::Hexahedra20),
     (AUTO, SolidCells::Tetrahedra10),
 ];
 

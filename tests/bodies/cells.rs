@@ -27,6 +27,7 @@ fn grids() -> Vec<Mesh> {
         cuboid(SolidCells::Hexahedra),
         cuboid(SolidCells::Tetrahedra),
         cuboid(SolidCells::Tetrahedra10),
+        cuboid(SolidCells::Hexahedra20),
     ]
 }
 
@@ -160,6 +161,30 @@ fn rigid_modes_cost_nothing_and_no_others_are_free() {
         let free = eigenvalues.iter().filter(|x| x.abs() < 1e-9 * scale).count();
         assert_eq!(free, if dimension == 2 { 3 } else { 6 }, "{kind:?}");
         assert!(eigenvalues.iter().all(|x| *x > -1e-9 * scale), "{kind:?}");
+    }
+}
+
+/// Of single cells, rows and blocks of them no motions but the rigid ones are free. (Twenty-node hexahedra with Gauss's rule of two points
+/// along each axis would have 6 more, alone or in a row; with one end clamped, one for each cell of the row is left. A block of
+/// 2 x 2 x 2 has none.)
+#[test]
+fn no_cell_has_a_free_motion_of_its_own() {
+    let solids = [
+        SolidCells::Hexahedra,
+        SolidCells::Tetrahedra,
+        SolidCells::Tetrahedra10,
+        SolidCells::Hexahedra20,
+    ];
+    for cells in solids {
+        for nodes in [[2, 2, 2], [2, 2, 6], [3, 3, 3]] {
+            let body = body(Mesh::cuboid(SIZE, nodes, cells).unwrap());
+            let eigenvalues = body.stiffness().to_dense().self_adjoint_eigenvalues(Side::Lower);
+            let eigenvalues = eigenvalues.unwrap();
+            let scale = eigenvalues.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+            let free = eigenvalues.iter().filter(|x| x.abs() < 1e-9 * scale).count();
+            println!("{cells:?} {nodes:?}: {free} free");
+            assert_eq!(free, 6, "{cells:?} {nodes:?}");
+        }
     }
 }
 

@@ -39,6 +39,14 @@ fn finer_meshes_are_those_of_the_generators() -> Outcome {
             block([3, 3, 2], SolidCells::Tetrahedra)?.quadratic()?,
             block([3, 3, 2], SolidCells::Tetrahedra10)?,
         ),
+        (
+            block([3, 3, 2], SolidCells::Hexahedra)?.quadratic()?,
+            block([3, 3, 2], SolidCells::Hexahedra20)?,
+        ),
+        (
+            block([3, 2, 2], SolidCells::Hexahedra20)?.halved(),
+            block([5, 3, 3], SolidCells::Hexahedra20)?,
+        ),
     ] {
         assert_eq!(
             (finer.node_count(), finer.cell_count()),
@@ -65,7 +73,12 @@ fn cells_are_divided_into_cells() -> Outcome {
         Mesh::ring(0.04, 0.05, [12, 2], Cells::Triangles6)?,
         Mesh::ring(0.04, 0.05, [12, 2], Cells::Rectangles)?,
     ];
-    for cells in [SolidCells::Tetrahedra, SolidCells::Tetrahedra10, SolidCells::Hexahedra] {
+    for cells in [
+        SolidCells::Tetrahedra,
+        SolidCells::Tetrahedra10,
+        SolidCells::Hexahedra,
+        SolidCells::Hexahedra20,
+    ] {
         meshes.push(Mesh::cuboid([0.2, 0.1, 0.1], [3, 2, 2], cells)?);
     }
     for mesh in meshes {

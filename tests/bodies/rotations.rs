@@ -53,7 +53,12 @@ fn in_the_plane() {
 
 #[test]
 fn in_space() {
-    for cells in [SolidCells::Tetrahedra, SolidCells::Tetrahedra10, SolidCells::Hexahedra] {
+    for cells in [
+        SolidCells::Tetrahedra,
+        SolidCells::Tetrahedra10,
+        SolidCells::Hexahedra,
+        SolidCells::Hexahedra20,
+    ] {
         let mesh = Mesh::cuboid([0.2, 0.1, 0.1], [2, 2, 2], cells).unwrap();
         let body = Body::new(mesh.clone(), SOFT).strain(Strain::Cauchy).build().unwrap();
         for angle in ANGLES {

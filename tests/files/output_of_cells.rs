@@ -45,6 +45,7 @@ fn bodies() -> Vec<(Trajectory, u8, usize, usize)> {
         (solid(SolidCells::Hexahedra), 12, seen, 4),
         (solid(SolidCells::Tetrahedra), 10, 2 * seen, 3),
         (solid(SolidCells::Tetrahedra10), 24, 2 * seen, 6),
+        (solid(SolidCells::Hexahedra20), 25, seen, 8),
     ];
     cases.map(|(mesh, vtk, shapes, points)| (pulled(mesh), vtk, shapes, points)).into()
 }

@@ -152,6 +152,7 @@ fn cells_that_lock() {
         (SolidCells::Tetrahedra, true),
         (SolidCells::Hexahedra, true),
         (SolidCells::Tetrahedra10, false),
+        (SolidCells::Hexahedra20, false),
     ] {
         let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [2, 2, 2], cells).unwrap();
         let warnings =
@@ -246,6 +247,7 @@ fn cells_too_coarse_for_bending() {
         (SolidCells::Hexahedra, [6, 2, 2], true),
         (SolidCells::Hexahedra, [11, 3, 3], false),
         (SolidCells::Tetrahedra10, [6, 2, 2], false),
+        (SolidCells::Hexahedra20, [6, 2, 2], false),
     ] {
         let mesh = Mesh::cuboid([0.1, 0.02, 0.02], nodes, cells).unwrap();
         let pull = Phase::until(1.0).hold("left").load_total("right", [0.0, -0.005, 0.0]);

@@ -38,7 +38,7 @@ fn columns_under_their_own_weight() -> Outcome {
         (plane(Cells::Crossed)?, 1.0),
         (plane(Cells::Rectangles)?, 1.0),
         (solid(SolidCells::Tetrahedra)?, 1.0),
-        (solid(SolidCells::Hexahedra)?, 0.75),
+        (solid(SolidCells::Hexahedra)?, 1.0),
     ] {
         let (kind, d) = (mesh.kind(), mesh.dimension());
         let body = Body::new(mesh, SOFT).strain(Strain::Cauchy);
@@ -150,19 +150,19 @@ fn an_estimate_that_misses_is_not_reliable() -> Outcome {
     Ok(())
 }
 
-/// Bent beams in space against quadratic tetrahedra: their tetrahedra are off by up to three times the motion. Halved
-/// hexahedra see up to three quarters.
+/// Bent beams in space against quadratic tetrahedra: their tetrahedra are off by up to three times the motion.
 #[test]
 fn beams_in_space() -> Outcome {
     for (strain, shear) in [(Strain::Cauchy, 0.1), (Strain::Green, 0.2)] {
         let finest = solve(&block(SolidCells::Tetrahedra10, 4, strain, shear)?)?;
         let truth = finest.trajectory().centre_of_mass(finest.sample())[1];
         for n in [1, 2] {
-            // found: 0.945 to 1.09, and 0.62 to 0.73
+            // found: 0.945 to 1.09, and 0.895 to 0.967
             for (cells, range) in
-                [(SolidCells::Tetrahedra, 0.93..=1.1), (SolidCells::Hexahedra, 0.61..=0.75)]
+                [(SolidCells::Tetrahedra, 0.93..=1.1), (SolidCells::Hexahedra, 0.88..=0.98)]
             {
                 let [effectivity, _] = effectivities(&block(cells, n, strain, shear)?, truth)?;
+                println!("{strain:?}, {cells:?} {n}: {effectivity:.3}");
                 assert_within(effectivity, &range, &format!("{strain:?}, {cells:?} {n}"));
             }
         }

@@ -161,7 +161,12 @@ fn strings_are_pulled_along_themselves() {
 #[test]
 fn stretch_and_shear_of_solids() {
     let (lambda, mu) = (SOFT.elastic().lambda, SOFT.elastic().mu);
-    for cells in [SolidCells::Hexahedra, SolidCells::Tetrahedra, SolidCells::Tetrahedra10] {
+    for cells in [
+        SolidCells::Tetrahedra,
+        SolidCells::Hexahedra,
+        SolidCells::Tetrahedra10,
+        SolidCells::Hexahedra20,
+    ] {
         let mesh = Mesh::cuboid([0.1, 0.2, 0.1], [2, 3, 2], cells).unwrap();
         let solid = |strain| Body::new(mesh.clone(), SOFT).strain(strain).build().unwrap();
         let linear = |e: [f64; 3]| e.map(|x| lambda * e.iter().sum::<f64>() + 2.0 * mu * x);
@@ -283,9 +288,11 @@ fn stress_that_is_linear_is_exact_at_nodes_of_quadratic_cells() {
     let flat = Mesh::rectangle([0.2, 0.1], [4, 3], Cells::Triangles6).unwrap();
     let flat = Body::new(flat, SOFT).thickness(0.01).plane(Plane::Stress);
     let flat = flat.strain(Strain::Cauchy).build().unwrap();
-    let solid = Mesh::cuboid([0.2, 0.1, 0.1], [3, 2, 3], SolidCells::Tetrahedra10).unwrap();
-    let solid = Body::new(solid, SOFT).strain(Strain::Cauchy).build().unwrap();
-    for body in [flat, solid] {
+    let solid = |cells| {
+        let mesh = Mesh::cuboid([0.2, 0.1, 0.1], [3, 2, 3], cells).unwrap();
+        Body::new(mesh, SOFT).strain(Strain::Cauchy).build().unwrap()
+    };
+    for body in [flat, solid(SolidCells::Tetrahedra10), solid(SolidCells::Hexahedra20)] {
         let mesh = body.mesh();
         let u = mesh.field(|x| {
             let z = x.get(2).copied().unwrap_or(0.0);

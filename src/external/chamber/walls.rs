@@ -48,11 +48,11 @@ impl Chamber {
         let is_quadratic = mesh.kind().is_quadratic();
         let outlines = faces.iter().map(|face| outline(face, is_quadratic));
         let lids = self.lids(outlines).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let (parts, weight) = pieces(mesh.face_kind());
+        let parts = pieces(mesh.face_kind());
         let corner = |face: &[usize], part: &[usize]| [0, 1, 2].map(|corner| face[part[corner]]);
         let triangles = faces
             .iter()
-            .flat_map(|face| parts.iter().map(move |part| (corner(face, part), weight)));
+            .flat_map(|face| parts.clone().map(move |(part, weight)| (corner(face, part), weight)));
         Ok(triangles.chain(lids).collect())
     }
 
@@ -123,10 +123,10 @@ impl Chamber {
 
 /// The edges of the boundary of a body in the plane, two nodes each, the body to their left.
 fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
-    let (parts, _) = pieces(mesh.face_kind());
+    let parts = pieces(mesh.face_kind());
     let faces = mesh.boundary_faces();
     let edges =
-        faces.iter().flat_map(|face| parts.iter().map(|part| [face[part[0]], face[part[1]]]));
+        faces.iter().flat_map(|face| parts.clone().map(|(part, _)| [face[part[0]], face[part[1]]]));
     edges.collect()
 }
 

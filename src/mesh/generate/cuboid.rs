@@ -1,6 +1,6 @@
 //! Cuboids.
 
-use super::grid::Grid;
+use super::grid::{Grid, MidNodes};
 use super::{check_grading, check_nodes, grid_lines};
 use crate::input::{InputError, positive};
 use crate::mesh::{CellKind, Mesh};
@@ -19,6 +19,9 @@ pub enum SolidCells {
     /// there; the nodes in the middle of edges come after all of them, in the order of the grid
     /// with half the spacing.
     Tetrahedra10,
+    /// One twenty-node hexahedron per grid cell. Corner nodes are numbered as in [`SolidCells::Hexahedra`]; the nodes in the
+    /// middle of edges come after all of them, in the order of the grid with half the spacing.
+    Hexahedra20,
 }
 
 /// One tetrahedron per order of the axes: it steps from corner to corner along them.
@@ -72,11 +75,18 @@ impl Mesh {
         }
         check_nodes("cuboid", nodes)?;
         check_grading("cuboid", nodes, grading)?;
-        let quadratic = cells == SolidCells::Tetrahedra10;
-        let grid = Grid::new(nodes.map(|count| count - 1), false, quadratic);
+        let mid_nodes = match cells {
+            SolidCells::Hexahedra | SolidCells::Tetrahedra => MidNodes::None,
+            SolidCells::Hexahedra20 => MidNodes::OnEdges,
+            SolidCells::Tetrahedra10 => MidNodes::Everywhere,
+        };
+        let grid = Grid::new(nodes.map(|count| count - 1), false, mid_nodes);
         let (kind, connectivity) = match cells {
             SolidCells::Hexahedra => {
                 (CellKind::Hexahedron, grid.divide(CellKind::Hexahedron, |_| &HEXAHEDRON))
+            }
+            SolidCells::Hexahedra20 => {
+                (CellKind::Hexahedron20, grid.divide(CellKind::Hexahedron20, |_| &HEXAHEDRON))
             }
             SolidCells::Tetrahedra => {
                 (CellKind::Tetrahedron, grid.divide(CellKind::Tetrahedron, |_| &TETRAHEDRA))

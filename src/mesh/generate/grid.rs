@@ -45,6 +45,14 @@ impl Cells {
             Self::Triangles6 => "triangles6",
         }
     }
+
+    /// The nodes that a grid of them has beside the corners.
+    pub(super) fn mid_nodes(self) -> MidNodes {
+        match self {
+            Self::Triangles6 => MidNodes::Everywhere,
+            Self::Triangles | Self::Crossed | Self::Rectangles => MidNodes::None,
+        }
+    }
 }
 
 impl fmt::Display for Cells {
@@ -91,6 +99,16 @@ impl Diagonal {
     }
 }
 
+/// Which nodes a grid has beside the corners of its cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MidNodes {
+    None,
+    /// In the middles of its edges.
+    OnEdges,
+    /// There, and in the middles of its faces and cells, through which the edges of simplices run.
+    Everywhere,
+}
+
 /// A grid of nodes along `N` axes. Places are counted in steps of half a grid cell if there are mid
 /// nodes, in grid cells if not; the first axis runs fastest.
 pub(super) struct Grid<const N: usize> {
@@ -100,22 +118,26 @@ pub(super) struct Grid<const N: usize> {
     closed: bool,
     /// Steps per grid cell: 1, or 2 with nodes in the middle of edges.
     pub steps: usize,
-    /// Number of the node at each place.
+    /// Number of the node at each place that has one.
     numbers: Vec<usize>,
     /// Place of each node.
     pub places: Vec<[usize; N]>,
 }
 
 impl<const N: usize> Grid<N> {
-    pub(super) fn new(cells: [usize; N], closed: bool, quadratic: bool) -> Self {
-        let steps = if quadratic { 2 } else { 1 };
+    pub(super) fn new(cells: [usize; N], closed: bool, mid_nodes: MidNodes) -> Self {
+        let steps = if mid_nodes == MidNodes::None { 1 } else { 2 };
         let mut grid = Self { cells, closed, steps, numbers: Vec::new(), places: Vec::new() };
         let count = (0..N).map(|axis| grid.extent(axis)).product();
-        let is_corner = |place: &[usize; N]| place.iter().all(|k| k.is_multiple_of(steps));
-        let (corners, middles): (Vec<_>, Vec<_>) =
-            (0..count).map(|index| grid.place(index)).partition(is_corner);
+        // axes along which it is in the middle
+        let middle = |place: &[usize; N]| place.iter().filter(|k| !k.is_multiple_of(steps)).count();
+        let most = if mid_nodes == MidNodes::OnEdges { 1 } else { N };
+        let (corners, middles): (Vec<_>, Vec<_>) = (0..count)
+            .map(|index| grid.place(index))
+            .filter(|place| middle(place) <= most)
+            .partition(|place| middle(place) == 0);
         grid.places = [corners, middles].concat();
-        grid.numbers = vec![0; count];
+        grid.numbers = vec![usize::MAX; count];
         for (number, place) in grid.places.iter().enumerate() {
             let index = grid.index(place);
             grid.numbers[index] = number;
@@ -203,8 +225,9 @@ impl<const N: usize> Grid<N> {
     ) -> Result<Mesh, InputError> {
         let at = if greatest { self.steps * self.cells[axis] } else { 0 };
         let on_side = (0..self.numbers.len()).filter(|&index| self.place(index)[axis] == at);
-        let numbers: Vec<usize> = on_side.map(|index| self.numbers[index] + 1).collect();
-        mesh.name_nodes(name, numbers)
+        let numbers = on_side.map(|index| self.numbers[index]);
+        let numbers = numbers.filter(|&number| number < self.places.len());
+        mesh.name_nodes(name, numbers.map(|number| number + 1).collect::<Vec<_>>())
     }
 }
 

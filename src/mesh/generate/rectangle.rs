@@ -41,7 +41,7 @@ impl Mesh {
         positive("rectangle.size[1]", size[1], "m")?;
         check_nodes("rectangle", nodes)?;
         check_grading("rectangle", nodes, grading)?;
-        let grid = Grid::new(nodes.map(|count| count - 1), false, cells == Cells::Triangles6);
+        let grid = Grid::new(nodes.map(|count| count - 1), false, cells.mid_nodes());
         let lines = [0, 1].map(|i| grid_lines(nodes[i] - 1, grid.steps, size[i], grading[i]));
         let position = |place: [usize; 2]| [0, 1].map(|i| lines[i][place[i]]);
         let mut mesh = grid.mesh(cells, Diagonal::Falling, position)?;

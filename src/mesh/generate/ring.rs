@@ -37,7 +37,7 @@ impl Mesh {
             let mend = "crossed diagonals alternate around a ring only if the number is even";
             return Err(InputError::new("ring.nodes[0]", around, mend));
         }
-        let grid = Grid::new([radial - 1, around], true, cells == Cells::Triangles6);
+        let grid = Grid::new([radial - 1, around], true, cells.mid_nodes());
         let from_below = |step: usize, steps: usize| direction(4 * step + 3 * steps, steps);
         annulus(&grid, [inner, outer], [radial - 1, around], cells, from_below)
     }
@@ -59,7 +59,7 @@ impl Mesh {
         let [around, radial] = nodes;
         check_radii("half_ring", inner, outer)?;
         check_nodes("half_ring", nodes)?;
-        let grid = Grid::new([radial - 1, around - 1], false, cells == Cells::Triangles6);
+        let grid = Grid::new([radial - 1, around - 1], false, cells.mid_nodes());
         let from_the_right = |step: usize, steps: usize| direction(2 * step, steps);
         let mesh = annulus(&grid, [inner, outer], [radial - 1, around - 1], cells, from_the_right)?;
         let mesh = grid.name_side(mesh, "right", 1, false)?;

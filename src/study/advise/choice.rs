@@ -166,6 +166,7 @@ impl Choice {
         let kind = match (self.quadratic, kind) {
             (true, CellKind::Triangle | CellKind::Quadrilateral) => CellKind::Triangle6,
             (true, CellKind::Tetrahedron) => CellKind::Tetrahedron10,
+            (true, CellKind::Hexahedron) => CellKind::Hexahedron20,
             (_, kind) => kind,
         };
         let parts = match self.halved {

@@ -142,8 +142,7 @@ impl Search<'_> {
     /// Finer meshes, until the finest tell that they are fine enough, or take too long.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
         let kind = self.scene.body().mesh().kind();
-        let has_quadratic =
-            matches!(kind, CellKind::Triangle | CellKind::Quadrilateral | CellKind::Tetrahedron);
+        let has_quadratic = kind != CellKind::Segment && !kind.is_quadratic();
         let finer = |quadratic, halved| Choice { quadratic, halved, ..rich.choice.clone() };
         let first = if has_quadratic { 0 } else { 2 };
         let steps = (first..FINEST).map(|halved| finer(has_quadratic, halved));

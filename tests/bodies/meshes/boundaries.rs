@@ -57,7 +57,7 @@ fn area_vector(mesh: &Mesh, face: &[usize]) -> [f64; 3] {
         return [along[1], -along[0], 0.0];
     }
     let (p, q) = match face.len() {
-        4 => (from(corner(0), corner(2)), from(corner(1), corner(3))),
+        4 | 8 => (from(corner(0), corner(2)), from(corner(1), corner(3))),
         _ => (from(corner(0), corner(1)), from(corner(0), corner(2))),
     };
     [0, 1, 2].map(|i| {
@@ -91,7 +91,10 @@ fn boundaries_enclose_the_body() {
         let (mut sum, mut flux) = ([0.0; 3], 0.0);
         for face in &faces {
             let area = area_vector(&mesh, face);
-            let corners = if kind == CellKind::Hexahedron { 4 } else { dimension };
+            let corners = match kind {
+                CellKind::Hexahedron | CellKind::Hexahedron20 => 4,
+                _ => dimension,
+            };
             for i in 0..dimension {
                 sum[i] += area[i];
                 let mean: f64 = face[..corners].iter().map(|&node| mesh.position(node)[i]).sum();
@@ -118,9 +121,12 @@ fn boundaries_enclose_the_body() {
 
 #[test]
 fn cuboids_have_faces_on_their_sides_only() {
-    for (cells, per_square) in
-        [(SolidCells::Hexahedra, 1), (SolidCells::Tetrahedra, 2), (SolidCells::Tetrahedra10, 2)]
-    {
+    for (cells, per_square) in [
+        (SolidCells::Hexahedra, 1),
+        (SolidCells::Tetrahedra, 2),
+        (SolidCells::Tetrahedra10, 2),
+        (SolidCells::Hexahedra20, 1),
+    ] {
         let mesh = Mesh::cuboid([2.0, 1.0, 1.5], [4, 3, 5], cells).unwrap();
         let squares = 2 * (3 * 2 + 3 * 4 + 2 * 4);
         assert_eq!(mesh.boundary_faces().len(), per_square * squares, "{cells:?}");

@@ -48,7 +48,7 @@ fn cells_grow_by_the_same_factor() {
 fn mid_nodes_stay_in_the_middle() {
     let flat = Mesh::graded_rectangle([2.0, 1.0], [4, 3], [10.0, 0.2], Cells::Triangles6);
     let solid = |cells| Mesh::graded_cuboid([2.0, 1.0, 1.5], [3, 4, 3], [9.0, 0.1, 3.0], cells);
-    for mesh in [flat, solid(SolidCells::Tetrahedra10)] {
+    for mesh in [flat, solid(SolidCells::Tetrahedra10), solid(SolidCells::Hexahedra20)] {
         let mesh = mesh.unwrap();
         for cell in mesh.cells() {
             for edge in mesh.kind().edges() {

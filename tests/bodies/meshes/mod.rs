@@ -11,8 +11,12 @@ use pliant::{Body, Cells, InputError, Material, Mesh, SolidCells, Strain};
 
 const ALL_CELLS: [Cells; 4] =
     [Cells::Triangles, Cells::Crossed, Cells::Rectangles, Cells::Triangles6];
-const ALL_SOLIDS: [SolidCells; 3] =
-    [SolidCells::Hexahedra, SolidCells::Tetrahedra, SolidCells::Tetrahedra10];
+const ALL_SOLIDS: [SolidCells; 4] = [
+    SolidCells::Hexahedra,
+    SolidCells::Tetrahedra,
+    SolidCells::Tetrahedra10,
+    SolidCells::Hexahedra20,
+];
 
 /// Area or volume of all cells (m^2, m^3).
 fn volume(mesh: &Mesh) -> f64 {
@@ -109,6 +113,7 @@ fn mid_nodes_are_in_the_middle() {
     for mesh in [
         Mesh::rectangle([2.0, 1.0], [4, 3], Cells::Triangles6).unwrap(),
         Mesh::cuboid([2.0, 1.0, 1.5], [3, 4, 3], SolidCells::Tetrahedra10).unwrap(),
+        Mesh::cuboid([2.0, 1.0, 1.5], [3, 4, 3], SolidCells::Hexahedra20).unwrap(),
     ] {
         let mut ends = BTreeMap::new();
         for cell in mesh.cells() {
@@ -215,6 +220,8 @@ fn cuboids_number_along_x_then_y_then_z() {
         (SolidCells::Hexahedra, 36, 12),
         (SolidCells::Tetrahedra, 36, 72),
         (SolidCells::Tetrahedra10, 5 * 7 * 5, 72),
+        // 36 corners, and the edges along x, y and z
+        (SolidCells::Hexahedra20, 36 + 2 * 4 * 3 + 3 * 3 * 3 + 3 * 4 * 2, 12),
     ] {
         let mesh = Mesh::cuboid(size, [3, 4, 3], kind).unwrap();
         assert_eq!((mesh.node_count(), mesh.cell_count()), (nodes, count), "{kind:?}");

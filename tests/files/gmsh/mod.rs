@@ -51,6 +51,7 @@ fn msh(mesh: &Mesh, tag: impl Fn(usize) -> usize) -> String {
         CellKind::Hexahedron => 5,
         CellKind::Triangle6 => 9,
         CellKind::Tetrahedron10 => 11,
+        CellKind::Hexahedron20 => 17,
         _ => unreachable!(),
     };
     let d = mesh.kind().dimension();
@@ -65,8 +66,15 @@ fn msh(mesh: &Mesh, tag: impl Fn(usize) -> usize) -> String {
     writeln!(file, "$EndNodes\n$Elements\n1 {cells} 1 {cells}\n{d} 1 {code} {cells}").unwrap();
     for (number, cell) in (1..).zip(mesh.cells()) {
         let mut cell: Vec<String> = cell.iter().map(|&node| tag(node).to_string()).collect();
-        if mesh.kind() == CellKind::Tetrahedron10 {
-            cell.swap(8, 9);
+        match mesh.kind() {
+            CellKind::Tetrahedron10 => cell.swap(8, 9),
+            // Gmsh numbers the mid nodes of a hexahedron by the edges at its corners, one corner after the other
+            CellKind::Hexahedron20 => {
+                let edges = [8, 11, 16, 9, 17, 10, 18, 19, 12, 15, 13, 14];
+                let middles = edges.map(|edge| cell[edge].clone());
+                cell[8..].clone_from_slice(&middles);
+            }
+            _ => {}
         }
         writeln!(file, "{number} {}", cell.join(" ")).unwrap();
     }
@@ -75,8 +83,13 @@ fn msh(mesh: &Mesh, tag: impl Fn(usize) -> usize) -> String {
 
 fn generated() -> Vec<Mesh> {
     let plane = Cells::ALL.map(|cells| Mesh::rectangle([0.3, 0.2], [4, 3], cells));
-    let solid = [SolidCells::Tetrahedra, SolidCells::Hexahedra, SolidCells::Tetrahedra10]
-        .map(|cells| Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells));
+    let solid = [
+        SolidCells::Tetrahedra,
+        SolidCells::Hexahedra,
+        SolidCells::Tetrahedra10,
+        SolidCells::Hexahedra20,
+    ]
+    .map(|cells| Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells));
     let all = plane.into_iter().chain(solid).chain([Mesh::bar(0.1, 5)]);
     all.collect::<Result<_, _>>().unwrap()
 }
