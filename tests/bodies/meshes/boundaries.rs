@@ -119,6 +119,23 @@ fn boundaries_enclose_the_body() {
     }
 }
 
+/// The mid nodes of a face stand in the order of its edges, each between the corners that the cell has it between.
+#[test]
+fn mid_nodes_of_faces_lie_on_their_edges() {
+    for cells in [SolidCells::Tetrahedra10, SolidCells::Hexahedra20] {
+        let kind = Mesh::cuboid([1.0; 3], [2; 3], cells).unwrap().kind();
+        for face in kind.faces() {
+            let (corners, middles) = face.split_at(face.len() / 2);
+            for (k, &middle) in middles.iter().enumerate() {
+                let ends = [corners[k], corners[(k + 1) % corners.len()]];
+                let edge = kind.edges().iter().find(|edge| edge[2] == middle).unwrap();
+                let of_cell = [edge[0], edge[1]];
+                assert!(of_cell == ends || of_cell == [ends[1], ends[0]], "{kind:?}: {face:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn cuboids_have_faces_on_their_sides_only() {
     for (cells, per_square) in [
