@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench advice charts stability peers pictures docs valgrind miri clean
+.PHONY: help setup demo test bench baseline advice charts stability peers pictures docs valgrind miri clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -17,15 +17,22 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 	@echo "The pictures are in $(CURDIR)/out:"
 	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
 
-test: ## Every check: format, lints, tests, documentation and its examples
-	@scripts/setup.sh chromium
-	cargo fmt --check
-	cargo clippy --all-targets --features play -- -D warnings
+test: ## Every check: format, lints, tests, documentation and its examples, numbers of instructions
+	@scripts/setup.sh chromium valgrind
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --features play -- -D warnings
 	cargo test --features play
 	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --features play
+	cargo run --release -p counts
 
-bench: setup ## Benchmarks: one table of what the parts of a step cost; all others: cargo bench
+bench: ## What cells and the parts of steps cost, and what has become slower; all others: cargo bench
+	@scripts/setup.sh valgrind
 	cargo bench --bench table
+	cargo run --release -p counts
+
+baseline: ## The numbers of instructions that `make test` compares with, stored anew
+	@scripts/setup.sh valgrind
+	cargo run --release -p counts -- --store
 
 charts: setup ## docs/charts and docs/integrators.md, some 20 minutes; out/ keeps what was run
 	cargo run --release --example gallery -- --out docs/charts
