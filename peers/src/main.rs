@@ -1,7 +1,7 @@
 //! Runs pliant and its peers on the same equations: charts, tables, `peers/README.md`'s numbers.
 //!
 //! `peers [--quick] [--out FOLDER] [CASE...]` for scenes, `peers equations [--quick] [--out FOLDER] [SYSTEM...]` for systems
-//! of equations; programs are expected where `peers/run` puts them.
+//! of equations, `peers space [--quick] [--out FOLDER] [CASE...]` for blocks in space; programs are expected where `peers/run` puts them.
 
 mod comparison;
 mod diffsol_peer;
@@ -9,6 +9,7 @@ mod equations;
 mod external;
 mod implicit;
 mod report;
+mod space;
 
 use std::path::{Path, PathBuf};
 
@@ -32,6 +33,7 @@ fn main() {
     let done = match arguments.split_first() {
         Some((first, rest)) if first == "diffsol" => diffsol_peer::main(rest),
         Some((first, rest)) if first == "equations" => equations::run(rest),
+        Some((first, rest)) if first == "space" => space::run(rest),
         _ => run(&arguments),
     };
     if let Err(error) = done {

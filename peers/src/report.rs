@@ -63,26 +63,41 @@ fn tip_table(
     lines: &[&LineFindings],
     tips: &BTreeMap<(String, String), f64>,
 ) -> Result<String, Failed> {
+    let (label, text) = (|error| format!("{error} mm"), |time| format!("{time:.3}"));
+    ranking(lines, &ACCURACIES, label, text, |line, error| time_to_reach(line, tips, 1e-3 * error))
+}
+
+/// A table of the times that `lines` take to reach some errors, and how many times as long as the fastest of
+/// pliant among them that is. Both are bold where that one is slower.
+pub fn ranking(
+    lines: &[&LineFindings],
+    errors: &[f64],
+    label: impl Fn(f64) -> String,
+    text: impl Fn(f64) -> String,
+    time: impl Fn(&LineFindings, f64) -> Option<f64>,
+) -> Result<String, Failed> {
     let mut table = "| line |".to_owned();
-    for accuracy in ACCURACIES {
-        write!(table, " {accuracy} mm |")?;
+    for &error in errors {
+        write!(table, " {} |", label(error))?;
     }
     table += "\n| --- |";
-    table += &" --- |".repeat(ACCURACIES.len());
-    let best = ACCURACIES.map(|accuracy| {
-        let own = lines.iter().filter(|line| line.name.starts_with("pliant"));
-        own.filter_map(|line| time_to_reach(line, tips, 1e-3 * accuracy)).min_by(f64::total_cmp)
-    });
+    table += &" --- |".repeat(errors.len());
+    let own = lines.iter().filter(|line| line.name.starts_with("pliant"));
+    let best =
+        |&error: &f64| own.clone().filter_map(|line| time(line, error)).min_by(f64::total_cmp);
+    let best: Vec<Option<f64>> = errors.iter().map(best).collect();
     for line in lines {
         write!(table, "\n| {} |", line.name)?;
-        for (accuracy, best) in ACCURACIES.into_iter().zip(best) {
-            match (time_to_reach(line, tips, 1e-3 * accuracy), best) {
-                (Some(time), Some(best)) if time < best => {
-                    write!(table, " **{time:.3} ({:.2})** |", time / best)?;
-                }
-                (Some(time), Some(best)) => write!(table, " {time:.3} ({:.1}) |", time / best)?,
-                (Some(time), None) => write!(table, " **{time:.3}** |")?,
-                (None, _) => table += " |",
+        for (&error, &best) in errors.iter().zip(&best) {
+            let Some(time) = time(line, error) else {
+                table += " |";
+                continue;
+            };
+            let words = text(time);
+            match best {
+                Some(best) if time < best => write!(table, " **{words} ({:.2})** |", time / best)?,
+                Some(best) => write!(table, " {words} ({:.1}) |", time / best)?,
+                None => write!(table, " **{words}** |")?,
             }
         }
     }

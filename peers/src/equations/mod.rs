@@ -20,7 +20,7 @@ use pliant_peers::systems::{NAMES, System};
 
 use crate::comparison::TOO_SLOW;
 use crate::external::Program;
-use crate::{digits, here, libname};
+use crate::{digits, here, libname, report};
 use diffsol::Kind;
 
 /// Processor time (s) that a run may take, in full and quickly.
@@ -200,30 +200,13 @@ fn write(out: &Path, name: &str, findings: &Findings) -> Result<(), Failed> {
     for ending in ["svg", "png"] {
         findings.write_chart(out.join(format!("{name}.{ending}")))?;
     }
-    let mut page = format!("## {}\n\n![chart]({name}.png)\n\n| line |", findings.title());
-    ACCURACIES.iter().try_for_each(|error| write!(page, " {error:.0e} |"))?;
-    page += "\n| --- |";
-    page += &" --- |".repeat(ACCURACIES.len());
-    let best = ACCURACIES.map(|error| {
-        let own = findings.lines().iter().filter(|line| line.name.starts_with("pliant"));
-        own.filter_map(|line| line.time_to_reach(error)).min_by(f64::total_cmp)
-    });
-    for line in findings.lines() {
-        write!(page, "\n| {} |", line.name)?;
-        for (error, best) in ACCURACIES.into_iter().zip(best) {
-            match (line.time_to_reach(error), best) {
-                (Some(time), Some(best)) if time < best => {
-                    write!(page, " **{} ({:.2})** |", time_text(time), time / best)?;
-                }
-                (Some(time), Some(best)) => {
-                    write!(page, " {} ({:.1}) |", time_text(time), time / best)?;
-                }
-                (Some(time), None) => write!(page, " **{}** |", time_text(time))?,
-                (None, _) => page += " |",
-            }
-        }
-    }
-    page += "\n\n";
+    let mut page = format!("## {}\n\n![chart]({name}.png)\n\n", findings.title());
+    let lines: Vec<_> = findings.lines().iter().collect();
+    let label = |error| format!("{error:.0e}");
+    page += &report::ranking(&lines, &ACCURACIES, label, time_text, |line, error| {
+        line.time_to_reach(error)
+    })?;
+    page += "\n";
     for note in findings.notes().iter().filter(|note| !note.ends_with(TOO_SLOW)) {
         writeln!(page, "- {note}")?;
     }
