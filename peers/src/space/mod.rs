@@ -135,7 +135,7 @@ fn write(out: &Path, block: &Block, findings: &Findings) -> Result<(), Failed> {
     let mut page = format!("## {}\n\n![chart]({}.png)\n\n", block.title, block.name);
     page += "Processor time (s) to reach an error of the tip (part of its motion), and times as long as the fastest of pliant:\n\n";
     let lines: Vec<_> = findings.lines().iter().collect();
-    let label = |error: f64| format!("{} %", 100.0 * error);
+    let label = |error: f64| format!("{} %", (1e3 * error).round() / 10.0);
     page += &report::ranking(&lines, &ACCURACIES, label, time_text, |line, error| {
         line.time_to_reach(error)
     })?;
