@@ -4,7 +4,6 @@
 //! live [`NodeMatrix`], one number per pair of nodes (inertia, which acts alike on each axis), and
 //! [`BlockMatrix`], one small dense block per pair (stiffness, damping, tangents).
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use faer::Mat;
@@ -28,6 +27,8 @@ pub struct NodePattern {
     columns: Vec<usize>,
     /// For entry (a, b) the index of (b, a).
     transposed: Vec<usize>,
+    /// For each entry of the pattern that this one was widened from, the index of the same pair.
+    widened: Option<Vec<usize>>,
 }
 
 impl NodePattern {
@@ -55,7 +56,7 @@ impl NodePattern {
             transposed[entry] = *slot;
             *slot += 1;
         }
-        Self { offsets, columns, transposed }
+        Self { offsets, columns, transposed, widened: None }
     }
 
     /// This pattern with some more coupled pairs.
@@ -64,8 +65,16 @@ impl NodePattern {
             (0..self.nodes()).map(|row| &self.columns[self.offsets[row]..self.offsets[row + 1]]);
         let own =
             rows.enumerate().flat_map(|(row, columns)| columns.iter().map(move |&c| [row, c]));
-        let all: Vec<[usize; 2]> = own.chain(pairs.iter().copied()).collect();
-        Self::new(self.nodes(), all.iter().map(|pair| pair.as_slice()))
+        let own: Vec<[usize; 2]> = own.collect();
+        let all = own.iter().chain(pairs).map(|pair| pair.as_slice());
+        let mut wider = Self::new(self.nodes(), all);
+        let entries = own.iter().filter_map(|&[row, column]| wider.find(row, column));
+        let entries: Vec<usize> = entries.collect();
+        wider.widened = Some(match &self.widened {
+            None => entries,
+            Some(first) => first.iter().map(|&entry| entries[entry]).collect(),
+        });
+        wider
     }
 
     /// Number of nodes.
@@ -255,10 +264,11 @@ impl BlockMatrix {
         Some(&mut self.values[entry * size..][..size])
     }
 
-    /// All rows, to be divided among threads.
-    pub(crate) fn rows_mut(&mut self) -> Rows<'_> {
-        let Self { pattern, dimension, values } = self;
-        Rows { pattern, nodes: 0..pattern.nodes(), size: *dimension * *dimension, values }
+    /// All rows, to be divided among threads, if the matrix has `D` components per node.
+    pub(crate) fn rows_mut<const D: usize>(&mut self) -> Rows<'_, D> {
+        debug_assert_eq!(self.dimension, D);
+        let blocks = self.values.as_chunks_mut::<D>().0.as_chunks_mut::<D>().0;
+        Rows { pattern: &self.pattern, first: 0, blocks }
     }
 
     /// Number at the axes `[row, column]` of the block `entry` in the symmetric part of the matrix,
@@ -321,33 +331,31 @@ impl BlockMatrix {
 }
 
 /// The rows of some nodes of a [`BlockMatrix`].
-pub(crate) struct Rows<'a> {
+pub(crate) struct Rows<'a, const D: usize> {
     pattern: &'a NodePattern,
-    nodes: Range<usize>,
-    /// Numbers per block.
-    size: usize,
-    values: &'a mut [f64],
+    /// Entry of the first block.
+    first: usize,
+    blocks: &'a mut [[[f64; D]; D]],
 }
 
-impl<'a> Rows<'a> {
+impl<'a, const D: usize> Rows<'a, D> {
     /// The rows before those of `node`, and the others.
-    pub(crate) fn split_at(self, node: usize) -> (Rows<'a>, Rows<'a>) {
-        let Self { pattern, nodes: Range { start, end }, size, values } = self;
-        let before = pattern.offsets[node] - pattern.offsets[start];
-        let (before, after) = values.split_at_mut(before * size);
-        (
-            Rows { pattern, nodes: start..node, size, values: before },
-            Rows { pattern, nodes: node..end, size, values: after },
-        )
+    pub(crate) fn split_at(self, node: usize) -> (Self, Self) {
+        let Self { pattern, first, blocks } = self;
+        let middle = pattern.offsets[node];
+        let (before, after) = blocks.split_at_mut(middle - first);
+        (Self { pattern, first, blocks: before }, Self { pattern, first: middle, blocks: after })
     }
 
-    /// The block of two coupled nodes, row by row, if the row is among them.
-    pub(crate) fn block_mut(&mut self, row: usize, column: usize) -> Option<&mut [f64]> {
-        if !self.nodes.contains(&row) {
-            return None;
-        }
-        let entry = self.pattern.find(row, column)? - self.pattern.offsets[self.nodes.start];
-        Some(&mut self.values[entry * self.size..][..self.size])
+    /// The block of a pair of nodes, if its row is among them. `entry` is that of the pattern before it was
+    /// widened: what cells know, whatever else is coupled.
+    #[inline(always)]
+    pub(crate) fn block_mut(&mut self, entry: u32) -> Option<&mut [[f64; D]; D]> {
+        let entry = match &self.pattern.widened {
+            Some(widened) => widened[entry as usize],
+            None => entry as usize,
+        };
+        self.blocks.get_mut(entry.wrapping_sub(self.first))
     }
 }
 

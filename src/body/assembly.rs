@@ -9,6 +9,7 @@ use super::tangents::Tangents;
 use crate::element::{ReferenceCell, with_element};
 use crate::input::InputError;
 use crate::mesh::Mesh;
+use crate::sparse::NodePattern;
 
 /// All elements of a body.
 pub(super) trait Elements:
@@ -18,14 +19,19 @@ pub(super) trait Elements:
 
 impl<T: Masses + Forces + Tangents + Fields + Recovery + Send + Sync> Elements for T {}
 
-/// The elements on the cells of `mesh`; `section` is the area or thickness of the body.
-pub(super) fn elements(mesh: &Mesh, section: f64) -> Result<Box<dyn Elements>, InputError> {
-    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section))
+/// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
+pub(super) fn elements(
+    mesh: &Mesh,
+    section: f64,
+    pattern: &NodePattern,
+) -> Result<Box<dyn Elements>, InputError> {
+    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section, pattern))
 }
 
 fn of<C: ReferenceCell<N, M>, const N: usize, const M: usize, const D: usize, const Q: usize>(
     mesh: &Mesh,
     section: f64,
+    pattern: &NodePattern,
 ) -> Result<Box<dyn Elements>, InputError> {
-    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section)?))
+    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, pattern)?))
 }

@@ -121,13 +121,13 @@ impl BodyBuilder {
             _ => Viscosity::Objective,
         });
         let regions = Regions::new(&mesh, strain, plane, &material, &recipe.regions)?;
-        let elements = elements(&mesh, section)?;
         for (name, position, mass) in &recipe.points {
             positive(&format!("mass of point \"{name}\""), *mass, "kg")?;
             mesh.push_node(name, position)?;
         }
 
         let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
+        let elements = elements(&mesh, section, &pattern)?;
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();

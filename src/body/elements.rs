@@ -17,11 +17,14 @@ use crate::element::{
 use crate::input::InputError;
 use crate::lane::{Abreast, Lane, SIDE_BY_SIDE};
 use crate::mesh::Mesh;
+use crate::sparse::NodePattern;
 use crate::tensor::{Matrix, Real};
 
 /// Elements of `N` nodes, dimension `M` and `Q` strain points in a space of dimension `D`.
 pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, const Q: usize> {
     pub(super) nodes: Vec<[usize; N]>,
+    /// For each cell the entries of all pairs of its nodes in the pattern of the body, by which tangents are added up.
+    pub(super) entries: Vec<[[u32; N]; N]>,
     /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes times section.
     /// Cells that are missing at the end repeat the last one.
     points: Vec<StrainPoint<Abreast, N, M, D>>,
@@ -36,14 +39,16 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// The elements on the cells of `mesh`; `section` is the area or thickness of the body.
+    /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
     pub(super) fn new<C: ReferenceCell<N, M>>(
         mesh: &Mesh,
         section: f64,
+        pattern: &NodePattern,
     ) -> Result<Self, InputError> {
         const { assert!(C::STIFFNESS_RULE.len() == Q) };
         let positions = mesh.positions().as_chunks::<D>().0;
         let (mut nodes, mut points, mut products) = (Vec::new(), Vec::new(), Vec::new());
+        let mut entries = Vec::with_capacity(mesh.cell_count());
         for (number, cell) in mesh.cells().enumerate() {
             let natural: [[f64; D]; N] = std::array::from_fn(|a| positions[cell[a]]);
             let of_cell = strain_points::<C, N, M, D>(&natural)
@@ -60,6 +65,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 }
             }
             products.push(product);
+            let mut of_pairs = [[0; N]; N];
+            for (a, b) in pairs::<N>() {
+                let entry = pattern.find(cell[a], cell[b]).and_then(|entry| entry.try_into().ok());
+                of_pairs[a][b] = entry.ok_or_else(|| too_many(pattern))?;
+            }
+            entries.push(of_pairs);
             nodes.push(std::array::from_fn(|a| cell[a]));
         }
         let points = side_by_side::<N, M, D, Q>(&points);
@@ -67,7 +78,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let quadratic = mesh.kind().is_quadratic();
         let shares = Shares::new(&nodes, mesh.node_count());
         let extrapolation = extrapolation::<C, N, M, Q>();
-        Ok(Self { nodes, points, values, extrapolation, products, quadratic, shares })
+        Ok(Self { nodes, entries, points, values, extrapolation, products, quadratic, shares })
     }
 
     /// The strain points of [`SIDE_BY_SIDE`] cells at once, from those of the first cells on.
@@ -161,6 +172,11 @@ pub(super) fn gradient<T: Real, const N: usize, const M: usize, const D: usize>(
 /// All pairs of the nodes of a cell.
 pub(super) fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
     (0..N).flat_map(|a| (0..N).map(move |b| (a, b)))
+}
+
+fn too_many(pattern: &NodePattern) -> InputError {
+    let mend = "4,294,967,296 are the most: take a coarser mesh";
+    InputError::new("number of pairs of nodes that share a cell", pattern.entries(), mend)
 }
 
 fn bad_cell(number: usize, cell: &[usize], volume: f64) -> InputError {

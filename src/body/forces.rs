@@ -259,7 +259,7 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
 
 /// The vectors of the nodes of some cells, less those of their first ones.
 #[inline(always)]
-fn gather<S: Simd, const N: usize, const D: usize>(
+pub(super) fn gather<S: Simd, const N: usize, const D: usize>(
     simd: S,
     cells: &[&[usize; N]; SIDE_BY_SIDE],
     x: &[[f64; D]],

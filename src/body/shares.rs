@@ -41,21 +41,21 @@ impl Shares {
 
     /// Calls `work` with each share's number and its rows of two matrices, on threads if there are
     /// several.
-    pub(super) fn each(
+    pub(super) fn each<const D: usize>(
         &self,
-        stiffness: Rows<'_>,
-        damping: Rows<'_>,
-        work: &(impl Fn(usize, Rows<'_>, Rows<'_>) + Sync),
+        stiffness: Rows<'_, D>,
+        damping: Rows<'_, D>,
+        work: &(impl Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync),
     ) {
         self.each_of(0..self.cells.len(), stiffness, damping, work);
     }
 
-    fn each_of(
+    fn each_of<const D: usize>(
         &self,
         shares: Range<usize>,
-        stiffness: Rows<'_>,
-        damping: Rows<'_>,
-        work: &(impl Fn(usize, Rows<'_>, Rows<'_>) + Sync),
+        stiffness: Rows<'_, D>,
+        damping: Rows<'_, D>,
+        work: &(impl Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync),
     ) {
         if shares.len() == 1 {
             return work(shares.start, stiffness, damping);

@@ -337,3 +337,15 @@ fn threads_share_out_large_meshes() {
     let apart = slopes.zip(&product).map(|(a, b)| (a - b).abs());
     assert!(apart.fold(0.0, f64::max) < 1e-6 * largest);
 }
+
+/// A point mass comes after the nodes that are shared out in equal parts.
+#[test]
+fn a_point_mass_has_a_share() {
+    let mesh = Mesh::rectangle([1.0, 1.0], [64, 64], Cells::Triangles).unwrap();
+    let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
+    let body = body.point_mass("hub", [0.5, 0.5], 0.25).build().unwrap();
+    let (u, v) = (noise(body.dofs(), 1e-4, 1.0), noise(body.dofs(), 0.1, 2.0));
+    let at = forces(&body, &u, &v);
+    assert_eq!(at.conservative[2 * 4096..], [0.0; 2]);
+    assert!(at.conservative[..2 * 4096].iter().all(|force| *force != 0.0));
+}

@@ -2,7 +2,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
-use super::law::Block;
+use super::law::{Block, Blocks};
 use crate::tensor::{Matrix, Real, dot, product, product_transposed, symmetric, times, trace};
 
 /// Lamé's constants (Pa; Pa s for the viscous pair).
@@ -93,29 +93,35 @@ impl Hooke {
     }
 }
 
-/// The vectors f_a = F g_a and products with which tangents of Hooke's law are written. What the turning of the
-/// stress S adds to them is g_a . S g_b on the diagonal.
+/// What the change of strain adds to tangents of Hooke's law. What the turning of the stress S adds to them is
+/// g_a . S g_b on the diagonal.
 pub(super) struct Spread<'a, T, const N: usize, const M: usize, const D: usize> {
-    gradients: &'a [[T; M]; N],
+    pub(super) gradients: &'a [[T; M]; N],
     /// F g_a
     pub(super) along: [[T; D]; N],
     /// F F^T, symmetric to the last bit
     square: Matrix<T, D, D>,
+    lame: Lame,
+    pub(super) weight: T,
 }
 
 impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Spread<'a, T, N, M, D> {
     #[inline(always)]
-    pub(super) fn new(f: &Matrix<T, D, M>, gradients: &'a [[T; M]; N]) -> Self {
+    pub(super) fn new(
+        f: &Matrix<T, D, M>,
+        gradients: &'a [[T; M]; N],
+        lame: Lame,
+        weight: T,
+    ) -> Self {
         let along = product(f, gradients);
-        Self { gradients, along, square: product_transposed(f, f) }
+        Self { gradients, along, square: product_transposed(f, f), lame, weight }
     }
 
-    /// What the change of strain adds to the block of nodes a and b:
-    /// lambda f_a f_b^T + mu ((g_a . g_b) F F^T + f_b f_a^T).
+    /// lambda f_a f_b^T + mu ((g_a . g_b) F F^T + f_b f_a^T), f_a = F g_a
     #[inline(always)]
-    pub(super) fn material(&self, lame: Lame, a: usize, b: usize) -> Block<T, D> {
+    pub(super) fn material(&self, a: usize, b: usize) -> Block<T, D> {
         let (fa, fb) = (&self.along[a], &self.along[b]);
-        let Lame { lambda, mu } = lame;
+        let Lame { lambda, mu } = self.lame;
         let stretch = dot(&self.gradients[a], &self.gradients[b]);
         let mut block = [[stretch; D]; D];
         for i in 0..D {
@@ -125,5 +131,14 @@ impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Spread<'a, T, 
             }
         }
         block
+    }
+}
+
+impl<T: Real, const N: usize, const M: usize, const D: usize> Blocks<T, D>
+    for Spread<'_, T, N, M, D>
+{
+    #[inline(always)]
+    fn block(&self, a: usize, b: usize) -> Block<T, D> {
+        times(self.material(a, b), self.weight)
     }
 }

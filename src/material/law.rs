@@ -11,6 +11,12 @@ use crate::tensor::{Matrix, Real};
 /// A block of a tangent, row by row.
 pub(crate) type Block<T, const D: usize> = [[T; D]; D];
 
+/// A tangent at one point of a cell.
+pub(crate) trait Blocks<T, const D: usize> {
+    /// The block of two nodes, by their numbers in the cell.
+    fn block(&self, a: usize, b: usize) -> Block<T, D>;
+}
+
 /// A hyperelastic law: strain energy W(F) per natural volume and its derivatives.
 pub(crate) trait ElasticLaw {
     /// Whether strains are taken for small, so that natural and present shape count as one.
@@ -27,13 +33,14 @@ pub(crate) trait ElasticLaw {
     ) -> Matrix<T, D, M>;
 
     /// dP/dF, as the stiffness between two nodes: with the `gradients` g of their shape functions, the
-    /// block of nodes a and b has the entries sum_jl g_a[j] dP_ij/dF_kl g_b[l], times `weight`.
+    /// block of nodes a and b has the entries sum_jl g_a[j] dP_ij/dF_kl g_b[l], times `weight`. That of b and a is the
+    /// same transposed, as P has a potential.
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
-    ) -> impl Fn(usize, usize) -> Block<T, D>;
+    ) -> impl Blocks<T, D>;
 
     /// Strain and stress (Pa) across a cell that does not fill space.
     fn across<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> [T; 2];
@@ -66,13 +73,13 @@ pub(crate) trait ViscousLaw {
         rate: &Matrix<T, D, M>,
         gradients: &[[T; M]; N],
         weight: T,
-    ) -> impl Fn(usize, usize) -> Block<T, D>;
+    ) -> impl Blocks<T, D>;
 
-    /// dP/dF', likewise.
+    /// dP/dF', likewise, and symmetric.
     fn rate_tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
-    ) -> impl Fn(usize, usize) -> Block<T, D>;
+    ) -> impl Blocks<T, D>;
 }

@@ -8,7 +8,7 @@ mod laws;
 pub(crate) use deformation::Deformation;
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
-pub(crate) use law::{Block, ElasticLaw, ViscousLaw};
+pub(crate) use law::{Block, Blocks, ElasticLaw, ViscousLaw};
 pub(crate) use laws::{Elastic, Linear, ObjectiveViscosity, with_law};
 pub use laws::{Strain, Viscosity};
 

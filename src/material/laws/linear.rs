@@ -2,8 +2,8 @@
 
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Spread};
-use crate::material::law::{Block, ElasticLaw};
-use crate::tensor::{Matrix, Real, product, times};
+use crate::material::law::{Blocks, ElasticLaw};
+use crate::tensor::{Matrix, Real, product};
 
 /// W = lambda tr(E)^2 / 2 + mu E : E, P = F_0 S with E = sym(F_0^T H), S = lambda tr(E) I + 2 mu E.
 #[derive(Debug, Clone, Copy)]
@@ -32,9 +32,8 @@ impl ElasticLaw for Linear {
         at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
-    ) -> impl Fn(usize, usize) -> Block<T, D> {
-        let spread = Spread::new(&at.frame(), gradients);
-        move |a, b| times(spread.material(self.0.lame, a, b), weight)
+    ) -> impl Blocks<T, D> {
+        Spread::new(&at.frame(), gradients, self.0.lame, weight)
     }
 
     #[inline(always)]

@@ -1,8 +1,10 @@
 //! Objective viscosity: Hooke's law, with viscous moduli, for the rate of Green's strain.
 
+#![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
+
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Lame, Spread};
-use crate::material::law::{Block, ViscousLaw};
+use crate::material::law::{Block, Blocks, ViscousLaw};
 use crate::tensor::{Matrix, Real, dot, product, product_transposed, times};
 
 /// P = F S with E' = sym(F^T F'), S = lambda tr(E') I + 2 mu E'. A body that spins as a whole is not
@@ -30,28 +32,17 @@ impl ViscousLaw for ObjectiveViscosity {
         rate: &Matrix<T, D, M>,
         gradients: &[[T; M]; N],
         weight: T,
-    ) -> impl Fn(usize, usize) -> Block<T, D> {
+    ) -> impl Blocks<T, D> {
         let f = at.gradient();
-        let spread = Spread::new(&f, gradients);
-        let moving = product(rate, gradients);
-        let mixed = product_transposed(rate, &f);
         let stress = self.0.stress(&at.twice_green_rate(rate), weight.constant(1.0));
-        let pulls = product(&stress, gradients);
-        let Lame { lambda, mu } = self.0.lame;
-        move |a, b| {
-            let stretch = dot(&gradients[a], &gradients[b]);
-            let geometric = dot(&gradients[a], &pulls[b]);
-            let along = &spread.along;
-            let mut block = [[weight.constant(0.0); D]; D];
-            for i in 0..D {
-                block[i][i] += geometric;
-                for k in 0..D {
-                    let shear = mixed[i][k] * stretch + along[b][i] * moving[a][k];
-                    let volumetric = along[a][i] * moving[b][k];
-                    block[i][k] = (block[i][k] + volumetric * lambda + shear * mu) * weight;
-                }
-            }
-            block
+        Tangent {
+            gradients,
+            along: product(&f, gradients),
+            moving: product(rate, gradients),
+            mixed: product_transposed(rate, &f),
+            pulls: product(&stress, gradients),
+            lame: self.0.lame,
+            weight,
         }
     }
 
@@ -61,8 +52,41 @@ impl ViscousLaw for ObjectiveViscosity {
         at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
-    ) -> impl Fn(usize, usize) -> Block<T, D> {
-        let spread = Spread::new(&at.gradient(), gradients);
-        move |a, b| times(spread.material(self.0.lame, a, b), weight)
+    ) -> impl Blocks<T, D> {
+        Spread::new(&at.gradient(), gradients, self.0.lame, weight)
+    }
+}
+
+struct Tangent<'a, T, const N: usize, const M: usize, const D: usize> {
+    gradients: &'a [[T; M]; N],
+    /// F g_a
+    along: [[T; D]; N],
+    /// F' g_a
+    moving: [[T; D]; N],
+    /// F F'^T
+    mixed: Matrix<T, D, D>,
+    /// S g_a
+    pulls: [[T; M]; N],
+    lame: Lame,
+    weight: T,
+}
+
+impl<T: Real, const N: usize, const M: usize, const D: usize> Blocks<T, D>
+    for Tangent<'_, T, N, M, D>
+{
+    #[inline(always)]
+    fn block(&self, a: usize, b: usize) -> Block<T, D> {
+        let Self { gradients, along, moving, mixed, pulls, lame: Lame { lambda, mu }, weight } =
+            self;
+        let stretch = dot(&gradients[a], &gradients[b]);
+        let mut block = [[stretch; D]; D];
+        for i in 0..D {
+            for k in 0..D {
+                let shear = mixed[i][k] * stretch + along[b][i] * moving[a][k];
+                block[i][k] = along[a][i] * moving[b][k] * *lambda + shear * *mu;
+            }
+            block[i][i] += dot(&gradients[a], &pulls[b]);
+        }
+        times(block, *weight)
     }
 }

@@ -1,8 +1,10 @@
 //! St. Venant-Kirchhoff material: Hooke's law for Green's strain.
 
+#![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
+
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Spread};
-use crate::material::law::{Block, ElasticLaw};
+use crate::material::law::{Block, Blocks, ElasticLaw};
 use crate::tensor::{Matrix, Real, dot, product, times};
 
 /// W = lambda tr(E)^2 / 2 + mu E : E, P = F S with E = (F^T F - I) / 2, S = lambda tr(E) I + 2 mu E.
@@ -31,16 +33,10 @@ impl ElasticLaw for StVenantKirchhoff {
         at: &Deformation<T, M, D>,
         gradients: &[[T; M]; N],
         weight: T,
-    ) -> impl Fn(usize, usize) -> Block<T, D> {
-        let spread = Spread::new(&at.gradient(), gradients);
+    ) -> impl Blocks<T, D> {
+        let spread = Spread::new(&at.gradient(), gradients, self.0.lame, weight);
         let stress = self.0.stress(&at.twice_green(), weight.constant(1.0));
-        let pulls = product(&stress, gradients);
-        move |a, b| {
-            let mut block = spread.material(self.0.lame, a, b);
-            let geometric = dot(&gradients[a], &pulls[b]);
-            (0..D).for_each(|i| block[i][i] += geometric);
-            times(block, weight)
-        }
+        Tangent { spread, pulls: product(&stress, gradients) }
     }
 
     #[inline(always)]
@@ -58,5 +54,25 @@ impl ElasticLaw for StVenantKirchhoff {
             "is inverted, det F = {domain:.3}: St. Venant-Kirchhoff material collapses under strong \
              compression; load it less or refine the mesh there"
         )
+    }
+}
+
+struct Tangent<'a, T, const N: usize, const M: usize, const D: usize> {
+    spread: Spread<'a, T, N, M, D>,
+    /// S g_a
+    pulls: [[T; M]; N],
+}
+
+impl<T: Real, const N: usize, const M: usize, const D: usize> Blocks<T, D>
+    for Tangent<'_, T, N, M, D>
+{
+    #[inline(always)]
+    fn block(&self, a: usize, b: usize) -> Block<T, D> {
+        let mut block = self.spread.material(a, b);
+        let geometric = dot(&self.spread.gradients[a], &self.pulls[b]);
+        for i in 0..D {
+            block[i][i] += geometric;
+        }
+        times(block, self.spread.weight)
     }
 }

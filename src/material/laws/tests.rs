@@ -6,7 +6,7 @@ use pulp::{Arch, Scalar, Simd, WithSimd};
 
 use super::*;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, ElasticLaw, Lame, Plane, ViscousLaw};
+use crate::material::{Blocks, Deformation, ElasticLaw, Lame, Plane, ViscousLaw};
 use crate::tensor::{Matrix, dot, product};
 
 /// Moduli of a soft material, Pa.
@@ -124,12 +124,14 @@ fn stresses_and_tangents_are_derivatives() {
             with_law!(law(strain, M), law => {
                 assert!(law.domain(&Deformation::new(frame, h)) > 0.0);
                 let units = units();
+                let at = Deformation::new(frame, h);
+                let tangent = law.tangent(&at, &units, 1.0);
                 are_derivatives(
                     &format!("{strain:?}"),
                     &h,
                     |h| law.energy(&Deformation::new(frame, *h)),
                     |h| law.stress(&Deformation::new(frame, *h), 1.0),
-                    law.tangent(&Deformation::new(frame, h), &units, 1.0),
+                    |a, b| tangent.block(a, b),
                 );
             });
         }
@@ -144,17 +146,18 @@ fn viscous_stresses_and_tangents_are_derivatives() {
         let law = ObjectiveViscosity(Hooke::new(LAME, M, Plane::Strain));
         let (frame, h, rate) = (frame::<M, D>(), noise(0.3, 5.0), noise(1.0, 40.0));
         let (at, units) = (Deformation::new(frame, h), units());
+        let by_rate = law.rate_tangent(&at, &units, 1.0);
         are_derivatives(
             "objective viscosity, by the rate",
             &rate,
             |rate| law.0.energy(&at.twice_green_rate(rate)),
             |rate| law.stress(&at, rate, 1.0),
-            law.rate_tangent(&at, &units, 1.0),
+            |a, b| by_rate.block(a, b),
         );
         let stress = |h: &Matrix<f64, D, M>| law.stress(&Deformation::new(frame, *h), &rate, 1.0);
-        let block = law.tangent(&at, &rate, &units, 1.0);
+        let tangent = law.tangent(&at, &rate, &units, 1.0);
         for place in (0..D).flat_map(|i| (0..M).map(move |j| [i, j])) {
-            is_tangent("objective viscosity", &h, &stress, &block, place);
+            is_tangent("objective viscosity", &h, &stress, &|a, b| tangent.block(a, b), place);
         }
     }
     in_all_dimensions!(check);
@@ -237,7 +240,7 @@ fn laws_are_linear_elasticity_at_small_strains() {
                 let units = units();
                 let (own, hooke) = (law.tangent(&rest, &units, 1.0), linear.tangent(&rest, &units, 1.0));
                 for (a, b) in (0..M).flat_map(|a| (0..M).map(move |b| (a, b))) {
-                    let apart = farthest(&own(a, b), &hooke(a, b));
+                    let apart = farthest(&own.block(a, b), &hooke.block(a, b));
                     assert!(apart < 1e-14, "{strain:?} {M} in {D}: tangent {apart:e}");
                 }
             });
