@@ -7,6 +7,7 @@ use std::sync::Arc;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 use crate::vector::dot;
+use crate::wide::add;
 
 /// Nodal forces (N), kept apart by what they do to the energy of the system.
 #[derive(Debug, Clone)]
@@ -50,7 +51,7 @@ impl NodalForces {
         total.copy_from_slice(&self.conservative);
         for part in [&self.dissipative, &self.applied] {
             if !part.is_zero {
-                total.iter_mut().zip(part.iter()).for_each(|(f, part)| *f += part);
+                add(part, total);
             }
         }
     }

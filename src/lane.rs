@@ -1,4 +1,4 @@
-//! Numbers of several cells that a machine computes at once, in one register.
+//! Numbers of several cells, or of several components of vectors, that a machine computes at once, in one register.
 //!
 //! Arithmetic on a lane is that on each of its numbers, in the same order and without fused operations, so that results
 //! are those of one cell after the other to the last bit, on any machine.
@@ -37,10 +37,10 @@ impl<S: Simd> Lane<S> {
         Self { simd, numbers: simd.splat_f64s(number) }
     }
 
-    /// Writes the numbers to the beginning of `out`.
+    /// Writes the numbers to part `part` of `out`, counted in registers.
     #[inline(always)]
-    pub(crate) fn store(self, out: &mut [f64; SIDE_BY_SIDE]) {
-        S::as_mut_simd_f64s(out).0[0] = self.numbers;
+    pub(crate) fn store(self, out: &mut [f64; SIDE_BY_SIDE], part: usize) {
+        S::as_mut_simd_f64s(out).0[part] = self.numbers;
     }
 
     /// Whether all of them are above 0, which NaN is not.

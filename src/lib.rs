@@ -27,7 +27,7 @@
 //! brackets are its equations.
 
 // The rooms of bodies use more of the lowest rooms than the integrators do.
-#![cfg_attr(not(feature = "bodies"), allow(dead_code, unused_imports))]
+#![cfg_attr(not(feature = "bodies"), allow(dead_code, unused_imports, unused_macros))]
 
 #[cfg(feature = "bodies")]
 pub mod body;
@@ -56,7 +56,6 @@ mod formula;
 mod indicator;
 mod input;
 pub mod integrate;
-#[cfg(feature = "bodies")]
 mod lane;
 #[cfg(feature = "bodies")]
 pub mod material;
@@ -95,11 +94,11 @@ pub mod study;
 pub mod sundials;
 #[cfg(feature = "bodies")]
 mod system;
-#[cfg(feature = "bodies")]
 mod tensor;
 #[cfg(feature = "bodies")]
 pub mod trajectory;
 mod vector;
+mod wide;
 
 #[cfg(feature = "bodies")]
 pub use body::{Body, CellField, CellSelection, Inertia, NodalField, Strain, Viscosity};

@@ -196,7 +196,7 @@ impl NodeMatrix {
 
     /// x . (m (x) I) x
     pub(crate) fn quadratic_form(&self, dimension: usize, x: &[f64]) -> f64 {
-        (0..x.len()).map(|dof| x[dof] * self.row_product(dimension, dof, x)).sum()
+        with_dimension!(dimension, node_form(&self.pattern, &self.values, x))
     }
 }
 
@@ -368,16 +368,39 @@ fn node_product<const D: usize>(
 ) {
     let (x, y) = (x.as_chunks::<D>().0, y.as_chunks_mut::<D>().0);
     for (node, y) in y.iter_mut().enumerate() {
-        let mut sum = [0.0; D];
-        for (entry, column) in pattern.row(node) {
-            for axis in 0..D {
-                sum[axis] += values[entry] * x[column][axis];
-            }
-        }
+        let sum = node_row(pattern, values, node, x);
         for axis in 0..D {
             y[axis] += factor * sum[axis];
         }
     }
+}
+
+fn node_form<const D: usize>(pattern: &NodePattern, values: &[f64], x: &[f64]) -> f64 {
+    let x = x.as_chunks::<D>().0;
+    let mut form = 0.0;
+    for (node, at) in x.iter().enumerate() {
+        let product = node_row(pattern, values, node, x);
+        for axis in 0..D {
+            form += at[axis] * product[axis];
+        }
+    }
+    form
+}
+
+/// (m (x) I) x at one node.
+fn node_row<const D: usize>(
+    pattern: &NodePattern,
+    values: &[f64],
+    node: usize,
+    x: &[[f64; D]],
+) -> [f64; D] {
+    let mut sum = [0.0; D];
+    for (entry, column) in pattern.row(node) {
+        for axis in 0..D {
+            sum[axis] += values[entry] * x[column][axis];
+        }
+    }
+    sum
 }
 
 fn block_product<const D: usize>(

@@ -85,12 +85,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     for ElementsOf<N, M, D, Q>
 {
     fn energy(&self, regions: &Regions, u: &[f64]) -> f64 {
-        let of_cell = |cell| {
-            with_law!(regions.of(cell).elastic, law => {
-                self.deformed(cell, u).map(|(volume, at)| volume * law.energy(&at)).sum::<f64>()
-            })
-        };
-        (0..self.nodes.len()).map(of_cell).sum()
+        self.strain_energy(regions, u)
     }
 
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField> {

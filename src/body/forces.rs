@@ -217,14 +217,9 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
             let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
-            let last = nodes.len() - 1;
-            let mut of_cells = [&nodes[start]; SIDE_BY_SIDE];
-            for lane in 1..S::F64_LANES {
-                of_cells[lane] = &nodes[last.min(start + lane)];
-            }
             let mut x = [[[zero; D]; N]; K];
             for k in 0..K {
-                gather(simd, &of_cells, fields[k], &mut x[k]);
+                x[k] = elements.gather(simd, start, fields[k]);
             }
             let mut pulls = [[Lane::splat(simd, -0.0); D]; N];
             let mut is_inside = true;
@@ -246,7 +241,7 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
             let mut numbers = [[[0.0; SIDE_BY_SIDE]; D]; N];
             for a in 1..N {
                 for i in 0..D {
-                    pulls[a][i].store(&mut numbers[a][i]);
+                    pulls[a][i].store(&mut numbers[a][i], 0);
                 }
             }
             for cell in active {
@@ -254,35 +249,6 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
             }
         }
         Ok(())
-    }
-}
-
-/// The vectors of the nodes of some cells, less those of their first ones.
-#[inline(always)]
-pub(super) fn gather<S: Simd, const N: usize, const D: usize>(
-    simd: S,
-    cells: &[&[usize; N]; SIDE_BY_SIDE],
-    x: &[[f64; D]],
-    out: &mut [[Lane<S>; D]; N],
-) {
-    let [c0, c1, c2, c3, c4, c5, c6, c7] = cells;
-    let mut first = out[0];
-    for a in 0..N {
-        // no more than the register holds
-        let at = |lane: usize, cell: &[usize; N]| {
-            if lane < S::F64_LANES { x[cell[a]] } else { [0.0; D] }
-        };
-        let [n0, n1, n2, n3] = [at(0, c0), at(1, c1), at(2, c2), at(3, c3)];
-        let [n4, n5, n6, n7] = [at(4, c4), at(5, c5), at(6, c6), at(7, c7)];
-        for i in 0..D {
-            let numbers = [n0[i], n1[i], n2[i], n3[i], n4[i], n5[i], n6[i], n7[i]];
-            let of_cells = Lane::load(simd, &numbers, 0);
-            if a == 0 {
-                first[i] = of_cells;
-            } else {
-                out[a][i] = of_cells - first[i];
-            }
-        }
     }
 }
 

@@ -12,7 +12,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::elements::{ElementsOf, gradient, pairs};
-use super::forces::{NonlinearTerms, gather};
+use super::forces::NonlinearTerms;
 use super::regions::{Regions, Substance};
 use crate::lane::{Abreast, Lane, SIDE_BY_SIDE};
 use crate::material::{
@@ -209,20 +209,15 @@ impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { elements, rows, cells, fields, slope } = self;
-        let (nodes, abreast) = (&elements.nodes[..], elements.abreast());
+        let abreast = elements.abreast();
         let zero = Lane::splat(simd, 0.0);
         let mut sums = [[[[Abreast([0.0; SIDE_BY_SIDE]); D]; D]; N]; N];
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
             let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
-            let last = nodes.len() - 1;
-            let mut of_cells = [&nodes[start]; SIDE_BY_SIDE];
-            for lane in 1..S::F64_LANES {
-                of_cells[lane] = &nodes[last.min(start + lane)];
-            }
             let mut x = [[[zero; D]; N]; K];
             for k in 0..K {
-                gather(simd, &of_cells, fields[k], &mut x[k]);
+                x[k] = elements.gather(simd, start, fields[k]);
             }
             for q in 0..Q {
                 let point = abreast[block][q].lane(simd, part);
@@ -262,7 +257,7 @@ fn sum_up<S: Simd, const D: usize>(
                 true => block[i][k],
                 false => Lane::load(simd, sum, 0) + block[i][k],
             };
-            total.store(sum);
+            total.store(sum, 0);
         }
     }
 }
@@ -290,9 +285,9 @@ fn balance<S: Simd, const N: usize, const D: usize>(
                         of_row += Lane::load(simd, &sums[b][a][i][k].0, 0);
                     }
                 }
-                (zero - of_column).store(&mut sums[0][b][i][k].0);
+                (zero - of_column).store(&mut sums[0][b][i][k].0, 0);
                 if !is_symmetric {
-                    (zero - of_row).store(&mut sums[b][0][i][k].0);
+                    (zero - of_row).store(&mut sums[b][0][i][k].0, 0);
                 }
                 of_first += of_column;
             }
@@ -301,7 +296,7 @@ fn balance<S: Simd, const N: usize, const D: usize>(
                 true => Lane::load(simd, &sums[0][0][k][i].0, 0),
                 false => of_first,
             };
-            of_first.store(&mut sums[0][0][i][k].0);
+            of_first.store(&mut sums[0][0][i][k].0, 0);
         }
     }
 }

@@ -4,6 +4,7 @@ use crate::body::Body;
 use crate::force::{Force, NodalForces, Reservoir};
 use crate::ode::Failure;
 use crate::vector::dot;
+use crate::wide::add;
 
 /// Weight of a body.
 pub(crate) struct Gravity {
@@ -30,7 +31,7 @@ impl Force for Gravity {
         _v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        forces.conservative.iter_mut().zip(&self.weight).for_each(|(f, w)| *f += w);
+        add(&self.weight, &mut forces.conservative);
         Ok(())
     }
 

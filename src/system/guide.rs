@@ -18,6 +18,8 @@ pub(super) struct Guide {
     since: f64,
     /// R_0 and R_0' + alpha R_0, row by row.
     remainders: Vec<(f64, f64)>,
+    /// Whether all of them are 0: nothing fades that would have to be computed.
+    is_on_path: bool,
     /// A^T v that kicks lead to, row by row.
     pub(super) rates: Vec<f64>,
 }
@@ -25,7 +27,8 @@ pub(super) struct Guide {
 impl Guide {
     /// Without motion, for `rows` rows.
     pub(super) fn new(rows: usize) -> Self {
-        Self { since: 0.0, remainders: vec![(0.0, 0.0); rows], rates: vec![0.0; rows] }
+        let remainders = vec![(0.0, 0.0); rows];
+        Self { since: 0.0, remainders, is_on_path: true, rates: vec![0.0; rows] }
     }
 
     /// Leads on from (t, u, v).
@@ -42,6 +45,7 @@ impl Guide {
             let off = row.apply(u) - displacement;
             *remainder = (off, row.apply(v) - velocity + system.alpha * off);
         }
+        self.is_on_path = self.remainders.iter().all(|remainder| *remainder == (0.0, 0.0));
         Ok(())
     }
 
@@ -54,8 +58,10 @@ impl Guide {
         h: f64,
     ) -> Result<(), Failure> {
         let (alpha, elapsed) = (system.alpha, t - self.since);
-        let decay = (-alpha * elapsed).exp();
-        let [ahead, change] = [(-alpha * h).exp(), (-alpha * h).exp_m1() / h];
+        let [decay, ahead, change] = match self.is_on_path {
+            true => [0.0; 3],
+            false => [(-alpha * elapsed).exp(), (-alpha * h).exp(), (-alpha * h).exp_m1() / h],
+        };
         for (k, (row, &(off, slope))) in system.rows.iter().zip(&self.remainders).enumerate() {
             let velocity = |s: f64| system.prescribed(row, t + s * h).map(|motion| motion.velocity);
             let prescribed = match row.constant_velocity() {
@@ -79,7 +85,7 @@ impl Guide {
         v: &mut [f64],
     ) -> Result<(), Failure> {
         let (alpha, elapsed) = (system.alpha, t - self.since);
-        let decay = (-alpha * elapsed).exp();
+        let decay = if self.is_on_path { 0.0 } else { (-alpha * elapsed).exp() };
         for (k, (row, &(off, slope))) in system.rows.iter().zip(&self.remainders).enumerate() {
             let Prescribed { displacement, velocity, .. } = system.prescribed(row, t)?;
             let remainder = off + slope * elapsed;

@@ -9,6 +9,8 @@ use super::reduced::nodal_multipliers;
 use crate::constraint::Row;
 use crate::model::Model;
 use crate::ode::Kick;
+use crate::tensor::Real;
+use crate::wide::{Formula, each};
 
 pub(super) enum Mobility {
     /// Lumped inertia, one component per row: nothing is to be solved.
@@ -62,8 +64,7 @@ impl Mobility {
         let Kick { duration, force, before } = *kick;
         match self {
             Self::Diagonal { inverse, .. } => {
-                let of_force = inverse.iter().zip(force).map(|(inverse, f)| inverse * f);
-                accelerations.iter_mut().zip(of_force).for_each(|(a, of_force)| *a = of_force);
+                each(ByMass, [inverse, force], [accelerations]);
             }
             Self::Coupled { demands, multipliers } => {
                 let rows = system.rows.iter().zip(rates);
@@ -107,6 +108,16 @@ impl Mobility {
             }
         }
         work
+    }
+}
+
+/// a = f / M
+struct ByMass;
+
+impl Formula<2, 1, 0> for ByMass {
+    #[inline(always)]
+    fn at<T: Real>(&self, [inverse, f]: [T; 2], _: [T; 1]) -> ([T; 1], [T; 0]) {
+        ([inverse * f], [])
     }
 }
 

@@ -271,7 +271,7 @@ impl<const M: usize, const D: usize> WithSimd for AtOnce<M, D> {
             let (at, volume) = (Deformation::new(frames, h), load(&|lane| volumes[lane]));
             let numbers = |lanes: Lane<S>| {
                 let mut numbers = [0.0; SIDE_BY_SIDE];
-                lanes.store(&mut numbers);
+                lanes.store(&mut numbers, 0);
                 numbers
             };
             for strain in LAWS {
