@@ -20,7 +20,7 @@
 //! ```
 //!
 //! The integrators stand on their own: [`solve`](mod@solve) integrates any ODE or DAE by one call, [`sundials`] is the safe layer over CVODE, IDA and ARKODE
-//! below it, [`rk`] an explicit Runge-Kutta method, [`central_difference`] one for systems of second order; all take the
+//! below it, [`rk`] an explicit Runge-Kutta method, [`rosenbrock`] implicit ones without an iteration, [`central_difference`] one for systems of second order; all take the
 //! systems of [`ode`]. Without the feature `bodies` they are all there is.
 //!
 //! SI units throughout. Formulas follow S. Hirai, *Computing Dynamic Deformation*; numbers in
@@ -71,6 +71,7 @@ pub mod play;
 #[cfg(feature = "bodies")]
 mod report;
 pub mod rk;
+pub mod rosenbrock;
 pub mod samples;
 #[cfg(feature = "bodies")]
 pub mod scene;

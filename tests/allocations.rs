@@ -5,6 +5,7 @@ use allocation_counter::measure;
 use pliant::force::{Force, NodalForces, Reservoir};
 use pliant::ode::Failure;
 use pliant::rk::{DormandPrince, Integrator, Options};
+use pliant::rosenbrock::{self, Rosenbrock};
 use pliant::samples::{SQUARE_MATERIAL, square_jump};
 use pliant::simulate::{Component, Reading};
 use pliant::sundials::{
@@ -94,6 +95,29 @@ fn runge_kutta_allocates_nothing_after_its_start() {
         settings.solve_to(2.0).unwrap();
     });
     assert_eq!(allocated.count_total, 0);
+}
+
+#[test]
+fn rosenbrock_methods_allocate_nothing_after_their_start() {
+    let rhs = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+        (ydot[0], ydot[1]) = (y[1], -y[0].cos());
+        Ok(())
+    };
+    for order in [3, 4] {
+        let options = rosenbrock::Options::default().order(order);
+        let mut solver = Rosenbrock::new(rhs, 0.0, &[0.0, 0.0], &options).unwrap();
+        let mut y = [0.0; 2];
+        let allocated = measure(|| {
+            for period in 1..20 {
+                solver.solve_to(2.0 * f64::from(period)).unwrap();
+                solver.step(f64::MAX).unwrap();
+                solver.interpolate(solver.t(), 0, &mut y).unwrap();
+            }
+            solver.reinit(0.0, &[0.0, 0.0]).unwrap();
+            solver.solve_to(2.0).unwrap();
+        });
+        assert_eq!(allocated.count_total, 0);
+    }
 }
 
 /// Coloured differences, the incomplete factorization and the products of a Krylov method: after the first steps

@@ -1,13 +1,15 @@
 //! What all integrators have in common: what they can do ([`Integrator`]), how accurate they are to be
 //! ([`Tolerances`]), what they cost ([`Statistics`]) and how they fail ([`Error`]).
 //!
-//! The integrators are those of [`sundials`](crate::sundials) and [`rk`](crate::rk); what they integrate is
+//! The integrators are those of [`sundials`](crate::sundials), [`rk`](crate::rk) and [`rosenbrock`](crate::rosenbrock); what they integrate is
 //! in [`ode`](crate::ode).
 
 mod error;
 mod explicit_options;
 mod integrator;
 mod options;
+mod rootfinding;
+mod roots;
 mod statistics;
 mod tolerances;
 
@@ -19,5 +21,7 @@ pub(crate) use options::{
     StepOptions, check_count, check_finite, check_form, check_length, check_start,
     check_start_time, check_step, check_time, check_whole, step_options,
 };
+pub(crate) use rootfinding::FollowsRoots;
+pub(crate) use roots::Roots;
 pub use statistics::Statistics;
 pub use tolerances::{AbsoluteTolerance, Tolerances};

@@ -39,7 +39,7 @@ pub struct Statistics {
     pub nonlinear_failures: u64,
     /// Steps repeated with a smaller size because the nonlinear iteration failed.
     pub step_failures: u64,
-    /// Steps that an explicit method repeated with a smaller size because the right-hand side or the
+    /// Steps that a method without iterations repeated with a smaller size because the right-hand side or the
     /// forces could not be evaluated: they failed recoverably or were not finite.
     pub refused_steps: u64,
     /// Steps repeated because the local error was too large.

@@ -46,6 +46,10 @@ macro_rules! ode_within {
             self.0.newton_rhs(t, y, ydot)
         }
 
+        fn integrals(&self) -> usize {
+            self.0.integrals()
+        }
+
         fn is_split(&self) -> bool {
             self.0.is_split()
         }

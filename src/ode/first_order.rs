@@ -80,7 +80,8 @@ pub trait Ode {
     /// Replaces the right-hand side `r` by the solution x of the system last set up.
     ///
     /// `gamma` is the step parameter by now, which may have changed a little since then. It matters
-    /// to systems with a [`newton_rhs`](Self::newton_rhs) of their own.
+    /// to systems with a [`newton_rhs`](Self::newton_rhs) of their own, and is 0 where `r` was made with all of
+    /// [`rhs`](Self::rhs).
     fn newton_solve(&mut self, _gamma: f64, _r: &mut [f64]) -> Result<(), Failure> {
         Err(missing("newton_solve"))
     }
@@ -93,6 +94,12 @@ pub trait Ode {
     /// of the matrix anyway. Default: all of `rhs`.
     fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.rhs(t, y, ydot)
+    }
+
+    /// How many of the last unknowns are integrals: no right-hand side depends on them. Methods may then leave them out
+    /// of their matrix and of the error test. Default: none.
+    fn integrals(&self) -> usize {
+        0
     }
 
     /// Writes into `correction` (zero on entry) what takes the state `y` to the nearest one that keeps the

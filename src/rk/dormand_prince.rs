@@ -1,9 +1,8 @@
 //! The integrator: its state, how it starts, and what is known within the last step.
 
 use super::control::{Controller, StabilityLimit, StabilityMonitor};
-use super::roots::Roots;
 use super::tableau::{self, STAGES, advance};
-use crate::integrate::{Error, ExplicitOptions, Statistics, check_form, check_start};
+use crate::integrate::{Error, ExplicitOptions, Roots, Statistics, check_form, check_start};
 use crate::ode::Ode;
 
 /// Order of the method.

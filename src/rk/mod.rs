@@ -27,7 +27,6 @@
 mod control;
 mod dormand_prince;
 mod rootfinding;
-mod roots;
 mod stages;
 mod stepping;
 mod tableau;

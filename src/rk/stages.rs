@@ -15,7 +15,7 @@ impl<S: Ode> DormandPrince<S> {
         let outcome = self.system.rhs(t, &self.y, &mut self.k[0]);
         let setback = classify(outcome, t, [t, 0.0])?;
         if let Some(cause) = setback.or_else(|| not_finite(t, &self.k[0])) {
-            return Err(stopped(cause, [t, 0.0]));
+            return Err(stopped(cause, [t, 0.0]).into());
         }
         self.slope_known = true;
         Ok(())
@@ -122,7 +122,10 @@ fn classify(outcome: Result<(), Failure>, t: f64, place: [f64; 2]) -> Result<Opt
     match outcome {
         Ok(()) => Ok(None),
         Err(Failure::Recoverable(message)) => Ok(Some(Cause::Rejected { callback, t, message })),
-        Err(Failure::Fatal(source)) => Err(fatal(callback, source, place)),
+        Err(Failure::Fatal(source)) => {
+            let stopped = stopped(Cause::Fatal(callback), place);
+            Err(IntegrationError { source: Some(source), ..stopped }.into())
+        }
     }
 }
 
@@ -132,7 +135,7 @@ fn not_finite(t: f64, slope: &[f64]) -> Option<Cause> {
 }
 
 /// An integration that stopped at a time, with a step.
-pub(super) fn stopped(cause: Cause, [t, step]: [f64; 2]) -> Error {
+pub(super) fn stopped(cause: Cause, [t, step]: [f64; 2]) -> IntegrationError {
     IntegrationError {
         integrator: "Dormand-Prince 5(4)",
         cause,
@@ -142,18 +145,4 @@ pub(super) fn stopped(cause: Cause, [t, step]: [f64; 2]) -> Error {
         message: String::new(),
         source: None,
     }
-    .into()
-}
-
-/// As [`stopped`], by an error of the system.
-pub(super) fn fatal(
-    callback: Callback,
-    source: Box<dyn std::error::Error + Send + Sync>,
-    place: [f64; 2],
-) -> Error {
-    let mut error = stopped(Cause::Fatal(callback), place);
-    if let Error::Integration(error) = &mut error {
-        error.source = Some(source);
-    }
-    error
 }

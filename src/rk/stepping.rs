@@ -6,8 +6,8 @@ use super::control::{Controller, StabilityMonitor};
 use super::dormand_prince::{DormandPrince, ORDER};
 use super::stages::stopped;
 use crate::integrate::{
-    Cause, Error, Integrator, Reached, Statistics, check_finite, check_length, check_start_time,
-    check_stop_time, check_target,
+    Cause, Error, FollowsRoots, Integrator, Reached, Statistics, check_finite, check_length,
+    check_start_time, check_stop_time, check_target,
 };
 use crate::ode::Ode;
 
@@ -52,7 +52,7 @@ impl<S: Ode> DormandPrince<S> {
             let stop = self.stop_time.filter(|stop| self.t + 1.01 * h >= *stop);
             if stop.is_none() && self.t + 0.1 * h == self.t {
                 self.next_step = None;
-                return Err(stopped(setback.unwrap_or(Cause::ErrorTest), [self.t, h]));
+                return Err(stopped(setback.unwrap_or(Cause::ErrorTest), [self.t, h]).into());
             }
             let t_new = stop.unwrap_or(self.t + h);
             let step = t_new - self.t;
@@ -110,7 +110,7 @@ impl<S: Ode> Integrator for DormandPrince<S> {
             let steps = self.statistics.steps - first;
             if steps == u64::from(self.options.steps.max_steps) {
                 let cause = Cause::TooManySteps { steps, target: t, notice: self.notice() };
-                return Err(stopped(cause, [self.t, self.statistics.last_step]));
+                return Err(stopped(cause, [self.t, self.statistics.last_step]).into());
             }
             self.advance()?;
         }

@@ -30,6 +30,9 @@ pub enum Method {
     /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that
     /// steps may go over. `max_order` is their order; default: 4.
     Arkode,
+    /// The internal Rosenbrock methods of order 3 and 4, implicit without an iteration, L-stable: for vibrations that
+    /// steps may go over. `max_order` is their order; default: 4.
+    Rosenbrock,
     /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
     /// and as a check of the others.
     Rk,
@@ -40,7 +43,7 @@ pub enum Method {
 
 impl Method {
     /// All methods.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Auto,
         Self::CvodeBdf,
         Self::CvodeAdams,
@@ -48,12 +51,13 @@ impl Method {
         Self::IdaKlu,
         Self::IdaIndexTwo,
         Self::Arkode,
+        Self::Rosenbrock,
         Self::Rk,
         Self::CentralDifference,
     ];
 
     /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`,
-    /// `ida-index-2`, `arkode`, `rk`, `central-difference`.
+    /// `ida-index-2`, `arkode`, `rosenbrock`, `rk`, `central-difference`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Auto => "auto",
@@ -63,6 +67,7 @@ impl Method {
             Self::IdaKlu => "ida-klu",
             Self::IdaIndexTwo => "ida-index-2",
             Self::Arkode => "arkode",
+            Self::Rosenbrock => "rosenbrock",
             Self::Rk => "rk",
             Self::CentralDifference => "central-difference",
         }
@@ -92,6 +97,9 @@ impl Method {
             Self::Arkode => {
                 "bodies that vibrate with little damping (ARKODE, diagonally implicit, order 2 to 5)"
             }
+            Self::Rosenbrock => {
+                "bodies that vibrate, without iterations (Rosenbrock methods, linearly implicit, order 3 and 4)"
+            }
             Self::Rk => {
                 "motion that is not stiff: light damping, small alpha (Dormand-Prince 5(4))"
             }
@@ -105,6 +113,7 @@ impl Method {
         match self {
             Self::CvodeAdams => 1..=12,
             Self::Arkode => 2..=5,
+            Self::Rosenbrock => 3..=4,
             _ => 1..=5,
         }
     }

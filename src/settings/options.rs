@@ -87,9 +87,9 @@ impl SettingsOption {
         },
         Self {
             key: "max_order",
-            meaning: "highest order of a multistep method, order of arkode's",
+            meaning: "highest order of a multistep method, order of `arkode` and `rosenbrock`",
             unit: "",
-            default: "5; `cvode-adams`: 12, `arkode`: 4",
+            default: "5; `cvode-adams`: 12, `arkode`, `rosenbrock`: 4",
             value_name: "ORDER",
             value: SettingsValue::Count(|settings, order| {
                 settings.max_order = Some(u32::try_from(order).unwrap_or(u32::MAX));

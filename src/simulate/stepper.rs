@@ -6,6 +6,7 @@ use crate::integrate::Integrator;
 use crate::ode::Failure;
 use crate::report::Counts;
 use crate::rk::{self, DormandPrince};
+use crate::rosenbrock::{self, Rosenbrock};
 use crate::settings::{AbsoluteTolerances, Method, Settings};
 use crate::state::ENERGIES;
 use crate::sundials::{
@@ -163,6 +164,12 @@ pub(super) fn start(
             let options = ida_options(settings, tolerances, &equations)?.max_step(longest);
             until(end, Ida::new(equations, t, &y, &yp, &options)?)
         }
+        Method::Rosenbrock => {
+            let options =
+                rosenbrock_options(settings, tolerances, system.is_linear()).max_step(longest);
+            let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
+            until(end, Rosenbrock::new(system, t, state, &options)?)
+        }
         Method::Rk => {
             let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
             let options = first.into_iter().fold(options, rk::Options::initial_step);
@@ -223,6 +230,17 @@ fn arkode_options(
             .max_steps_between_jacobians(STEPS_BETWEEN_SETUPS)
             .max_iterations(ITERATIONS),
     })
+}
+
+fn rosenbrock_options(
+    settings: &Settings,
+    tolerances: Vec<f64>,
+    is_linear: bool,
+) -> rosenbrock::Options {
+    let options =
+        rosenbrock::Options::new(settings.rtol, tolerances).jacobian(rosenbrock::Jacobian::Custom);
+    let options = settings.max_order.into_iter().fold(options, rosenbrock::Options::order);
+    if is_linear { options.linear() } else { options }
 }
 
 fn ida_options(

@@ -221,7 +221,7 @@ impl Scenes {
 /// Name and settings of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up
 /// to 2 only, which suits motion that is hardly damped, and one that detects the stability limits
 /// of higher orders; for ARKODE one for each of the
-/// orders 3 and 5 beside 4.
+/// orders 3 and 5 beside 4, for Rosenbrock methods one for order 3.
 #[must_use]
 pub fn all_methods() -> Vec<(String, Settings)> {
     let mut lines = Vec::new();
@@ -231,6 +231,7 @@ pub fn all_methods() -> Vec<(String, Settings)> {
         let orders: &[u32] = match method {
             Method::CvodeBdf => &[2],
             Method::Arkode => &[3, 5],
+            Method::Rosenbrock => &[3],
             _ => &[],
         };
         for order in orders {

@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::ode::{Failure, Ode};
-use crate::state::{State, StateMut};
+use crate::state::{ENERGIES, State, StateMut};
 
 impl Ode for System {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
@@ -13,6 +13,10 @@ impl Ode for System {
         rates.v.copy_from_slice(&self.at.acceleration);
         (*rates.dissipated, *rates.supplied) = self.powers(v, &self.at.multipliers);
         Ok(())
+    }
+
+    fn integrals(&self) -> usize {
+        ENERGIES
     }
 
     fn newton_setup(

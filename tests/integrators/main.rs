@@ -27,6 +27,7 @@ mod quadratures;
 mod random_problems;
 mod rk;
 mod roots;
+mod rosenbrock;
 mod sensitivities;
 mod signs;
 mod sparse;

@@ -6,25 +6,25 @@
 
 use std::mem::swap;
 
-use crate::integrate::Error;
+use super::error::Error;
 
 /// The root functions g of a system, as far as they have been followed.
 #[derive(Debug, Default)]
-pub(super) struct Roots {
+pub(crate) struct Roots {
     /// Whether g was evaluated at the start.
-    pub(super) started: bool,
+    pub(crate) started: bool,
     /// Whether there is a root at `low`.
-    pub(super) rests: bool,
+    pub(crate) rests: bool,
     /// Up to where sign changes were looked for, and g there.
-    pub(super) low: f64,
-    pub(super) at_low: Vec<f64>,
+    pub(crate) low: f64,
+    pub(crate) at_low: Vec<f64>,
     /// g at the end of the interval that holds a sign change.
     at_high: Vec<f64>,
-    pub(super) trial: Vec<f64>,
+    pub(crate) trial: Vec<f64>,
     /// Functions that are 0 and stay so are left out until they leave it.
     active: Vec<bool>,
     /// For each function 0, or the sign of its change at the root last found.
-    pub(super) found: Vec<i32>,
+    pub(crate) found: Vec<i32>,
 }
 
 /// What happens to the functions from one time to a later one.
@@ -44,7 +44,7 @@ enum End {
 }
 
 impl Roots {
-    pub(super) fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self {
             at_low: vec![0.0; count],
             at_high: vec![0.0; count],
@@ -56,14 +56,14 @@ impl Roots {
     }
 
     /// Begins anew.
-    pub(super) fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         (self.started, self.rests) = (false, false);
         self.active.fill(true);
         self.found.fill(0);
     }
 
     /// Goes on with the values a little later, in `trial`, where a function is 0 at `low`.
-    pub(super) fn leave_zeros(&mut self) {
+    pub(crate) fn leave_zeros(&mut self) {
         for (i, at_low) in self.at_low.iter_mut().enumerate().filter(|(_, value)| **value == 0.0) {
             *at_low = self.trial[i];
             self.active[i] = self.trial[i] != 0.0;
@@ -72,7 +72,7 @@ impl Roots {
 
     /// Finds the first sign change between `low` and `high`, to within `tolerance`, or else goes on to
     /// `high`.
-    pub(super) fn search(
+    pub(crate) fn search(
         &mut self,
         mut high: f64,
         tolerance: f64,

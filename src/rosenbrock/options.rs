@@ -1,0 +1,98 @@
+//! Options of the integrator.
+
+use super::tableau::{RODASP2, ROS34PW2, Tableau};
+use crate::input::InputError;
+use crate::integrate::{AbsoluteTolerance, ExplicitOptions};
+
+/// Where the matrix I - gamma h df/dy comes from, and how it is factorized.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Jacobian {
+    /// A dense matrix of difference quotients: n evaluations of the right-hand side, n^3 work.
+    #[default]
+    Differences,
+    /// The dense matrix of the system's own `dense_jacobian`.
+    Supplied,
+    /// The system's own `newton_setup` and `newton_solve`.
+    Custom,
+}
+
+/// Tolerances, method and limits of a [`Rosenbrock`](super::Rosenbrock).
+///
+/// ```
+/// use pliant::rosenbrock::{Jacobian, Options};
+///
+/// let options = Options::new(1e-6, 1e-9).order(3).jacobian(Jacobian::Supplied).max_step(0.1);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+#[must_use]
+pub struct Options {
+    /// Tolerances and step sizes.
+    pub(super) forward: ExplicitOptions,
+    pub(super) order: u32,
+    pub(super) jacobian: Jacobian,
+    pub(super) linear: bool,
+}
+
+impl Default for Options {
+    /// Tolerances rtol 1e-6 and atol 1e-9.
+    fn default() -> Self {
+        Self::new(1e-6, 1e-9)
+    }
+}
+
+impl Options {
+    /// These tolerances, order 4, a dense matrix of differences.
+    ///
+    /// Local errors are kept below `rtol |y_i| + atol_i` in the root mean square, the norm of CVODE. `rtol` is at
+    /// least 1e-14, `atol` positive.
+    pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
+        let forward = ExplicitOptions::new(rtol, atol);
+        Self { forward, order: 4, jacobian: Jacobian::default(), linear: false }
+    }
+
+    /// Order of the method: 4 (RODASP2, the default) or 3 (ROS34PW2, which has its order with any matrix).
+    pub fn order(mut self, order: u32) -> Self {
+        self.order = order;
+        self
+    }
+
+    /// Where the matrix comes from.
+    pub fn jacobian(mut self, jacobian: Jacobian) -> Self {
+        self.jacobian = jacobian;
+        self
+    }
+
+    /// The Jacobian never changes: it is evaluated once, and factorized only where the step size changes, which
+    /// it does less often.
+    pub fn linear(mut self) -> Self {
+        self.linear = true;
+        self
+    }
+
+    /// Size of the first step. Default: estimated.
+    pub fn initial_step(mut self, h: f64) -> Self {
+        self.forward = self.forward.initial_step(h);
+        self
+    }
+
+    /// Upper bound of the step size. Default: none, which is infinity.
+    pub fn max_step(mut self, h: f64) -> Self {
+        self.forward = self.forward.max_step(h);
+        self
+    }
+
+    /// Steps allowed in one call of `solve_to`. Default: 100,000.
+    pub fn max_steps(mut self, steps: u32) -> Self {
+        self.forward = self.forward.max_steps(steps);
+        self
+    }
+
+    /// The method of that order.
+    pub(super) fn tableau(&self) -> Result<&'static Tableau, InputError> {
+        match self.order {
+            3 => Ok(&ROS34PW2),
+            4 => Ok(&RODASP2),
+            order => Err(InputError::new("order", order, "there are methods of order 3 and 4")),
+        }
+    }
+}
