@@ -21,7 +21,9 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 pub(super) struct Cholesky {
     pattern: SymbolicSparseColMat<usize>,
     symbolic: SymbolicCholesky<usize>,
+    /// The factor; of a diagonal matrix its inverse.
     factor: Vec<f64>,
+    is_diagonal: bool,
     memory: MemBuffer,
     /// Threads of the factorization.
     par: Par,
@@ -73,12 +75,17 @@ impl Cholesky {
             symbolic.solve_in_place_scratch::<f64>(1, Par::Seq),
         ]));
         let factor = vec![0.0; symbolic.len_val()];
-        Self { pattern, symbolic, factor, memory, par, lu: None, full: None }
+        let is_diagonal = pattern.compute_nnz() == pattern.nrows();
+        Self { pattern, symbolic, factor, is_diagonal, memory, par, lu: None, full: None }
     }
 
     /// Factorizes the positive definite matrix whose lower triangle has these values.
     pub(super) fn factorize(&mut self, values: &[f64]) -> Result<(), Indefinite> {
         self.lu = None;
+        if self.is_diagonal && values.iter().all(|value| *value > 0.0) {
+            self.factor.iter_mut().zip(values).for_each(|(inverse, value)| *inverse = 1.0 / value);
+            return Ok(());
+        }
         let matrix = SparseColMatRef::new(self.pattern.as_ref(), values);
         self.symbolic
             .factorize_numeric_llt(
@@ -113,6 +120,9 @@ impl Cholesky {
 
     /// Replaces `x` by the solution of A x' = x.
     pub(super) fn solve(&mut self, x: &mut [f64]) {
+        if self.is_diagonal && self.lu.is_none() {
+            return x.iter_mut().zip(&self.factor).for_each(|(x, inverse)| *x *= inverse);
+        }
         let rows = x.len();
         let x = MatMut::from_column_major_slice_mut(x, rows, 1);
         match &self.lu {
@@ -223,6 +233,25 @@ mod tests {
                 assert!(residual.fold(0.0, |most: f64, r| most.max(r.abs())) < 1e-12);
             }
         }
+    }
+
+    #[test]
+    fn diagonal_matrices_are_divided_by() {
+        let pattern =
+            || SymbolicSparseColMat::new_checked(3, 3, vec![0, 1, 2, 3], None, vec![0, 1, 2]);
+        let mut factor = Cholesky::new(pattern(), None);
+        let solved = |factor: &mut Cholesky| {
+            let mut x = [1.0, 1.0, 1.0];
+            factor.solve(&mut x);
+            x
+        };
+        factor.factorize(&[2.0, 4.0, 0.5]).unwrap();
+        assert_eq!(solved(&mut factor), [0.5, 0.25, 2.0]);
+        assert_eq!(factor.factorize(&[2.0, -4.0, 0.5]), Err(Indefinite));
+        factor.factorize_indefinite(&[2.0, -4.0, 0.5]).unwrap();
+        assert_eq!(solved(&mut factor), [0.5, -0.25, 2.0]);
+        factor.factorize(&[1.0, 1.0, 8.0]).unwrap();
+        assert_eq!(solved(&mut factor), [1.0, 1.0, 0.125]);
     }
 
     #[test]
