@@ -211,10 +211,6 @@ fn cvode_options(settings: &Settings, tolerances: Vec<f64>) -> CvodeOptions {
 /// iterations converge in one or two, which is the fastest on all of Hirai's scenes.
 const STEPS_BETWEEN_SETUPS: u32 = 2;
 
-/// Iterations that ARKODE may make for a stage: the long steps of loose tolerances need more than six, and to give up costs
-/// them all, a new Newton matrix and at times the step.
-const ITERATIONS: u32 = 10;
-
 fn arkode_options(
     settings: &Settings,
     tolerances: Vec<f64>,
@@ -227,8 +223,7 @@ fn arkode_options(
         true => options.linear(),
         false => options
             .max_steps_between_setups(STEPS_BETWEEN_SETUPS)
-            .max_steps_between_jacobians(STEPS_BETWEEN_SETUPS)
-            .max_iterations(ITERATIONS),
+            .max_steps_between_jacobians(STEPS_BETWEEN_SETUPS),
     })
 }
 
