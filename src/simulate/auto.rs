@@ -55,6 +55,9 @@ const FINE: f64 = 1e-6;
 /// Part of the tolerances with which BDF goes on where it has created energy.
 const FINER: f64 = 0.1;
 
+/// Relative tolerance that methods are given at least, unless less was asked for: round-off rules below.
+const TIGHTEST: f64 = 1e-13;
+
 /// Steps after which a choice is looked at again.
 pub(super) const TRIAL: usize = 64;
 
@@ -97,7 +100,7 @@ impl Plan {
             // one step after another: a new start costs nothing, and errors become much smaller
             Method::Rk => true,
             Method::CentralDifference => false,
-            _ => self.settings.rtol < FINE,
+            _ => self.asked.rtol < FINE,
         };
         match self.settings.contact_events {
             ContactEvents::Auto => self.reason.is_some() && pays(),
@@ -203,11 +206,12 @@ impl Plan {
 /// step than in all, so that errors shrink by rtol^(p/(p+1)) (E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary
 /// Differential Equations I*, section II.4); the others go on with a better one.
 fn part(method: Method, rtol: f64) -> f64 {
-    match method {
+    let part = match method {
         Method::CvodeBdf => 0.1 * (rtol / 1e-3).powf(1.0 / 5.0).min(1.0),
         Method::CentralDifference => 0.2 * (rtol / 1e-5).sqrt().min(1.0),
         _ => 0.2,
-    }
+    };
+    part.max((TIGHTEST / rtol).min(1.0))
 }
 
 /// The highest order that was asked for, as far as the method has a choice of orders.

@@ -26,7 +26,7 @@ fn a_bar_needs_segments_and_no_green_strain() -> Outcome {
     let material = Material { density: 1.0, young: 1.0, poisson: 0.0, viscosity: 0.0 };
     let body = Body::new(Mesh::bar(1.0, 5)?, material).strain(Strain::Green).area(1.0).build()?;
     let scene = Scene::new(body)
-        .initial_displacement(|x| vec![1e-5 * (0.5 * PI * x[0]).sin()])
+        .initial_displacement(|x| vec![2e-4 * (0.5 * PI * x[0]).sin()])
         .phase(Phase::until(20.0).hold("left"));
     let advice = advise(&scene, 0.05)?;
     println!("{advice}");
