@@ -256,3 +256,23 @@ fn explicit_step(spectrum: &Spectrum, alpha: f64) -> f64 {
     };
     (reach / spectrum.stiffest_rate()).min(EXPLICIT_REACH / alpha)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What methods are given is less than what was asked for, the less the finer it is for methods whose errors shrink more
+    /// slowly, and never beyond round-off.
+    #[test]
+    fn parts_of_tolerances() {
+        assert_eq!(part(Method::Arkode, 1e-2), 0.2);
+        assert_eq!([1e-2, 1e-3].map(|rtol| part(Method::CvodeBdf, rtol)), [0.1; 2]);
+        assert!((part(Method::CvodeBdf, 1e-8) - 0.01).abs() < 1e-15);
+        for method in [Method::Arkode, Method::CvodeBdf, Method::Rk, Method::CentralDifference] {
+            for rtol in [1e-9, 1e-11, 1e-12] {
+                assert!(part(method, rtol) * rtol >= 0.999 * TIGHTEST, "{method} {rtol}");
+            }
+            assert_eq!(part(method, 1e-14), 1.0);
+        }
+    }
+}
