@@ -27,7 +27,7 @@ pub(crate) struct Lane<S: Simd> {
 impl<S: Simd> Lane<S> {
     /// Part `part` of the numbers, counted in registers.
     #[inline(always)]
-    pub(crate) fn load(simd: S, numbers: &[f64; SIDE_BY_SIDE], part: usize) -> Self {
+    pub(crate) fn load(simd: S, numbers: &[f64], part: usize) -> Self {
         Self { simd, numbers: S::as_simd_f64s(numbers).0[part] }
     }
 
@@ -39,7 +39,7 @@ impl<S: Simd> Lane<S> {
 
     /// Writes the numbers to part `part` of `out`, counted in registers.
     #[inline(always)]
-    pub(crate) fn store(self, out: &mut [f64; SIDE_BY_SIDE], part: usize) {
+    pub(crate) fn store(self, out: &mut [f64], part: usize) {
         S::as_mut_simd_f64s(out).0[part] = self.numbers;
     }
 

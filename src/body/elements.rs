@@ -10,6 +10,7 @@
 
 use pulp::Simd;
 
+use super::rows::Rows;
 use super::shares::Shares;
 use crate::element::{
     MassPoint, ReferenceCell, StrainPoint, extrapolation, mass_points, strain_points,
@@ -36,6 +37,7 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) products: Vec<[[f64; N]; N]>,
     pub(super) quadratic: bool,
     pub(super) shares: Shares,
+    pub(super) rows: Rows<N>,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
@@ -77,8 +79,18 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let values = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
         let quadratic = mesh.kind().is_quadratic();
         let shares = Shares::new(&nodes, mesh.node_count());
-        let extrapolation = extrapolation::<C, N, M, Q>();
-        Ok(Self { nodes, entries, points, values, extrapolation, products, quadratic, shares })
+        let rows = Rows::new(&nodes);
+        Ok(Self {
+            nodes,
+            entries,
+            points,
+            values,
+            extrapolation: extrapolation::<C, N, M, Q>(),
+            products,
+            quadratic,
+            shares,
+            rows,
+        })
     }
 
     /// The strain points of [`SIDE_BY_SIDE`] cells at once, from those of the first cells on.

@@ -1,7 +1,8 @@
 //! The forces of all elements: the loop in which explicit methods spend their time.
 //!
 //! It is compiled for each kind of machine (`pulp`), which computes as many cells at once as its registers hold numbers;
-//! the forces of these cells are added to the nodes one cell after the other. So results are the same to the last bit on
+//! the forces of these cells are added to each node in the order of the cells: one cell after the other, or for cells in a row
+//! (`rows`) one of their nodes after the other. So results are the same to the last bit on
 //! all machines. What the loop calls has to be compiled in place: a function of its own would be one for the
 //! oldest machine.
 //!
@@ -18,6 +19,7 @@ use rayon::prelude::*;
 
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
+use super::rows;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
 use crate::material::{Deformation, ElasticLaw, ViscousLaw, with_law};
@@ -238,6 +240,23 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
             if !is_inside {
                 elements.outside(active.clone(), fields, &pull)?;
             }
+            let is_of_share =
+                |&node: &usize| first <= node && node + S::F64_LANES <= first + forces.len();
+            if let Some(order) = elements.rows.at(block)
+                && active.len() == S::F64_LANES
+                && nodes[start].iter().all(is_of_share)
+            {
+                balance(&mut pulls);
+                let mut vectors = [[[0.0; D]; SIDE_BY_SIDE]; N];
+                for a in 0..N {
+                    vectors[a] = rows::vectors(&pulls[a]);
+                }
+                for &a in order {
+                    let a = usize::from(a);
+                    rows::subtract(simd, &vectors[a], &mut forces[nodes[start][a] - first..]);
+                }
+                continue;
+            }
             let mut numbers = [[[0.0; SIDE_BY_SIDE]; D]; N];
             for a in 1..N {
                 for i in 0..D {
@@ -279,6 +298,18 @@ fn collect<T: Real, const N: usize, const M: usize, const D: usize>(
                 pull[a][i] += stress[j][i] * gradients[a][j];
             }
         }
+    }
+}
+
+/// Lets the force on the first node balance those on the others.
+#[inline(always)]
+fn balance<T: Real, const N: usize, const D: usize>(pulls: &mut [[T; D]; N]) {
+    for i in 0..D {
+        let mut sum = pulls[0][i];
+        for a in 1..N {
+            sum += pulls[a][i];
+        }
+        pulls[0][i] = sum * -1.0;
     }
 }
 

@@ -5,6 +5,7 @@
 use pulp::Simd;
 
 use super::elements::ElementsOf;
+use super::rows::differences;
 use crate::lane::{Lane, SIDE_BY_SIDE};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
@@ -17,6 +18,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         start: usize,
         x: &[[f64; D]],
     ) -> [[Lane<S>; D]; N] {
+        if self.rows.at(start / SIDE_BY_SIDE).is_some() {
+            return self.gather_row(simd, start, x);
+        }
         let (nodes, last) = (&self.nodes[..], self.nodes.len() - 1);
         let mut cells = [&nodes[start]; SIDE_BY_SIDE];
         for lane in 1..S::F64_LANES {
@@ -41,6 +45,16 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                     gathered[a][i] = of_cells - first[i];
                 }
             }
+        }
+        gathered
+    }
+    /// The same of cells in a row.
+    #[inline(always)]
+    fn gather_row<S: Simd>(&self, simd: S, start: usize, x: &[[f64; D]]) -> [[Lane<S>; D]; N] {
+        let nodes = &self.nodes[start];
+        let mut gathered = [[Lane::splat(simd, 0.0); D]; N];
+        for a in 1..N {
+            gathered[a] = differences(simd, &x[nodes[a]..], &x[nodes[0]..]);
         }
         gathered
     }

@@ -14,6 +14,7 @@ mod polynomial;
 mod recipe;
 mod recovery;
 mod regions;
+mod rows;
 mod shares;
 mod tangents;
 #[cfg(test)]

@@ -263,7 +263,7 @@ impl<const M: usize, const D: usize> WithSimd for AtOnce<M, D> {
         let volumes: [f64; SIDE_BY_SIDE] = std::array::from_fn(|lane| 0.3 + 0.1 * lane as f64);
         for part in 0..SIDE_BY_SIDE / S::F64_LANES {
             let load = |number: &dyn Fn(usize) -> f64| {
-                Lane::load(simd, &std::array::from_fn(number), part)
+                Lane::load(simd, &std::array::from_fn::<_, SIDE_BY_SIDE, _>(number), part)
             };
             let h: Matrix<Lane<S>, D, M> =
                 std::array::from_fn(|j| std::array::from_fn(|i| load(&|lane| points[lane][j][i])));
