@@ -146,6 +146,11 @@ impl Report {
         self.phases.iter().map(|phase| phase.counts.factorizations).sum()
     }
 
+    /// Iterations of conjugate gradients for Newton matrices in all phases.
+    pub fn linear_iterations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.linear_iterations).sum()
+    }
+
     /// Steps of all phases that were repeated because their error was too large.
     pub fn error_test_failures(&self) -> usize {
         self.phases.iter().map(|phase| phase.counts.error_test_failures).sum()
@@ -309,6 +314,9 @@ pub struct Counts {
     pub difference_evaluations: usize,
     /// Factorizations of the Newton matrix.
     pub factorizations: usize,
+    /// Iterations of conjugate gradients, by which systems with the Newton matrices of large solids are solved where that
+    /// costs less than a factorization.
+    pub linear_iterations: usize,
     /// Steps repeated because their error was too large.
     pub error_test_failures: usize,
     /// Newton iterations that did not converge (`rk`: steps refused by the right-hand side).
@@ -331,6 +339,7 @@ impl Counts {
         self.jacobian_evaluations += further.jacobian_evaluations;
         self.difference_evaluations += further.difference_evaluations;
         self.factorizations += further.factorizations;
+        self.linear_iterations += further.linear_iterations;
         self.error_test_failures += further.error_test_failures;
         self.convergence_failures += further.convergence_failures;
         self.contact_events += further.contact_events;

@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use faer::Mat;
+use rayon::prelude::*;
 
 /// Calls a function that is generic over the dimension of space with the given dimension.
 macro_rules! with_dimension {
@@ -18,6 +19,9 @@ macro_rules! with_dimension {
         }
     };
 }
+
+/// Nodes whose rows one thread multiplies at a time.
+const SHARE: usize = 512;
 
 /// Which pairs of nodes are coupled: a symmetric pattern with all diagonal entries, row by row,
 /// columns ascending.
@@ -183,7 +187,16 @@ impl NodeMatrix {
 
     /// y += factor (m (x) I) x for vectors with `dimension` components per node.
     pub(crate) fn add_product(&self, dimension: usize, factor: f64, x: &[f64], y: &mut [f64]) {
-        with_dimension!(dimension, node_product(&self.pattern, &self.values, factor, x, y));
+        with_dimension!(dimension, node_product(&self.pattern, &self.values, 0, factor, x, y));
+    }
+
+    /// y = (m (x) I) x for vectors with `dimension` components per node, each row by one thread.
+    pub(crate) fn product(&self, dimension: usize, x: &[f64], y: &mut [f64]) {
+        y.par_chunks_mut(SHARE * dimension).enumerate().for_each(|(share, y)| {
+            y.fill(0.0);
+            let first = share * SHARE;
+            with_dimension!(dimension, node_product(&self.pattern, &self.values, first, 1.0, x, y));
+        });
     }
 
     /// (m (x) I) x at one degree of freedom.
@@ -296,7 +309,20 @@ impl BlockMatrix {
 
     /// y += factor A x
     pub(crate) fn add_product(&self, factor: f64, x: &[f64], y: &mut [f64]) {
-        with_dimension!(self.dimension, block_product(&self.pattern, &self.values, factor, x, y));
+        with_dimension!(
+            self.dimension,
+            block_product(&self.pattern, &self.values, 0, factor, x, y)
+        );
+    }
+
+    /// y = A x, each row by one thread.
+    pub(crate) fn product(&self, x: &[f64], y: &mut [f64]) {
+        let (pattern, values) = (&self.pattern, &self.values);
+        y.par_chunks_mut(SHARE * self.dimension).enumerate().for_each(|(share, y)| {
+            y.fill(0.0);
+            let first = share * SHARE;
+            with_dimension!(self.dimension, block_product(pattern, values, first, 1.0, x, y));
+        });
     }
 
     /// y += factor A^T x
@@ -359,16 +385,18 @@ impl<'a, const D: usize> Rows<'a, D> {
     }
 }
 
+/// The rows of some nodes from `first` on.
 fn node_product<const D: usize>(
     pattern: &NodePattern,
     values: &[f64],
+    first: usize,
     factor: f64,
     x: &[f64],
     y: &mut [f64],
 ) {
     let (x, y) = (x.as_chunks::<D>().0, y.as_chunks_mut::<D>().0);
     for (node, y) in y.iter_mut().enumerate() {
-        let sum = node_row(pattern, values, node, x);
+        let sum = node_row(pattern, values, first + node, x);
         for axis in 0..D {
             y[axis] += factor * sum[axis];
         }
@@ -403,9 +431,11 @@ fn node_row<const D: usize>(
     sum
 }
 
+/// The rows of some nodes from `first` on.
 fn block_product<const D: usize>(
     pattern: &NodePattern,
     values: &[f64],
+    first: usize,
     factor: f64,
     x: &[f64],
     y: &mut [f64],
@@ -414,7 +444,7 @@ fn block_product<const D: usize>(
     let rows = values.as_chunks::<D>().0;
     for (node, y) in y.iter_mut().enumerate() {
         let mut sum = [0.0; D];
-        for (entry, column) in pattern.row(node) {
+        for (entry, column) in pattern.row(first + node) {
             for (sum, row) in sum.iter_mut().zip(&rows[entry * D..][..D]) {
                 for axis in 0..D {
                     *sum += row[axis] * x[column][axis];

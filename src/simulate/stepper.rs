@@ -96,18 +96,20 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
 
     fn counts(&self) -> Counts {
         let (s, system) = (self.statistics(), Stepper::system(self));
+        let [spared, linear_iterations, indefinite] = system.newton_counts();
         Counts {
             steps: s.steps as usize,
             evaluations: s.evaluations as usize,
             jacobian_evaluations: system.tangent_evaluations(),
             difference_evaluations: system.difference_evaluations(),
-            factorizations: s.linear_setups as usize,
+            factorizations: (s.linear_setups as usize).saturating_sub(spared),
+            linear_iterations,
             error_test_failures: s.error_test_failures as usize,
             convergence_failures: (s.nonlinear_failures + s.refused_steps) as usize,
             contact_events: 0,
             last_step: s.last_step,
             last_order: s.last_order,
-            notice: self.notice().or_else(|| compression(system.indefinite())),
+            notice: self.notice().or_else(|| compression(indefinite)),
         }
     }
 }
@@ -125,7 +127,7 @@ fn compression(indefinite: usize) -> Option<String> {
 /// Starts the integrator that the settings name at `t` with `state` = (u, v, energies), if known with a step of the
 /// size `first` (s); it will stop at `end`.
 pub(super) fn start(
-    system: System,
+    mut system: System,
     settings: &Settings,
     atol: &AbsoluteTolerances,
     [t, end]: [f64; 2],
@@ -137,6 +139,7 @@ pub(super) fn start(
     let mut tolerances = vec![atol.position; n];
     tolerances.resize(2 * n, atol.velocity);
     tolerances.resize(2 * n + ENERGIES, atol.energy);
+    system.expect_iteration(iterates(settings.method, &system));
     match settings.method {
         // a plan names a method of its own
         Method::Auto | Method::CvodeBdf | Method::CvodeAdams => {
@@ -180,6 +183,15 @@ pub(super) fn start(
             let options = first.into_iter().fold(options, rk::Options::initial_step);
             until(end, CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?)
         }
+    }
+}
+
+/// Whether a method solves its Newton systems more than once, until their residuals are small enough.
+fn iterates(method: Method, system: &System) -> bool {
+    match method {
+        Method::Arkode => !system.is_linear(),
+        Method::Rosenbrock | Method::Rk | Method::CentralDifference => false,
+        _ => true,
     }
 }
 

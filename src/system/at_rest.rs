@@ -16,8 +16,8 @@ mod tests;
 
 use super::System;
 use super::newton_matrix::NewtonMatrix;
-use super::reduced::Source;
 use super::reduced::nodal_multipliers;
+use super::source::Source;
 use crate::constraint::Prescribed;
 use crate::force::{Force, NodalForces, Reservoir};
 use crate::input::InputError;
@@ -317,8 +317,9 @@ pub(super) fn shifted(
     inertia: &NodeMatrix,
     stiffness: &BlockMatrix,
     shift: f64,
-    Source { entry, transposed, axes }: Source,
+    source: Source,
 ) -> f64 {
+    let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
     let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
     shift * mass + stiffness.symmetric(entry, transposed, axes)
 }

@@ -5,7 +5,7 @@ use faer::linalg::cholesky::llt::factor::LltRegularization;
 use faer::linalg::solvers::Solve;
 use faer::perm::Perm;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
 use faer::sparse::linalg::solvers::{Lu, SymbolicLu};
@@ -30,6 +30,8 @@ pub(super) struct Cholesky {
     /// In force if the last factorization was LU.
     lu: Option<Lu<usize, f64>>,
     full: Option<Full>,
+    /// Factorizations by LU so far.
+    pub(super) indefinite: usize,
 }
 
 /// The whole of the matrix whose lower triangle is known.
@@ -76,7 +78,40 @@ impl Cholesky {
         ]));
         let factor = vec![0.0; symbolic.len_val()];
         let is_diagonal = pattern.compute_nnz() == pattern.nrows();
-        Self { pattern, symbolic, factor, is_diagonal, memory, par, lu: None, full: None }
+        Self {
+            pattern,
+            symbolic,
+            factor,
+            is_diagonal,
+            memory,
+            par,
+            lu: None,
+            full: None,
+            indefinite: 0,
+        }
+    }
+
+    /// Numbers in Cholesky's factor.
+    pub(super) fn entries(&self) -> usize {
+        self.factor.len()
+    }
+
+    /// Operations of a factorization: the squares of the lengths of the factor's columns.
+    pub(super) fn work(&self) -> f64 {
+        let square = |length: usize| (length as f64).powi(2);
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(factor) => {
+                factor.col_ptr().windows(2).map(|ends| square(ends[1] - ends[0])).sum()
+            }
+            SymbolicCholeskyRaw::Supernodal(factor) => {
+                let ends = factor.supernode_begin().iter().zip(factor.supernode_end());
+                let blocks = ends.enumerate().map(|(at, (start, end))| {
+                    let below = factor.supernode(at).pattern().len();
+                    (1..=end - start).map(|column| square(below + column)).sum::<f64>()
+                });
+                blocks.sum()
+            }
+        }
     }
 
     /// Factorizes the positive definite matrix whose lower triangle has these values.
@@ -103,6 +138,7 @@ impl Cholesky {
 
     /// Factorizes a symmetric matrix that may be indefinite.
     pub(super) fn factorize_indefinite(&mut self, values: &[f64]) -> Result<(), Indefinite> {
+        self.indefinite += 1;
         let full = match self.full.take() {
             Some(full) => full,
             None => Full::new(&self.pattern)?,

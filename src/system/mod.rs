@@ -23,6 +23,7 @@ mod cholesky;
 mod dae;
 mod differences;
 mod form;
+mod gradients;
 mod guide;
 mod mobility;
 mod newton;
@@ -32,8 +33,10 @@ mod rates;
 mod reduced;
 mod scene;
 mod second_order;
+mod source;
 mod spectrum;
 mod summary;
+mod symmetric;
 #[cfg(test)]
 mod tests;
 
@@ -43,8 +46,9 @@ pub(crate) use at_rest::{AtRest, ForceBalance};
 pub(crate) use dae::{DaeForm, Index};
 pub(crate) use form::Form;
 use newton_matrix::NewtonMatrix;
-use reduced::{Coupling, Reduced, nodal_multipliers};
+use reduced::{EXACT, Reduced, nodal_multipliers};
 pub(crate) use second_order::SecondOrderForm;
+use source::Coupling;
 pub use spectrum::Spectrum;
 pub use summary::PhaseSummary;
 
@@ -135,7 +139,7 @@ impl System {
         };
         let mut inertia = Reduced::new(&model, &rows, coupling);
         let values = &model.inertia.values;
-        if inertia.factorize(|source| values[source.entry]).is_err() {
+        if inertia.begin(EXACT, |source| values[source.entry()]).is_err() {
             return Err(match inertia.dependent_row() {
                 Some(row) => InputError::new(
                     format!("constraints of phase \"{phase}\""),
@@ -202,9 +206,10 @@ impl System {
         self.newton.tangent_evaluations()
     }
 
-    /// How many of them found a matrix that was not positive definite.
-    pub(crate) fn indefinite(&self) -> usize {
-        self.newton.indefinite()
+    /// Of the Newton matrices so far: how many were never factorized, iterations for them and others, and how many were found
+    /// not to be positive definite.
+    pub(crate) fn newton_counts(&self) -> [usize; 3] {
+        self.newton.solver.counts()
     }
 
     /// Number of evaluations of forces that do not tell their tangents, for the tangents.

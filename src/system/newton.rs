@@ -16,9 +16,9 @@
 //! M rv is M cv + gamma f, and no iteration solves a system with M.
 
 use super::System;
-use super::newton_matrix::NewtonMatrix;
-use super::reduced::Source;
+use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
 use super::reduced::nodal_multipliers;
+use super::source::Source;
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -28,6 +28,11 @@ impl System {
     /// Whether all forces are linear in u and v, so that Kt and D never change.
     pub(crate) fn is_linear(&self) -> bool {
         !self.newton.follows
+    }
+
+    /// Tells whether residuals of the Newton systems are looked at again, and solutions corrected, as in Newton's iteration.
+    pub(crate) fn expect_iteration(&mut self, iterates: bool) {
+        self.newton.accuracy = if iterates { ITERATED } else { SOLVED_ONCE };
     }
 
     /// Step parameter of the last factorization.
@@ -71,14 +76,14 @@ impl System {
         true
     }
 
-    /// Factorizes N = M + gamma D + gamma^2 Kt.
+    /// Brings N = M + gamma D + gamma^2 Kt into force.
     pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
-        let NewtonMatrix { solver, stiffness, damping, is_damped, .. } = &mut self.newton;
+        let NewtonMatrix { solver, stiffness, damping, is_damped, accuracy, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.model.inertia;
-        let factorized = solver.factorize(|source| {
-            let Source { entry, transposed, axes } = source;
+        let factorized = solver.begin(*accuracy, |source: Source| {
+            let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
             let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
             // the symmetric part: tangents of viscosity and contact need not be symmetric
             let part = |matrix: &BlockMatrix| matrix.symmetric(entry, transposed, axes);
@@ -88,7 +93,6 @@ impl System {
         if factorized.is_ok() {
             return Ok(());
         }
-        self.newton.indefinite += 1;
         self.newton.solver.factorize_indefinite().map_err(|_| {
             Failure::Recoverable(
                 "the Newton matrix is singular (a body under strong compression)".into(),

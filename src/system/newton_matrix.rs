@@ -3,10 +3,16 @@
 use std::sync::Arc;
 
 use super::differences::Differences;
-use super::reduced::{Coupling, Reduced};
+use super::reduced::Reduced;
+use super::source::Coupling;
 use crate::constraint::Row;
 use crate::model::Model;
 use crate::sparse::BlockMatrix;
+
+/// Residuals, relative to the right-hand side, that systems may be solved to where that saves work: far below what a
+/// Newton iteration leaves, and below what any integrator sees that solves each system once.
+pub(super) const ITERATED: f64 = 1e-5;
+pub(super) const SOLVED_ONCE: f64 = 1e-11;
 
 pub(super) struct NewtonMatrix {
     pub(super) solver: Reduced,
@@ -19,9 +25,8 @@ pub(super) struct NewtonMatrix {
     /// Whether D is not all zeros.
     pub(super) is_damped: bool,
     pub(super) gamma: f64,
+    pub(super) accuracy: f64,
     pub(super) tangent_evaluations: usize,
-    /// Factorizations of a matrix that was not positive definite.
-    pub(super) indefinite: usize,
     /// f of the linear system, and its solution xv.
     pub(super) right: Vec<f64>,
     pub(super) xv: Vec<f64>,
@@ -79,8 +84,8 @@ impl NewtonMatrix {
             is_set: false,
             is_damped: model.damping.is_some(),
             gamma: f64::NAN,
+            accuracy: SOLVED_ONCE,
             tangent_evaluations: 0,
-            indefinite: 0,
             right: vec![0.0; dofs],
             xv: vec![0.0; dofs],
             demands: vec![0.0; rows.len()],
@@ -90,7 +95,8 @@ impl NewtonMatrix {
 
     /// Starts all counts from 0.
     pub(super) fn forget_counts(&mut self) {
-        (self.tangent_evaluations, self.indefinite) = (0, 0);
+        self.tangent_evaluations = 0;
+        self.solver.forget_counts();
         self.differences.forget_counts();
     }
 
@@ -100,9 +106,5 @@ impl NewtonMatrix {
 
     pub(super) fn difference_evaluations(&self) -> usize {
         self.differences.evaluations()
-    }
-
-    pub(super) fn indefinite(&self) -> usize {
-        self.indefinite
     }
 }

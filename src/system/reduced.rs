@@ -16,40 +16,20 @@ use faer::linalg::cholesky::llt::solve::{solve_in_place, solve_in_place_scratch}
 use faer::sparse::SymbolicSparseColMat;
 use faer::{Mat, MatMut, Par, Spec};
 
-use super::cholesky::{Cholesky, Indefinite};
+use super::cholesky::Indefinite;
+use super::gradients::Gradients;
+use super::source::{Coupling, Source};
+use super::symmetric::Symmetric;
 use crate::constraint::Row;
 use crate::model::Model;
 
-/// Which entry of the matrices of the body an entry of X comes from.
-#[derive(Clone, Copy)]
-pub(super) struct Source {
-    /// Index of the pair of nodes in the [`NodePattern`].
-    pub(super) entry: usize,
-    /// Index of the same pair the other way round.
-    pub(super) transposed: usize,
-    /// Axis of the row and of the column, in the block of `entry`.
-    pub(super) axes: [usize; 2],
-}
-
-/// Which entries X has.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Coupling {
-    /// Nothing but itself, as lumped inertia.
-    Diagonal,
-    /// Equal axes only, as the inertia matrix.
-    SameAxis,
-    /// All axes of coupled nodes.
-    AllAxes,
-}
+/// Residual, relative to the right-hand side, that is round-off.
+pub(super) const EXACT: f64 = 1e-13;
 
 /// Solver for one X and one set of constraints.
 pub(super) struct Reduced {
-    /// Free degrees of freedom, ascending.
-    free: Vec<usize>,
-    /// Lower triangle of the free part of X.
-    sources: Vec<Source>,
-    values: Vec<f64>,
-    cholesky: Cholesky,
+    /// The free part of X.
+    symmetric: Symmetric,
     /// Entries of X between a free row (position in `free`) and a fixed column (dof).
     border: Vec<(usize, usize, Source)>,
     border_values: Vec<f64>,
@@ -82,7 +62,7 @@ impl Reduced {
                         continue;
                     }
                     // X is symmetric: entry (column, row) stands for (row, column).
-                    let source = Source { entry, transposed: pattern.transposed(entry), axes };
+                    let source = Source::new(entry, pattern.transposed(entry), axes);
                     match (position[node * dimension + axis], position[column]) {
                         (Some(row), Some(column)) if row >= column => {
                             row_indices.push(row);
@@ -117,33 +97,44 @@ impl Reduced {
         // a diagonal fills in no order
         let dissection = model.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
         let order = dissection.map(of_nodes);
+        let gradients = || Gradients::new(model, rows, coupling);
         Self {
-            values: vec![0.0; sources.len()],
             border_values: vec![0.0; border.len()],
             general: GeneralRows::new(rows, &position),
             work: vec![0.0; free.len()],
-            cholesky: Cholesky::new(lower, order),
-            free,
-            sources,
+            symmetric: Symmetric::new(free, sources, lower, order, gradients),
             border,
         }
     }
 
+    /// Brings X, positive definite, into force, whose entries `value` gives. That it is not positive definite may be found later;
+    /// on large solids systems are solved to an `accuracy` relative to their right-hand sides.
+    pub(super) fn begin(
+        &mut self,
+        accuracy: f64,
+        value: impl Fn(Source) -> f64,
+    ) -> Result<(), Indefinite> {
+        // prescribed components are as exact as the systems are
+        let accuracy = if self.general.rows.is_empty() { accuracy } else { EXACT };
+        self.assemble_border(&value);
+        self.symmetric.begin(accuracy, value)?;
+        self.general.factorize(&mut self.symmetric)
+    }
+
     /// Factorizes X, positive definite, whose entries `value` gives.
     pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
-        self.assemble(value);
-        self.cholesky.factorize(&self.values)?;
-        self.general.factorize(&mut self.cholesky)
+        self.assemble_border(&value);
+        self.symmetric.factorize(value)?;
+        self.general.factorize(&mut self.symmetric)
     }
 
     /// Factorizes the X last given, which has turned out not to be positive definite.
     pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
-        self.cholesky.factorize_indefinite(&self.values)?;
-        self.general.factorize(&mut self.cholesky)
+        self.symmetric.factorize_indefinite()?;
+        self.general.factorize(&mut self.symmetric)
     }
 
-    fn assemble(&mut self, value: impl Fn(Source) -> f64) {
-        self.values.iter_mut().zip(&self.sources).for_each(|(x, &source)| *x = value(source));
+    fn assemble_border(&mut self, value: impl Fn(Source) -> f64) {
         self.border_values
             .iter_mut()
             .zip(&self.border)
@@ -166,13 +157,30 @@ impl Reduced {
                 x[dof] = d / coefficient;
             }
         }
-        self.work.iter_mut().zip(&self.free).for_each(|(work, &dof)| *work = f[dof]);
+        self.work.iter_mut().zip(self.symmetric.free()).for_each(|(work, &dof)| *work = f[dof]);
         for (&(row, column, _), value) in self.border.iter().zip(&self.border_values) {
             self.work[row] -= value * x[column];
         }
-        self.cholesky.solve(&mut self.work);
+        self.symmetric.solve(&mut self.work);
         self.general.solve(rows, d, x, &mut self.work, mu);
-        self.work.iter().zip(&self.free).for_each(|(work, &dof)| x[dof] = *work);
+        self.work.iter().zip(self.symmetric.free()).for_each(|(work, &dof)| x[dof] = *work);
+    }
+
+    /// Has iterations tried before a factor, for so many more than solves with it would cost, however small the body is.
+    #[cfg(test)]
+    fn rent(mut self, model: &Model, rows: &[Row], coupling: Coupling, iterations: f64) -> Self {
+        self.symmetric.rent(Gradients::new(model, rows, coupling), iterations);
+        self
+    }
+
+    /// Starts the counts from 0.
+    pub(super) fn forget_counts(&mut self) {
+        self.symmetric.forget_counts();
+    }
+
+    /// [What solving has cost](Symmetric::counts).
+    pub(super) fn counts(&self) -> [usize; 3] {
+        self.symmetric.counts()
     }
 
     /// The general row found to follow from the others (its number in the list of all rows).
@@ -228,7 +236,7 @@ impl GeneralRows {
         }
     }
 
-    fn factorize(&mut self, cholesky: &mut Cholesky) -> Result<(), Indefinite> {
+    fn factorize(&mut self, symmetric: &mut Symmetric) -> Result<(), Indefinite> {
         if self.rows.is_empty() {
             return Ok(());
         }
@@ -236,7 +244,7 @@ impl GeneralRows {
             let column = self.inverse_g.col_as_slice_mut(k);
             column.fill(0.0);
             row.free.iter().for_each(|&(at, coefficient)| column[at] = coefficient);
-            cholesky.solve(column);
+            symmetric.solve(column);
         }
         for (i, row) in self.rows.iter().enumerate() {
             for j in 0..self.rows.len() {

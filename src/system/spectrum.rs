@@ -4,7 +4,8 @@ use nalgebra::{DMatrix, SymmetricEigen};
 
 use super::System;
 use super::at_rest::shifted;
-use super::reduced::{Coupling, Reduced};
+use super::reduced::Reduced;
+use super::source::Coupling;
 use crate::sparse::BlockMatrix;
 use crate::vector::{dot, noise};
 

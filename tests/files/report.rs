@@ -15,12 +15,13 @@ use pliant::{
 use pliant::{Trajectory, sundials};
 use serde_json::{Value, json};
 
-const COUNTS: [&str; 7] = [
+const COUNTS: [&str; 8] = [
     "steps",
     "rhs_evaluations",
     "jacobian_evaluations",
     "difference_evaluations",
     "factorizations",
+    "linear_iterations",
     "error_test_failures",
     "convergence_failures",
 ];

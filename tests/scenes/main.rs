@@ -16,6 +16,7 @@ mod forces;
 mod friction;
 mod index_two;
 mod indicators;
+mod large;
 mod moving_obstacles;
 mod observer;
 mod oscillating;

@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::prelude::Solve;
 
-use super::{Coupling, Reduced, Source, nodal_multipliers};
+use super::{Coupling, EXACT, Reduced, Source, nodal_multipliers};
 use crate::constraint::{Axis, PhaseStart, Row};
 use crate::samples::SQUARE_MATERIAL;
 use crate::{Body, Cells, Inertia, Mesh, Phase, Scene, Strain};
@@ -45,15 +45,15 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let rows: Vec<Row> =
         scene.rows(&scene.phases()[0], &PhaseStart { time: 0.0, u: &natural }).unwrap();
     let mut reduced = Reduced::new(&model, &rows, coupling);
-    let is_definite = reduced
-        .factorize(|Source { entry, transposed, axes }| {
-            let own = if axes[0] == axes[1] { mass * model.inertia.values[entry] } else { 0.0 };
-            match stiffness {
-                0.0 => own,
-                factor => own + factor * body.stiffness().symmetric(entry, transposed, axes),
-            }
-        })
-        .is_ok();
+    let value = |source: Source| {
+        let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
+        let own = if axes[0] == axes[1] { mass * model.inertia.values[entry] } else { 0.0 };
+        match stiffness {
+            0.0 => own,
+            factor => own + factor * body.stiffness().symmetric(entry, transposed, axes),
+        }
+    };
+    let is_definite = reduced.factorize(value).is_ok();
     if !is_definite {
         assert!(reduced.factorize_indefinite().is_ok());
     }
@@ -73,18 +73,38 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let (f, d) = (wave(n, 0.3), wave(rows.len(), 0.7));
     let right = Mat::from_fn(n + rows.len(), 1, |i, _| if i < n { f[i] } else { d[i - n] });
     let exact = dense.partial_piv_lu().solve(&right);
-    let (mut x, mut mu) = (vec![0.0; n], vec![0.0; rows.len()]);
-    reduced.solve(&rows, &f, &d, &mut x, &mut mu);
-    nodal_multipliers(&rows, &mut mu, |dof| {
-        (0..n).map(|j| x_matrix(dof, j) * x[j]).sum::<f64>() - f[dof]
-    });
-    for (found, from, to) in [(&x, 0, n), (&mu, n, n + rows.len())] {
-        let scale = (from..to).map(|i| exact[(i, 0)].abs()).fold(0.0, f64::max);
-        for (i, found) in (from..to).zip(found) {
-            let apart = (found - exact[(i, 0)]).abs();
-            // round-off times the condition number of X, 1e4 at most
-            assert!(apart <= 1e-11 * scale, "{i}: {found} {} ({scale:e})", exact[(i, 0)]);
+    let check = |reduced: &mut Reduced, tolerance: f64| {
+        let (mut x, mut mu) = (vec![0.0; n], vec![0.0; rows.len()]);
+        reduced.solve(&rows, &f, &d, &mut x, &mut mu);
+        nodal_multipliers(&rows, &mut mu, |dof| {
+            (0..n).map(|j| x_matrix(dof, j) * x[j]).sum::<f64>() - f[dof]
+        });
+        for (found, from, to) in [(&x, 0, n), (&mu, n, n + rows.len())] {
+            let scale = (from..to).map(|i| exact[(i, 0)].abs()).fold(0.0, f64::max);
+            for (i, found) in (from..to).zip(found) {
+                let apart = (found - exact[(i, 0)]).abs();
+                assert!(apart <= tolerance * scale, "{i}: {found} {} ({scale:e})", exact[(i, 0)]);
+            }
         }
+    };
+    // round-off times the condition number of X, 1e4 at most
+    check(&mut reduced, 1e-11);
+
+    // and by iterations, in place of a factor or before it
+    for iterations in [1e4, 2.0] {
+        let new = Reduced::new(&model, &rows, coupling);
+        let mut iterating = new.rent(&model, &rows, coupling, iterations);
+        for _ in 0..2 {
+            if iterating.begin(EXACT, value).is_err() {
+                assert!(!is_definite && iterating.factorize_indefinite().is_ok());
+            }
+            check(&mut iterating, 1e-10);
+            check(&mut iterating, 1e-10);
+        }
+        let [spared, found, indefinite] = iterating.counts();
+        assert_eq!(indefinite == 0, is_definite);
+        let least = if is_definite && iterations > 2.0 { 2 } else { 0 };
+        assert!(spared >= least && (found <= 4 || iterations > 2.0), "{spared} {found}");
     }
     is_definite
 }
@@ -132,7 +152,40 @@ fn rows_that_follow_from_others_are_found() {
         let start = PhaseStart { time: 0.0, u: &natural };
         let rows = scene.rows(&scene.phases()[0], &start).unwrap();
         let mut reduced = Reduced::new(&model, &rows, Coupling::SameAxis);
-        assert!(reduced.factorize(|source| model.inertia.values[source.entry]).is_err());
+        assert!(reduced.factorize(|source| model.inertia.values[source.entry()]).is_err());
         assert_eq!(reduced.dependent_row(), Some(expected));
     }
+}
+
+/// An indefinite matrix whose diagonal does not tell is found out by the iterations.
+#[test]
+fn iterations_meet_directions_of_negative_curvature() {
+    let held = scene(Inertia::Consistent, Phase::until(1.0).hold([1, 5, 10]));
+    let forces = held.forces().unwrap();
+    let model = held.model(&forces);
+    let natural = vec![0.0; held.body().dofs()];
+    let start = PhaseStart { time: 0.0, u: &natural };
+    let rows = held.rows(&held.phases()[0], &start).unwrap();
+    // K less a part of its diagonal: modes softer than that part are turned over
+    let value = |source: Source| {
+        let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
+        let k = held.body().stiffness().symmetric(entry, transposed, axes);
+        if entry == transposed && axes[0] == axes[1] { 0.7 * k } else { k }
+    };
+    let solution = |mut solver: Reduced| {
+        let f = wave(natural.len(), 0.3);
+        let (mut x, mut mu) = (natural.clone(), vec![0.0; rows.len()]);
+        solver.solve(&rows, &f, &vec![0.0; rows.len()], &mut x, &mut mu);
+        (x, solver.counts())
+    };
+    let mut direct = Reduced::new(&model, &rows, Coupling::AllAxes);
+    assert!(direct.factorize(value).is_err());
+    direct.factorize_indefinite().unwrap();
+    let mut iterating =
+        Reduced::new(&model, &rows, Coupling::AllAxes).rent(&model, &rows, Coupling::AllAxes, 1e4);
+    iterating.begin(1e-6, value).unwrap();
+    let ((direct, _), (found, counts)) = (solution(direct), solution(iterating));
+    assert_eq!(direct, found, "LU of the same matrix");
+    assert_eq!((counts[0], counts[2]), (0, 1));
+    assert!(counts[1] > 0);
 }

@@ -1,0 +1,190 @@
+//! Symmetric systems by the way that costs less: conjugate gradients or a factor.
+//!
+//! On large solids a factor takes the work of hundreds of iterations, while a Newton matrix M + gamma D + gamma^2 K
+//! with the small gamma of a step that follows the motion needs ten to a hundred of them. How many is not known
+//! beforehand, so they are rented until they have cost what a factor costs; then it is bought. Work is
+//! counted, not timed: a run does the same whatever else the machine does.
+
+use faer::sparse::SymbolicSparseColMat;
+
+use super::cholesky::{Cholesky, Indefinite};
+use super::gradients::Gradients;
+use super::source::Source;
+
+/// Operations of a factorization in the time of one of an iteration: it computes with dense blocks.
+const DENSE_SPEED: f64 = 4.0;
+/// Iterations in the time of a factorization from which they are tried: solids of some 9000 unknowns, plane bodies of more than
+/// a million.
+const WORTH_ITERATING: f64 = 400.0;
+
+/// Part of the rent that is always risked.
+const LEAST_TRUST: f64 = 0.1;
+
+/// A symmetric matrix X at the free degrees of freedom, with what solves its systems.
+pub(super) struct Symmetric {
+    /// Free degrees of freedom, ascending.
+    free: Vec<usize>,
+    /// Where the lower triangle comes from.
+    sources: Vec<Source>,
+    values: Vec<f64>,
+    cholesky: Cholesky,
+    /// None where a factor is cheap.
+    rented: Option<Rented>,
+}
+
+/// Iterations instead of a factor.
+struct Rented {
+    gradients: Gradients,
+    /// Whether they solve the matrix in force.
+    is_open: bool,
+    /// What they may cost for one matrix, the part of it that is risked, and what they may cost yet for the one in force, in
+    /// iterations.
+    rent: f64,
+    trust: f64,
+    left: f64,
+    /// Iterations that cost as much as a solve with the factor.
+    saved: f64,
+    accuracy: f64,
+    iterations: usize,
+    /// Matrices that were solved without a factor so far.
+    matrices: usize,
+}
+
+impl Symmetric {
+    /// For the lower triangle `pattern`, which is analysed as in [`Cholesky::new`]. `gradients` makes what iterates, if that may pay.
+    pub(super) fn new(
+        free: Vec<usize>,
+        sources: Vec<Source>,
+        pattern: SymbolicSparseColMat<usize>,
+        order: Option<Vec<usize>>,
+        gradients: impl FnOnce() -> Gradients,
+    ) -> Self {
+        let values = vec![0.0; sources.len()];
+        let cholesky = Cholesky::new(pattern, order);
+        // one product and some vectors; a solve passes twice over the factor
+        let iteration = (4 * values.len() + 12 * free.len()) as f64;
+        let rent = cholesky.work() / DENSE_SPEED / iteration;
+        let saved = 4.0 * cholesky.entries() as f64 / iteration;
+        let pays = rent >= WORTH_ITERATING;
+        let rented = pays.then(|| Rented::new(gradients(), rent, saved));
+        Self { free, sources, values, cholesky, rented }
+    }
+
+    /// Has iterations tried before a factor, for so many more than solves with it would cost.
+    #[cfg(test)]
+    pub(super) fn rent(&mut self, gradients: Gradients, iterations: f64) {
+        self.rented = Some(Rented::new(gradients, iterations, 0.0));
+    }
+
+    /// Brings a positive definite matrix into force, factorized only where that is cheap or turns out to be needed. That
+    /// it is not positive definite may be found later: then it is factorized as it is. Iterations end at a residual of
+    /// `accuracy` times the right-hand side.
+    pub(super) fn begin(
+        &mut self,
+        accuracy: f64,
+        value: impl Fn(Source) -> f64,
+    ) -> Result<(), Indefinite> {
+        let Some(rented) = &mut self.rented else { return self.factorize(value) };
+        rented.begin(accuracy);
+        if rented.gradients.take(value) { Ok(()) } else { Err(Indefinite) }
+    }
+
+    /// Factorizes the positive definite matrix whose entries `value` gives.
+    pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
+        self.rented.iter_mut().for_each(|rented| rented.is_open = false);
+        self.values.iter_mut().zip(&self.sources).for_each(|(x, &source)| *x = value(source));
+        self.cholesky.factorize(&self.values)
+    }
+
+    /// Factorizes the matrix in force, which has turned out not to be positive definite.
+    pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
+        self.end_iterations();
+        self.cholesky.factorize_indefinite(&self.values)
+    }
+
+    /// Has the matrix in force where factors are made of it.
+    fn end_iterations(&mut self) {
+        if let Some(Rented { is_open, matrices, gradients, .. }) = &mut self.rented
+            && std::mem::take(is_open)
+        {
+            *matrices = matrices.saturating_sub(1);
+            let values = self.values.iter_mut().zip(&self.sources);
+            values.for_each(|(x, &source)| *x = gradients.entry(source));
+        }
+    }
+
+    /// Replaces `x` by the solution of X x' = x; by what is no number if X turns out to be singular.
+    pub(super) fn solve(&mut self, x: &mut [f64]) {
+        if let Some(rented) = &mut self.rented
+            && rented.is_open
+        {
+            if rented.solve(&self.free, x) {
+                return;
+            }
+            self.end_iterations();
+            let factorized = self.cholesky.factorize(&self.values);
+            if factorized.or_else(|_| self.factorize_indefinite()).is_err() {
+                return x.fill(f64::NAN);
+            }
+        }
+        self.cholesky.solve(x);
+    }
+
+    /// The free degrees of freedom, ascending.
+    pub(super) fn free(&self) -> &[usize] {
+        &self.free
+    }
+
+    /// Starts the counts from 0.
+    pub(super) fn forget_counts(&mut self) {
+        if let Some(rented) = &mut self.rented {
+            (rented.matrices, rented.iterations) = (0, 0);
+        }
+        self.cholesky.indefinite = 0;
+    }
+
+    /// Matrices that were never factorized, iterations for them and others, and factorizations of matrices that were not positive
+    /// definite.
+    pub(super) fn counts(&self) -> [usize; 3] {
+        let [matrices, iterations] =
+            self.rented.as_ref().map_or([0; 2], |rented| [rented.matrices, rented.iterations]);
+        [matrices, iterations, self.cholesky.indefinite]
+    }
+}
+
+impl Rented {
+    fn new(gradients: Gradients, rent: f64, saved: f64) -> Self {
+        Self {
+            gradients,
+            is_open: false,
+            rent,
+            trust: 1.0,
+            left: 0.0,
+            saved,
+            accuracy: 0.0,
+            iterations: 0,
+            matrices: 0,
+        }
+    }
+
+    /// Begins with a matrix. As long as the last ones needed factors all the same, less is risked.
+    fn begin(&mut self, accuracy: f64) {
+        if self.is_open {
+            self.trust = 1.0;
+        }
+        (self.is_open, self.left, self.accuracy) = (true, self.trust * self.rent, accuracy);
+        self.matrices += 1;
+    }
+
+    /// Whether iterations have solved the system for what they may cost; if not, `x` is what it was.
+    fn solve(&mut self, free: &[usize], x: &mut [f64]) -> bool {
+        let most = (self.left + self.saved).max(0.0) as usize;
+        let ended = self.gradients.solve(free, x, self.accuracy, most);
+        self.iterations += ended.iterations;
+        self.left -= ended.iterations as f64 - self.saved;
+        if !ended.is_solved {
+            self.trust = (0.5 * self.trust).max(LEAST_TRUST);
+        }
+        ended.is_solved
+    }
+}
