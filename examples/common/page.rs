@@ -159,14 +159,11 @@ fn ratio_text(ratio: f64) -> String {
 
 /// The fastest method for each accuracy, problem by problem, the automatic choice left aside.
 fn fastest(sections: &[Section]) -> String {
-    let digits = 1..=6;
-    let mut table = String::from("| problem |");
-    digits.clone().for_each(|digit| write!(table, " 1e-{digit} |").unwrap());
-    table += "\n| --- |";
-    digits.clone().for_each(|_| table += " --- |");
+    let accuracies: [String; 6] = std::array::from_fn(|k| format!("1e-{}", k + 1));
+    let mut table = head(&accuracies);
     for Section { title, findings, .. } in methods(sections) {
         write!(table, "\n| {title} |").unwrap();
-        for accuracy in &findings.fastest().accuracies[..*digits.end()] {
+        for accuracy in &findings.fastest().accuracies[..accuracies.len()] {
             let cell = match accuracy.reached.iter().find(|(name, _)| name != "auto") {
                 Some((name, time)) => format!("{name}: {}", time_text(*time)),
                 None if accuracy.is_resolved => "none".into(),
@@ -178,6 +175,12 @@ fn fastest(sections: &[Section]) -> String {
     table
 }
 
+/// The head of a table over all problems.
+fn head(columns: &[String]) -> String {
+    let rule = " --- |".repeat(columns.len());
+    format!("| problem | {} |\n| --- |{rule}", columns.join(" | "))
+}
+
 fn methods(sections: &[Section]) -> impl Iterator<Item = &Section> {
     sections.iter().filter(|section| section.compares_methods)
 }
@@ -185,8 +188,7 @@ fn methods(sections: &[Section]) -> impl Iterator<Item = &Section> {
 /// How much longer than the fastest other method the automatic choice takes for the error that
 /// it has.
 fn auto(sections: &[Section]) -> String {
-    let mut table = format!("| problem | {} |\n| --- |", JUDGED.join(" | "));
-    JUDGED.iter().for_each(|_| table += " --- |");
+    let mut table = head(&JUDGED.map(String::from));
     let mut ratios = Vec::new();
     for Section { title, findings, .. } in methods(sections) {
         let Some(auto) = findings.lines().iter().find(|line| line.name == "auto") else { continue };
@@ -215,8 +217,7 @@ fn auto(sections: &[Section]) -> String {
 
 /// The error of the automatic choice over its tolerance.
 fn asked(sections: &[Section]) -> String {
-    let mut table = format!("| problem | {} |\n| --- |", ASKED.join(" | "));
-    ASKED.iter().for_each(|_| table += " --- |");
+    let mut table = head(&ASKED.map(String::from));
     let mut ratios = Vec::new();
     for Section { title, findings, .. } in methods(sections) {
         let Some(auto) = findings.lines().iter().find(|line| line.name == "auto") else { continue };

@@ -48,6 +48,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         }
         gathered
     }
+
     /// The same of cells in a row.
     #[inline(always)]
     fn gather_row<S: Simd>(&self, simd: S, start: usize, x: &[[f64; D]]) -> [[Lane<S>; D]; N] {

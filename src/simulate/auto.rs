@@ -79,14 +79,11 @@ impl Plan {
         let spectrum = system.spectrum(t, &state[..n], &state[n..2 * n]);
         let (method, reason) = choose(&spectrum);
         let alpha = if system.rows().is_empty() { 0.0 } else { asked.alpha };
+        let part = part(method, asked.rtol);
         Self {
-            settings: Settings {
-                method,
-                max_order: cap(method, asked.max_order),
-                ..asked.tightened(part(method, asked.rtol))
-            },
+            settings: given(asked, method, asked.max_order, part),
             asked: asked.clone(),
-            part: part(method, asked.rtol),
+            part,
             reason: Some(reason),
             explicit_step: explicit_step(&spectrum, alpha),
             central_step: if system.is_lumped() { central_step(&spectrum) } else { 0.0 },
@@ -176,10 +173,10 @@ impl Plan {
     }
 
     fn followed_by(&self, method: Method, max_order: Option<u32>, reason: &str) -> Self {
-        let (max_order, part) = (cap(method, max_order), part(method, self.asked.rtol));
+        let part = part(method, self.asked.rtol);
         let before = self.reason.as_deref().unwrap_or_default();
         Self {
-            settings: Settings { method, max_order, ..self.asked.tightened(part) },
+            settings: given(&self.asked, method, max_order, part),
             part,
             reason: Some(format!("{before}; then {method}, as {reason}")),
             ..self.clone()
@@ -189,14 +186,18 @@ impl Plan {
     /// This plan with `part` of the tolerances that were asked for.
     fn with_part(self, part: f64) -> Self {
         let Settings { method, max_order, .. } = self.settings;
-        let settings = Settings { method, max_order, ..self.asked.tightened(part) };
-        Self { settings, part, ..self }
+        Self { settings: given(&self.asked, method, max_order, part), part, ..self }
     }
 
     /// Whether this is what other plans end in: order 2 of BDF, which damps all vibrations.
     fn is_last_resort(&self) -> bool {
         self.settings.method == Method::CvodeBdf && self.settings.max_order == Some(2)
     }
+}
+
+/// The settings of a method, with its `part` of the tolerances asked for.
+fn given(asked: &Settings, method: Method, max_order: Option<u32>, part: f64) -> Settings {
+    Settings { method, max_order: cap(method, max_order), ..asked.tightened(part) }
 }
 
 /// Part of the tolerances asked for that a method is given, so that the error of the motion is about as large as `rtol`.

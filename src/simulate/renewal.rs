@@ -127,8 +127,7 @@ impl Run {
                 None => {
                     self.is_commanded = true;
                     self.phase = Arc::new(phase);
-                    self.find_stops();
-                    self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
+                    self.find_leg();
                     return Ok(());
                 }
                 Some(refused) => forces = refused,
@@ -323,8 +322,14 @@ impl Run {
         self.remember();
     }
 
+    /// Finds where the leg that the present time lies in ends, and those after it.
+    pub(super) fn find_leg(&mut self) {
+        self.find_stops();
+        self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
+    }
+
     /// Finds where the legs of the phase in force end from now on.
-    pub(super) fn find_stops(&mut self) {
+    fn find_stops(&mut self) {
         let mut stops = self.phase.breaks(self.scene.obstacles());
         stops.retain(|&stop| self.time < stop && stop < self.phase.until);
         stops.push(self.phase.until);

@@ -189,8 +189,7 @@ impl Run {
                 }
                 Some(Ending::Doubtful { instead }) => {
                     self.go_back();
-                    self.find_stops();
-                    self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
+                    self.find_leg();
                     self.stage.follow(instead);
                     self.begin_events(&system);
                 }
