@@ -6,4 +6,5 @@ mod record;
 
 pub use method::{ContactEvents, Method};
 pub use options::{SettingsOption, SettingsValue};
+pub(crate) use record::Scales;
 pub use record::{AbsoluteTolerances, Settings};

@@ -108,22 +108,48 @@ impl Settings {
 
     /// The absolute tolerances in force for `scene`.
     pub fn tolerances(&self, scene: &Scene) -> AbsoluteTolerances {
+        self.tolerances_by(&Scales::of(scene))
+    }
+
+    /// Those for a scene of these `scales`.
+    pub(crate) fn tolerances_by(&self, scales: &Scales) -> AbsoluteTolerances {
         const SMALL_STRAIN: f64 = 0.01;
         const SMALL_CREEP: f64 = 1.0 / 400.0;
-        let body = scene.body();
-        let (size, young) = (body.mesh().size(), body.material().young);
-        let volume = body.volume();
+        let &Scales { size, young, volume, wave_speed, sticking_speed } = scales;
         let position = self.rtol * SMALL_STRAIN * size;
-        let sticking = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
-        let velocity = sticking
-            .map(|speed| SMALL_CREEP * speed)
-            .fold(self.rtol * SMALL_STRAIN * body.material().wave_speed(), f64::min);
+        let velocity = (self.rtol * SMALL_STRAIN * wave_speed).min(SMALL_CREEP * sticking_speed);
         AbsoluteTolerances {
             position: self.atol_position.unwrap_or(position),
             velocity: self.atol_velocity.unwrap_or(velocity),
             energy: self.rtol * young * volume,
             force: self.rtol * young * volume / size,
-            momentum: self.rtol * young * volume / body.material().wave_speed(),
+            momentum: self.rtol * young * volume / wave_speed,
+        }
+    }
+}
+
+/// What tolerances are measured by: found by going through all cells, so that a run keeps it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scales {
+    size: f64,
+    young: f64,
+    volume: f64,
+    wave_speed: f64,
+    /// Of the obstacle on which it is the least; infinite without friction.
+    sticking_speed: f64,
+}
+
+impl Scales {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let body = scene.body();
+        let (size, material) = (body.mesh().size(), body.material());
+        let sticking = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
+        Self {
+            size,
+            young: material.young,
+            volume: body.volume(),
+            wave_speed: material.wave_speed(),
+            sticking_speed: sticking.fold(f64::INFINITY, f64::min),
         }
     }
 }

@@ -24,7 +24,7 @@ use crate::model::Model;
 use crate::ode::Failure;
 use crate::report::{Report, creation};
 use crate::scene::{Phase, Scene};
-use crate::settings::Settings;
+use crate::settings::{Scales, Settings};
 use crate::state::ENERGIES;
 use crate::system::System;
 use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
@@ -37,6 +37,7 @@ pub(super) struct Run {
     pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
     pub(super) sensors: Sensors,
+    scales: Scales,
     /// Absolute tolerance of displacements as it was asked for (m).
     atol_position: f64,
     /// Started with the run.
@@ -97,7 +98,8 @@ impl Run {
             let reason = "the energies are beyond the range of double precision";
             return Err(scene.bad_start(Failure::Recoverable(reason.into())).into());
         }
-        let atol_position = settings.tolerances(scene).position;
+        let scales = Scales::of(scene);
+        let atol_position = settings.tolerances_by(&scales).position;
         let report = Report {
             method: settings.method,
             rtol: settings.rtol,
@@ -123,6 +125,7 @@ impl Run {
             gauges: Arc::new(gauges),
             sampling: sampling.clone(),
             sensors,
+            scales,
             atol_position,
             clock,
             time: 0.0,
@@ -203,7 +206,7 @@ impl Run {
         }
         system.forget_counts();
         let (settings, end) = (&self.stage.plan.settings, self.stop());
-        let atol = settings.tolerances(&self.scene);
+        let atol = settings.tolerances_by(&self.scales);
         let first = self.stage.first_step.take();
         match stepper::start(system, settings, &atol, [self.time, end], first, &self.state) {
             Ok(stepper) => self.at = At::Work(Work::new(stepper, self.time, end)),
@@ -411,6 +414,7 @@ impl Run {
             gauges: self.gauges.clone(),
             sampling: self.sampling.clone(),
             sensors: self.sensors.clone(),
+            scales: self.scales,
             atol_position: self.atol_position,
             clock: Instant::now(),
             phase: self.phase.clone(),
