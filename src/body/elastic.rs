@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::assembly::Elements;
-use super::forces::NonlinearTerms;
+use super::forces::Terms;
 use super::regions::Regions;
 use crate::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::ode::Failure;
@@ -13,7 +13,7 @@ use crate::sparse::BlockMatrix;
 pub(crate) struct Elastic {
     pub(super) elements: Arc<dyn Elements>,
     pub(super) regions: Arc<Regions>,
-    pub(super) terms: NonlinearTerms,
+    pub(super) terms: Terms,
 }
 
 impl Force for Elastic {
@@ -45,5 +45,28 @@ impl Force for Elastic {
 
     fn reservoir(&self) -> Reservoir {
         Reservoir::Strain
+    }
+}
+
+/// The forces -K u and -B v, element by element.
+pub(crate) struct LinearByCells {
+    pub(super) elements: Arc<dyn Elements>,
+    pub(super) regions: Arc<Regions>,
+    pub(super) terms: Terms,
+}
+
+impl LinearByCells {
+    pub(crate) fn add_forces(
+        &self,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        self.elements.add_linear_forces(&self.regions, self.terms, u, v, forces)
+    }
+
+    /// Strain energy (J).
+    pub(crate) fn energy(&self, u: &[f64]) -> f64 {
+        if self.terms.elastic { self.elements.energy(&self.regions, u) } else { 0.0 }
     }
 }

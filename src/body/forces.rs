@@ -18,19 +18,18 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::elements::{ElementsOf, gradient};
-use super::regions::Regions;
+use super::regions::{Regions, Substance};
 use super::rows;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, ElasticLaw, ViscousLaw, with_law};
+use crate::material::{Deformation, ElasticLaw, Hooke, Linear, ViscousLaw, with_law};
 use crate::ode::Failure;
 use crate::tensor::{Matrix, Real};
 
-/// Which forces are nonlinear, and computed element by element; the others have constant matrices.
+/// Which forces are computed element by element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct NonlinearTerms {
+pub(super) struct Terms {
     pub(super) elastic: bool,
-    /// Objective viscosity.
     pub(super) viscous: bool,
 }
 
@@ -41,7 +40,17 @@ pub(super) trait Forces {
     fn add_forces(
         &self,
         regions: &Regions,
-        terms: NonlinearTerms,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
+
+    /// Adds -K u to the conservative forces and -B v to the dissipative ones, as far as `terms` has them.
+    fn add_linear_forces(
+        &self,
+        regions: &Regions,
+        terms: Terms,
         u: &[f64],
         v: &[f64],
         forces: &mut NodalForces,
@@ -54,7 +63,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
     fn add_forces(
         &self,
         regions: &Regions,
-        terms: NonlinearTerms,
+        terms: Terms,
         u: &[f64],
         v: &[f64],
         forces: &mut NodalForces,
@@ -75,6 +84,32 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
                     self.add(cells, [u, v], first, forces, ViscousPull(&substance.viscous))
                 })
             })?;
+        }
+        Ok(())
+    }
+
+    fn add_linear_forces(
+        &self,
+        regions: &Regions,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let add = |x: &[f64], hooke: fn(&Substance) -> Hooke, forces: &mut [f64]| {
+            let x = x.as_chunks::<D>().0;
+            self.share_out(forces, |run, first, forces| {
+                regions.runs(run).try_for_each(|(cells, substance)| {
+                    let law = Linear(hooke(substance));
+                    self.add(cells, [x], first, forces, ElasticPull(&law))
+                })
+            })
+        };
+        if terms.elastic {
+            add(u, |substance| substance.hooke, &mut forces.conservative)?;
+        }
+        if terms.viscous {
+            add(v, |substance| substance.viscous.0, &mut forces.dissipative)?;
         }
         Ok(())
     }

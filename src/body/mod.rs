@@ -22,6 +22,7 @@ mod tests;
 
 pub use assembled::Body;
 pub use builder::BodyBuilder;
+pub(crate) use elastic::LinearByCells;
 pub(crate) use fields::von_mises;
 pub use fields::{CellField, NodalField};
 pub use inertia::Inertia;

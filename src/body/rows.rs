@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::CellSelection;
     use crate::body::elements::ElementsOf;
-    use crate::body::forces::{Forces, NonlinearTerms};
+    use crate::body::forces::{Forces, Terms};
     use crate::body::regions::Regions;
     use crate::body::tests::noise;
     use crate::element::{
@@ -127,7 +127,7 @@ mod tests {
         let (u, v) = (noise(dofs, 1e-4, 1.0), noise(dofs, 1.0, 2.0));
         let forces = |elements: &ElementsOf<N, M, D, Q>| {
             let (mut forces, both) =
-                (NodalForces::zeros(dofs), NonlinearTerms { elastic: true, viscous: true });
+                (NodalForces::zeros(dofs), Terms { elastic: true, viscous: true });
             elements.add_forces(&regions, both, &u, &v, &mut forces).unwrap();
             [forces.conservative.to_vec(), forces.dissipative.to_vec()]
         };

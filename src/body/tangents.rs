@@ -12,7 +12,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 
 use super::elements::{ElementsOf, gradient, pairs};
-use super::forces::NonlinearTerms;
+use super::forces::Terms;
 use super::regions::{Regions, Substance};
 use crate::lane::{Abreast, Lane, SIDE_BY_SIDE};
 use crate::material::{
@@ -38,7 +38,7 @@ pub(super) trait Tangents {
     fn add_tangents(
         &self,
         regions: &Regions,
-        terms: NonlinearTerms,
+        terms: Terms,
         u: &[f64],
         v: &[f64],
         stiffness: &mut BlockMatrix,
@@ -73,7 +73,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
     fn add_tangents(
         &self,
         regions: &Regions,
-        terms: NonlinearTerms,
+        terms: Terms,
         u: &[f64],
         v: &[f64],
         stiffness: &mut BlockMatrix,

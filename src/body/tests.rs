@@ -209,6 +209,29 @@ fn elastic_forces_of_cauchy_bodies_are_k_u() {
     }
 }
 
+/// -K u, -B v and the energy of a scene whose cells are simple, by its system, against its matrices.
+#[test]
+fn linear_forces_by_cells_are_those_of_the_matrices() {
+    for (name, body) in bodies(Strain::Cauchy) {
+        let Some(cells) = body.linear_by_cells() else { continue };
+        let (u, v) = (noise(body.dofs(), 0.05, 4.0), noise(body.dofs(), 2.0, 5.0));
+        let mut forces = NodalForces::zeros(body.dofs());
+        cells.add_forces(&u, &v, &mut forces).unwrap();
+        let (k, b) = (body.stiffness(), body.damping());
+        for (matrix, x, forces) in [(k, &u, &forces.conservative), (b, &v, &forces.dissipative)] {
+            let mut by_matrix = vec![0.0; body.dofs()];
+            matrix.add_product(-1.0, x, &mut by_matrix);
+            let scale = by_matrix.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+            assert!(scale > 0.0, "{name}");
+            let apart = by_matrix.iter().zip(forces.iter()).map(|(a, b)| (a - b).abs());
+            // round-off of the largest force
+            assert!(apart.fold(0.0, f64::max) < 1e-13 * scale, "{name}");
+        }
+        let energy = 0.5 * k.quadratic_form(&u);
+        assert!((cells.energy(&u) / energy - 1.0).abs() < 1e-13, "{name}");
+    }
+}
+
 /// Slides, "Calculating based on Cauchy strain": a body turned by theta is strained by
 /// cos(theta) - 1 along both axes; its stress is 2 (lambda + mu) (cos theta - 1).
 #[test]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use dissection::nested_dissection;
 
-use crate::body::Body;
+use crate::body::{Body, LinearByCells};
 use crate::force::Force;
 use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 
@@ -19,6 +19,8 @@ pub(crate) struct Model {
     pub(crate) stiffness: Option<Arc<BlockMatrix>>,
     /// Constant part of -df/dv: B, for natural viscosity.
     pub(crate) damping: Option<Arc<BlockMatrix>>,
+    /// What these two exert, if element by element is less work.
+    pub(crate) linear_by_cells: Option<LinearByCells>,
     /// What displacements (m) and velocities (m/s) of small strains, a hundredth, are like.
     pub(crate) scales: [f64; 2],
     /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
@@ -45,9 +47,18 @@ impl Model {
         let scales = [body.mesh().size(), body.material().wave_speed()].map(|scale| 0.01 * scale);
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
+        let linear_by_cells = body.linear_by_cells();
         if strangers.is_empty() {
             let dissection = dissection(pattern);
-            return Self { dimension, inertia, stiffness, damping, scales, dissection };
+            return Self {
+                dimension,
+                inertia,
+                stiffness,
+                damping,
+                linear_by_cells,
+                scales,
+                dissection,
+            };
         }
         let pattern = Arc::new(pattern.with_pairs(&strangers));
         let moved = |matrix: Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
@@ -56,6 +67,7 @@ impl Model {
             inertia: Arc::new(inertia.moved_to(&pattern)),
             stiffness: stiffness.map(moved),
             damping: damping.map(moved),
+            linear_by_cells,
             scales,
             dissection: dissection(&pattern),
         }

@@ -302,10 +302,13 @@ impl System {
 
     /// Kinetic and potential energies of a state; dissipated and supplied are left at 0.
     pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64]) -> Energy {
-        let Model { inertia, stiffness, dimension, .. } = &*self.model;
+        let Model { inertia, stiffness, linear_by_cells, dimension, .. } = &*self.model;
         let mut energy = Energy {
             kinetic: 0.5 * inertia.quadratic_form(*dimension, v),
-            strain: stiffness.as_ref().map_or(0.0, |k| 0.5 * k.quadratic_form(u)),
+            strain: match linear_by_cells {
+                Some(cells) => cells.energy(u),
+                None => stiffness.as_ref().map_or(0.0, |k| 0.5 * k.quadratic_form(u)),
+            },
             ..Energy::default()
         };
         for force in &self.forces {
@@ -343,11 +346,17 @@ impl System {
     fn collect_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
         let nodal = &mut self.at.nodal;
         nodal.clear();
-        if let Some(stiffness) = &self.model.stiffness {
-            stiffness.add_product(-1.0, u, &mut nodal.conservative);
-        }
-        if let Some(damping) = &self.model.damping {
-            damping.add_product(-1.0, v, &mut nodal.dissipative);
+        let Model { stiffness, damping, linear_by_cells, .. } = &*self.model;
+        match linear_by_cells {
+            Some(cells) => cells.add_forces(u, v, nodal)?,
+            None => {
+                if let Some(stiffness) = stiffness {
+                    stiffness.add_product(-1.0, u, &mut nodal.conservative);
+                }
+                if let Some(damping) = damping {
+                    damping.add_product(-1.0, v, &mut nodal.dissipative);
+                }
+            }
         }
         for force in &self.forces {
             let added = force.add_forces(t, u, v, nodal);
