@@ -26,9 +26,6 @@
 
 mod control;
 mod dormand_prince;
-mod rootfinding;
-mod stages;
-mod stepping;
 mod tableau;
 
 pub use control::StabilityLimit;

@@ -35,7 +35,6 @@ mod matrix;
 mod options;
 mod solver;
 mod step;
-mod stepping;
 mod tableau;
 
 pub use options::{Jacobian, Options};
