@@ -148,12 +148,7 @@ mod tests {
                 .unwrap();
             assert_total(&body, 0.01);
         }
-        for cells in [
-            SolidCells::Tetrahedra,
-            SolidCells::Hexahedra,
-            SolidCells::Tetrahedra10,
-            SolidCells::Hexahedra20,
-        ] {
+        for cells in SolidCells::ALL {
             let mesh = Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells).unwrap();
             assert_total(
                 &Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).build().unwrap(),

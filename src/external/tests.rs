@@ -177,12 +177,7 @@ fn pressures_on_faces() {
             (Body::new(mesh, SQUARE_MATERIAL).thickness(0.2).build().unwrap(), nodes)
         }));
     }
-    for cells in [
-        SolidCells::Tetrahedra,
-        SolidCells::Hexahedra,
-        SolidCells::Tetrahedra10,
-        SolidCells::Hexahedra20,
-    ] {
+    for cells in SolidCells::ALL {
         let mesh = Mesh::cuboid([1.0; 3], [2, 3, 2], cells).unwrap();
         let mesh = mesh.mapped(|x| [bent(x)[0], bent(x)[1], x[2] + 0.1 * x[1] * x[0]]).unwrap();
         bodies.push((Body::new(mesh, SQUARE_MATERIAL).build().unwrap(), "right"));

@@ -49,7 +49,7 @@ pub(super) const MESH: TableKeys = TableKeys::new(
                 .required(),
             Key::new(
                 "cells",
-                Holds::Word(|| SOLID_CELLS.map(|(word, _)| word).into()),
+                Holds::Word(|| solid_cells().into_iter().map(|(word, _)| word).collect()),
                 "how the grid is divided",
             )
             .law("`auto` is `tetrahedra10`, quadratic.")
@@ -102,13 +102,10 @@ fn plane_cells() -> Vec<(&'static str, Cells)> {
     let named = Cells::ALL.map(|cells| (cells.name(), cells));
     named.into_iter().chain([(AUTO, Cells::Triangles6)]).collect()
 }
-const SOLID_CELLS: [(&str, SolidCells); 5] = [
-    ("tetrahedra", SolidCells::Tetrahedra),
-    ("hexahedra", SolidCells::Hexahedra),
-    ("tetrahedra10", SolidCells::Tetrahedra10),
-    ("hexahedra20", SolidCells::Hexahedra20),
-    (AUTO, SolidCells::Tetrahedra10),
-];
+fn solid_cells() -> Vec<(&'static str, SolidCells)> {
+    let named = SolidCells::ALL.map(|cells| (cells.name(), cells));
+    named.into_iter().chain([(AUTO, SolidCells::Tetrahedra10)]).collect()
+}
 
 /// The mesh that `value` describes, in a space of `dimension` (default: its own).
 pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Error> {
@@ -170,7 +167,7 @@ fn generate(table: &Table) -> Result<Mesh, Error> {
             table.required("size", Value::array)?,
             table.required("nodes", Value::counts)?,
             table.optional("grading", Value::array)?.unwrap_or([1.0; 3]),
-            table.required("cells", |value| value.word(&SOLID_CELLS))?,
+            table.required("cells", |value| value.word(&solid_cells()))?,
         )?,
         _ => table.required("file", |value| {
             let file = value.source.beside(value.string()?);

@@ -69,12 +69,7 @@ fn holes() {
         let around = Selection::Box { min: vec![0.9; 2], max: vec![3.1; 2] };
         assert!((enclosed(&hollowed, around) - 4.0).abs() < 1e-13, "{cells}");
     }
-    for cells in [
-        SolidCells::Tetrahedra,
-        SolidCells::Hexahedra,
-        SolidCells::Tetrahedra10,
-        SolidCells::Hexahedra20,
-    ] {
+    for cells in SolidCells::ALL {
         let mesh = Mesh::cuboid([4.0; 3], [5; 3], cells).unwrap();
         let hollowed = body(hollow(&mesh, 1.0, 3.0));
         let volume = enclosed(&hollowed, "walls");
@@ -86,12 +81,7 @@ fn holes() {
 /// net force of the pressure in it, whatever the displacements.
 #[test]
 fn lids() {
-    for cells in [
-        SolidCells::Tetrahedra,
-        SolidCells::Hexahedra,
-        SolidCells::Tetrahedra10,
-        SolidCells::Hexahedra20,
-    ] {
+    for cells in SolidCells::ALL {
         let mesh = Mesh::cuboid([4.0, 4.0, 3.0], [5, 5, 4], cells).unwrap();
         let pit = body(hollow(&mesh, 1.0, 3.0));
         assert!(problem(&pit, "walls").contains("closed_by_lid"));

@@ -24,6 +24,22 @@ pub enum SolidCells {
     Hexahedra20,
 }
 
+impl SolidCells {
+    /// All ways to divide a grid.
+    pub const ALL: [Self; 4] =
+        [Self::Tetrahedra, Self::Hexahedra, Self::Tetrahedra10, Self::Hexahedra20];
+
+    /// Name: `tetrahedra`, `hexahedra`, `tetrahedra10`, `hexahedra20`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Tetrahedra => "tetrahedra",
+            Self::Hexahedra => "hexahedra",
+            Self::Tetrahedra10 => "tetrahedra10",
+            Self::Hexahedra20 => "hexahedra20",
+        }
+    }
+}
+
 /// One tetrahedron per order of the axes: it steps from corner to corner along them.
 const TETRAHEDRA: [[[usize; 3]; 4]; 6] = {
     let [o, x, y, z] = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
