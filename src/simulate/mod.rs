@@ -21,6 +21,7 @@ mod sensor;
 mod simulation;
 mod stage;
 mod stepper;
+mod steps;
 mod view;
 mod watch;
 mod watching;
