@@ -17,9 +17,9 @@ use crate::output::{COLOURS, DASHES, FONT, INK, png, write_file};
 const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
 /// Width and height of the page (px).
 const PAGE: [f64; 2] = [980.0, 560.0];
-/// Families that have the colour of the same place in all charts; others have them as they come.
-const FAMILIES: [&str; 7] =
-    ["cvode-bdf", "cvode-adams", "rk", "ida", "arkode", "central-difference", "auto"];
+/// Families that have the colour of the same place in all charts; others take those that are left.
+const FAMILIES: [&str; 8] =
+    ["cvode-bdf", "cvode-adams", "rk", "ida", "arkode", "central-difference", "auto", "rosenbrock"];
 const GRID: &str = "#dddddd";
 const FAINT_GRID: &str = "#f1f1f1";
 
@@ -202,21 +202,31 @@ impl Style {
 
 /// Colours by family; strokes within a family; markers by line, for eyes that see no colours.
 fn styles(lines: &[LineFindings]) -> Vec<Style> {
-    // number of the colour, number of lines so far
-    let mut families = BTreeMap::<&str, (usize, usize)>::new();
-    let mut styles = Vec::new();
-    for (number, line) in lines.iter().enumerate() {
-        let known = FAMILIES.iter().position(|family| *family == line.family);
-        let colour = known.unwrap_or(families.len());
-        let (family, member) = families.entry(&line.family).or_insert((colour, 0));
-        styles.push(Style {
-            colour: COLOURS[*family % COLOURS.len()],
-            dashes: DASHES[*member % DASHES.len()],
-            marker: number % 5,
-        });
+    let colours = colours(lines.iter().map(|line| line.family.as_str()));
+    let mut members = BTreeMap::<&str, usize>::new();
+    let styles = lines.iter().enumerate().map(|(number, line)| {
+        let member = members.entry(&line.family).or_default();
         *member += 1;
+        Style {
+            colour: COLOURS[colours[line.family.as_str()] % COLOURS.len()],
+            dashes: DASHES[(*member - 1) % DASHES.len()],
+            marker: number % 5,
+        }
+    });
+    styles.collect()
+}
+
+/// The number of the colour of each family: its own, or the first that no other has.
+fn colours<'a>(families: impl Iterator<Item = &'a str> + Clone) -> BTreeMap<&'a str, usize> {
+    let own = |family: &str| FAMILIES.iter().position(|known| *known == family);
+    let mut colours: BTreeMap<_, _> =
+        families.clone().filter_map(|family| Some((family, own(family)?))).collect();
+    for family in families {
+        let is_free = |colour: &usize| !colours.values().any(|taken| taken == colour);
+        let free = (0..).find(is_free).unwrap_or_default();
+        colours.entry(family).or_insert(free);
     }
-    styles
+    colours
 }
 
 /// Name of a line, with its stroke, beside the field.
@@ -234,5 +244,28 @@ fn key(line: &LineFindings, style: &Style, y: f64) -> Group {
                 .set("fill", "#777777")
                 .set("font-size", 11),
         ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::settings::Method;
+
+    /// As long as there are colours, no two families share one, whichever comes first, and methods keep theirs.
+    #[test]
+    fn families_have_colours_of_their_own() {
+        let is_family = |method: &Method| !matches!(method, Method::IdaKlu | Method::IdaIndexTwo);
+        let methods: Vec<_> = Method::ALL.into_iter().filter(is_family).map(Method::name).collect();
+        for families in [methods.clone(), vec!["own", "rosenbrock", "other", "rk", "cvode-bdf"]] {
+            let colours = colours(families.iter().copied());
+            let distinct: BTreeSet<_> = colours.values().map(|&number| COLOURS[number]).collect();
+            assert_eq!(distinct.len(), families.len(), "{colours:?}");
+            for family in families.iter().filter(|family| methods.contains(family)) {
+                assert_eq!(FAMILIES[colours[family]], *family);
+            }
+        }
     }
 }
