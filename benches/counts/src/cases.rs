@@ -45,6 +45,7 @@ fn cells(count: Count) -> Outcome {
         ("tetrahedra", green(space(SolidCells::Tetrahedra)?)?),
         ("tetrahedra of 10 nodes", green(space(SolidCells::Tetrahedra10)?)?),
         ("hexahedra", green(space(SolidCells::Hexahedra)?)?),
+        ("hexahedra of 20 nodes", green(space(SolidCells::Hexahedra20)?)?),
         ("triangles, viscous", scene(triangles()?, viscous, Strain::Green)?),
         ("triangles on a floor", green(triangles()?)?.obstacle(floor.friction_coefficient(0.3))),
     ];
