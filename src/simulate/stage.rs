@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::auto::Plan;
+use super::auto::{Plan, TRIALS};
 use super::events::Events;
 use super::leg::{Ending, Leg};
 use super::sampling::Schedule;
@@ -49,16 +49,16 @@ pub(super) struct Work {
     pub(super) stop: f64,
     /// Room for a state of the integrator.
     pub(super) sample: Vec<f64>,
-    /// Steps, when the last trial began (s), and mean step sizes (s) of the last two.
+    /// Steps, when the last trial began (s), and mean step sizes (s) of the last ones, the last one first.
     pub(super) steps: usize,
     pub(super) trial_began: f64,
-    pub(super) means: [f64; 2],
+    pub(super) means: [f64; TRIALS],
 }
 
 impl Work {
     pub(super) fn new(stepper: Box<dyn Stepper>, time: f64, stop: f64) -> Self {
         let sample = vec![0.0; stepper.state().len()];
-        Self { stepper, stop, sample, steps: 0, trial_began: time, means: [f64::INFINITY; 2] }
+        Self { stepper, stop, sample, steps: 0, trial_began: time, means: [f64::INFINITY; TRIALS] }
     }
 }
 

@@ -63,7 +63,8 @@ impl Run {
         }
         work.steps += 1;
         if work.steps.is_multiple_of(TRIAL) {
-            work.means = [(self.time - work.trial_began) / TRIAL as f64, work.means[0]];
+            work.means.rotate_right(1);
+            work.means[0] = (self.time - work.trial_began) / TRIAL as f64;
             work.trial_began = self.time;
             if let Some(other) = self.stage.plan.reconsidered(work.means, work.steps) {
                 return Ok(Some(Ending::Better(other)));
