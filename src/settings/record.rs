@@ -11,8 +11,8 @@ pub struct Settings {
     pub method: Method,
     /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
     /// `rtol |y| + atol` in the root mean square over displacements and velocities. Errors of steps add up: that of the
-    /// whole motion may be twenty times as large. [`Method::Auto`] gives the method that it chooses a fifth of the
-    /// tolerances or less, so that the motion is about as precise as `rtol` says. Default: 1e-5.
+    /// whole motion may be twenty times as large. [`Method::Auto`] gives the method that it chooses a part of the
+    /// tolerances, mostly a fifth or less, so that the motion is about as precise as `rtol` says. Default: 1e-5.
     pub rtol: f64,
     /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the body's size,
     /// so that smaller displacements count as that large.
