@@ -3,7 +3,7 @@
 //! Arithmetic on a lane is that on each of its numbers, in the same order and without fused operations, so that results
 //! are those of one cell after the other to the last bit, on any machine.
 
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 use pulp::Simd;
 
@@ -78,6 +78,7 @@ macro_rules! by_number {
 by_number!(Add, add, add_f64s);
 by_number!(Sub, sub, sub_f64s);
 by_number!(Mul, mul, mul_f64s);
+by_number!(Div, div, div_f64s);
 
 impl<S: Simd> AddAssign for Lane<S> {
     #[inline(always)]
@@ -95,5 +96,25 @@ impl<S: Simd> Real for Lane<S> {
     #[inline(always)]
     fn constant(self, number: f64) -> Self {
         Self::splat(self.simd, number)
+    }
+
+    #[inline(always)]
+    fn each<const I: usize, const O: usize>(
+        numbers: [Self; I],
+        f: impl Fn([f64; I]) -> [f64; O],
+    ) -> [Self; O] {
+        let simd = numbers[0].simd;
+        let mut given = [Abreast([0.0; SIDE_BY_SIDE]); I];
+        for i in 0..I {
+            numbers[i].store(&mut given[i].0, 0);
+        }
+        let mut made = [Abreast([0.0; SIDE_BY_SIDE]); O];
+        for lane in 0..S::F64_LANES {
+            let of_lane = f(std::array::from_fn(|i| given[i].0[lane]));
+            for o in 0..O {
+                made[o].0[lane] = of_lane[o];
+            }
+        }
+        std::array::from_fn(|o| Self::load(simd, &made[o].0, 0))
     }
 }

@@ -116,7 +116,7 @@ pub use external::*;
 pub use input::{Fraction, InputError};
 pub use integrate::Integrator;
 #[cfg(feature = "bodies")]
-pub use material::{Lame, Material, Plane};
+pub use material::{Lame, Law, Material, Plane, Substance};
 #[cfg(feature = "bodies")]
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 #[cfg(feature = "bodies")]

@@ -5,7 +5,7 @@
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
-use std::ops::{Add, AddAssign, Mul, Sub};
+use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
 /// A real number: `f64`, or one for each of several cells, computed at once.
 pub(crate) trait Real:
@@ -13,6 +13,7 @@ pub(crate) trait Real:
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<Output = Self>
+    + Div<Output = Self>
     + Add<f64, Output = Self>
     + Mul<f64, Output = Self>
     + AddAssign
@@ -22,6 +23,12 @@ pub(crate) trait Real:
 
     /// Another number, of this kind.
     fn constant(self, number: f64) -> Self;
+
+    /// What `f` makes of some numbers, for each cell by itself.
+    fn each<const I: usize, const O: usize>(
+        numbers: [Self; I],
+        f: impl Fn([f64; I]) -> [f64; O],
+    ) -> [Self; O];
 }
 
 impl Real for f64 {
@@ -34,6 +41,26 @@ impl Real for f64 {
     fn constant(self, number: f64) -> Self {
         number
     }
+
+    #[inline(always)]
+    fn each<const I: usize, const O: usize>(
+        numbers: [Self; I],
+        f: impl Fn([f64; I]) -> [f64; O],
+    ) -> [Self; O] {
+        f(numbers)
+    }
+}
+
+/// x^(-1/3) of a number above 0; of others any number.
+#[inline(always)]
+pub(crate) fn inverse_cube_root<T: Real>(x: T) -> T {
+    // a third of the bits, and with them of the exponent: 3.5 % off at most
+    let [mut root] = T::each([x], |[x]| [f64::from_bits(0x553e_f000_0000_0000 - x.to_bits() / 3)]);
+    // Newton's method doubles the digits
+    for _ in 0..4 {
+        root = root * (x * root * root * root * -1.0 + 4.0) * (1.0 / 3.0);
+    }
+    root
 }
 
 /// A matrix of `R` rows and `C` columns, column by column.

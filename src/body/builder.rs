@@ -9,7 +9,7 @@ use super::recipe::Recipe;
 use super::regions::{CellSelection, Regions};
 use crate::element::Finer;
 use crate::input::{InputError, positive};
-use crate::material::{Material, Plane, Strain, Viscosity};
+use crate::material::{Plane, Strain, Substance, Viscosity};
 use crate::mesh::Mesh;
 use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 
@@ -52,8 +52,12 @@ impl BodyBuilder {
     }
 
     /// A region with a material of its own. Where regions overlap, the last one counts.
-    pub fn region(mut self, cells: impl Into<CellSelection>, material: Material) -> Self {
-        self.recipe.regions.push((cells.into(), material));
+    pub fn region(
+        mut self,
+        cells: impl Into<CellSelection>,
+        substance: impl Into<Substance>,
+    ) -> Self {
+        self.recipe.regions.push((cells.into(), substance.into()));
         self
     }
 
@@ -96,14 +100,14 @@ impl BodyBuilder {
 
     /// Without viscosity, in its regions, too.
     pub(crate) fn without_viscosity(mut self) -> Self {
-        self.recipe.material.viscosity = 0.0;
-        self.recipe.regions.iter_mut().for_each(|(_, material)| material.viscosity = 0.0);
+        self.recipe.material.material.viscosity = 0.0;
+        self.recipe.regions.iter_mut().for_each(|(_, region)| region.material.viscosity = 0.0);
         self
     }
 
     /// Another material, everywhere that regions have none of their own.
-    pub fn material(mut self, material: Material) -> Self {
-        self.recipe.material = material;
+    pub fn material(mut self, substance: impl Into<Substance>) -> Self {
+        self.recipe.material = substance.into();
         self
     }
 
@@ -132,15 +136,15 @@ impl BodyBuilder {
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();
         elements.add_inertia(&regions, recipe.inertia, &mut inertia);
-        elements.add_stiffness(&regions, &|substance| substance.hooke, &mut stiffness);
-        elements.add_stiffness(&regions, &|substance| substance.viscous.0, &mut damping);
+        elements.add_stiffness(&regions, &|laws| laws.hooke, &mut stiffness);
+        elements.add_stiffness(&regions, &|laws| laws.viscous.0, &mut damping);
         let first_point = mesh.node_count() - recipe.points.len();
         for (node, (_, _, mass)) in (first_point..).zip(&recipe.points) {
             inertia.add(node, node, *mass);
         }
         let body = Body {
             mesh,
-            material,
+            material: material.material,
             strain,
             plane,
             viscosity,
@@ -166,11 +170,11 @@ impl BodyBuilder {
 }
 
 impl Body {
-    /// Starts a body of `mesh`, made of `material`; [`BodyBuilder::build`] assembles it.
+    /// Starts a body of `mesh`, made of `substance`, a [`Material`](crate::Material) or one with a [`Law`](crate::Law); [`BodyBuilder::build`] assembles it.
     #[allow(clippy::new_ret_no_self)] // the one way to a body starts here
-    pub fn new(mesh: Mesh, material: Material) -> BodyBuilder {
+    pub fn new(mesh: Mesh, substance: impl Into<Substance>) -> BodyBuilder {
         let recipe = Recipe {
-            material,
+            material: substance.into(),
             regions: Vec::new(),
             strain: Strain::default(),
             viscosity: None,

@@ -14,8 +14,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     pub(super) fn strain_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
         let u = u.as_chunks::<D>().0;
         let all = 0..self.nodes.len();
-        regions.runs(&all).fold(0.0, |sum, (cells, substance)| {
-            with_law!(&substance.elastic, law => {
+        regions.runs(&all).fold(0.0, |sum, (cells, laws)| {
+            with_law!(&laws.elastic, law => {
                 Arch::new().dispatch(Pass { elements: self, cells, u, law, sum })
             })
         })

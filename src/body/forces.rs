@@ -18,7 +18,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use super::elements::{ElementsOf, gradient};
-use super::regions::{Regions, Substance};
+use super::regions::{Laws, Regions};
 use super::rows;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
@@ -71,8 +71,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
         if terms.elastic {
             self.share_out(&mut forces.conservative, |run, first, forces| {
-                regions.runs(run).try_for_each(|(cells, substance)| {
-                    with_law!(substance.elastic, law => {
+                regions.runs(run).try_for_each(|(cells, laws)| {
+                    with_law!(laws.elastic, law => {
                         self.add(cells, [u], first, forces, ElasticPull(&law))
                     })
                 })
@@ -80,8 +80,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         }
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
-                regions.runs(run).try_for_each(|(cells, substance)| {
-                    self.add(cells, [u, v], first, forces, ViscousPull(&substance.viscous))
+                regions.runs(run).try_for_each(|(cells, laws)| {
+                    self.add(cells, [u, v], first, forces, ViscousPull(&laws.viscous))
                 })
             })?;
         }
@@ -96,20 +96,20 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         v: &[f64],
         forces: &mut NodalForces,
     ) -> Result<(), Failure> {
-        let add = |x: &[f64], hooke: fn(&Substance) -> Hooke, forces: &mut [f64]| {
+        let add = |x: &[f64], hooke: fn(&Laws) -> Hooke, forces: &mut [f64]| {
             let x = x.as_chunks::<D>().0;
             self.share_out(forces, |run, first, forces| {
-                regions.runs(run).try_for_each(|(cells, substance)| {
-                    let law = Linear(hooke(substance));
+                regions.runs(run).try_for_each(|(cells, laws)| {
+                    let law = Linear(hooke(laws));
                     self.add(cells, [x], first, forces, ElasticPull(&law))
                 })
             })
         };
         if terms.elastic {
-            add(u, |substance| substance.hooke, &mut forces.conservative)?;
+            add(u, |laws| laws.hooke, &mut forces.conservative)?;
         }
         if terms.viscous {
-            add(v, |substance| substance.viscous.0, &mut forces.dissipative)?;
+            add(v, |laws| laws.viscous.0, &mut forces.dissipative)?;
         }
         Ok(())
     }

@@ -3,14 +3,14 @@
 use super::inertia::Inertia;
 use super::regions::CellSelection;
 use crate::input::{InputError, positive};
-use crate::material::{Material, Plane, Strain, Viscosity};
+use crate::material::{Plane, Strain, Substance, Viscosity};
 use crate::mesh::Mesh;
 
 /// What is made of a mesh.
 #[derive(Debug, Clone)]
 pub(super) struct Recipe {
-    pub(super) material: Material,
-    pub(super) regions: Vec<(CellSelection, Material)>,
+    pub(super) material: Substance,
+    pub(super) regions: Vec<(CellSelection, Substance)>,
     pub(super) strain: Strain,
     pub(super) viscosity: Option<Viscosity>,
     pub(super) inertia: Inertia,

@@ -5,7 +5,9 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::input::InputError;
-use crate::material::{Elastic, Hooke, Lame, Material, ObjectiveViscosity, Plane, Strain};
+use crate::material::{
+    Elastic, Hooke, Lame, Material, ObjectiveViscosity, Plane, Strain, Substance,
+};
 use crate::mesh::Mesh;
 
 /// Cells, by the name of a group, by number or by a box around their centroids.
@@ -93,9 +95,9 @@ impl CellSelection {
     }
 }
 
-/// What the elements of a region are made of: density (kg/m^3) and laws.
+/// What the elements of a region take: density (kg/m^3) and laws.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Substance {
+pub(super) struct Laws {
     pub(super) density: f64,
     pub(super) elastic: Elastic,
     /// What the elastic law is at small strains.
@@ -108,7 +110,7 @@ pub(super) struct Substance {
 pub(super) struct Regions {
     /// What the cells are made of.
     pub(super) materials: Vec<Material>,
-    substances: Vec<Substance>,
+    laws: Vec<Laws>,
     /// Index of each cell's substance; empty if all cells have the first.
     of_cell: Vec<u16>,
 }
@@ -119,31 +121,33 @@ impl Regions {
         mesh: &Mesh,
         strain: Strain,
         plane: Plane,
-        base: &Material,
-        regions: &[(CellSelection, Material)],
+        base: &Substance,
+        regions: &[(CellSelection, Substance)],
     ) -> Result<Self, InputError> {
-        let substance = |material: &Material| -> Result<Substance, InputError> {
-            material.validate()?;
-            let hooke = |lame: Lame| Hooke::new(lame, mesh.kind().dimension(), plane);
-            let elastic = hooke(material.elastic());
-            Ok(Substance {
+        let laws = |substance: &Substance| -> Result<Laws, InputError> {
+            substance.validate()?;
+            let Substance { material, law } = substance;
+            if let (Some(law), Strain::Cauchy) = (law, strain) {
+                let mend = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
+                return Err(InputError::new("material.law", format!("{law:?}"), mend));
+            }
+            let dimension = mesh.kind().dimension();
+            let hooke = |lame: Lame| Hooke::new(lame, dimension, plane);
+            Ok(Laws {
                 density: material.density,
-                elastic: Elastic::new(strain, elastic),
-                hooke: elastic,
+                elastic: Elastic::new(strain, *law, material.elastic(), dimension, plane),
+                hooke: hooke(material.elastic()),
                 viscous: ObjectiveViscosity(hooke(material.viscous())),
             })
         };
-        let mut all = Self {
-            materials: vec![*base],
-            substances: vec![substance(base)?],
-            of_cell: Vec::new(),
-        };
+        let mut all =
+            Self { materials: vec![base.material], laws: vec![laws(base)?], of_cell: Vec::new() };
         if regions.len() >= usize::from(u16::MAX) {
             return Err(InputError::new("number of regions", regions.len(), "65,534 are the most"));
         }
-        for (number, (cells, material)) in (1_u16..).zip(regions) {
-            all.materials.push(*material);
-            all.substances.push(substance(material)?);
+        for (number, (cells, substance)) in (1_u16..).zip(regions) {
+            all.materials.push(substance.material);
+            all.laws.push(laws(substance)?);
             all.of_cell.resize(mesh.cell_count(), 0);
             cells.cells(mesh)?.into_iter().for_each(|cell| all.of_cell[cell] = number);
         }
@@ -155,13 +159,13 @@ impl Regions {
     }
 
     /// The substance of a cell.
-    pub(super) fn of(&self, cell: usize) -> &Substance {
-        &self.substances[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
+    pub(super) fn of(&self, cell: usize) -> &Laws {
+        &self.laws[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
     }
 
     /// The cells of each substance, of `count` in all.
     pub(super) fn by_substance(&self, count: usize) -> Vec<Vec<usize>> {
-        let mut cells = vec![Vec::new(); self.substances.len()];
+        let mut cells = vec![Vec::new(); self.laws.len()];
         for cell in 0..count {
             let number = self.of_cell.get(cell).map_or(0, |&index| usize::from(index));
             cells[number].push(cell);
@@ -170,10 +174,7 @@ impl Regions {
     }
 
     /// `cells`, divided into runs of one substance.
-    pub(super) fn runs(
-        &self,
-        cells: &Range<usize>,
-    ) -> impl Iterator<Item = (Range<usize>, &Substance)> {
+    pub(super) fn runs(&self, cells: &Range<usize>) -> impl Iterator<Item = (Range<usize>, &Laws)> {
         let Range { mut start, end } = *cells;
         std::iter::from_fn(move || {
             let run = match self.of_cell.get(start..end) {
@@ -190,6 +191,6 @@ impl Regions {
 
     /// Whether any of them is viscous.
     pub(super) fn are_viscous(&self) -> bool {
-        self.substances.iter().any(|substance| !substance.viscous.0.is_zero())
+        self.laws.iter().any(|laws| !laws.viscous.0.is_zero())
     }
 }

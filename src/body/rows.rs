@@ -121,8 +121,10 @@ mod tests {
         let pattern = NodePattern::new(mesh.node_count(), mesh.cells());
         let mut elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, &pattern).unwrap();
         let base = Material { viscosity: 3.0, ..SQUARE_MATERIAL };
-        let stiff = (CellSelection::Numbers((13..=27).collect()), Material { young: 2e6, ..base });
-        let regions = Regions::new(mesh, Strain::Green, Plane::Strain, &base, &[stiff]).unwrap();
+        let stiff =
+            (CellSelection::Numbers((13..=27).collect()), Material { young: 2e6, ..base }.into());
+        let regions =
+            Regions::new(mesh, Strain::Green, Plane::Strain, &base.into(), &[stiff]).unwrap();
         let dofs = mesh.node_count() * D;
         let (u, v) = (noise(dofs, 1e-4, 1.0), noise(dofs, 1.0, 2.0));
         let forces = |elements: &ElementsOf<N, M, D, Q>| {

@@ -13,7 +13,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::elements::{ElementsOf, gradient, pairs};
 use super::forces::Terms;
-use super::regions::{Regions, Substance};
+use super::regions::{Laws, Regions};
 use crate::lane::{Abreast, Lane, SIDE_BY_SIDE};
 use crate::material::{
     Block, Blocks, Deformation, ElasticLaw, Hooke, Linear, ViscousLaw, with_law,
@@ -30,7 +30,7 @@ pub(super) trait Tangents {
     fn add_stiffness(
         &self,
         regions: &Regions,
-        hooke: &dyn Fn(&Substance) -> Hooke,
+        hooke: &dyn Fn(&Laws) -> Hooke,
         stiffness: &mut BlockMatrix,
     );
 
@@ -52,7 +52,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
     fn add_stiffness(
         &self,
         regions: &Regions,
-        hooke: &dyn Fn(&Substance) -> Hooke,
+        hooke: &dyn Fn(&Laws) -> Hooke,
         stiffness: &mut BlockMatrix,
     ) {
         let mut stiffness = stiffness.rows_mut::<D>();
@@ -81,16 +81,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
     ) {
         let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
         let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
-            for (cells, substance) in
-                self.shares.cells[share].iter().flat_map(|run| regions.runs(run))
-            {
+            for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
                 if terms.elastic {
-                    with_law!(substance.elastic, law => {
+                    with_law!(laws.elastic, law => {
                         self.add_to(&mut stiffness, cells.clone(), [u], ElasticSlope(&law));
                     });
                 }
                 if terms.viscous {
-                    let law = &substance.viscous;
+                    let law = &laws.viscous;
                     self.add_to(&mut damping, cells.clone(), [u], RateSlope(law));
                     self.add_to(&mut stiffness, cells, [u, v], ViscousSlope(law));
                 }

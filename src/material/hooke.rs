@@ -29,7 +29,7 @@ pub enum Plane {
 pub(crate) struct Hooke {
     pub(crate) lame: Lame,
     /// What there is across the cell, if it does not fill space.
-    across: Plane,
+    pub(super) across: Plane,
 }
 
 impl Hooke {

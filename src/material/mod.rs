@@ -4,13 +4,16 @@ mod deformation;
 mod hooke;
 mod law;
 mod laws;
+mod response;
+mod substance;
 
 pub(crate) use deformation::Deformation;
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw, ViscousLaw};
 pub(crate) use laws::{Elastic, Linear, ObjectiveViscosity, with_law};
-pub use laws::{Strain, Viscosity};
+pub use laws::{Law, Strain, Viscosity};
+pub use substance::Substance;
 
 use crate::input::{InputError, not_negative, positive};
 

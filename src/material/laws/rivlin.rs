@@ -1,0 +1,403 @@
+//! Rubber: a polynomial in the invariants of the deformation without its change of volume, and a resistance to that.
+
+#![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
+
+use crate::material::deformation::Deformation;
+use crate::material::hooke::Plane;
+use crate::material::law::{Blocks, ElasticLaw};
+use crate::material::response::{Elasticity, Response, Tangent, axes};
+use crate::tensor::{Matrix, Real, inverse_cube_root, product, symmetric, times, trace};
+
+/// W = c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3 + c01 (I2 - 3) + (kappa/4) (J^2 - 1 - 2 ln J), with the invariants
+/// I1 and I2 of J^(-2/3) C: neo-Hookean with c10 alone, Mooney-Rivlin with c01, Yeoh with c20 and c30
+/// (G. A. Holzapfel, *Nonlinear Solid Mechanics*, chapter 6; the part of the volume: J. C. Simo, R. L. Taylor,
+/// Computer Methods in Applied Mechanics and Engineering 85 (1991) 273-310).
+///
+/// All is written by G = 2 E = C - I, so that small strains keep their digits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Rivlin {
+    /// c10, c20, c30 (Pa)
+    pub(super) first: [f64; 3],
+    /// c01 (Pa)
+    pub(super) second: f64,
+    /// kappa (Pa)
+    pub(super) bulk: f64,
+    /// What there is across a cell that does not fill space.
+    pub(super) across: Plane,
+}
+
+/// How a point is strained, with what is across the cell.
+struct Strained<T, const M: usize> {
+    /// G along the cell.
+    along: Matrix<T, M, M>,
+    /// G across it, in 3 - M directions; 0 of solids.
+    across: T,
+    /// C^-1 along the cell and across it.
+    inverse: Matrix<T, M, M>,
+    inverse_across: T,
+    /// Invariants of G: its trace, the sum of its principal minors, its determinant.
+    invariants: [T; 3],
+    /// J^2 - 1
+    swelling: T,
+    /// J^(-2/3)
+    shrink: T,
+}
+
+/// Directions across a cell of dimension `M`.
+const fn directions<const M: usize>() -> f64 {
+    (3 - M) as f64
+}
+
+impl Rivlin {
+    #[inline(always)]
+    fn strained<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> Strained<T, M> {
+        let along = at.twice_green();
+        let across = match M {
+            3 => along[0][0].constant(0.0),
+            2 if self.across == Plane::Strain => along[0][0].constant(0.0),
+            _ => self.free_across(&along),
+        };
+        Strained::new(along, across)
+    }
+
+    /// G across a cell that is free to change its thickness: where there is no stress.
+    #[inline(always)]
+    fn free_across<T: Real, const M: usize>(&self, along: &Matrix<T, M, M>) -> T {
+        let [trace, minors, _] = invariants_of(along);
+        let [across] =
+            T::each([trace, minors], |[trace, minors]| [self.without_stress::<M>(trace, minors)]);
+        across
+    }
+
+    /// G across a cell of `M` dimensions with these invariants of G along it, by Newton's method in ln C across; NaN if there
+    /// is none.
+    fn without_stress<const M: usize>(&self, trace: f64, minors: f64) -> f64 {
+        /// More than strains of any size take.
+        const MOST: usize = 100;
+        let m = directions::<M>();
+        // a diagonal G with the same invariants: those of J and of C are the same
+        let area = 1.0 + trace + minors;
+        // as if the volume did not change
+        let mut c = area.powf(-1.0 / m);
+        for _ in 0..MOST {
+            let volume = area * c.powf(m);
+            let i1 = 2.0 * f64::from(M == 2) + f64::from(M == 1) + trace + m * c;
+            let of_plane = if M == 2 { 1.0 + trace + minors } else { 0.0 };
+            let in_plane = i1 - m * c;
+            let i2 = of_plane + m * c * in_plane + if M == 1 { c * c } else { 0.0 };
+            let r = volume.powf(-1.0 / 3.0);
+            let [w1, w11] = self.slopes(r * i1 - 3.0);
+            // c dI/dc of the invariants without volume, by one direction across: x, y; times 2 is S c
+            let x = r * (c - i1 / 3.0);
+            let y = r * r * (i1 * c - c * c - 2.0 / 3.0 * i2);
+            let stress = 2.0 * (w1 * x + self.second * y) + 0.5 * self.bulk * (volume - 1.0);
+            // derivatives by ln c, all directions across together
+            let di1 = m * c;
+            let di2 = m * c * in_plane + if M == 1 { 2.0 * c * c } else { 0.0 };
+            let dr = -m / 3.0 * r;
+            let dx = dr * (c - i1 / 3.0) + r * (c - di1 / 3.0);
+            let dy = 2.0 * dr * r * (i1 * c - c * c - 2.0 / 3.0 * i2)
+                + r * r * (di1 * c + i1 * c - 2.0 * c * c - 2.0 / 3.0 * di2);
+            let slope = 2.0 * (w1 * dx + w11 * (dr * i1 + r * di1) * x + self.second * dy)
+                + 0.5 * self.bulk * m * volume;
+            let change = stress / slope;
+            c *= (-change.clamp(-1.0, 1.0)).exp();
+            if change.abs() < 1e-15 {
+                return c - 1.0;
+            }
+        }
+        f64::NAN
+    }
+
+    /// Derivatives of W by I1, the first and the second, at I1 - 3.
+    #[inline(always)]
+    fn slopes<T: Real>(&self, above: T) -> [T; 2] {
+        let [c10, c20, c30] = self.first;
+        [(above * (3.0 * c30) + 2.0 * c20) * above + c10, above * (6.0 * c30) + 2.0 * c20]
+    }
+}
+
+impl<T: Real, const M: usize> Strained<T, M> {
+    #[inline(always)]
+    fn new(along: Matrix<T, M, M>, across: T) -> Self {
+        let m = directions::<M>();
+        let [trace, minors, determinant] = invariants_of(&along);
+        let area = trace + minors + determinant;
+        let mut invariants = [trace, minors, determinant];
+        let mut swelling = area;
+        if M < 3 {
+            invariants[0] = trace + across * m;
+            invariants[1] = minors + across * trace * m;
+            invariants[2] = across * minors;
+            swelling = area + across + area * across;
+        }
+        if M == 1 {
+            invariants[1] += across * across;
+            invariants[2] = across * across * trace;
+            swelling = swelling + across + swelling * across;
+        }
+        let inverse = inverse_of(&along, area + 1.0);
+        let one = across.constant(1.0);
+        let inverse_across = one / (across + 1.0);
+        let shrink = inverse_cube_root(swelling + 1.0);
+        Self { along, across, inverse, inverse_across, invariants, swelling, shrink }
+    }
+
+    /// I1 - 3 and I2 - 3 of what is left without the change of volume: differences of what is small of second order.
+    #[inline(always)]
+    fn above_rest(&self) -> [T; 2] {
+        let [g, minors, determinant] = self.invariants;
+        let one = g.constant(1.0);
+        // s = J^(2/3), and s - 1 = (s^3 - 1) / (1 + s + s^2)
+        let s = self.shrink * self.shrink * (self.swelling + 1.0);
+        let whole = s * s + s + 1.0;
+        let more = self.swelling / whole;
+        let first = g * more * (s + 2.0) - (minors + determinant) * 3.0;
+        let second = g * more * (s * 2.0 + 1.0) + minors * (s * (s + -2.0) + -2.0)
+            - determinant * (s + 1.0) * 3.0;
+        let share = one / whole * self.shrink;
+        [first * share, second * share * self.shrink]
+    }
+
+    /// C (the first invariant of which is trace + 3) times the derivative of I1 by C, over J^(-2/3), at the component `g` of G
+    /// on the diagonal: g - tr(G) / 3.
+    #[inline(always)]
+    fn first_slope(&self, of: T) -> T {
+        of - self.invariants[0] * (1.0 / 3.0)
+    }
+
+    /// The same for I2 over J^(-4/3), with the square of that component of G.
+    #[inline(always)]
+    fn second_slope(&self, of: T, square: T) -> T {
+        let [trace, minors, _] = self.invariants;
+        (trace + 1.0) * of - square - (trace + minors * 2.0) * (1.0 / 3.0)
+    }
+}
+
+/// Trace, sum of the principal minors and determinant of a symmetric matrix; what a small one does not have is 0.
+#[inline(always)]
+fn invariants_of<T: Real, const M: usize>(g: &Matrix<T, M, M>) -> [T; 3] {
+    let zero = g[0][0].constant(0.0);
+    match M {
+        1 => [g[0][0], zero, zero],
+        2 => [trace(g), minor(g, 0, 1), zero],
+        _ => {
+            let minors = minor(g, 0, 1) + minor(g, 0, 2) + minor(g, 1, 2);
+            [trace(g), minors, crate::tensor::determinant(g)]
+        }
+    }
+}
+
+#[inline(always)]
+fn minor<T: Real, const M: usize>(g: &Matrix<T, M, M>, j: usize, k: usize) -> T {
+    g[j][j] * g[k][k] - g[j][k] * g[j][k]
+}
+
+/// C^-1 of C = I + G, which has the determinant `area`.
+#[inline(always)]
+fn inverse_of<T: Real, const M: usize>(g: &Matrix<T, M, M>, area: T) -> Matrix<T, M, M> {
+    let one = area.constant(1.0);
+    let share = one / area;
+    let mut c = *g;
+    for j in 0..M {
+        c[j][j] = c[j][j] + 1.0;
+    }
+    symmetric!(one; j, k => match (M, j == k) {
+        (1, _) => share,
+        (2, true) => c[1 - j][1 - j] * share,
+        (2, false) => c[j][k] * share * -1.0,
+        _ => {
+            let (j1, j2, k1, k2) = ((j + 1) % M, (j + 2) % M, (k + 1) % M, (k + 2) % M);
+            (c[j1][k1] * c[j2][k2] - c[j1][k2] * c[j2][k1]) * share
+        }
+    })
+}
+
+impl Rivlin {
+    #[inline(always)]
+    fn second_piola<T: Real, const M: usize>(
+        &self,
+        at: &Strained<T, M>,
+        weight: T,
+    ) -> Matrix<T, M, M> {
+        let [above, _] = at.above_rest();
+        let [w1, _] = self.slopes(above);
+        let square = product(&at.along, &at.along);
+        let first = at.shrink * w1 * 2.0;
+        let second = at.shrink * at.shrink * (2.0 * self.second);
+        let zero = weight.constant(0.0);
+        let volume = at.swelling * (0.5 * self.bulk);
+        // (first part + volume I) in the product with C^-1
+        let (first_rest, second_rest) = (at.first_slope(zero), at.second_slope(zero, zero));
+        let second_share = at.invariants[0] + 1.0;
+        let inner: Matrix<T, M, M> = symmetric!(zero; j, k => {
+            let g = at.along[j][k];
+            let sum = first * g + second * (second_share * g - square[j][k]);
+            match j == k {
+                true => sum + first * first_rest + second * second_rest + volume,
+                false => sum,
+            }
+        });
+        let stress = product(&at.inverse, &inner);
+        times(symmetric!(zero; j, k => stress[j][k]), weight)
+    }
+
+    #[inline(always)]
+    fn response<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> Response<T, M> {
+        let zero = at.swelling.constant(0.0);
+        let one = at.swelling.constant(1.0);
+        let [above, _] = at.above_rest();
+        let [w1, w11] = self.slopes(above);
+        let (r, r2) = (at.shrink, at.shrink * at.shrink);
+        let (i1, i2) = (at.invariants[0] + 3.0, at.invariants[0] * 2.0 + at.invariants[1] + 3.0);
+        // dI1/dC along the cell and across it
+        let mut inner = at.along;
+        let rest = at.first_slope(zero);
+        for j in 0..M {
+            inner[j][j] += rest;
+        }
+        let slope = times(product(&at.inverse, &inner), r);
+        let slope_across = at.first_slope(at.across) * at.inverse_across * r;
+        // factors of C^-1 (x) C^-1, of the product of C^-1 with itself that is symmetric in all pairs, of I (x) I less the
+        // identity, and the tensor P in C^-1 (x) P + P (x) C^-1
+        let dyadic = (w1 * r * i1 * (1.0 / 9.0) + r2 * i2 * (self.second * 4.0 / 9.0)) * 4.0
+            + (at.swelling + 1.0) * self.bulk;
+        let turned = (w1 * r * i1 * (1.0 / 3.0) + r2 * i2 * (self.second * 2.0 / 3.0)) * 4.0
+            - at.swelling * self.bulk;
+        let mixed = r2 * (4.0 * self.second);
+        let of_one = w1 * r * (-4.0 / 3.0) - r2 * i1 * (self.second * 8.0 / 3.0);
+        let of_c = r2 * (self.second * 8.0 / 3.0);
+        let mut p = times(at.along, of_c);
+        for j in 0..M {
+            p[j][j] = p[j][j] + of_one + of_c;
+        }
+        let p_across = of_one + of_c * (at.across + 1.0);
+        let curved = w11 * 4.0;
+
+        let delta = |j: usize, k: usize| if j == k { one } else { zero };
+        let ci = &at.inverse;
+        let mut elasticity: Elasticity<T> = [[zero; 6]; 6];
+        for v in 0..M * (M + 1) / 2 {
+            let (j, l) = axes::<M>(v);
+            for w in 0..=v {
+                let (k, n) = axes::<M>(w);
+                let pairs = (ci[j][k] * ci[l][n] + ci[j][n] * ci[l][k]) * 0.5;
+                let units = (delta(j, k) * delta(l, n) + delta(j, n) * delta(l, k)) * 0.5;
+                elasticity[v][w] = dyadic * ci[j][l] * ci[k][n]
+                    + turned * pairs
+                    + ci[j][l] * p[k][n]
+                    + p[j][l] * ci[k][n]
+                    + mixed * (delta(j, l) * delta(k, n) - units)
+                    + curved * slope[j][l] * slope[k][n];
+                elasticity[w][v] = elasticity[v][w];
+            }
+        }
+        let is_free = M == 1 || M == 2 && self.across == Plane::Stress;
+        if is_free {
+            let ca = at.inverse_across;
+            let both =
+                dyadic * ca * ca + p_across * ca * 2.0 + curved * slope_across * slope_across;
+            // M = 1: two directions, which change alike
+            let mut own = both + turned * ca * ca;
+            if M == 1 {
+                own = own + both + mixed;
+            }
+            let mut with = [zero; 6];
+            for v in 0..M * (M + 1) / 2 {
+                let (j, l) = axes::<M>(v);
+                with[v] = dyadic * ci[j][l] * ca
+                    + ci[j][l] * p_across
+                    + p[j][l] * ca
+                    + mixed * delta(j, l)
+                    + curved * slope[j][l] * slope_across;
+            }
+            let share = one * directions::<M>() / own;
+            for v in 0..M * (M + 1) / 2 {
+                for w in 0..M * (M + 1) / 2 {
+                    elasticity[v][w] = elasticity[v][w] - with[v] * with[w] * share;
+                }
+            }
+        }
+        Response { stress: self.second_piola(at, one), elasticity }
+    }
+}
+
+impl ElasticLaw for Rivlin {
+    #[inline(always)]
+    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        let strained = self.strained(at);
+        let [first, second] = strained.above_rest();
+        let [c10, c20, c30] = self.first;
+        let [volume] = T::each([strained.swelling], |[x]| [less_logarithm(x)]);
+        ((first * c30 + c20) * first + c10) * first
+            + second * self.second
+            + volume * (0.25 * self.bulk)
+    }
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        weight: T,
+    ) -> Matrix<T, D, M> {
+        product(&at.gradient(), &self.second_piola(&self.strained(at), weight))
+    }
+
+    #[inline(always)]
+    fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Blocks<T, D> {
+        Tangent::new(&at.gradient(), &self.response(&self.strained(at)), gradients, weight)
+    }
+
+    #[inline(always)]
+    fn across<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> [T; 2] {
+        let strained = self.strained(at);
+        let zero = strained.across.constant(0.0);
+        if M != 2 || self.across == Plane::Stress {
+            return [strained.across * 0.5, zero];
+        }
+        let [above, _] = strained.above_rest();
+        let [w1, _] = self.slopes(above);
+        let stress = w1 * strained.shrink * strained.first_slope(zero) * 2.0
+            + strained.shrink
+                * strained.shrink
+                * strained.second_slope(zero, zero)
+                * (2.0 * self.second)
+            + strained.swelling * (0.5 * self.bulk);
+        [zero, stress]
+    }
+
+    #[inline(always)]
+    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        let stretch = at.stretch();
+        match M == 1 || M == 2 && self.across == Plane::Stress {
+            true => stretch * (self.strained(at).across + 1.0),
+            false => stretch,
+        }
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        format!(
+            "is inverted, det F = {domain:.3}: rubber cannot be pressed to nothing; load it less, or refine the mesh there"
+        )
+    }
+}
+
+/// x - ln(1 + x), to all digits where x is small.
+fn less_logarithm(x: f64) -> f64 {
+    // ln(1 + x) = 2 artanh z
+    let z = x / (2.0 + x);
+    if z.abs() > 0.1 {
+        return x - x.ln_1p();
+    }
+    let square = z * z;
+    let rest = (0..8).rev().fold(0.0, |sum, k| sum * square + 1.0 / f64::from(2 * k + 3));
+    x * z - 2.0 * z * square * rest
+}
