@@ -2,13 +2,14 @@
 
 use super::contents::AutoRequest;
 use super::keys::{AUTO, Holds, Key, TableKeys};
+use super::material::{MATERIAL, substance};
 use super::mesh::{self, MESH};
 use super::selection::{CORNERS, corners};
 use super::value::Value;
 use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
 use crate::error::Error;
 use crate::input::positive;
-use crate::material::{Material, Plane};
+use crate::material::{Plane, Substance};
 use crate::mesh::Mesh;
 use crate::scene::Scene;
 
@@ -27,8 +28,8 @@ pub(super) const BODY: TableKeys = TableKeys::new(
             "the measure of strain",
         )
         .law(
-            "Cauchy's is linear, right while no cell turns by more than some degrees; Green's follows any rotation \
-             (St. Venant-Kirchhoff); `auto` is Green's, and the report tells whether Cauchy's would do.",
+            "Cauchy's is linear, right while no cell turns by more than some degrees; Green's follows any rotation, \
+             with the law of the material; `auto` is Green's, and the report tells whether Cauchy's would do.",
         )
         .default("auto"),
         Key::new(
@@ -70,20 +71,6 @@ const INERTIA: [(&str, Inertia); 2] =
     [("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)];
 const PLANE: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
 
-const MATERIAL: TableKeys = TableKeys::new(
-    "material",
-    "An isotropic viscoelastic material: Lamé's parameters follow from `young` and `poisson`, and those of \
-     viscosity from `viscosity` and `poisson` in the same way.",
-    &[
-        Key::number("density", "the density", "kg/m^3").default(OF_BODY),
-        Key::number("young", "Young's modulus", "Pa").default(OF_BODY),
-        Key::number("poisson", "Poisson's ratio, below 0.5", "1").default(OF_BODY),
-        Key::number("viscosity", "the viscous modulus", "Pa s").default(OF_BODY),
-    ],
-    "material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
-);
-const OF_BODY: &str = "required; in a region, that of the body";
-
 const REGION: TableKeys = TableKeys::new(
     "[[body.region]]",
     "A part of the body with a material of its own.",
@@ -122,7 +109,7 @@ pub(super) fn body(
 ) -> Result<Body, Error> {
     let table = value.table(&BODY)?;
     let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension))?;
-    let material = table.required("material", |value| material(value, None))?;
+    let material = table.required("material", |value| substance(value, None))?;
     let mut body = Body::new(mesh.clone(), material);
     if let Some(thickness) = table.optional("thickness", Value::number)? {
         body = body.thickness(thickness);
@@ -164,28 +151,11 @@ pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error>
     table.required("mesh", |value| mesh::on_finer_mesh(scene, value))
 }
 
-/// A material; keys that are missing are those of `base`, if there is one.
-fn material(value: &Value, base: Option<Material>) -> Result<Material, Error> {
-    let table = value.table(&MATERIAL)?;
-    let number = |key: &str, base: Option<f64>| match base {
-        Some(base) => Ok(table.optional(key, Value::number)?.unwrap_or(base)),
-        None => table.required(key, Value::number),
-    };
-    let material = Material {
-        density: number("density", base.map(|m| m.density))?,
-        young: number("young", base.map(|m| m.young))?,
-        poisson: number("poisson", base.map(|m| m.poisson))?,
-        viscosity: number("viscosity", base.map(|m| m.viscosity))?,
-    };
-    material.validate().map_err(|error| table.blame(error))?;
-    Ok(material)
-}
-
 fn add_regions(
     mut body: BodyBuilder,
     regions: &Value,
     mesh: &Mesh,
-    base: Material,
+    base: Substance,
 ) -> Result<BodyBuilder, Error> {
     for table in regions.tables(&REGION)? {
         table.optional("name", Value::string)?;
@@ -205,7 +175,7 @@ fn add_regions(
                 checked(value, CellSelection::Box { min, max })
             })?,
         };
-        let material = table.required("material", |value| self::material(value, Some(base)))?;
+        let material = table.required("material", |value| substance(value, Some(base)))?;
         body = body.region(cells, material);
     }
     Ok(body)

@@ -41,6 +41,7 @@ mod body;
 mod contents;
 mod initial;
 mod keys;
+mod material;
 mod mesh;
 mod overrides;
 mod phase;

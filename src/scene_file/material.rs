@@ -1,0 +1,146 @@
+//! `material`, of the body or of a region, and its `law`.
+
+use super::keys::{Holds, Key, Kind, TableKeys};
+use super::table::Table;
+use super::value::Value;
+use crate::error::Error;
+use crate::material::{Law, Material, Substance};
+
+pub(super) const MATERIAL: TableKeys = TableKeys::new(
+    "material",
+    "An isotropic viscoelastic material: Lamé's parameters follow from `young` and `poisson`, and those of \
+     viscosity from `viscosity` and `poisson` in the same way.",
+    &[
+        Key::number("density", "the density", "kg/m^3").default(OF_BODY),
+        Key::number("young", "Young's modulus at small strains", "Pa")
+            .law("It follows from the constants of a law that has them.")
+            .default(OF_BODY),
+        Key::number("poisson", "Poisson's ratio at small strains, below 0.5", "1")
+            .law("It follows from the law's `bulk`, if that is given.")
+            .default(OF_BODY),
+        Key::number("viscosity", "the viscous modulus", "Pa s").default(OF_BODY),
+        Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains")
+            .default("as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's"),
+    ],
+    "material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
+);
+const OF_BODY: &str = "required; in a region, that of the body";
+
+const LAW: TableKeys = TableKeys::new(
+    "law",
+    "The strain energy W per natural volume of a body with Green's strain. I1 and I2 are the invariants of J^(-2/3) C, J the \
+     change of volume, and U = (kappa/4) (J^2 - 1 - 2 ln J) resists that. Bodies in plane strain, in plane stress, membranes and strings take the \
+     same laws; where there is no stress across a cell, its thickness follows from that.",
+    &[],
+    "material = { density = 1070.0, poisson = 0.49, viscosity = 0.0, law = { kind = \"mooney-rivlin\", c1 = 4.0e4, c2 = 1.0e4 } }",
+)
+.kinds(&[
+    Kind {
+        word: "st-venant-kirchhoff",
+        about: "Hooke's law for Green's strain: for small strains and any rotation; it softens under compression, and collapses",
+        keys: &[],
+    },
+    Kind {
+        word: "neo-hookean",
+        about: "W = c1 (I1 - 3) + U, c1 = mu/2: rubber and silicone up to a strain of a half",
+        keys: &[],
+    },
+    Kind {
+        word: "mooney-rivlin",
+        about: "W = c1 (I1 - 3) + c2 (I2 - 3) + U: rubber up to a strain of one; mu = 2 (c1 + c2)",
+        keys: &[C1, Key::number("c2", "the constant of I2", "Pa").required(), BULK],
+    },
+    Kind {
+        word: "yeoh",
+        about: "W = c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3 + U: rubber that stiffens before it tears; mu = 2 c1",
+        keys: &[
+            C1,
+            Key::number("c2", "the constant of (I1 - 3)^2", "Pa").required(),
+            Key::number("c3", "the constant of (I1 - 3)^3", "Pa").required(),
+            BULK,
+        ],
+    },
+]);
+const C1: Key = Key::number("c1", "the constant of I1", "Pa").required();
+const BULK: Key =
+    Key::number("bulk", "the bulk modulus kappa", "Pa").default("that of `poisson`");
+
+/// A law as a file has it, with the moduli (Pa) at small strains that follow from its constants.
+struct Constants {
+    law: Law,
+    shear: Option<f64>,
+    bulk: Option<f64>,
+}
+
+/// What the table `value` describes; keys that are missing are those of `base`, if there is one.
+pub(super) fn substance(value: &Value, base: Option<Substance>) -> Result<Substance, Error> {
+    let table = value.table(&MATERIAL)?;
+    let number = |key: &str, base: Option<f64>| match base {
+        Some(base) => Ok(table.optional(key, Value::number)?.unwrap_or(base)),
+        None => table.required(key, Value::number),
+    };
+    let known = base.map(|base| base.material);
+    let constants = table.optional("law", law)?;
+    let (shear, bulk) = constants.as_ref().map_or((None, None), |law| (law.shear, law.bulk));
+    for (key, modulus, by) in
+        [("young", shear, "the constants of the law"), ("poisson", bulk, "the `bulk` of the law")]
+    {
+        if let (Some(value), Some(_)) = (table.get(key), modulus) {
+            return Err(value.error(format!("it follows from {by}: leave one of them out")));
+        }
+    }
+    let density = number("density", known.map(|m| m.density))?;
+    let viscosity = number("viscosity", known.map(|m| m.viscosity))?;
+    let material = match (shear, bulk) {
+        (Some(shear), Some(bulk)) => Material::of_moduli(density, shear, bulk, viscosity),
+        _ => {
+            let poisson = number("poisson", known.map(|m| m.poisson))?;
+            let young = match shear {
+                Some(shear) => 2.0 * (1.0 + poisson) * shear,
+                None => number("young", known.map(|m| m.young))?,
+            };
+            Material { density, young, poisson, viscosity }
+        }
+    };
+    let law = constants.map(|law| law.law).or(base.and_then(|base| base.law));
+    let substance = Substance { material, law };
+    substance.validate().map_err(|error| table.blame(error))?;
+    Ok(substance)
+}
+
+fn law(value: &Value) -> Result<Constants, Error> {
+    let table = value.table(&LAW)?;
+    let number = |key: &str| table.required(key, Value::number);
+    let (law, shear) = match table.kind() {
+        "st-venant-kirchhoff" => (Law::StVenantKirchhoff, None),
+        "neo-hookean" => (Law::NeoHookean, None),
+        "mooney-rivlin" => {
+            let (c1, c2) = (number("c1")?, number("c2")?);
+            positive(&table, "c1 + c2", c1 + c2)?;
+            (Law::MooneyRivlin { second: c2 / (c1 + c2) }, Some(2.0 * (c1 + c2)))
+        }
+        _ => {
+            let c1 = number("c1")?;
+            positive(&table, "c1", c1)?;
+            let law = Law::Yeoh { second: number("c2")? / c1, third: number("c3")? / c1 };
+            (law, Some(2.0 * c1))
+        }
+    };
+    law.validate().map_err(|error| table.error(error))?;
+    let bulk = match shear {
+        Some(_) => table.optional("bulk", Value::number)?,
+        None => None,
+    };
+    if let Some(bulk) = bulk {
+        // Poisson's ratio above -1
+        positive(&table, "bulk", bulk)?;
+    }
+    Ok(Constants { law, shear, bulk })
+}
+
+fn positive(table: &Table<'_>, name: &str, value: f64) -> Result<(), Error> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(table.error(format!("{name} = {value:e} Pa: it has to be above 0"))),
+    }
+}
