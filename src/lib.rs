@@ -102,7 +102,9 @@ mod vector;
 mod wide;
 
 #[cfg(feature = "bodies")]
-pub use body::{Body, CellField, CellSelection, Inertia, NodalField, Strain, Viscosity};
+pub use body::{
+    Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Strain, Viscosity,
+};
 #[cfg(feature = "bodies")]
 pub use constraint::{Axis, Prescribed};
 #[cfg(feature = "bodies")]

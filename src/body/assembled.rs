@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::assembly::Elements;
+use super::dilatation::Dilatation;
 use super::elastic::{Elastic, LinearByCells};
 use super::fields::{CellField, NodalField, Probe, nodal_fields};
 use super::forces::Terms;
@@ -13,7 +14,7 @@ use super::regions::Regions;
 use crate::element::shares_at;
 use crate::force::NodalForces;
 use crate::input::{InputError, finite};
-use crate::material::{Hooke, Lame, Material, Plane, Strain, Viscosity};
+use crate::material::{self, Hooke, Lame, Law, Linear, Material, Plane, Strain, Viscosity};
 use crate::mesh::{CellKind, Mesh};
 use crate::ode::Failure;
 use crate::sparse::{BlockMatrix, NodeMatrix};
@@ -90,6 +91,17 @@ impl Body {
         self.recipe.inertia
     }
 
+    /// Where it resists a change of its volume.
+    pub fn dilatation(&self) -> Dilatation {
+        self.recipe.dilatation
+    }
+
+    /// The laws of its materials at large strains, where they have one of their own.
+    pub(crate) fn laws(&self) -> impl Iterator<Item = Option<Law>> {
+        let regions = self.recipe.regions.iter().map(|(_, region)| region.law);
+        std::iter::once(self.recipe.material.law).chain(regions)
+    }
+
     /// Number of regions that were given.
     #[cfg(feature = "study")]
     pub(crate) fn region_count(&self) -> usize {
@@ -135,7 +147,7 @@ impl Body {
     /// The connection matrices J_lambda and J_mu: geometry only (slides, "stiffness matrix").
     pub fn connection_matrices(&self) -> [BlockMatrix; 2] {
         [Lame { lambda: 1.0, mu: 0.0 }, Lame { lambda: 0.0, mu: 1.0 }].map(|unit| {
-            let unit = Hooke::new(unit, 3, Plane::Strain);
+            let unit = material::Elastic::Linear(Linear(Hooke::new(unit, 3, Plane::Strain)));
             let mut matrix = BlockMatrix::zeros(self.stiffness.pattern(), self.dimension());
             self.elements.add_stiffness(&self.regions, &|_| unit, &mut matrix);
             matrix

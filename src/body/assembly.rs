@@ -23,15 +23,17 @@ impl<T: Masses + Forces + Tangents + Fields + Recovery + Send + Sync> Elements f
 pub(super) fn elements(
     mesh: &Mesh,
     section: f64,
+    mean_dilatation: bool,
     pattern: &NodePattern,
 ) -> Result<Box<dyn Elements>, InputError> {
-    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section, pattern))
+    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section, mean_dilatation, pattern))
 }
 
 fn of<C: ReferenceCell<N, M>, const N: usize, const M: usize, const D: usize, const Q: usize>(
     mesh: &Mesh,
     section: f64,
+    mean_dilatation: bool,
     pattern: &NodePattern,
 ) -> Result<Box<dyn Elements>, InputError> {
-    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, pattern)?))
+    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, mean_dilatation, pattern)?))
 }

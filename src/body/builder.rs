@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::assembled::Body;
 use super::assembly::elements;
+use super::dilatation::Dilatation;
 use super::inertia::Inertia;
 use super::recipe::Recipe;
 use super::regions::{CellSelection, Regions};
@@ -79,6 +80,13 @@ impl BodyBuilder {
         self
     }
 
+    /// What resists a change of volume: at each point (default), or in the mean over each cell, which does not lock where
+    /// the body is nearly incompressible.
+    pub fn dilatation(mut self, dilatation: Dilatation) -> Self {
+        self.recipe.dilatation = dilatation;
+        self
+    }
+
     /// The mesh, without point masses.
     pub(crate) fn own_mesh(&self) -> &Mesh {
         &self.mesh
@@ -131,13 +139,14 @@ impl BodyBuilder {
         }
 
         let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
-        let elements = elements(&mesh, section, &pattern)?;
+        let mean = recipe.dilatation.is_mean(mesh.kind(), mesh.dimension(), plane)?;
+        let elements = elements(&mesh, section, mean, &pattern)?;
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();
         elements.add_inertia(&regions, recipe.inertia, &mut inertia);
-        elements.add_stiffness(&regions, &|laws| laws.hooke, &mut stiffness);
-        elements.add_stiffness(&regions, &|laws| laws.viscous.0, &mut damping);
+        elements.add_stiffness(&regions, &|laws| laws.elastic, &mut stiffness);
+        elements.add_stiffness(&regions, &|laws| laws.natural_viscosity(), &mut damping);
         let first_point = mesh.node_count() - recipe.points.len();
         for (node, (_, _, mass)) in (first_point..).zip(&recipe.points) {
             inertia.add(node, node, *mass);
@@ -180,6 +189,7 @@ impl Body {
             viscosity: None,
             inertia: Inertia::default(),
             plane: Plane::default(),
+            dilatation: Dilatation::default(),
             thickness: None,
             area: None,
             points: Vec::new(),

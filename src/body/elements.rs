@@ -36,6 +36,8 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     /// For each cell, sum w N_a N_b (m^3).
     pub(super) products: Vec<[[f64; N]; N]>,
     pub(super) quadratic: bool,
+    /// Whether what resists a change of volume takes the mean of that over each cell.
+    pub(super) mean_dilatation: bool,
     pub(super) shares: Shares,
     pub(super) rows: Rows<N>,
 }
@@ -45,6 +47,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     pub(super) fn new<C: ReferenceCell<N, M>>(
         mesh: &Mesh,
         section: f64,
+        mean_dilatation: bool,
         pattern: &NodePattern,
     ) -> Result<Self, InputError> {
         const { assert!(C::STIFFNESS_RULE.len() == Q) };
@@ -88,6 +91,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             extrapolation: extrapolation::<C, N, M, Q>(),
             products,
             quadratic,
+            mean_dilatation,
             shares,
             rows,
         })

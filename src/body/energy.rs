@@ -7,7 +7,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, ElasticLaw, with_law};
+use crate::material::{Deformation, DilatationalLaw, ElasticLaw, with_law};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Strain energy (J), added up in the order of cells, whatever the machine computes at once.
@@ -16,7 +16,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let all = 0..self.nodes.len();
         regions.runs(&all).fold(0.0, |sum, (cells, laws)| {
             with_law!(&laws.elastic, law => {
-                Arch::new().dispatch(Pass { elements: self, cells, u, law, sum })
+                match self.mean_dilatation {
+                    true => Arch::new().dispatch(MeanPass(Pass { elements: self, cells, u, law, sum })),
+                    false => Arch::new().dispatch(Pass { elements: self, cells, u, law, sum }),
+                }
             })
         })
     }
@@ -39,22 +42,67 @@ impl<L: ElasticLaw, const N: usize, const M: usize, const D: usize, const Q: usi
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let Self { elements, cells, u, law, mut sum } = self;
+        let law = self.law;
+        self.add_up(simd, |points| {
+            let mut energy = Lane::splat(simd, 0.0);
+            for (volume, at) in points {
+                energy += *volume * law.energy(at);
+            }
+            energy
+        })
+    }
+}
+
+/// The same with the mean dilatation of each cell.
+struct MeanPass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize>(
+    Pass<'a, L, N, M, D, Q>,
+);
+
+impl<L: DilatationalLaw, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
+    for MeanPass<'_, L, N, M, D, Q>
+{
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let law = self.0.law;
+        self.0.add_up(simd, |points| {
+            let zero = Lane::splat(simd, 0.0);
+            let (mut energy, mut swelling, mut whole) = (zero, zero, zero);
+            for (volume, at) in points {
+                energy += *volume * law.energy_of_rest(at);
+                swelling += *volume * law.dilatation(at);
+                whole += *volume;
+            }
+            let [of_volume, ..] = law.of_volume(swelling / whole);
+            energy + of_volume * whole
+        })
+    }
+}
+
+impl<L, const N: usize, const M: usize, const D: usize, const Q: usize> Pass<'_, L, N, M, D, Q> {
+    /// The sum with what `of_cells` makes of the points of as many cells as a register holds.
+    #[inline(always)]
+    fn add_up<S: Simd>(
+        self,
+        simd: S,
+        of_cells: impl Fn(&[(Lane<S>, Deformation<Lane<S>, M, D>); Q]) -> Lane<S>,
+    ) -> f64 {
+        let Self { elements, cells, u, mut sum, .. } = self;
         let abreast = elements.abreast();
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
             let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
             let x = elements.gather(simd, start, u);
-            let mut energies = Lane::splat(simd, 0.0);
-            for point in &abreast[block] {
+            let energies = of_cells(&abreast[block].each_ref().map(|point| {
                 let point = point.lane(simd, part);
                 let h = gradient(1, &x, &point.gradients);
-                energies += point.volume * law.energy(&Deformation::new(point.frame, h));
-            }
-            let mut of_cells = [0.0; SIDE_BY_SIDE];
-            energies.store(&mut of_cells, 0);
+                (point.volume, Deformation::new(point.frame, h))
+            }));
+            let mut numbers = [0.0; SIDE_BY_SIDE];
+            energies.store(&mut numbers, 0);
             for cell in cells.start.max(start)..cells.end.min(start + S::F64_LANES) {
-                sum += of_cells[cell - start];
+                sum += numbers[cell - start];
             }
         }
         sum

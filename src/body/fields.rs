@@ -21,7 +21,7 @@ pub(super) use nodal::{Probe, nodal_fields};
 
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
-use crate::material::{Deformation, ElasticLaw, with_law};
+use crate::material::{Deformation, DilatationalLaw, with_law};
 use crate::vector::norm;
 
 /// Strain, stress and strain energy density of one cell: means over its natural volume.
@@ -91,7 +91,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField> {
         let of_cell = |cell| {
             with_law!(regions.of(cell).elastic, law => {
-                mean(self.deformed(cell, u).map(|(volume, at)| (volume, PointField::new(&law, &at))))
+                let pull = self.pull_on(&law, cell, u);
+                mean(self.deformed(cell, u).map(|(volume, at)| (volume, PointField::new(&law, &at, pull))))
             })
         };
         (0..self.nodes.len()).map(of_cell).collect()
@@ -106,8 +107,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Fields
     ) {
         let mut at_nodes = [Tensors::default(); N];
         with_law!(regions.of(cell).elastic, law => {
+            let pull = self.pull_on(&law, cell, u);
             for (q, (_, at)) in self.deformed(cell, u).enumerate() {
-                let PointField { tensors, .. } = PointField::new(&law, &at);
+                let PointField { tensors, .. } = PointField::new(&law, &at, pull);
                 for (sum, factors) in at_nodes.iter_mut().zip(&self.extrapolation) {
                     sum.add(&tensors, factors[q]);
                 }
@@ -169,6 +171,28 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
+/// What a mean dilatation says at the points of its cell.
+#[derive(Clone, Copy)]
+struct OfMean {
+    /// U' there, and U (J/m^3).
+    pull: f64,
+    energy: f64,
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// That of a cell, if its mean dilatation counts.
+    fn pull_on(&self, law: &impl DilatationalLaw, cell: usize, u: &[f64]) -> Option<OfMean> {
+        let of_mean = || {
+            let sums = self.deformed(cell, u).fold([0.0; 2], |[sum, whole], (volume, at)| {
+                [sum + volume * law.dilatation(&at), whole + volume]
+            });
+            let [energy, pull, _] = law.of_volume(sums[0] / sums[1]);
+            OfMean { pull, energy }
+        };
+        self.mean_dilatation.then(of_mean)
+    }
+}
+
 /// Strain and stress at a point, or a sum of them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Tensors {
@@ -196,9 +220,10 @@ struct PointField {
 }
 
 impl PointField {
-    fn new<L: ElasticLaw, const M: usize, const D: usize>(
+    fn new<L: DilatationalLaw, const M: usize, const D: usize>(
         law: &L,
         at: &Deformation<f64, M, D>,
+        mean: Option<OfMean>,
     ) -> Self {
         // where strains are small the present shape counts as the natural one
         let (twice_strain, shape, swelling) = match L::SMALL_STRAIN {
@@ -206,15 +231,21 @@ impl PointField {
             false => (at.twice_green(), at.gradient(), at.stretch()),
         };
         let strain = SMatrix::from(twice_strain) * 0.5;
-        let [strain_across, stress_across] = law.across(at);
+        let ([strain_across, stress_across], piola, energy_density) = match mean {
+            None => (law.across(at), law.stress(at, 1.0), law.energy(at)),
+            Some(OfMean { pull, energy }) => {
+                let stress = law.stress_under(at, pull, 1.0);
+                (law.across_under(at, pull), stress, law.energy_of_rest(at) + energy)
+            }
+        };
         let (frame, shape) =
             (in_space(&SMatrix::from(at.frame())), in_space(&SMatrix::from(shape)));
-        let piola = in_space(&SMatrix::from(law.stress(at, 1.0)));
+        let piola = in_space(&SMatrix::from(piola));
         let tensors = Tensors {
             strain: frame * strain * frame.transpose() + normal_part(&frame) * strain_across,
             stress: (piola * shape.transpose() + normal_part(&shape) * stress_across) / swelling,
         };
-        Self { tensors, energy_density: law.energy(at) }
+        Self { tensors, energy_density }
     }
 }
 

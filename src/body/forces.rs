@@ -22,7 +22,10 @@ use super::regions::{Laws, Regions};
 use super::rows;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, ElasticLaw, Hooke, Linear, ViscousLaw, with_law};
+use crate::material::{
+    Deformation, DilatationalLaw, ElasticLaw, Hooke, Linear, ObjectiveViscosity, ViscousLaw,
+    with_law,
+};
 use crate::ode::Failure;
 use crate::tensor::{Matrix, Real};
 
@@ -72,16 +75,18 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.elastic {
             self.share_out(&mut forces.conservative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    with_law!(laws.elastic, law => {
-                        self.add(cells, [u], first, forces, ElasticPull(&law))
+                    with_law!(laws.elastic, law => match self.mean_dilatation {
+                        true => self.add(cells, [u], first, forces, MeanPull(&law)),
+                        false => self.add(cells, [u], first, forces, ElasticPull(&law)),
                     })
                 })
             })?;
         }
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
-                regions.runs(run).try_for_each(|(cells, laws)| {
-                    self.add(cells, [u, v], first, forces, ViscousPull(&laws.viscous))
+                regions.runs(run).try_for_each(|(cells, laws)| match self.mean_dilatation {
+                    true => self.add(cells, [u, v], first, forces, MeanViscousPull(&laws.viscous)),
+                    false => self.add(cells, [u, v], first, forces, ViscousPull(&laws.viscous)),
                 })
             })?;
         }
@@ -179,12 +184,30 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 
 /// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
 trait Pull<const K: usize> {
-    /// P times the `volume` of the point.
+    /// Whether what resists a change of volume takes the mean of that over the cell.
+    const IS_MEAN: bool = false;
+
+    /// P times the `volume` of the point. `pull` is that of the mean dilatation, or any number if there is no such.
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
         point: (Matrix<T, D, M>, T),
         gradients: &[Matrix<T, D, M>; K],
+        pull: T,
     ) -> Matrix<T, D, M>;
+
+    /// The dilatation of a point, or the rate of it.
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        frame: Matrix<T, D, M>,
+        _gradients: &[Matrix<T, D, M>; K],
+    ) -> T {
+        frame[0][0].constant(0.0)
+    }
+
+    /// What pulls at all points of a cell of this mean dilatation.
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        dilatation
+    }
 
     /// A number above 0 where that has meaning.
     fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
@@ -204,8 +227,50 @@ impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
         &self,
         (frame, volume): (Matrix<T, D, M>, T),
         [h]: &[Matrix<T, D, M>; 1],
+        _pull: T,
     ) -> Matrix<T, D, M> {
         self.0.stress(&Deformation::new(frame, *h), volume)
+    }
+
+    #[inline(always)]
+    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        self.0.domain(at)
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        self.0.outside(domain)
+    }
+}
+
+/// With the mean dilatation of each cell.
+struct MeanPull<'l, L>(&'l L);
+
+impl<L: DilatationalLaw> Pull<1> for MeanPull<'_, L> {
+    const IS_MEAN: bool = true;
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        (frame, volume): (Matrix<T, D, M>, T),
+        [h]: &[Matrix<T, D, M>; 1],
+        pull: T,
+    ) -> Matrix<T, D, M> {
+        self.0.stress_under(&Deformation::new(frame, *h), pull, volume)
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        frame: Matrix<T, D, M>,
+        [h]: &[Matrix<T, D, M>; 1],
+    ) -> T {
+        self.0.dilatation(&Deformation::new(frame, *h))
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [_, pull, _] = self.0.of_volume(dilatation);
+        pull
     }
 
     #[inline(always)]
@@ -226,8 +291,41 @@ impl<L: ViscousLaw> Pull<2> for ViscousPull<'_, L> {
         &self,
         (frame, volume): (Matrix<T, D, M>, T),
         [h, rate]: &[Matrix<T, D, M>; 2],
+        _pull: T,
     ) -> Matrix<T, D, M> {
         self.0.stress(&Deformation::new(frame, *h), rate, volume)
+    }
+}
+
+/// With the mean rate of dilatation of each cell.
+struct MeanViscousPull<'l>(&'l ObjectiveViscosity);
+
+impl Pull<2> for MeanViscousPull<'_> {
+    const IS_MEAN: bool = true;
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        (frame, volume): (Matrix<T, D, M>, T),
+        [h, rate]: &[Matrix<T, D, M>; 2],
+        pull: T,
+    ) -> Matrix<T, D, M> {
+        self.0.stress_under(&Deformation::new(frame, *h), rate, pull, volume)
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        frame: Matrix<T, D, M>,
+        [h, rate]: &[Matrix<T, D, M>; 2],
+    ) -> T {
+        self.0.rate_of_dilatation(&Deformation::new(frame, *h), rate)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, rate: T) -> T {
+        let [pull, _] = self.0.of_volume(rate);
+        pull
     }
 }
 
@@ -258,6 +356,20 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
             for k in 0..K {
                 x[k] = elements.gather(simd, start, fields[k]);
             }
+            let mut pull_of_mean = zero;
+            if P::IS_MEAN {
+                let (mut sum, mut volume) = (zero, zero);
+                for point in &abreast[block] {
+                    let point = point.lane(simd, part);
+                    let mut gradients = [[[zero; D]; M]; K];
+                    for k in 0..K {
+                        gradients[k] = gradient(1, &x[k], &point.gradients);
+                    }
+                    sum += pull.dilatation(point.frame, &gradients) * point.volume;
+                    volume += point.volume;
+                }
+                pull_of_mean = pull.of_mean(sum / volume);
+            }
             let mut pulls = [[Lane::splat(simd, -0.0); D]; N];
             let mut is_inside = true;
             for point in &abreast[block] {
@@ -268,7 +380,7 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
                 }
                 is_inside &=
                     pull.domain(&Deformation::new(point.frame, gradients[0])).are_positive();
-                let stress = pull.stress((point.frame, point.volume), &gradients);
+                let stress = pull.stress((point.frame, point.volume), &gradients, pull_of_mean);
                 collect(&point.gradients, &stress, &mut pulls);
             }
             let active = cells.start.max(start)..cells.end.min(start + S::F64_LANES);

@@ -3,6 +3,7 @@
 mod assembled;
 mod assembly;
 mod builder;
+mod dilatation;
 mod elastic;
 mod elements;
 mod energy;
@@ -22,6 +23,7 @@ mod tests;
 
 pub use assembled::Body;
 pub use builder::BodyBuilder;
+pub use dilatation::Dilatation;
 pub(crate) use elastic::LinearByCells;
 pub(crate) use fields::von_mises;
 pub use fields::{CellField, NodalField};

@@ -1,5 +1,6 @@
 //! How a body is made of a mesh.
 
+use super::dilatation::Dilatation;
 use super::inertia::Inertia;
 use super::regions::CellSelection;
 use crate::input::{InputError, positive};
@@ -15,6 +16,7 @@ pub(super) struct Recipe {
     pub(super) viscosity: Option<Viscosity>,
     pub(super) inertia: Inertia,
     pub(super) plane: Plane,
+    pub(super) dilatation: Dilatation,
     pub(super) thickness: Option<f64>,
     pub(super) area: Option<f64>,
     pub(super) points: Vec<(String, Vec<f64>, f64)>,

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::input::InputError;
 use crate::material::{
-    Elastic, Hooke, Lame, Material, ObjectiveViscosity, Plane, Strain, Substance,
+    Elastic, Hooke, Lame, Linear, Material, ObjectiveViscosity, Plane, Strain, Substance,
 };
 use crate::mesh::Mesh;
 
@@ -103,6 +103,13 @@ pub(super) struct Laws {
     /// What the elastic law is at small strains.
     pub(super) hooke: Hooke,
     pub(super) viscous: ObjectiveViscosity,
+}
+
+impl Laws {
+    /// The law of the damping matrix B.
+    pub(super) fn natural_viscosity(&self) -> Elastic {
+        Elastic::Linear(Linear(self.viscous.0))
+    }
 }
 
 /// Which substance each cell is made of.

@@ -119,7 +119,7 @@ mod tests {
         mesh: &Mesh,
     ) {
         let pattern = NodePattern::new(mesh.node_count(), mesh.cells());
-        let mut elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, &pattern).unwrap();
+        let mut elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, false, &pattern).unwrap();
         let base = Material { viscosity: 3.0, ..SQUARE_MATERIAL };
         let stiff =
             (CellSelection::Numbers((13..=27).collect()), Material { young: 2e6, ..base }.into());

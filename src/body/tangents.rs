@@ -16,21 +16,22 @@ use super::forces::Terms;
 use super::regions::{Laws, Regions};
 use crate::lane::{Abreast, Lane, SIDE_BY_SIDE};
 use crate::material::{
-    Block, Blocks, Deformation, ElasticLaw, Hooke, Linear, ViscousLaw, with_law,
+    Block, Blocks, Deformation, DilatationalLaw, Elastic, ElasticLaw, ObjectiveViscosity,
+    ViscousLaw, with_law,
 };
 use crate::sparse::{BlockMatrix, Rows};
-use crate::tensor::{Matrix, Real};
+use crate::tensor::{Matrix, Real, product, times};
 
 #[cfg(test)]
 mod tests;
 
 /// Elements as matrices.
 pub(super) trait Tangents {
-    /// Adds sum w (lambda g_a g_b^T + mu ((g_a . g_b) I + g_b g_a^T)), `hooke` telling the constants.
+    /// Adds the tangents at rest of the law that `law` tells: sum w (lambda g_a g_b^T + mu ((g_a . g_b) I + g_b g_a^T)).
     fn add_stiffness(
         &self,
         regions: &Regions,
-        hooke: &dyn Fn(&Laws) -> Hooke,
+        law: &dyn Fn(&Laws) -> Elastic,
         stiffness: &mut BlockMatrix,
     );
 
@@ -52,21 +53,12 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
     fn add_stiffness(
         &self,
         regions: &Regions,
-        hooke: &dyn Fn(&Laws) -> Hooke,
+        law: &dyn Fn(&Laws) -> Elastic,
         stiffness: &mut BlockMatrix,
     ) {
-        let mut stiffness = stiffness.rows_mut::<D>();
-        for (cell, entries) in self.entries.iter().enumerate() {
-            let law = Linear(hooke(regions.of(cell)));
-            for point in self.points(cell) {
-                let rest = Deformation::new(point.frame, [[0.0; D]; M]);
-                let tangent = law.tangent(&rest, &point.gradients, point.volume);
-                for (a, b) in pairs::<N>() {
-                    if let Some(sum) = stiffness.block_mut(entries[a][b]) {
-                        add(sum, &tangent.block(a, b));
-                    }
-                }
-            }
+        let mut rows = stiffness.rows_mut::<D>();
+        for cell in 0..self.nodes.len() {
+            with_law!(law(regions.of(cell)), law => self.add_at_rest(cell, &law, &mut rows));
         }
     }
 
@@ -83,14 +75,23 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
             for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
                 if terms.elastic {
-                    with_law!(laws.elastic, law => {
-                        self.add_to(&mut stiffness, cells.clone(), [u], ElasticSlope(&law));
+                    with_law!(laws.elastic, law => match self.mean_dilatation {
+                        true => self.add_to(&mut stiffness, cells.clone(), [u], MeanSlope(&law)),
+                        false => self.add_to(&mut stiffness, cells.clone(), [u], ElasticSlope(&law)),
                     });
                 }
                 if terms.viscous {
                     let law = &laws.viscous;
-                    self.add_to(&mut damping, cells.clone(), [u], RateSlope(law));
-                    self.add_to(&mut stiffness, cells, [u, v], ViscousSlope(law));
+                    match self.mean_dilatation {
+                        true => {
+                            self.add_to(&mut damping, cells.clone(), [u], MeanRateSlope(law));
+                            self.add_to(&mut stiffness, cells, [u, v], MeanViscousSlope(law));
+                        }
+                        false => {
+                            self.add_to(&mut damping, cells.clone(), [u], RateSlope(law));
+                            self.add_to(&mut stiffness, cells, [u, v], ViscousSlope(law));
+                        }
+                    }
                 }
             }
         };
@@ -99,6 +100,32 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Adds the tangent at rest of one cell.
+    fn add_at_rest(&self, cell: usize, law: &impl DilatationalLaw, rows: &mut Rows<'_, D>) {
+        let entries = &self.entries[cell];
+        let (mut swelling, mut volume) = ([[0.0; D]; N], 0.0);
+        for point in self.points(cell) {
+            let rest = Deformation::new(point.frame, [[0.0; D]; M]);
+            if self.mean_dilatation {
+                let tangent = law.tangent_under(&rest, 0.0, &point.gradients, point.volume);
+                add_blocks(entries, rows, &tangent);
+                let by_nodes = law.swelling_by_nodes(&rest, &point.gradients, point.volume);
+                add(&mut swelling, &by_nodes);
+                volume += point.volume;
+            } else {
+                add_blocks(entries, rows, &law.tangent(&rest, &point.gradients, point.volume));
+            }
+        }
+        if self.mean_dilatation {
+            let [.., stiff] = law.of_volume(0.0);
+            add_blocks(
+                entries,
+                rows,
+                &OfMean { force: swelling, motion: swelling, share: stiff / volume },
+            );
+        }
+    }
+
     /// Adds the tangents of `cells`, cell after cell, to the rows of a matrix, by the `fields` that `slope` asks for.
     fn add_to<const K: usize>(
         &self,
@@ -116,13 +143,33 @@ trait Slope<const K: usize> {
     /// Whether the block of nodes b and a is that of a and b, transposed.
     const IS_SYMMETRIC: bool;
 
+    /// Whether what resists a change of volume takes the mean of that over the cell.
+    const IS_MEAN: bool = false;
+
     fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         fields: &[Matrix<T, D, M>; K],
         gradients: &[[T; M]; N],
         volume: T,
+        pull: T,
     ) -> impl Blocks<T, D>;
+
+    /// The dilatation of a point, how forces follow what pulls there, and how the dilatation follows the nodes, times its `volume`.
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        _at: &Deformation<T, M, D>,
+        _fields: &[Matrix<T, D, M>; K],
+        _gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        (volume, [[volume; D]; N], [[volume; D]; N])
+    }
+
+    /// What pulls at all points of a cell of this mean dilatation, and its derivative by that.
+    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
+        [dilatation; 2]
+    }
 }
 
 struct ElasticSlope<'l, L>(&'l L);
@@ -137,8 +184,67 @@ impl<L: ElasticLaw> Slope<1> for ElasticSlope<'_, L> {
         _: &[Matrix<T, D, M>; 1],
         gradients: &[[T; M]; N],
         volume: T,
+        _pull: T,
     ) -> impl Blocks<T, D> {
         self.0.tangent(at, gradients, volume)
+    }
+}
+
+/// With the mean dilatation of each cell.
+struct MeanSlope<'l, L>(&'l L);
+
+impl<L: DilatationalLaw> Slope<1> for MeanSlope<'_, L> {
+    const IS_SYMMETRIC: bool = true;
+    const IS_MEAN: bool = true;
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+        pull: T,
+    ) -> impl Blocks<T, D> {
+        self.0.tangent_under(at, pull, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let by_nodes = self.0.swelling_by_nodes(at, gradients, volume);
+        (self.0.dilatation(at) * volume, by_nodes, by_nodes)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
+        let [_, pull, stiff] = self.0.of_volume(dilatation);
+        [pull, stiff]
+    }
+}
+
+/// What a change of the mean dilatation adds: `share` times the product of how forces follow it and how it follows the nodes.
+struct OfMean<T, const N: usize, const D: usize> {
+    force: [[T; D]; N],
+    motion: [[T; D]; N],
+    share: T,
+}
+
+impl<T: Real, const N: usize, const D: usize> Blocks<T, D> for OfMean<T, N, D> {
+    #[inline(always)]
+    fn block(&self, a: usize, b: usize) -> Block<T, D> {
+        let mut block = [[self.share; D]; D];
+        for i in 0..D {
+            for k in 0..D {
+                block[i][k] = self.force[a][i] * self.motion[b][k] * self.share;
+            }
+        }
+        block
     }
 }
 
@@ -155,6 +261,7 @@ impl<L: ViscousLaw> Slope<1> for RateSlope<'_, L> {
         _: &[Matrix<T, D, M>; 1],
         gradients: &[[T; M]; N],
         volume: T,
+        _pull: T,
     ) -> impl Blocks<T, D> {
         self.0.rate_tangent(at, gradients, volume)
     }
@@ -173,8 +280,82 @@ impl<L: ViscousLaw> Slope<2> for ViscousSlope<'_, L> {
         [_, rate]: &[Matrix<T, D, M>; 2],
         gradients: &[[T; M]; N],
         volume: T,
+        _pull: T,
     ) -> impl Blocks<T, D> {
         self.0.tangent(at, rate, gradients, volume)
+    }
+}
+
+/// Both with the mean rate of dilatation of each cell.
+struct MeanRateSlope<'l>(&'l ObjectiveViscosity);
+struct MeanViscousSlope<'l>(&'l ObjectiveViscosity);
+
+impl Slope<1> for MeanRateSlope<'_> {
+    const IS_SYMMETRIC: bool = true;
+    const IS_MEAN: bool = true;
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+        _pull: T,
+    ) -> impl Blocks<T, D> {
+        self.0.rate_tangent_of_shear(at, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let force = times(product(&at.gradient(), gradients), volume);
+        (volume, force, force)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
+        self.0.of_volume(rate)
+    }
+}
+
+impl Slope<2> for MeanViscousSlope<'_> {
+    const IS_SYMMETRIC: bool = false;
+    const IS_MEAN: bool = true;
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+        gradients: &[[T; M]; N],
+        volume: T,
+        pull: T,
+    ) -> impl Blocks<T, D> {
+        self.0.tangent_under(at, rate, pull, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let force = times(product(&at.gradient(), gradients), volume);
+        let motion = times(product(rate, gradients), volume);
+        (self.0.rate_of_dilatation(at, rate) * volume, force, motion)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
+        self.0.of_volume(rate)
     }
 }
 
@@ -217,6 +398,32 @@ impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize
             for k in 0..K {
                 x[k] = elements.gather(simd, start, fields[k]);
             }
+            let nothing = [[zero; D]; N];
+            let mut of_mean = OfMean { force: nothing, motion: nothing, share: zero };
+            let mut pull = zero;
+            if P::IS_MEAN {
+                let (mut sum, mut volume) = (zero, zero);
+                for q in 0..Q {
+                    let point = abreast[block][q].lane(simd, part);
+                    let mut gradients = [[[zero; D]; M]; K];
+                    for k in 0..K {
+                        gradients[k] = gradient(1, &x[k], &point.gradients);
+                    }
+                    let at = Deformation::new(point.frame, gradients[0]);
+                    let (of_point, force, motion) =
+                        slope.swelling(&at, &gradients, &point.gradients, point.volume);
+                    sum += of_point;
+                    volume += point.volume;
+                    for a in 1..N {
+                        for i in 0..D {
+                            of_mean.force[a][i] += force[a][i];
+                            of_mean.motion[a][i] += motion[a][i];
+                        }
+                    }
+                }
+                let [mean_pull, stiff] = slope.of_mean(sum / volume);
+                (pull, of_mean.share) = (mean_pull, stiff / volume);
+            }
             for q in 0..Q {
                 let point = abreast[block][q].lane(simd, part);
                 let mut gradients = [[[zero; D]; M]; K];
@@ -224,10 +431,17 @@ impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize
                     gradients[k] = gradient(1, &x[k], &point.gradients);
                 }
                 let at = Deformation::new(point.frame, gradients[0]);
-                let blocks = slope.blocks(&at, &gradients, &point.gradients, point.volume);
+                let blocks = slope.blocks(&at, &gradients, &point.gradients, point.volume, pull);
                 for a in 1..N {
                     for b in if P::IS_SYMMETRIC { a } else { 1 }..N {
                         sum_up(simd, q == 0, &blocks.block(a, b), &mut sums[a][b]);
+                    }
+                }
+            }
+            if P::IS_MEAN {
+                for a in 1..N {
+                    for b in if P::IS_SYMMETRIC { a } else { 1 }..N {
+                        sum_up(simd, false, &of_mean.block(a, b), &mut sums[a][b]);
                     }
                 }
             }
@@ -323,10 +537,21 @@ fn scatter<const N: usize, const D: usize>(
     }
 }
 
-fn add<const D: usize>(sum: &mut Block<f64, D>, block: &Block<f64, D>) {
-    for i in 0..D {
-        for k in 0..D {
-            sum[i][k] += block[i][k];
+/// Adds the blocks of all pairs of nodes of a cell to a matrix.
+fn add_blocks<const N: usize, const D: usize>(
+    entries: &[[u32; N]; N],
+    rows: &mut Rows<'_, D>,
+    blocks: &impl Blocks<f64, D>,
+) {
+    for (a, b) in pairs::<N>() {
+        if let Some(sum) = rows.block_mut(entries[a][b]) {
+            add(sum, &blocks.block(a, b));
         }
+    }
+}
+
+fn add<const R: usize, const C: usize>(sum: &mut Matrix<f64, R, C>, part: &Matrix<f64, R, C>) {
+    for (sum, part) in sum.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
+        *sum += part;
     }
 }

@@ -6,14 +6,17 @@ use super::rigid::without_turn;
 use super::shape::Extent;
 use crate::body::{Body, Strain};
 use crate::input::{percent, told};
+use crate::material::Law;
 use crate::report::Indicator;
 use crate::trajectory::{Sample, Trajectory};
 
 /// How far the stress of a law may be from that of rubber (incompressible and neo-Hookean, in one direction).
 const MOST_WRONG: f64 = 0.25;
-/// By how many times the strain the stress differs from rubber's: of St. Venant and Kirchhoff's law, and of Hooke's.
+/// By how many times the strain the stress differs from rubber's: of St. Venant and Kirchhoff's law, and of Hooke's. Laws of rubber follow it up to
+/// about twice the length, where it begins to stiffen as chains of molecules are stretched out.
 const GREEN_LAW: f64 = 2.5;
 const CAUCHY_LAW: f64 = 1.0;
+const NEO_HOOKEAN: f64 = 0.25;
 /// How far strains may be wrong under Cauchy strain for that to do.
 const MOST_NONLINEAR: f64 = 0.01;
 /// Strains below this are round-off.
@@ -64,7 +67,7 @@ impl Deformed {
             slenderness.filter(|_| strain == Strain::Green && self.strain > LEAST_STRAIN);
         let nonlinear = nonlinear.map(|slenderness| self.nonlinearity(slenderness));
         let turns = (trajectory.body().mesh().kind().dimension() > 1).then(|| self.turns());
-        [self.largest_strain(strain)].into_iter().chain(turns).chain(nonlinear).collect()
+        [self.largest_strain(trajectory.body())].into_iter().chain(turns).chain(nonlinear).collect()
     }
 
     fn turns(&self) -> Indicator {
@@ -74,12 +77,18 @@ impl Deformed {
         Indicator::told("own-turn", own, "degrees", told)
     }
 
-    fn largest_strain(&self, law: Strain) -> Indicator {
-        let (factor, off) = match law {
-            Strain::Green => {
+    fn largest_strain(&self, body: &Body) -> Indicator {
+        let is_plain = |law: Option<Law>| matches!(law, None | Some(Law::StVenantKirchhoff));
+        let (factor, off) = match body.strain() {
+            Strain::Cauchy => (CAUCHY_LAW, "Hooke's law is off by about as much"),
+            Strain::Green if body.laws().any(is_plain) => {
                 (GREEN_LAW, "St. Venant and Kirchhoff's law is off by some 2.5 times that")
             }
-            Strain::Cauchy => (CAUCHY_LAW, "Hooke's law is off by about as much"),
+            // constants of others are fitted to what they are for
+            Strain::Green => (
+                NEO_HOOKEAN,
+                "rubber stiffens at such strains as only constants that are fitted to it tell",
+            ),
         };
         let Self { strain, at: (time, cell), .. } = *self;
         let limit = MOST_WRONG / factor;
@@ -91,7 +100,7 @@ impl Deformed {
         let beyond = || {
             format!(
                 "{said}, cell {} at t = {} s: {off} in its stress, compared with that of rubber; forces there are \
-                 doubtful, shapes less so. Deform it less, or measure moduli at such strains",
+                 doubtful, shapes less so. Deform it less, take a law of rubber (law = {{ kind = \"neo-hookean\" }}), or measure at such strains",
                 cell + 1,
                 told(time)
             )

@@ -1,6 +1,6 @@
 //! What a body tells before it moves: its units, its cells, its pieces.
 
-use crate::body::Body;
+use crate::body::{Body, Dilatation};
 use crate::constraint::PhaseStart;
 use crate::force::Force;
 use crate::material::Plane;
@@ -51,10 +51,14 @@ pub(super) fn units(body: &Body) -> Vec<Indicator> {
 /// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
 /// several times too stiff.
 pub(super) fn locking(body: &Body) -> Option<Indicator> {
-    let crossed = match body.mesh().kind() {
+    let other = match body.mesh().kind() {
         CellKind::Triangle if is_crossed(body) => return None,
         CellKind::Triangle => " or \"crossed\" ones",
-        CellKind::Quadrilateral => " or \"crossed\" triangles",
+        CellKind::Quadrilateral | CellKind::Hexahedron if body.dilatation() == Dilatation::Mean => {
+            return None;
+        }
+        CellKind::Quadrilateral => ", \"crossed\" triangles or dilatation = \"mean\"",
+        CellKind::Hexahedron => " or dilatation = \"mean\"",
         _ => "",
     };
     let mend = quadratic_cells(body.mesh().kind())?;
@@ -66,7 +70,7 @@ pub(super) fn locking(body: &Body) -> Option<Indicator> {
     let told = format!("Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON})");
     let beyond = || {
         format!(
-            "{told}: they lock, and may be several times too stiff in bending; take {mend}{crossed}, or a smaller ratio"
+            "{told}: they lock, and may be several times too stiff in bending; take {mend}{other}, or a smaller ratio"
         )
     };
     let limits = [-1.0, MOST_POISSON];

@@ -48,6 +48,34 @@ impl Hooke {
         Self { lame: Lame { lambda, mu }, across }
     }
 
+    /// What resists a change of volume is left out.
+    #[inline(always)]
+    pub(super) fn of_shear(&self) -> Self {
+        Self { lame: Lame { lambda: 0.0, ..self.lame }, ..*self }
+    }
+
+    /// lambda g^2 / 2 of the trace g of the strain, with its derivatives.
+    #[inline(always)]
+    pub(super) fn of_volume<T: Real>(&self, trace: T) -> [T; 3] {
+        let pull = trace * self.lame.lambda;
+        [pull * trace * 0.5, pull, trace.constant(self.lame.lambda)]
+    }
+
+    /// `pull` I + 2 mu E, times `weight`, of 2 E
+    #[inline(always)]
+    pub(super) fn stress_under<T: Real, const M: usize>(
+        &self,
+        twice: &Matrix<T, M, M>,
+        pull: T,
+        weight: T,
+    ) -> Matrix<T, M, M> {
+        let shear = weight * self.lame.mu;
+        symmetric!(pull; j, k => match j == k {
+            true => shear * twice[j][k] + pull * weight,
+            false => shear * twice[j][k],
+        })
+    }
+
     /// Whether there is no stress at any strain.
     pub(crate) fn is_zero(&self) -> bool {
         self.lame == Lame { lambda: 0.0, mu: 0.0 }

@@ -56,6 +56,54 @@ pub(crate) trait ElasticLaw {
     }
 }
 
+/// A law whose resistance to a change of volume is apart, W = W_rest + U(g), with a measure g of the volume that is 0 at rest, so
+/// that U may be given the mean of g over a cell ("mean dilatation") in place of g at each point.
+pub(crate) trait DilatationalLaw: ElasticLaw {
+    /// g
+    fn dilatation<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T;
+
+    /// U (J/m^3), U' and U'' at g.
+    fn of_volume<T: Real>(&self, dilatation: T) -> [T; 3];
+
+    /// W_rest (J/m^3)
+    fn energy_of_rest<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> T;
+
+    /// First Piola stress with `pull` in place of U'(g), times `weight`.
+    fn stress_under<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+        weight: T,
+    ) -> Matrix<T, D, M>;
+
+    /// The derivative of that by F, as [`ElasticLaw::tangent`]; `pull` stays as it is.
+    fn tangent_under<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Blocks<T, D>;
+
+    /// As [`ElasticLaw::across`], with `pull` in place of U'(g).
+    fn across_under<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+    ) -> [T; 2];
+
+    /// How g follows the nodes: dg/dF times the `gradients` of their shape functions, times `weight`.
+    fn swelling_by_nodes<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> [[T; D]; N];
+}
+
 /// A viscous law: stress from the rate of deformation F'.
 pub(crate) trait ViscousLaw {
     /// First Piola stress P (Pa), times `weight`, the volume of the point.

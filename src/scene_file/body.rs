@@ -6,7 +6,7 @@ use super::material::{MATERIAL, substance};
 use super::mesh::{self, MESH};
 use super::selection::{CORNERS, corners};
 use super::value::Value;
-use crate::body::{Body, BodyBuilder, CellSelection, Inertia, Strain, Viscosity};
+use crate::body::{Body, BodyBuilder, CellSelection, Dilatation, Inertia, Strain, Viscosity};
 use crate::error::Error;
 use crate::input::positive;
 use crate::material::{Plane, Substance};
@@ -52,6 +52,13 @@ pub(super) const BODY: TableKeys = TableKeys::new(
             "what is 0 across the plane",
         )
         .default("strain"),
+        Key::new(
+            "dilatation",
+            Holds::Word(|| DILATATION.map(|(word, _)| word).into()),
+            "where the body resists a change of its volume",
+        )
+        .law("In the mean over each cell, nearly incompressible bodies do not lock: for quadrilaterals, hexahedra and quadratic cells.")
+        .default("points"),
         Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
         Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
     ],
@@ -69,6 +76,8 @@ const VISCOUS: [(&str, Viscosity); 2] =
     [("natural", Viscosity::Natural), ("objective", Viscosity::Objective)];
 const INERTIA: [(&str, Inertia); 2] =
     [("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)];
+const DILATATION: [(&str, Dilatation); 2] =
+    [("points", Dilatation::AtPoints), ("mean", Dilatation::Mean)];
 const PLANE: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
 
 const REGION: TableKeys = TableKeys::new(
@@ -128,6 +137,9 @@ pub(super) fn body(
     }
     if let Some(plane) = table.optional("plane", |value| value.word(&PLANE))? {
         body = body.plane(plane);
+    }
+    if let Some(dilatation) = table.optional("dilatation", |value| value.word(&DILATATION))? {
+        body = body.dilatation(dilatation);
     }
     if let Some(regions) = table.get("region") {
         body = add_regions(body, &regions, &mesh, material)?;

@@ -19,8 +19,9 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
             .law("It follows from the law's `bulk`, if that is given.")
             .default(OF_BODY),
         Key::number("viscosity", "the viscous modulus", "Pa s").default(OF_BODY),
-        Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains")
-            .default("as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's"),
+        Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains").default(
+            "as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's",
+        ),
     ],
     "material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
 );
@@ -62,8 +63,7 @@ const LAW: TableKeys = TableKeys::new(
     },
 ]);
 const C1: Key = Key::number("c1", "the constant of I1", "Pa").required();
-const BULK: Key =
-    Key::number("bulk", "the bulk modulus kappa", "Pa").default("that of `poisson`");
+const BULK: Key = Key::number("bulk", "the bulk modulus kappa", "Pa").default("that of `poisson`");
 
 /// A law as a file has it, with the moduli (Pa) at small strains that follow from its constants.
 struct Constants {

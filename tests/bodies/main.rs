@@ -10,6 +10,7 @@ mod own_force;
 mod pieces;
 mod polynomial;
 mod rotations;
+mod rubber;
 mod solids;
 mod spectrum;
 mod statics;

@@ -10,7 +10,7 @@ use crate::body::tests::{bodies, noise};
 use crate::body::{Body, CellSelection};
 use crate::element::{Hexahedron, ReferenceCell, Segment, Tetrahedron10, Triangle, Triangle6};
 use crate::force::{Force, NodalForces};
-use crate::material::{Lame, Material, ObjectiveViscosity, Plane, Strain};
+use crate::material::{Hooke, Lame, Material, ObjectiveViscosity, Plane, Strain};
 use crate::mesh::{Cells, Mesh, SolidCells};
 use crate::samples::SQUARE_MATERIAL;
 use crate::sparse::NodePattern;
@@ -27,7 +27,7 @@ fn is_the_same_on_all_machines<
     mesh: &Mesh,
 ) {
     let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
-    let elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, &pattern).unwrap();
+    let elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, false, &pattern).unwrap();
     let dofs = mesh.node_count() * D;
     let (u, v) = (noise(dofs, 0.01, 1.0), noise(dofs, 1.0, 2.0));
     let (u, v) = (u.as_chunks().0, v.as_chunks().0);

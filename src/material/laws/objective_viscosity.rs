@@ -5,12 +5,71 @@
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Lame, Spread};
 use crate::material::law::{Block, Blocks, ViscousLaw};
-use crate::tensor::{Matrix, Real, dot, product, product_transposed, times};
+use crate::tensor::{Matrix, Real, dot, product, product_transposed, times, trace};
 
 /// P = F S with E' = sym(F^T F'), S = lambda tr(E') I + 2 mu E'. A body that spins as a whole is not
 /// braked.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ObjectiveViscosity(pub(crate) Hooke);
+
+/// With `pull` in place of lambda tr(E'), as where that takes the mean rate of dilatation over a cell.
+impl ObjectiveViscosity {
+    /// tr(E')
+    #[inline(always)]
+    pub(crate) fn rate_of_dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        rate: &Matrix<T, D, M>,
+    ) -> T {
+        trace(&at.twice_green_rate(rate)) * 0.5
+    }
+
+    /// lambda tr(E') of its mean, and lambda.
+    #[inline(always)]
+    pub(crate) fn of_volume<T: Real>(&self, rate: T) -> [T; 2] {
+        let [_, pull, stiff] = self.0.of_volume(rate);
+        [pull, stiff]
+    }
+
+    /// P, times `weight`.
+    #[inline(always)]
+    pub(crate) fn stress_under<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        rate: &Matrix<T, D, M>,
+        pull: T,
+        weight: T,
+    ) -> Matrix<T, D, M> {
+        let twice = at.twice_green_rate(rate);
+        product(&at.gradient(), &self.0.stress_under(&twice, pull, weight))
+    }
+
+    /// dP/dF', as [`ViscousLaw::rate_tangent`], without lambda.
+    #[inline(always)]
+    pub(crate) fn rate_tangent_of_shear<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Blocks<T, D> {
+        Spread::new(&at.gradient(), gradients, self.0.of_shear().lame, weight)
+    }
+
+    /// dP/dF, as [`ViscousLaw::tangent`]; `pull` stays as it is.
+    #[inline(always)]
+    pub(crate) fn tangent_under<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        rate: &Matrix<T, D, M>,
+        pull: T,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Blocks<T, D> {
+        let shear = self.0.of_shear();
+        let stress = shear.stress_under(&at.twice_green_rate(rate), pull, weight.constant(1.0));
+        Tangent::new(at, rate, &stress, gradients, shear.lame, weight)
+    }
+}
 
 impl ViscousLaw for ObjectiveViscosity {
     #[inline(always)]
@@ -33,17 +92,8 @@ impl ViscousLaw for ObjectiveViscosity {
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Blocks<T, D> {
-        let f = at.gradient();
         let stress = self.0.stress(&at.twice_green_rate(rate), weight.constant(1.0));
-        Tangent {
-            gradients,
-            along: product(&f, gradients),
-            moving: product(rate, gradients),
-            mixed: product_transposed(rate, &f),
-            pulls: product(&stress, gradients),
-            lame: self.0.lame,
-            weight,
-        }
+        Tangent::new(at, rate, &stress, gradients, self.0.lame, weight)
     }
 
     #[inline(always)]
@@ -69,6 +119,29 @@ struct Tangent<'a, T, const N: usize, const M: usize, const D: usize> {
     pulls: [[T; M]; N],
     lame: Lame,
     weight: T,
+}
+
+impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Tangent<'a, T, N, M, D> {
+    #[inline(always)]
+    fn new(
+        at: &Deformation<T, M, D>,
+        rate: &Matrix<T, D, M>,
+        stress: &Matrix<T, M, M>,
+        gradients: &'a [[T; M]; N],
+        lame: Lame,
+        weight: T,
+    ) -> Self {
+        let f = at.gradient();
+        Self {
+            gradients,
+            along: product(&f, gradients),
+            moving: product(rate, gradients),
+            mixed: product_transposed(rate, &f),
+            pulls: product(stress, gradients),
+            lame,
+            weight,
+        }
+    }
 }
 
 impl<T: Real, const N: usize, const M: usize, const D: usize> Blocks<T, D>

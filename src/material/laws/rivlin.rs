@@ -4,7 +4,7 @@
 
 use crate::material::deformation::Deformation;
 use crate::material::hooke::Plane;
-use crate::material::law::{Blocks, ElasticLaw};
+use crate::material::law::{Blocks, DilatationalLaw, ElasticLaw};
 use crate::material::response::{Elasticity, Response, Tangent, axes};
 use crate::tensor::{Matrix, Real, inverse_cube_root, product, symmetric, times, trace};
 
@@ -217,10 +217,26 @@ fn inverse_of<T: Real, const M: usize>(g: &Matrix<T, M, M>, area: T) -> Matrix<T
 }
 
 impl Rivlin {
+    /// W without U.
+    #[inline(always)]
+    fn of_shape<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> T {
+        let [first, second] = at.above_rest();
+        let [c10, c20, c30] = self.first;
+        ((first * c30 + c20) * first + c10) * first + second * self.second
+    }
+
+    /// J U'(J) and J^2 U''(J) of the volume at the point.
+    #[inline(always)]
+    fn volume_at<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> [T; 2] {
+        [at.swelling * (0.5 * self.bulk), (at.swelling + 2.0) * (0.5 * self.bulk)]
+    }
+
+    /// S, with `volume` for J U'(J).
     #[inline(always)]
     fn second_piola<T: Real, const M: usize>(
         &self,
         at: &Strained<T, M>,
+        volume: T,
         weight: T,
     ) -> Matrix<T, M, M> {
         let [above, _] = at.above_rest();
@@ -229,7 +245,6 @@ impl Rivlin {
         let first = at.shrink * w1 * 2.0;
         let second = at.shrink * at.shrink * (2.0 * self.second);
         let zero = weight.constant(0.0);
-        let volume = at.swelling * (0.5 * self.bulk);
         // (first part + volume I) in the product with C^-1
         let (first_rest, second_rest) = (at.first_slope(zero), at.second_slope(zero, zero));
         let second_share = at.invariants[0] + 1.0;
@@ -245,8 +260,23 @@ impl Rivlin {
         times(symmetric!(zero; j, k => stress[j][k]), weight)
     }
 
+    /// S across a cell without strain there, with `volume` for J U'(J).
     #[inline(always)]
-    fn response<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> Response<T, M> {
+    fn stress_across<T: Real, const M: usize>(&self, at: &Strained<T, M>, volume: T) -> T {
+        let zero = volume.constant(0.0);
+        let [above, _] = at.above_rest();
+        let [w1, _] = self.slopes(above);
+        let second = at.shrink * at.shrink * at.second_slope(zero, zero);
+        w1 * at.shrink * at.first_slope(zero) * 2.0 + second * (2.0 * self.second) + volume
+    }
+
+    /// S and dS/dE, with the numbers of `volume` for J U'(J) and J^2 U''(J).
+    #[inline(always)]
+    fn response<T: Real, const M: usize>(
+        &self,
+        at: &Strained<T, M>,
+        [volume, stiffness]: [T; 2],
+    ) -> Response<T, M> {
         let zero = at.swelling.constant(0.0);
         let one = at.swelling.constant(1.0);
         let [above, _] = at.above_rest();
@@ -264,9 +294,10 @@ impl Rivlin {
         // factors of C^-1 (x) C^-1, of the product of C^-1 with itself that is symmetric in all pairs, of I (x) I less the
         // identity, and the tensor P in C^-1 (x) P + P (x) C^-1
         let dyadic = (w1 * r * i1 * (1.0 / 9.0) + r2 * i2 * (self.second * 4.0 / 9.0)) * 4.0
-            + (at.swelling + 1.0) * self.bulk;
-        let turned = (w1 * r * i1 * (1.0 / 3.0) + r2 * i2 * (self.second * 2.0 / 3.0)) * 4.0
-            - at.swelling * self.bulk;
+            + volume
+            + stiffness;
+        let turned =
+            (w1 * r * i1 * (1.0 / 3.0) + r2 * i2 * (self.second * 2.0 / 3.0)) * 4.0 - volume * 2.0;
         let mixed = r2 * (4.0 * self.second);
         let of_one = w1 * r * (-4.0 / 3.0) - r2 * i1 * (self.second * 8.0 / 3.0);
         let of_c = r2 * (self.second * 8.0 / 3.0);
@@ -321,7 +352,7 @@ impl Rivlin {
                 }
             }
         }
-        Response { stress: self.second_piola(at, one), elasticity }
+        Response { stress: self.second_piola(at, volume, one), elasticity }
     }
 }
 
@@ -329,12 +360,8 @@ impl ElasticLaw for Rivlin {
     #[inline(always)]
     fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
         let strained = self.strained(at);
-        let [first, second] = strained.above_rest();
-        let [c10, c20, c30] = self.first;
         let [volume] = T::each([strained.swelling], |[x]| [less_logarithm(x)]);
-        ((first * c30 + c20) * first + c10) * first
-            + second * self.second
-            + volume * (0.25 * self.bulk)
+        self.of_shape(&strained) + volume * (0.25 * self.bulk)
     }
 
     #[inline(always)]
@@ -343,7 +370,9 @@ impl ElasticLaw for Rivlin {
         at: &Deformation<T, M, D>,
         weight: T,
     ) -> Matrix<T, D, M> {
-        product(&at.gradient(), &self.second_piola(&self.strained(at), weight))
+        let strained = self.strained(at);
+        let [volume, _] = self.volume_at(&strained);
+        product(&at.gradient(), &self.second_piola(&strained, volume, weight))
     }
 
     #[inline(always)]
@@ -353,7 +382,9 @@ impl ElasticLaw for Rivlin {
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Blocks<T, D> {
-        Tangent::new(&at.gradient(), &self.response(&self.strained(at)), gradients, weight)
+        let strained = self.strained(at);
+        let response = self.response(&strained, self.volume_at(&strained));
+        Tangent::new(&at.gradient(), &response, gradients, weight)
     }
 
     #[inline(always)]
@@ -363,15 +394,8 @@ impl ElasticLaw for Rivlin {
         if M != 2 || self.across == Plane::Stress {
             return [strained.across * 0.5, zero];
         }
-        let [above, _] = strained.above_rest();
-        let [w1, _] = self.slopes(above);
-        let stress = w1 * strained.shrink * strained.first_slope(zero) * 2.0
-            + strained.shrink
-                * strained.shrink
-                * strained.second_slope(zero, zero)
-                * (2.0 * self.second)
-            + strained.swelling * (0.5 * self.bulk);
-        [zero, stress]
+        let [volume, _] = self.volume_at(&strained);
+        [zero, self.stress_across(&strained, volume)]
     }
 
     #[inline(always)]
@@ -387,6 +411,83 @@ impl ElasticLaw for Rivlin {
         format!(
             "is inverted, det F = {domain:.3}: rubber cannot be pressed to nothing; load it less, or refine the mesh there"
         )
+    }
+}
+
+/// g = J - 1
+impl DilatationalLaw for Rivlin {
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        let strained = self.strained(at);
+        strained.swelling / ((strained.swelling + 1.0).sqrt() + 1.0)
+    }
+
+    #[inline(always)]
+    fn of_volume<T: Real>(&self, dilatation: T) -> [T; 3] {
+        let swelling = dilatation * (dilatation + 2.0);
+        let [energy] = T::each([swelling], |[x]| [less_logarithm(x)]);
+        let one = dilatation.constant(1.0);
+        let share = one / (dilatation + 1.0);
+        let half = 0.5 * self.bulk;
+        [energy * (0.5 * half), swelling * share * half, (share * share + 1.0) * half]
+    }
+
+    #[inline(always)]
+    fn energy_of_rest<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> T {
+        self.of_shape(&self.strained(at))
+    }
+
+    #[inline(always)]
+    fn stress_under<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+        weight: T,
+    ) -> Matrix<T, D, M> {
+        let strained = self.strained(at);
+        let volume = pull * (strained.swelling + 1.0).sqrt();
+        product(&at.gradient(), &self.second_piola(&strained, volume, weight))
+    }
+
+    #[inline(always)]
+    fn tangent_under<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Blocks<T, D> {
+        let strained = self.strained(at);
+        let volume = pull * (strained.swelling + 1.0).sqrt();
+        let response = self.response(&strained, [volume, pull.constant(0.0)]);
+        Tangent::new(&at.gradient(), &response, gradients, weight)
+    }
+
+    #[inline(always)]
+    fn across_under<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+    ) -> [T; 2] {
+        let strained = self.strained(at);
+        let volume = pull * (strained.swelling + 1.0).sqrt();
+        [pull.constant(0.0), self.stress_across(&strained, volume)]
+    }
+
+    /// J F C^-1 g_a
+    #[inline(always)]
+    fn swelling_by_nodes<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> [[T; D]; N] {
+        let strained = self.strained(at);
+        let slope = product(&at.gradient(), &strained.inverse);
+        times(product(&slope, gradients), weight * (strained.swelling + 1.0).sqrt())
     }
 }
 

@@ -4,8 +4,8 @@
 
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Spread};
-use crate::material::law::{Block, Blocks, ElasticLaw};
-use crate::tensor::{Matrix, Real, dot, product, times};
+use crate::material::law::{Block, Blocks, DilatationalLaw, ElasticLaw};
+use crate::tensor::{Matrix, Real, dot, product, times, trace};
 
 /// W = lambda tr(E)^2 / 2 + mu E : E, P = F S with E = (F^T F - I) / 2, S = lambda tr(E) I + 2 mu E.
 #[derive(Debug, Clone, Copy)]
@@ -54,6 +54,71 @@ impl ElasticLaw for StVenantKirchhoff {
             "is inverted, det F = {domain:.3}: St. Venant-Kirchhoff material collapses under strong \
              compression; load it less or refine the mesh there"
         )
+    }
+}
+
+/// g = tr E
+impl DilatationalLaw for StVenantKirchhoff {
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        trace(&at.twice_green()) * 0.5
+    }
+
+    #[inline(always)]
+    fn of_volume<T: Real>(&self, dilatation: T) -> [T; 3] {
+        self.0.of_volume(dilatation)
+    }
+
+    #[inline(always)]
+    fn energy_of_rest<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> T {
+        self.0.of_shear().energy(&at.twice_green())
+    }
+
+    #[inline(always)]
+    fn stress_under<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+        weight: T,
+    ) -> Matrix<T, D, M> {
+        product(&at.gradient(), &self.0.stress_under(&at.twice_green(), pull, weight))
+    }
+
+    #[inline(always)]
+    fn tangent_under<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        pull: T,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> impl Blocks<T, D> {
+        let shear = self.0.of_shear();
+        let spread = Spread::new(&at.gradient(), gradients, shear.lame, weight);
+        let stress = shear.stress_under(&at.twice_green(), pull, weight.constant(1.0));
+        Tangent { spread, pulls: product(&stress, gradients) }
+    }
+
+    /// No shear there, and no strain.
+    #[inline(always)]
+    fn across_under<T: Real, const M: usize, const D: usize>(
+        &self,
+        _at: &Deformation<T, M, D>,
+        pull: T,
+    ) -> [T; 2] {
+        [pull.constant(0.0), pull]
+    }
+
+    #[inline(always)]
+    fn swelling_by_nodes<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[[T; M]; N],
+        weight: T,
+    ) -> [[T; D]; N] {
+        times(product(&at.gradient(), gradients), weight)
     }
 }
 

@@ -1,0 +1,202 @@
+//! Laws of rubber, and bodies that are nearly incompressible, against closed forms and published numbers.
+
+use pliant::{
+    Axis, Body, Cells, Dilatation, Equilibrium, Law, Material, Mesh, Phase, Plane, Scene,
+    SolidCells, Statics, Strain, Substance,
+};
+
+/// Shear modulus (Pa) of the closed forms, which are those of incompressible bodies.
+const SHEAR: f64 = 1e5;
+
+/// Nearly incompressible: what the closed forms leave out is of the size of the shear over the bulk modulus, 1e-5.
+fn rubber(law: Law) -> Substance {
+    Material::of_moduli(1000.0, SHEAR, 1e5 * SHEAR, 0.0).law(law)
+}
+
+const LAWS: [Law; 3] =
+    [Law::NeoHookean, Law::MooneyRivlin { second: 0.25 }, Law::Yeoh { second: -0.1, third: 0.02 }];
+
+/// dW/dI1 and dW/dI2 (Pa) where a body is stretched by these factors.
+fn slopes(law: Law, stretches: [f64; 3]) -> [f64; 2] {
+    let x = stretches.iter().map(|l| l * l).sum::<f64>() - 3.0;
+    match law {
+        Law::MooneyRivlin { second } => [0.5 * SHEAR * (1.0 - second), 0.5 * SHEAR * second],
+        Law::Yeoh { second, third } => {
+            [0.5 * SHEAR * (1.0 + 2.0 * second * x + 3.0 * third * x * x), 0.0]
+        }
+        _ => [0.5 * SHEAR, 0.0],
+    }
+}
+
+/// How far the node set `right` of a body of length 1 has moved under a force (N) along x.
+fn pulled(body: Body, sets: &[(&str, Axis)], force: f64) -> f64 {
+    let mut load = vec![0.0; body.dimension()];
+    load[0] = force;
+    let mut phase = Phase::until(1.0).load_total("right", load);
+    for &(set, axis) in sets {
+        phase = phase.hold_axes(set, [axis]);
+    }
+    let rest = Scene::new(body).phase(phase).equilibrium(&Statics::default()).unwrap();
+    of_end(&rest)
+}
+
+fn of_end(rest: &Equilibrium) -> f64 {
+    let body = rest.trajectory().body();
+    let node = body.mesh().sets()["right"][0];
+    1.0 + rest.displacements()[node * body.dimension()]
+}
+
+/// A body in one direction: nominal stress 2 (l - 1/l^2) (W1 + W2/l) at the stretch l, in strings, in plane stress and in
+/// space. Pulled to twice its length and pressed to three quarters.
+#[test]
+fn one_direction() {
+    let held = [("left", Axis::X), ("bottom", Axis::Y)];
+    let held_in_space = [("left", Axis::X), ("front", Axis::Y), ("bottom", Axis::Z)];
+    for law in LAWS {
+        for stretch in [2.0_f64, 0.75] {
+            let across = stretch.powf(-0.5);
+            let [w1, w2] = slopes(law, [stretch, across, across]);
+            let stress = 2.0 * (stretch - stretch.powi(-2)) * (w1 + w2 / stretch);
+            let string = Body::new(Mesh::bar(1.0, 4).unwrap(), rubber(law)).area(0.01);
+            let plane = Mesh::rectangle([1.0, 0.5], [3, 2], Cells::Rectangles).unwrap();
+            let plane = Body::new(plane, rubber(law)).thickness(0.02).plane(Plane::Stress);
+            let solid = Mesh::cuboid([1.0, 0.1, 0.1], [3, 2, 2], SolidCells::Hexahedra).unwrap();
+            let solid = Body::new(solid, rubber(law)).dilatation(Dilatation::Mean);
+            for (body, sets) in [(string, &held[..1]), (plane, &held), (solid, &held_in_space)] {
+                let found = pulled(body.build().unwrap(), sets, 0.01 * stress);
+                let apart = found / stretch - 1.0;
+                println!("{law:?} {stretch}: {apart:e}");
+                assert!(apart.abs() < 2e-5, "{law:?} {stretch}, {}: {apart:e}", sets.len());
+            }
+        }
+    }
+}
+
+/// Two directions with the third held (plane strain): 2 (l - 1/l^3) (W1 + W2).
+#[test]
+fn one_direction_in_plane_strain() {
+    for law in LAWS {
+        for stretch in [1.6_f64, 0.8] {
+            let [w1, w2] = slopes(law, [stretch, 1.0, 1.0 / stretch]);
+            let stress = 2.0 * (stretch - stretch.powi(-3)) * (w1 + w2);
+            let mesh = Mesh::rectangle([1.0, 0.5], [3, 2], Cells::Rectangles).unwrap();
+            let body = Body::new(mesh, rubber(law)).thickness(0.02).dilatation(Dilatation::Mean);
+            let held = [("left", Axis::X), ("bottom", Axis::Y)];
+            let found = pulled(body.build().unwrap(), &held, 0.01 * stress);
+            let apart = found / stretch - 1.0;
+            println!("{law:?} {stretch}: {apart:e}");
+            assert!(apart.abs() < 1e-5, "{law:?} {stretch}: {apart:e}");
+        }
+    }
+}
+
+/// A membrane pulled alike along both axes: 2 (l - 1/l^5) (W1 + W2 l^2).
+#[test]
+fn membranes() {
+    for law in LAWS {
+        let stretch = 1.5_f64;
+        let [w1, w2] = slopes(law, [stretch, stretch, stretch.powi(-2)]);
+        let stress = 2.0 * (stretch - stretch.powi(-5)) * (w1 + w2 * stretch * stretch);
+        let mesh = Mesh::rectangle([1.0, 1.0], [3, 3], Cells::Triangles).unwrap();
+        let mesh = mesh.mapped(|x| [x[0], x[1], 0.0]).unwrap();
+        let body = Body::new(mesh, rubber(law)).thickness(0.001).plane(Plane::Stress);
+        let body = body.build().unwrap();
+        let phase = Phase::until(1.0)
+            .hold_axes("left", [Axis::X])
+            .hold_axes("bottom", [Axis::Y])
+            .hold_axes("all", [Axis::Z])
+            .load_total("right", [0.001 * stress, 0.0, 0.0])
+            .load_total("top", [0.0, 0.001 * stress, 0.0]);
+        let rest = Scene::new(body).phase(phase).equilibrium(&Statics::default()).unwrap();
+        let apart = of_end(&rest) / stretch - 1.0;
+        println!("{law:?}: {apart:e}");
+        assert!(apart.abs() < 1e-5, "{law:?}: {apart:e}");
+    }
+}
+
+/// Cook's membrane: 48 mm wide, 44 mm high at the clamp and 16 mm at the free edge, with `nodes` along each side.
+fn cook(nodes: usize, cells: Cells, substance: Substance) -> pliant::body::BodyBuilder {
+    let mesh = Mesh::rectangle([1.0, 1.0], [nodes, nodes], cells).unwrap();
+    let mesh = mesh.mapped(|x| {
+        let (low, high) = (0.044 * x[0], 0.044 + 0.016 * x[0]);
+        [0.048 * x[0], low + (high - low) * x[1]]
+    });
+    Body::new(mesh.unwrap(), substance).thickness(0.001)
+}
+
+/// Rise (mm) of the middle of the free edge under a traction (Pa) along it.
+fn rise(body: &Body, traction: f64) -> f64 {
+    let phase = Phase::until(1.0).hold("left").traction("right", [0.0, traction]);
+    let scene = Scene::new(body.clone()).phase(phase);
+    let rest = scene.equilibrium(&Statics::default()).unwrap_or_else(|error| panic!("{error}"));
+    let mesh = rest.trajectory().body().mesh();
+    let height = |node: &&usize| (mesh.position(**node)[1] - 0.052).abs();
+    let middle = mesh.sets()["right"].iter().min_by(|a, b| height(a).total_cmp(&height(b)));
+    1e3 * rest.displacements()[2 * middle.unwrap() + 1]
+}
+
+/// 14.74 mm is what the field has for the compressible one (nu = 0.3). Quadrilaterals come to it from below; with the mean dilatation,
+/// four times as close on the same mesh.
+#[test]
+fn cooks_membrane() {
+    let material = |poisson| Material { density: 1e3, young: 1.0985e6, poisson, viscosity: 0.0 };
+    let rises = |nodes, cells, poisson, dilatation| {
+        let body =
+            cook(nodes, cells, material(poisson).law(Law::NeoHookean)).dilatation(dilatation);
+        rise(&body.build().unwrap(), 62500.0)
+    };
+    let compressible = [
+        (33, Cells::Rectangles, Dilatation::AtPoints, 0.006), // measured: 14.667
+        (33, Cells::Rectangles, Dilatation::Mean, 0.003),     // 14.704
+        (17, Cells::Triangles6, Dilatation::AtPoints, 0.001), // 14.732
+        (17, Cells::Triangles6, Dilatation::Mean, 0.002),     // 14.761
+    ];
+    for (nodes, cells, dilatation, most) in compressible {
+        let rise = rises(nodes, cells, 0.3, dilatation);
+        assert!((rise / 14.74 - 1.0).abs() < most, "{cells:?} {dilatation:?}: {rise}");
+    }
+    // nearly incompressible: quadrilaterals lock, with the mean dilatation they do not; against quadratic triangles
+    let best = rises(33, Cells::Triangles6, 0.499, Dilatation::Mean);
+    let locked = rises(17, Cells::Rectangles, 0.499, Dilatation::AtPoints) / best;
+    let free = rises(17, Cells::Rectangles, 0.499, Dilatation::Mean) / best;
+    println!("{best}, {locked}, {free}");
+    assert!(locked < 0.6 && (free - 1.0).abs() < 0.02, "{locked} {free}");
+}
+
+/// The same of linear elasticity: it locks as much.
+#[test]
+fn cooks_membrane_of_linear_elasticity() {
+    let material = Material { density: 1e3, young: 1.0985e6, poisson: 0.499, viscosity: 0.0 };
+    let rises = |nodes, cells, dilatation| {
+        let body =
+            cook(nodes, cells, material.into()).strain(Strain::Cauchy).dilatation(dilatation);
+        rise(&body.build().unwrap(), 62500.0)
+    };
+    let best = rises(33, Cells::Triangles6, Dilatation::Mean);
+    let locked = rises(17, Cells::Rectangles, Dilatation::AtPoints) / best;
+    let free = rises(17, Cells::Rectangles, Dilatation::Mean) / best;
+    println!("{best}, {locked}, {free}");
+    assert!(locked < 0.5 && (free - 1.0).abs() < 0.025, "{locked} {free}");
+}
+
+/// The first frequency of a nearly incompressible cantilever, 0.1 x 0.02 m in plane strain, by what it takes to be within
+/// 1 % of that on a fine mesh of quadratic triangles.
+#[test]
+fn frequencies_do_not_lock() {
+    let material = Material { density: 1e3, young: 1e5, poisson: 0.499, viscosity: 0.0 };
+    let first = |nodes: [usize; 2], cells, dilatation| {
+        let mesh = Mesh::rectangle([0.1, 0.02], nodes, cells).unwrap();
+        let body = Body::new(mesh, material).thickness(0.01).strain(Strain::Cauchy);
+        let body = body.dilatation(dilatation);
+        (body.clone().build().unwrap().dofs(), crate::frequencies::frequencies(body)[0])
+    };
+    let (_, exact) = first([41, 9], Cells::Triangles6, Dilatation::Mean);
+    let triangles = first([21, 5], Cells::Triangles6, Dilatation::Mean);
+    let mean = first([21, 5], Cells::Rectangles, Dilatation::Mean);
+    let locked = first([21, 5], Cells::Rectangles, Dilatation::AtPoints);
+    println!("{exact} rad/s: {triangles:?} {mean:?} {locked:?}");
+    for (unknowns, found) in [triangles, mean] {
+        assert!((found / exact - 1.0).abs() < 0.01, "{unknowns} unknowns: {found}, {exact}");
+    }
+    assert!(locked.1 > 1.5 * exact, "{locked:?} {exact}");
+}
