@@ -12,7 +12,7 @@ use crate::tensor::Matrix;
 /// Elements whose strains can be made continuous.
 pub(super) trait Recovery {
     /// Strain energy (J), and that of the difference between the strain and its continuous mean, both by Hooke's
-    /// law of small strains.
+    /// law of small strains, without what resists a change of volume if that takes the mean over each cell.
     fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> [f64; 2];
 }
 
@@ -24,7 +24,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Recovery
         for cells in regions.by_substance(self.nodes.len()) {
             let means = self.means(&cells, strain, u);
             for &cell in &cells {
-                let hooke = &regions.of(cell).hooke;
+                let mut hooke = regions.of(cell).hooke;
+                if self.mean_dilatation {
+                    // the volume changes at points as it likes
+                    hooke = hooke.of_shear();
+                }
                 for ((volume, own), values) in self.strains(cell, strain, u).zip(&self.values) {
                     let mut apart = own;
                     for (node, value) in self.nodes[cell].iter().zip(values) {

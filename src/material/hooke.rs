@@ -50,7 +50,7 @@ impl Hooke {
 
     /// What resists a change of volume is left out.
     #[inline(always)]
-    pub(super) fn of_shear(&self) -> Self {
+    pub(crate) fn of_shear(&self) -> Self {
         Self { lame: Lame { lambda: 0.0, ..self.lame }, ..*self }
     }
 

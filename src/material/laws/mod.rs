@@ -69,7 +69,7 @@ impl Law {
                     true => finite("law.third", &[third]),
                     false => {
                         let mend = format!(
-                            "with c2 / c1 = {second} stress falls with strain somewhere: c3 / c1 has to be 0 or above, and above                              (c2 / c1)^2 / 3 if c2 is below 0"
+                            "with c2 / c1 = {second} stress falls with strain somewhere: c3 / c1 has to be 0 or above, and above (c2 / c1)^2 / 3 if c2 is below 0"
                         );
                         Err(InputError::new("law.third", third, mend))
                     }
