@@ -38,6 +38,11 @@ impl NodeMatrix {
         Self { pattern: pattern.clone(), values: vec![0.0; pattern.entries()] }
     }
 
+    /// Zeros for each of `nodes` nodes by itself.
+    pub(crate) fn diagonal(nodes: usize) -> Self {
+        Self::zeros(&Arc::new(NodePattern::new(nodes, std::iter::empty())))
+    }
+
     /// Entry for two nodes; 0 where they are not coupled.
     pub fn get(&self, row: usize, column: usize) -> f64 {
         self.pattern.find(row, column).map_or(0.0, |entry| self.values[entry])
@@ -169,6 +174,18 @@ impl BlockMatrix {
         let size = self.dimension * self.dimension;
         let entry = self.pattern.find(row, column)?;
         Some(&mut self.values[entry * size..][..size])
+    }
+
+    /// Adds m (x) I, of a matrix `m` that couples no other nodes.
+    pub(crate) fn add_on_all_axes(&mut self, m: &NodeMatrix) {
+        let d = self.dimension;
+        for row in 0..m.pattern.nodes() {
+            for (entry, column) in m.pattern.row(row) {
+                if let Some(block) = self.block_mut(row, column) {
+                    block.iter_mut().step_by(d + 1).for_each(|value| *value += m.values[entry]);
+                }
+            }
+        }
     }
 
     /// All rows, to be divided among threads, if the matrix has `D` components per node.

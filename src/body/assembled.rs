@@ -43,6 +43,8 @@ pub struct Body {
     pub(super) inertia: Arc<NodeMatrix>,
     pub(super) stiffness: Arc<BlockMatrix>,
     pub(super) damping: Arc<BlockMatrix>,
+    /// The part a M of the damping, if there is one.
+    pub(super) mass_damping: Option<Arc<NodeMatrix>>,
     /// What it was made from.
     pub(super) recipe: Arc<Recipe>,
 }
@@ -53,7 +55,8 @@ impl fmt::Debug for Body {
             .field("nodes", &self.mesh.node_count())
             .field("cells", &self.mesh.cell_count())
             .field("kind", &self.mesh.kind())
-            .field("material", &self.material)
+            .field("material", &self.recipe.material)
+            .field("regions", &self.recipe.regions)
             .field("strain", &self.strain)
             .field("viscosity", &self.viscosity)
             .finish_non_exhaustive()
@@ -139,7 +142,8 @@ impl Body {
         &self.stiffness
     }
 
-    /// Damping matrix B = lambda_vis J_lambda + mu_vis J_mu (N s/m).
+    /// Damping matrix B = lambda_vis J_lambda + mu_vis J_mu + a M (N s/m), with the rate a of
+    /// [mass damping](crate::Substance::mass_damping).
     pub fn damping(&self) -> &BlockMatrix {
         &self.damping
     }
@@ -288,10 +292,31 @@ impl Body {
         (self.strain == Strain::Cauchy).then(|| self.stiffness.clone())
     }
 
-    /// B, if the viscous force is -B v, and not 0.
+    /// Whether the viscous force is that of a constant matrix, and not 0.
+    fn has_natural_viscosity(&self) -> bool {
+        self.viscosity == Viscosity::Natural && self.regions.are_viscous()
+    }
+
+    /// The part of B that is constant, if it is not 0: all of it if viscosity is natural, a M otherwise.
     pub(crate) fn constant_damping(&self) -> Option<Arc<BlockMatrix>> {
-        let natural = self.viscosity == Viscosity::Natural;
-        (natural && self.regions.are_viscous()).then(|| self.damping.clone())
+        if self.has_natural_viscosity() {
+            return Some(self.damping.clone());
+        }
+        self.mass_damping.as_ref().map(|by_mass| {
+            let mut matrix = BlockMatrix::zeros(self.damping.pattern(), self.dimension());
+            matrix.add_on_all_axes(by_mass);
+            Arc::new(matrix)
+        })
+    }
+
+    /// The part a M of B, if it is not 0.
+    pub(crate) fn mass_damping(&self) -> Option<Arc<NodeMatrix>> {
+        self.mass_damping.clone()
+    }
+
+    /// Whether -B v is least work with the matrix of all constant damping.
+    pub(crate) fn damps_by_matrix(&self) -> bool {
+        self.has_natural_viscosity() && !self.is_simple()
     }
 
     /// The elastic and viscous forces that have no constant matrix.
@@ -309,12 +334,16 @@ impl Body {
     pub(crate) fn linear_by_cells(&self) -> Option<LinearByCells> {
         let terms = Terms {
             elastic: self.constant_stiffness().is_some(),
-            viscous: self.constant_damping().is_some(),
+            viscous: self.has_natural_viscosity(),
         };
-        let simple = matches!(self.mesh.kind(), CellKind::Triangle | CellKind::Tetrahedron);
         let (elements, regions) = (self.elements.clone(), self.regions.clone());
         let is_linear = terms.elastic || terms.viscous;
-        (simple && is_linear).then_some(LinearByCells { elements, regions, terms })
+        (self.is_simple() && is_linear).then_some(LinearByCells { elements, regions, terms })
+    }
+
+    /// Whether linear forces are less work cell by cell.
+    fn is_simple(&self) -> bool {
+        matches!(self.mesh.kind(), CellKind::Triangle | CellKind::Tetrahedron)
     }
 
     /// Total mass (kg).

@@ -7,7 +7,7 @@ use super::assembly::elements;
 use super::dilatation::Dilatation;
 use super::inertia::Inertia;
 use super::recipe::Recipe;
-use super::regions::{CellSelection, Regions};
+use super::regions::{CellSelection, Laws, Regions};
 use crate::element::Finer;
 use crate::input::{InputError, positive};
 use crate::material::{Plane, Strain, Substance, Viscosity};
@@ -144,9 +144,19 @@ impl BodyBuilder {
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());
         let mut damping = stiffness.clone();
-        elements.add_inertia(&regions, recipe.inertia, &mut inertia);
+        elements.add_inertia(&regions, &|laws| laws.density, recipe.inertia, &mut inertia);
         elements.add_stiffness(&regions, &|laws| laws.elastic, &mut stiffness);
         elements.add_stiffness(&regions, &|laws| laws.natural_viscosity(), &mut damping);
+        let mass_damping = regions.have_mass_damping().then(|| {
+            let mut matrix = match recipe.inertia {
+                Inertia::Consistent => NodeMatrix::zeros(&pattern),
+                Inertia::Lumped => NodeMatrix::diagonal(mesh.node_count()),
+            };
+            let density = |laws: &Laws| laws.mass_damping * laws.density;
+            elements.add_inertia(&regions, &density, recipe.inertia, &mut matrix);
+            damping.add_on_all_axes(&matrix);
+            Arc::new(matrix)
+        });
         let first_point = mesh.node_count() - recipe.points.len();
         for (node, (_, _, mass)) in (first_point..).zip(&recipe.points) {
             inertia.add(node, node, *mass);
@@ -163,6 +173,7 @@ impl BodyBuilder {
             inertia: Arc::new(inertia),
             stiffness: Arc::new(stiffness),
             damping: Arc::new(damping),
+            mass_damping,
             recipe: Arc::new(recipe),
         };
         // not the nodal masses: those of quadratic cells are 0 and below at corners

@@ -1,7 +1,7 @@
 //! The inertia of elements, consistent or lumped.
 
 use super::elements::{ElementsOf, pairs};
-use super::regions::Regions;
+use super::regions::{Laws, Regions};
 use crate::sparse::NodeMatrix;
 
 /// How the inertia of the cells is shared out among their nodes.
@@ -23,22 +23,34 @@ pub enum Inertia {
 
 /// Elements as masses.
 pub(super) trait Masses {
-    /// Adds the inertia of all cells, `sharing` telling how.
-    fn add_inertia(&self, regions: &Regions, sharing: Inertia, inertia: &mut NodeMatrix);
+    /// Adds the inertia of all cells to `matrix`, `sharing` telling how, with what `density` (kg/m^3) makes of their laws.
+    fn add_inertia(
+        &self,
+        regions: &Regions,
+        density: &dyn Fn(&Laws) -> f64,
+        sharing: Inertia,
+        matrix: &mut NodeMatrix,
+    );
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> Masses
     for ElementsOf<N, M, D, Q>
 {
-    fn add_inertia(&self, regions: &Regions, sharing: Inertia, inertia: &mut NodeMatrix) {
+    fn add_inertia(
+        &self,
+        regions: &Regions,
+        density: &dyn Fn(&Laws) -> f64,
+        sharing: Inertia,
+        matrix: &mut NodeMatrix,
+    ) {
         for (cell, (nodes, products)) in self.nodes.iter().zip(&self.products).enumerate() {
-            let density = regions.of(cell).density;
+            let density = density(regions.of(cell));
             let products = match sharing {
                 Inertia::Consistent => *products,
                 Inertia::Lumped => lumped(products, self.quadratic),
             };
             for (a, b) in pairs::<N>() {
-                inertia.add(nodes[a], nodes[b], density * products[a][b]);
+                matrix.add(nodes[a], nodes[b], density * products[a][b]);
             }
         }
     }

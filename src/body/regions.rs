@@ -95,10 +95,11 @@ impl CellSelection {
     }
 }
 
-/// What the elements of a region take: density (kg/m^3) and laws.
+/// What the elements of a region take: density (kg/m^3), rate of mass damping (1/s) and laws.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Laws {
     pub(super) density: f64,
+    pub(super) mass_damping: f64,
     pub(super) elastic: Elastic,
     /// What the elastic law is at small strains.
     pub(super) hooke: Hooke,
@@ -133,7 +134,7 @@ impl Regions {
     ) -> Result<Self, InputError> {
         let laws = |substance: &Substance| -> Result<Laws, InputError> {
             substance.validate()?;
-            let Substance { material, law } = substance;
+            let Substance { material, law, mass_damping } = substance;
             if let (Some(law), Strain::Cauchy) = (law, strain) {
                 let mend = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
                 return Err(InputError::new("material.law", format!("{law:?}"), mend));
@@ -142,6 +143,7 @@ impl Regions {
             let hooke = |lame: Lame| Hooke::new(lame, dimension, plane);
             Ok(Laws {
                 density: material.density,
+                mass_damping: *mass_damping,
                 elastic: Elastic::new(strain, *law, material.elastic(), dimension, plane),
                 hooke: hooke(material.elastic()),
                 viscous: ObjectiveViscosity(hooke(material.viscous())),
@@ -199,5 +201,10 @@ impl Regions {
     /// Whether any of them is viscous.
     pub(super) fn are_viscous(&self) -> bool {
         self.laws.iter().any(|laws| !laws.viscous.0.is_zero())
+    }
+
+    /// Whether any of them has mass damping.
+    pub(super) fn have_mass_damping(&self) -> bool {
+        self.laws.iter().any(|laws| laws.mass_damping > 0.0)
     }
 }

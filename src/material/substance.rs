@@ -1,12 +1,12 @@
-//! What a body, or a region of it, is made of: a material and the law that it keeps to when strains are large.
+//! What a body, or a region of it, is made of: a material, the law that it keeps to when strains are large, and its damping.
 
 use super::{Material, laws::Law};
-use crate::input::InputError;
+use crate::input::{InputError, not_negative};
 
-/// A material with the law of its elasticity.
+/// A material with the law of its elasticity, and damping in proportion to its mass.
 ///
-/// [`Material::law`] makes it. A [`Material`] alone counts as one with the law that the body's
-/// [`Strain`](crate::Strain) stands for.
+/// [`Material::law`] and [`Material::mass_damping`] make it. A [`Material`] alone counts as one with the law that the body's
+/// [`Strain`](crate::Strain) stands for, without mass damping.
 ///
 /// ```
 /// use pliant::{Body, Law, Material, Mesh, SolidCells};
@@ -23,18 +23,30 @@ pub struct Substance {
     pub material: Material,
     /// What becomes of the moduli at large strains; `None` is as the body's [`Strain`](crate::Strain) says.
     pub law: Option<Law>,
+    /// Rate a of the force -a M v (1/s), 0 or above.
+    pub mass_damping: f64,
 }
 
 impl From<Material> for Substance {
     fn from(material: Material) -> Self {
-        Self { material, law: None }
+        Self { material, law: None, mass_damping: 0.0 }
     }
 }
 
 impl Material {
     /// This material, with `law` for large strains.
     pub fn law(self, law: Law) -> Substance {
-        Substance { material: self, law: Some(law) }
+        Substance::from(self).law(law)
+    }
+
+    /// This material, with the force -a M v at the rate `a` = `rate` (1/s): see [`Substance::mass_damping`].
+    pub fn mass_damping(self, rate: f64) -> Substance {
+        Substance::from(self).mass_damping(rate)
+    }
+
+    /// This material, with the viscosity `time` (s) times Young's modulus: see [`Substance::stiffness_damping`].
+    pub fn stiffness_damping(self, time: f64) -> Substance {
+        Substance::from(self).stiffness_damping(time)
     }
 
     /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as laws of rubber have them: of
@@ -52,8 +64,44 @@ impl Material {
 }
 
 impl Substance {
+    /// The same, with `law` for large strains.
+    pub fn law(self, law: Law) -> Self {
+        Self { law: Some(law), ..self }
+    }
+
+    /// The same, with the force -a M v at the rate a = `rate` (1/s, 0 or above), M being the inertia of what is made of this,
+    /// consistent or lumped as that of the body; point masses have none of it. It brakes all motion against the ground,
+    /// rigid motion too, which decays as exp(-a t), and damps a vibration of the angular frequency omega with the ratio
+    /// a / (2 omega).
+    ///
+    /// With [`stiffness_damping`](Self::stiffness_damping) this is Rayleigh's damping: the ratio is
+    /// (a / omega + beta omega) / 2, which two numbers fit to the measured ratios of two vibrations.
+    ///
+    /// ```
+    /// use pliant::{Body, Material, Mesh};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
+    /// let damped = rubber.mass_damping(2.1).stiffness_damping(3e-4);
+    /// assert_eq!(damped.material.viscosity, 300.0); // Pa s
+    /// let body = Body::new(Mesh::bar(0.1, 2)?, damped).area(2e-4).build()?;
+    /// assert!(body.damping().get(0, 1) > -2e-4 / 0.1 * 300.0); // less by the part of the mass
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn mass_damping(self, rate: f64) -> Self {
+        Self { mass_damping: rate, ..self }
+    }
+
+    /// The same, with damping in proportion to its stiffness: the viscosity beta E, beta being `time` (s, 0 or above), which
+    /// is natural (the force -beta K v) or objective as the [`Viscosity`](crate::Viscosity) of the body is. A vibration of
+    /// the angular frequency omega is damped with the ratio beta omega / 2.
+    pub fn stiffness_damping(mut self, time: f64) -> Self {
+        self.material.viscosity = time * self.material.young;
+        self
+    }
+
     pub(crate) fn validate(&self) -> Result<(), InputError> {
         self.material.validate()?;
+        not_negative("material.mass_damping", self.mass_damping, "1/s")?;
         self.law.map_or(Ok(()), |law| law.validate())
     }
 }

@@ -17,10 +17,14 @@ pub(crate) struct Model {
     pub(crate) inertia: Arc<NodeMatrix>,
     /// Constant part of -df/du: K, for Cauchy strain.
     pub(crate) stiffness: Option<Arc<BlockMatrix>>,
-    /// Constant part of -df/dv: B, for natural viscosity.
+    /// Constant part of -df/dv: B, for natural viscosity; a M, for mass damping.
     pub(crate) damping: Option<Arc<BlockMatrix>>,
-    /// What these two exert, if element by element is less work.
+    /// What K and B exert, if element by element is less work.
     pub(crate) linear_by_cells: Option<LinearByCells>,
+    /// a M, the part of `damping` that mass damping is.
+    pub(crate) mass_damping: Option<Arc<NodeMatrix>>,
+    /// Whether what damps is least work with `damping`, and not by cells and by mass.
+    pub(crate) damps_by_matrix: bool,
     /// What displacements (m) and velocities (m/s) of small strains, a hundredth, are like.
     pub(crate) scales: [f64; 2],
     /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
@@ -47,7 +51,8 @@ impl Model {
         let scales = [body.mesh().size(), body.material().wave_speed()].map(|scale| 0.01 * scale);
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
-        let linear_by_cells = body.linear_by_cells();
+        let (linear_by_cells, mass_damping) = (body.linear_by_cells(), body.mass_damping());
+        let damps_by_matrix = body.damps_by_matrix();
         if strangers.is_empty() {
             let dissection = dissection(pattern);
             return Self {
@@ -56,6 +61,8 @@ impl Model {
                 stiffness,
                 damping,
                 linear_by_cells,
+                mass_damping,
+                damps_by_matrix,
                 scales,
                 dissection,
             };
@@ -68,6 +75,8 @@ impl Model {
             stiffness: stiffness.map(moved),
             damping: damping.map(moved),
             linear_by_cells,
+            mass_damping,
+            damps_by_matrix,
             scales,
             dissection: dissection(&pattern),
         }

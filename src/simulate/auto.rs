@@ -248,7 +248,12 @@ fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
 
 /// The method, whether it follows a body that creeps, and why it was chosen.
 fn choose(spectrum: &Spectrum, rtol: f64) -> (Method, bool, String) {
-    let ratio = spectrum.lowest_damping_ratio;
+    // fast vibrations, which BDF dislikes, have next to nothing of mass damping
+    let (by_mass, besides) = match spectrum.mass_damping_ratio {
+        0.0 => (0.0, ""),
+        by_mass => (by_mass, " besides that of its mass"),
+    };
+    let ratio = (spectrum.lowest_damping_ratio - by_mass).max(0.0);
     // the ratio that the fastest motions would give it, were the damping that of the material
     let of_material = 0.5 * spectrum.damping_rate * spectrum.lowest_frequency.unwrap_or(0.0)
         / spectrum.highest_frequency.powi(2);
@@ -264,7 +269,7 @@ fn choose(spectrum: &Spectrum, rtol: f64) -> (Method, bool, String) {
         _ => (Method::Arkode, format!("below {STRONG_DAMPING}")),
     };
     let why = spectrum.slowest_period().map_or("nothing vibrates".into(), |period| {
-        format!("the slowest vibration ({period:.1e} s) has the damping ratio {ratio:.1e}, {limit}")
+        format!("the slowest vibration ({period:.1e} s) has the damping ratio {ratio:.1e}{besides}, {limit}")
     });
     (method, creeps, format!("{method}, as {why}"))
 }

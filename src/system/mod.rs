@@ -346,17 +346,16 @@ impl System {
     fn collect_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
         let nodal = &mut self.at.nodal;
         nodal.clear();
-        let Model { stiffness, damping, linear_by_cells, .. } = &*self.model;
-        match linear_by_cells {
-            Some(cells) => cells.add_forces(u, v, nodal)?,
-            None => {
-                if let Some(stiffness) = stiffness {
-                    stiffness.add_product(-1.0, u, &mut nodal.conservative);
-                }
-                if let Some(damping) = damping {
-                    damping.add_product(-1.0, v, &mut nodal.dissipative);
-                }
-            }
+        let model = &*self.model;
+        match (&model.linear_by_cells, &model.stiffness) {
+            (Some(cells), _) => cells.add_forces(u, v, nodal)?,
+            (None, Some(k)) => k.add_product(-1.0, u, &mut nodal.conservative),
+            (None, None) => {}
+        }
+        match (&model.damping, &model.mass_damping) {
+            (Some(b), _) if model.damps_by_matrix => b.add_product(-1.0, v, &mut nodal.dissipative),
+            (_, Some(m)) => m.add_product(model.dimension, -1.0, v, &mut nodal.dissipative),
+            (_, None) => {}
         }
         for force in &self.forces {
             let added = force.add_forces(t, u, v, nodal);

@@ -6,7 +6,7 @@ use super::System;
 use super::at_rest::shifted;
 use super::reduced::Reduced;
 use super::source::Coupling;
-use crate::sparse::BlockMatrix;
+use crate::sparse::{BlockMatrix, NodeMatrix};
 use crate::vector::{dot, noise};
 
 /// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
@@ -23,6 +23,8 @@ pub struct Spectrum {
     pub damping_rate: f64,
     /// Damping ratio of the lowest vibration, x.D x / (2 omega x.M x) of its shape x.
     pub lowest_damping_ratio: f64,
+    /// What of it is [mass damping](crate::Substance::mass_damping), which damps fast vibrations less.
+    pub mass_damping_ratio: f64,
 }
 
 impl Spectrum {
@@ -67,11 +69,15 @@ impl System {
             lowest_frequency: None,
             damping_rate,
             lowest_damping_ratio: 0.0,
+            mass_damping_ratio: 0.0,
         };
         if let Some((eigenvalue, x)) = self.lowest(highest) {
             let omega = eigenvalue.sqrt();
             spectrum.lowest_frequency = Some(omega);
             spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
+            let by_mass = |m: &NodeMatrix| m.quadratic_form(self.model.dimension, &x);
+            spectrum.mass_damping_ratio =
+                self.model.mass_damping.as_deref().map_or(0.0, by_mass) / (2.0 * omega);
         }
         spectrum
     }

@@ -11,6 +11,7 @@ mod checkpoint_refused;
 mod compression;
 mod contact;
 mod contact_events;
+mod damping;
 mod driving;
 mod forces;
 mod friction;
