@@ -19,6 +19,10 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
             .law("It follows from the law's `bulk`, if that is given.")
             .default(OF_BODY),
         Key::number("viscosity", "the viscous modulus", "Pa s").default(OF_BODY),
+        Key::number("mass_damping", "damping in proportion to mass: force -a M v", "1/s")
+            .law("As of air or water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by \
+                  the ratio a / (2 omega).")
+            .default("0; in a region, that of the body"),
         Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains").default(
             "as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's",
         ),
@@ -103,7 +107,9 @@ pub(super) fn substance(value: &Value, base: Option<Substance>) -> Result<Substa
         }
     };
     let law = constants.map(|law| law.law).or(base.and_then(|base| base.law));
-    let substance = Substance { material, law };
+    let mass_damping = table.optional("mass_damping", Value::number)?;
+    let mass_damping = mass_damping.or(base.map(|base| base.mass_damping)).unwrap_or(0.0);
+    let substance = Substance { material, law, mass_damping };
     substance.validate().map_err(|error| table.blame(error))?;
     Ok(substance)
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use pliant::ode::Failure;
 use pliant::{
-    Body, Cells, Equations, Inertia, InputError, Material, Mesh, Method, Obstacle, Phase, Scene,
-    SceneFile, Settings, SolidCells, Strain,
+    Body, Cells, Dilatation, Equations, Inertia, InputError, Law, Material, Mesh, Method, Obstacle,
+    Phase, Scene, SceneFile, Settings, SolidCells, Strain,
 };
 
 pub type Outcome<T = ()> = Result<T, Box<dyn Error>>;
@@ -49,7 +49,15 @@ fn cells(count: Count) -> Outcome {
         ("triangles, viscous", scene(triangles()?, viscous, Strain::Green)?),
         ("triangles on a floor", green(triangles()?)?.obstacle(floor.friction_coefficient(0.3))),
     ];
-    for (name, scene) in scenes {
+    let rubber = |dilatation| {
+        let body = Body::new(space(SolidCells::Hexahedra)?, RUBBER.law(Law::NeoHookean));
+        Ok::<_, InputError>(Scene::new(body.dilatation(dilatation).build()?))
+    };
+    let of_rubber = [
+        ("hexahedra, neo-Hookean", rubber(Dilatation::AtPoints)?),
+        ("hexahedra, neo-Hookean, mean dilatation", rubber(Dilatation::Mean)?),
+    ];
+    for (name, scene) in scenes.into_iter().chain(of_rubber) {
         let cells = scene.body().mesh().cells().count();
         let mut case = Case::new(&scene)?;
         count(&format!("forces, {name}"), "cell", cells, &mut || case.forces())?;
