@@ -38,7 +38,7 @@ impl Scene {
     ///
     /// # Errors
     /// As [`validate`](Self::validate); a phase that the scene does not have; displacements of
-    /// the wrong number; constraints that tie several components together.
+    /// the wrong number; constraints that tie several components together; Maxwell branches.
     pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, InputError> {
         let forces = self.forces()?;
         let model = self.model(&forces);
@@ -54,6 +54,10 @@ impl Scene {
                 format!("{} numbers", u.len()),
                 mend,
             ));
+        }
+        if model.branches.is_some() {
+            let mend = "equations are given for bodies without Maxwell branches: leave them out";
+            return Err(InputError::new("material.branches", "some", mend));
         }
         let time = phase.checked_sub(1).map_or(0.0, |before| self.phases()[before].end());
         // positions follow b(t) exactly here, so that no stabilization is needed
@@ -120,6 +124,6 @@ impl Equations {
     /// Solves (I - gamma J) x = r, with J the Jacobian of (u', v') = (v, M^-1 f) and the factor last made:
     /// `ru` and `rv` hold r and become x. Prescribed components get xv = rv and xu = ru + gamma xv.
     pub fn solve(&mut self, ru: &mut [f64], rv: &mut [f64]) {
-        self.system.solve_newton_ode(0.0, ru, rv);
+        self.system.solve_newton_ode(0.0, ru, rv, &[]);
     }
 }

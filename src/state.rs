@@ -1,5 +1,5 @@
 //! The state of a motion as integrators have it: the vector y = (u, v, energy dissipated, energy
-//! supplied, multipliers of a DAE), with names.
+//! supplied, multipliers of a DAE or internal strains), with names.
 
 /// Number of energies among the unknowns: dissipated and supplied.
 pub(crate) const ENERGIES: usize = 2;
@@ -15,8 +15,8 @@ pub(crate) struct State<'a> {
     pub(crate) dissipated: f64,
     /// Energy supplied from outside since t = 0 (J).
     pub(crate) supplied: f64,
-    /// Multipliers of a differential-algebraic form; none of an ODE.
-    pub(crate) multipliers: &'a [f64],
+    /// Multipliers of a differential-algebraic form; internal strains of an ODE, those of Maxwell branches.
+    pub(crate) others: &'a [f64],
 }
 
 /// As [`State`], to be written to.
@@ -26,11 +26,11 @@ pub(crate) struct StateMut<'a> {
     pub(crate) v: &'a mut [f64],
     pub(crate) dissipated: &'a mut f64,
     pub(crate) supplied: &'a mut f64,
-    pub(crate) multipliers: &'a mut [f64],
+    pub(crate) others: &'a mut [f64],
 }
 
-/// Position of the first multiplier of a body with `dofs` displacement components: the length of the
-/// state of an ODE.
+/// Position of the first of the others, of a body with `dofs` displacement components: the length of the
+/// state of an ODE without them.
 pub(crate) fn length(dofs: usize) -> usize {
     2 * dofs + ENERGIES
 }
@@ -40,8 +40,8 @@ impl<'a> State<'a> {
     pub(crate) fn of(y: &'a [f64], dofs: usize) -> Self {
         let (u, rest) = y.split_at(dofs);
         let (v, rest) = rest.split_at(dofs);
-        let (energies, multipliers) = rest.split_at(ENERGIES);
-        Self { u, v, dissipated: energies[0], supplied: energies[1], multipliers }
+        let (energies, others) = rest.split_at(ENERGIES);
+        Self { u, v, dissipated: energies[0], supplied: energies[1], others }
     }
 }
 
@@ -50,8 +50,8 @@ impl<'a> StateMut<'a> {
     pub(crate) fn of(y: &'a mut [f64], dofs: usize) -> Self {
         let (u, rest) = y.split_at_mut(dofs);
         let (v, rest) = rest.split_at_mut(dofs);
-        let (energies, multipliers) = rest.split_at_mut(ENERGIES);
+        let (energies, others) = rest.split_at_mut(ENERGIES);
         let (dissipated, supplied) = energies.split_at_mut(1);
-        Self { u, v, dissipated: &mut dissipated[0], supplied: &mut supplied[0], multipliers }
+        Self { u, v, dissipated: &mut dissipated[0], supplied: &mut supplied[0], others }
     }
 }

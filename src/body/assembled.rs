@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::assembly::Elements;
+use super::branches::Branches;
 use super::dilatation::Dilatation;
 use super::elastic::{Elastic, LinearByCells};
 use super::fields::{CellField, NodalField, Probe, nodal_fields};
@@ -327,6 +328,12 @@ impl Body {
         };
         let (elements, regions) = (self.elements.clone(), self.regions.clone());
         (terms.elastic || terms.viscous).then_some(Elastic { elements, regions, terms })
+    }
+
+    /// The Maxwell branches, if there are any.
+    pub(crate) fn branches(&self) -> Option<Branches> {
+        let (elements, regions) = (self.elements.clone(), self.regions.clone());
+        self.regions.branches().next().is_some().then_some(Branches { elements, regions })
     }
 
     /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of K has some 7

@@ -1,5 +1,6 @@
 //! Elements behind an interface without kind and dimension.
 
+use super::branches::Branched;
 use super::elements::ElementsOf;
 use super::fields::Fields;
 use super::forces::Forces;
@@ -13,11 +14,11 @@ use crate::sparse::NodePattern;
 
 /// All elements of a body.
 pub(super) trait Elements:
-    Masses + Forces + Tangents + Fields + Recovery + Send + Sync
+    Masses + Forces + Branched + Tangents + Fields + Recovery + Send + Sync
 {
 }
 
-impl<T: Masses + Forces + Tangents + Fields + Recovery + Send + Sync> Elements for T {}
+impl<T: Masses + Forces + Branched + Tangents + Fields + Recovery + Send + Sync> Elements for T {}
 
 /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
 pub(super) fn elements(

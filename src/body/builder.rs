@@ -127,12 +127,12 @@ impl BodyBuilder {
     pub fn build(self) -> Result<Body, InputError> {
         let Self { mut mesh, recipe } = self;
         let section = recipe.section(&mesh)?;
-        let Recipe { material, strain, plane, .. } = recipe;
+        let Recipe { ref material, strain, plane, .. } = recipe;
         let viscosity = recipe.viscosity.unwrap_or(match strain {
             Strain::Cauchy => Viscosity::Natural,
             _ => Viscosity::Objective,
         });
-        let regions = Regions::new(&mesh, strain, plane, &material, &recipe.regions)?;
+        let regions = Regions::new(&mesh, strain, plane, material, &recipe.regions)?;
         for (name, position, mass) in &recipe.points {
             positive(&format!("mass of point \"{name}\""), *mass, "kg")?;
             mesh.push_node(name, position)?;

@@ -420,7 +420,10 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
 
 /// The vectors of the nodes of a cell, less that of the first one.
 #[inline(always)]
-fn relative<const N: usize, const D: usize>(nodes: &[usize; N], x: &[[f64; D]]) -> [[f64; D]; N] {
+pub(super) fn relative<const N: usize, const D: usize>(
+    nodes: &[usize; N],
+    x: &[[f64; D]],
+) -> [[f64; D]; N] {
     let first = x[nodes[0]];
     let mut relative = [[0.0; D]; N];
     for a in 1..N {
@@ -434,7 +437,7 @@ fn relative<const N: usize, const D: usize>(nodes: &[usize; N], x: &[[f64; D]]) 
 
 /// Adds P g_a to the forces of all nodes but the first.
 #[inline(always)]
-fn collect<T: Real, const N: usize, const M: usize, const D: usize>(
+pub(super) fn collect<T: Real, const N: usize, const M: usize, const D: usize>(
     gradients: &[[T; M]; N],
     stress: &Matrix<T, D, M>,
     pull: &mut [[T; D]; N],

@@ -2,6 +2,7 @@
 
 mod assembled;
 mod assembly;
+mod branches;
 mod builder;
 mod dilatation;
 mod elastic;
@@ -22,6 +23,7 @@ mod tangents;
 mod tests;
 
 pub use assembled::Body;
+pub(crate) use branches::Branches;
 pub use builder::BodyBuilder;
 pub use dilatation::Dilatation;
 pub(crate) use elastic::LinearByCells;

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::input::InputError;
 use crate::material::{
-    Elastic, Hooke, Lame, Linear, Material, ObjectiveViscosity, Plane, Strain, Substance,
+    Elastic, Hooke, Lame, Linear, Material, ObjectiveViscosity, Plane, Relaxing, Strain, Substance,
 };
 use crate::mesh::Mesh;
 
@@ -95,8 +95,8 @@ impl CellSelection {
     }
 }
 
-/// What the elements of a region take: density (kg/m^3), rate of mass damping (1/s) and laws.
-#[derive(Debug, Clone, Copy)]
+/// What the elements of a region take: density (kg/m^3), rate of mass damping (1/s), laws and branches.
+#[derive(Debug, Clone)]
 pub(super) struct Laws {
     pub(super) density: f64,
     pub(super) mass_damping: f64,
@@ -104,6 +104,7 @@ pub(super) struct Laws {
     /// What the elastic law is at small strains.
     pub(super) hooke: Hooke,
     pub(super) viscous: ObjectiveViscosity,
+    pub(super) branches: Vec<Relaxing>,
 }
 
 impl Laws {
@@ -134,7 +135,7 @@ impl Regions {
     ) -> Result<Self, InputError> {
         let laws = |substance: &Substance| -> Result<Laws, InputError> {
             substance.validate()?;
-            let Substance { material, law, mass_damping } = substance;
+            let Substance { material, law, mass_damping, branches } = substance;
             if let (Some(law), Strain::Cauchy) = (law, strain) {
                 let mend = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
                 return Err(InputError::new("material.law", format!("{law:?}"), mend));
@@ -147,6 +148,10 @@ impl Regions {
                 elastic: Elastic::new(strain, *law, material.elastic(), dimension, plane),
                 hooke: hooke(material.elastic()),
                 viscous: ObjectiveViscosity(hooke(material.viscous())),
+                branches: branches
+                    .iter()
+                    .map(|branch| Relaxing::new(branch, material, strain, dimension, plane))
+                    .collect(),
             })
         };
         let mut all =
@@ -201,6 +206,11 @@ impl Regions {
     /// Whether any of them is viscous.
     pub(super) fn are_viscous(&self) -> bool {
         self.laws.iter().any(|laws| !laws.viscous.0.is_zero())
+    }
+
+    /// The branches of all of them.
+    pub(super) fn branches(&self) -> impl Iterator<Item = &Relaxing> {
+        self.laws.iter().flat_map(|laws| &laws.branches)
     }
 
     /// Whether any of them has mass damping.

@@ -44,7 +44,7 @@ impl Identity {
             ("positions of the nodes", of_numbers([mesh.positions()])),
             ("cells", of_text(&(mesh.kind(), cells))),
             ("sets of nodes", of_text(mesh.sets())),
-            ("materials", of_numbers(matrices) ^ of_text(&(body.strain(), body.viscosity()))),
+            ("materials", of_numbers(matrices) ^ of_text(&body)),
             ("accelerations of gravity", of_text(&scene.acceleration())),
             ("springs", of_text(scene.springs())),
             ("chambers", of_text(scene.chambers())),

@@ -57,6 +57,9 @@ pub(super) struct Record {
     constraint_starts: Vec<[f64; 4]>,
     displacements: Vec<f64>,
     velocities: Vec<f64>,
+    /// Of Maxwell branches.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    internal_strains: Vec<f64>,
 }
 
 /// A [`Choice`]; a step without a bound is `null`.
@@ -113,6 +116,7 @@ impl Record {
             constraint_starts: kept.origins.clone(),
             displacements: state.u.into(),
             velocities: state.v.into(),
+            internal_strains: state.others.into(),
         })
     }
 
@@ -126,12 +130,15 @@ impl Record {
             other => format!("{differs} (written by pliant {other}, read by {VERSION})"),
         })?;
         let dofs = scene.body().dofs();
-        for (what, numbers) in
-            [("displacements", &self.displacements), ("velocities", &self.velocities)]
-        {
-            if numbers.len() != dofs {
+        let internal = scene.body().branches().map_or(0, |branches| branches.unknowns());
+        for (what, numbers, needed) in [
+            ("displacements", &self.displacements, dofs),
+            ("velocities", &self.velocities, dofs),
+            ("internal strains", &self.internal_strains, internal),
+        ] {
+            if numbers.len() != needed {
                 let found = numbers.len();
-                return Err(format!("it has {found} {what}, the body has {dofs}: write it anew"));
+                return Err(format!("it has {found} {what}, the body has {needed}: write it anew"));
             }
         }
         let phases = scene.phases();
@@ -152,7 +159,7 @@ impl Record {
         let energies = vec![self.dissipated, self.supplied];
         let kept = Kept {
             time: self.time,
-            state: [self.displacements, self.velocities, energies].concat(),
+            state: [self.displacements, self.velocities, energies, self.internal_strains].concat(),
             phase: self.in_force.read(phase, scene)?.into(),
             number: self.phase,
             is_commanded: true,

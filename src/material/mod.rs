@@ -1,5 +1,6 @@
 //! Isotropic viscoelastic material, what a body is made of, and the laws of its stress.
 
+mod branch;
 mod deformation;
 mod hooke;
 mod law;
@@ -7,6 +8,8 @@ mod laws;
 mod response;
 mod substance;
 
+pub use branch::MaxwellBranch;
+pub(crate) use branch::{Relaxing, components};
 pub(crate) use deformation::Deformation;
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};

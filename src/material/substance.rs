@@ -1,12 +1,12 @@
 //! What a body, or a region of it, is made of: a material, the law that it keeps to when strains are large, and its damping.
 
-use super::{Material, laws::Law};
+use super::{Material, MaxwellBranch, laws::Law};
 use crate::input::{InputError, not_negative};
 
-/// A material with the law of its elasticity, and damping in proportion to its mass.
+/// A material with the law of its elasticity, damping in proportion to its mass, and springs that relax.
 ///
-/// [`Material::law`] and [`Material::mass_damping`] make it. A [`Material`] alone counts as one with the law that the body's
-/// [`Strain`](crate::Strain) stands for, without mass damping.
+/// [`Material::law`], [`Material::mass_damping`] and [`Material::maxwell`] make it. A [`Material`] alone counts as one with the
+/// law that the body's [`Strain`](crate::Strain) stands for, without the others.
 ///
 /// ```
 /// use pliant::{Body, Law, Material, Mesh, SolidCells};
@@ -17,7 +17,7 @@ use crate::input::{InputError, not_negative};
 /// assert!((body.mass() - 0.0963).abs() < 1e-12); // kg
 /// # Ok::<(), pliant::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Substance {
     /// Density, moduli at small strains, viscosity.
     pub material: Material,
@@ -25,11 +25,13 @@ pub struct Substance {
     pub law: Option<Law>,
     /// Rate a of the force -a M v (1/s), 0 or above.
     pub mass_damping: f64,
+    /// Maxwell branches beside the elasticity.
+    pub branches: Vec<MaxwellBranch>,
 }
 
 impl From<Material> for Substance {
     fn from(material: Material) -> Self {
-        Self { material, law: None, mass_damping: 0.0 }
+        Self { material, law: None, mass_damping: 0.0, branches: Vec::new() }
     }
 }
 
@@ -47,6 +49,12 @@ impl Material {
     /// This material, with the viscosity `time` (s) times Young's modulus: see [`Substance::stiffness_damping`].
     pub fn stiffness_damping(self, time: f64) -> Substance {
         Substance::from(self).stiffness_damping(time)
+    }
+
+    /// This material, with a Maxwell branch of the share of stiffness `share` (1) and the relaxation time `time` (s): see
+    /// [`Substance::maxwell`].
+    pub fn maxwell(self, share: f64, time: f64) -> Substance {
+        Substance::from(self).maxwell(share, time)
     }
 
     /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as laws of rubber have them: of
@@ -99,9 +107,37 @@ impl Substance {
         self
     }
 
+    /// The same, with one more [Maxwell branch](MaxwellBranch): its share g = `share` (1, above 0) of stiffness beside Young's
+    /// modulus, and its relaxation time tau = `time` (s, above 0). With branches (g_i, tau_i) what is strained at once and
+    /// kept so pulls with E (1 + sum g_i exp(-t/tau_i)), and what swings slowly with the angular frequency omega has the complex
+    /// modulus
+    ///
+    /// ```text
+    /// E (1 + sum g_i i omega tau_i / (1 + i omega tau_i)) + i omega c
+    /// ```
+    ///
+    /// A motion begins relaxed in its first shape, as if it had been in it for long; so is an equilibrium, which branches
+    /// leave as it is. Fields of strain and stress are those of the elasticity alone. A body with branches is integrated by the
+    /// methods `cvode-bdf`, `cvode-adams`, `arkode` and `rk`, of which `auto` chooses.
+    ///
+    /// ```
+    /// use pliant::{Body, Material, Mesh};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
+    /// let relaxing = rubber.maxwell(0.5, 0.01).maxwell(0.2, 0.3);
+    /// assert_eq!(relaxing.branches.len(), 2);
+    /// let body = Body::new(Mesh::bar(0.1, 2)?, relaxing).area(2e-4).build()?;
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn maxwell(mut self, share: f64, time: f64) -> Self {
+        self.branches.push(MaxwellBranch { share, time });
+        self
+    }
+
     pub(crate) fn validate(&self) -> Result<(), InputError> {
         self.material.validate()?;
         not_negative("material.mass_damping", self.mass_damping, "1/s")?;
+        self.branches.iter().try_for_each(MaxwellBranch::validate)?;
         self.law.map_or(Ok(()), |law| law.validate())
     }
 }

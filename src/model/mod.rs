@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use dissection::nested_dissection;
 
-use crate::body::{Body, LinearByCells};
+use crate::body::{Body, Branches, LinearByCells};
 use crate::force::Force;
 use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 
@@ -25,6 +25,8 @@ pub(crate) struct Model {
     pub(crate) mass_damping: Option<Arc<NodeMatrix>>,
     /// Whether what damps is least work with `damping`, and not by cells and by mass.
     pub(crate) damps_by_matrix: bool,
+    /// The Maxwell branches.
+    pub(crate) branches: Option<Branches>,
     /// What displacements (m) and velocities (m/s) of small strains, a hundredth, are like.
     pub(crate) scales: [f64; 2],
     /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
@@ -52,7 +54,7 @@ impl Model {
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
         let (linear_by_cells, mass_damping) = (body.linear_by_cells(), body.mass_damping());
-        let damps_by_matrix = body.damps_by_matrix();
+        let (damps_by_matrix, branches) = (body.damps_by_matrix(), body.branches());
         if strangers.is_empty() {
             let dissection = dissection(pattern);
             return Self {
@@ -63,6 +65,7 @@ impl Model {
                 linear_by_cells,
                 mass_damping,
                 damps_by_matrix,
+                branches,
                 scales,
                 dissection,
             };
@@ -77,6 +80,7 @@ impl Model {
             linear_by_cells,
             mass_damping,
             damps_by_matrix,
+            branches,
             scales,
             dissection: dissection(&pattern),
         }

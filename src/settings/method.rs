@@ -56,6 +56,11 @@ impl Method {
         Self::CentralDifference,
     ];
 
+    /// Whether it integrates bodies with [Maxwell branches](crate::MaxwellBranch).
+    pub(crate) fn takes_branches(self) -> bool {
+        matches!(self, Self::Auto | Self::CvodeBdf | Self::CvodeAdams | Self::Arkode | Self::Rk)
+    }
+
     /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`,
     /// `ida-index-2`, `arkode`, `rosenbrock`, `rk`, `central-difference`.
     pub fn name(self) -> &'static str {

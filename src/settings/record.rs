@@ -121,6 +121,7 @@ impl Settings {
         AbsoluteTolerances {
             position: self.atol_position.unwrap_or(position),
             velocity: self.atol_velocity.unwrap_or(velocity),
+            strain: self.atol_position.unwrap_or(position) / size,
             energy: self.rtol * young * volume,
             force: self.rtol * young * volume / size,
             momentum: self.rtol * young * volume / wave_speed,
@@ -164,6 +165,8 @@ pub struct AbsoluteTolerances {
     pub position: f64,
     /// Velocities (m/s).
     pub velocity: f64,
+    /// Internal strains (1).
+    pub(crate) strain: f64,
     /// Energies dissipated and supplied (J).
     pub(crate) energy: f64,
     /// Multipliers (N).

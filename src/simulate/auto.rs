@@ -99,13 +99,15 @@ impl Plan {
             None if creeps && asked.rtol >= COARSE => (1.0, Some(3)),
             order => (part(method, asked.rtol), order),
         };
+        let relaxation = system.relaxation_rate();
+        let is_for_central = system.is_lumped() && relaxation == 0.0;
         Self {
             settings: given(asked, method, max_order, part),
             asked: asked.clone(),
             part,
             reason: Some(reason),
-            explicit_step: explicit_step(&spectrum, alpha),
-            central_step: if system.is_lumped() { central_step(&spectrum) } else { 0.0 },
+            explicit_step: explicit_step(&spectrum, alpha.max(relaxation)),
+            central_step: if is_for_central { central_step(&spectrum) } else { 0.0 },
             patience: 8 * TRIAL,
         }
     }
@@ -280,15 +282,15 @@ fn central_step(spectrum: &Spectrum) -> f64 {
     central_difference::longest_step(&Rates { frequency: highest_frequency, decay: damping_rate })
 }
 
-/// Longest step (s) with which explicit Runge-Kutta is stable.
-fn explicit_step(spectrum: &Spectrum, alpha: f64) -> f64 {
+/// Longest step (s) with which explicit Runge-Kutta is stable, `decay` (1/s) being the fastest besides those of the spectrum.
+fn explicit_step(spectrum: &Spectrum, decay: f64) -> f64 {
     let Spectrum { highest_frequency, damping_rate, .. } = *spectrum;
     // an undamped vibration is on the edge of the region of stability, which leaves the axis at 1
     let reach = match damping_rate > 0.1 * highest_frequency {
         true => EXPLICIT_REACH,
         false => EXPLICIT_REACH_UNDAMPED,
     };
-    (reach / spectrum.stiffest_rate()).min(EXPLICIT_REACH / alpha)
+    (reach / spectrum.stiffest_rate()).min(EXPLICIT_REACH / decay)
 }
 
 #[cfg(test)]

@@ -52,7 +52,7 @@ impl Reading {
             v: &sample.v,
             dissipated: 0.0,
             supplied: 0.0,
-            multipliers: &sample.multipliers,
+            others: &sample.multipliers,
         };
         let phase = &scene.phases()[sample.phase];
         Ok(gauge(&View { scene, phase, gauges: &gauges, time: sample.time, state }, sample))

@@ -20,8 +20,8 @@ pub(super) fn sample(
     time: f64,
     state: &[f64],
 ) -> Result<Sample, Failure> {
-    let State { u, v, .. } = State::of(state, system.dofs());
-    let multipliers = system.multipliers(time, u, v)?.to_vec();
+    let State { u, v, others, .. } = State::of(state, system.dofs());
+    let multipliers = system.multipliers(time, u, v, internal(system, others))?.to_vec();
     let energy = energy(system, time, state);
     let constraint_drift = system.drift(time, u);
     Ok(Sample {
@@ -51,7 +51,7 @@ pub(super) fn complete(
     }
     let Sample { time, ref u, ref v, energy, .. } = *sample;
     let Energy { dissipated, supplied, .. } = energy;
-    let state = State { u, v, dissipated, supplied, multipliers: &sample.multipliers };
+    let state = State { u, v, dissipated, supplied, others: &sample.multipliers };
     let view = View { scene, phase, gauges, time, state };
     let readings = sensors.read(&view, sample);
     sample.sensors = readings;
@@ -59,8 +59,14 @@ pub(super) fn complete(
 
 /// Energies of `state` = (u, v, energies, ...) at `time`.
 pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
-    let State { u, v, dissipated, supplied, .. } = State::of(state, system.dofs());
-    Energy { dissipated, supplied, ..system.energy(time, u, v) }
+    let State { u, v, dissipated, supplied, others } = State::of(state, system.dofs());
+    let energy = system.energy(time, u, v, internal(system, others));
+    Energy { dissipated, supplied, ..energy }
+}
+
+/// The internal strains among what a state ends in, which may be multipliers.
+fn internal<'a>(system: &System, others: &'a [f64]) -> &'a [f64] {
+    if system.relaxation_rate() > 0.0 { others } else { &[] }
 }
 
 /// Projects the velocities of `state` on those that the constraints allow, if the phase asks for that or
@@ -97,7 +103,7 @@ pub(super) fn begin_to_move(
 
 fn project_now(system: &mut System, time: f64, state: &mut [f64]) {
     let StateMut { u, v, supplied, .. } = StateMut::of(state, system.dofs());
-    let before = system.energy(time, u, v).kinetic;
+    let before = system.energy(time, u, v, &[]).kinetic;
     system.project(time, v);
-    *supplied += system.energy(time, u, v).kinetic - before;
+    *supplied += system.energy(time, u, v, &[]).kinetic - before;
 }

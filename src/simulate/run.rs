@@ -23,7 +23,7 @@ use crate::model::Model;
 use crate::ode::Failure;
 use crate::report::{Report, creation};
 use crate::scene::{Phase, Scene};
-use crate::settings::{Scales, Settings};
+use crate::settings::{Method, Scales, Settings};
 use crate::state::ENERGIES;
 use crate::system::System;
 use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
@@ -51,7 +51,7 @@ pub(super) struct Run {
     pub(super) stage: Stage,
     pub(super) at: At,
     pub(super) time: f64,
-    /// (u, v, energies)
+    /// (u, v, energies, internal strains)
     pub(super) state: Vec<f64>,
     /// Steps taken since t = 0.
     pub(super) steps: usize,
@@ -83,7 +83,13 @@ impl Run {
         let (u, v) = (scene.initial_displacements(), scene.initial_velocities()?);
         let start = PhaseStart { time: 0.0, u };
         let mut system = scene.system(&model, phase, forces, &start, settings.alpha)?;
-        let mut state = [u, &v, &[0.0; ENERGIES]].concat();
+        if system.relaxation_rate() > 0.0 && !settings.method.takes_branches() {
+            let takes = Method::ALL.into_iter().filter(|method| method.takes_branches());
+            let takes: Vec<&str> = takes.map(Method::name).collect();
+            let mend = format!("bodies with Maxwell branches are for {}", takes.join(", "));
+            return Err(InputError::new("method", settings.method, mend).into());
+        }
+        let mut state = [u, &v, &[0.0; ENERGIES], &system.relaxed(u)].concat();
         begin_to_move(settings, phase, &mut system, &mut state);
         let mut first = records::sample(0, &mut system, 0.0, &state)
             .map_err(|failure| scene.bad_start(failure))?;

@@ -139,6 +139,7 @@ pub(super) fn start(
     let mut tolerances = vec![atol.position; n];
     tolerances.resize(2 * n, atol.velocity);
     tolerances.resize(2 * n + ENERGIES, atol.energy);
+    tolerances.resize(system.unknowns(), atol.strain);
     system.expect_iteration(iterates(settings.method, &system));
     match settings.method {
         // a plan names a method of its own

@@ -7,7 +7,6 @@ use crate::constraint::PhaseStart;
 use crate::error::Error;
 use crate::ode::Ode;
 use crate::scene::Scene;
-use crate::state;
 
 /// A hash of all data of a scene, of what its functions of time do at a few
 /// times, and of the version of this library.
@@ -42,14 +41,15 @@ fn add_text(hasher: &mut DefaultHasher, text: fmt::Arguments<'_>) {
 /// Accelerations of the body at rest in its undeformed shape, at a few times of each phase: loads,
 /// pressures, actuation and paths are functions, whose code cannot be compared.
 fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Error> {
-    let state = vec![0.0; state::length(scene.body().dofs())];
-    let mut change = state.clone();
+    let rest = vec![0.0; scene.body().dofs()];
     let forces = scene.forces()?;
     let model = scene.model(&forces);
     let mut time = 0.0;
     for (phase, forces) in scene.phases().iter().zip(forces) {
-        let start = PhaseStart { time, u: &state[..scene.body().dofs()] };
+        let start = PhaseStart { time, u: &rest };
         let mut system = scene.system(&model, phase, forces, &start, 1.0)?;
+        let state = vec![0.0; system.unknowns()];
+        let mut change = state.clone();
         for k in 0..=4 {
             let t = time + 0.25 * f64::from(k) * (phase.end() - time);
             if system.rhs(t, &state, &mut change).is_ok() {

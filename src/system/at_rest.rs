@@ -155,7 +155,7 @@ impl AtRest {
 
     /// Potential energies with a fraction of gravity and of the way of obstacles.
     pub(crate) fn energy(&self, fraction: f64, u: &[f64]) -> Energy {
-        let energy = self.system.energy(fraction * self.time, u, &self.still);
+        let energy = self.system.energy(fraction * self.time, u, &self.still, &[]);
         Energy { gravity: fraction * energy.gravity, ..energy }
     }
 

@@ -72,7 +72,7 @@ impl DaeForm {
         state: &[f64],
     ) -> Result<(Vec<f64>, Vec<f64>), Failure> {
         let State { u, v, .. } = State::of(state, self.system.dofs());
-        self.system.evaluate(t, u, v)?;
+        self.system.evaluate(t, u, v, &[])?;
         let (dissipated, supplied) = self.system.powers(v, &self.system.at.multipliers);
         let mut y = [state, &self.system.at.multipliers].concat();
         y.resize(self.size(), 0.0);
@@ -133,9 +133,9 @@ impl Dae for DaeForm {
         residual: &mut [f64],
     ) -> Result<(), Failure> {
         let n = self.system.dofs();
-        let (State { u, v, multipliers, .. }, rates) = (State::of(y, n), State::of(yp, n));
+        let (State { u, v, others: multipliers, .. }, rates) = (State::of(y, n), State::of(yp, n));
         let (multipliers, eta) = multipliers.split_at(self.system.rows.len());
-        self.system.evaluate_forces(t, u, v)?;
+        self.system.evaluate_forces(t, u, v, &[])?;
         self.system.evaluate_rows(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, multipliers);
         let System { model, rows, at, .. } = &mut self.system;
@@ -162,7 +162,7 @@ impl Dae for DaeForm {
         }
         *residual.dissipated = rates.dissipated - dissipated;
         *residual.supplied = rates.supplied - supplied;
-        let (of_rates, of_positions) = residual.multipliers.split_at_mut(rows.len());
+        let (of_rates, of_positions) = residual.others.split_at_mut(rows.len());
         for (k, row) in rows.iter().enumerate() {
             match self.index {
                 Index::One => of_rates[k] = row.apply(rates.v) - at.demands[k],
@@ -203,7 +203,7 @@ impl Dae for DaeForm {
 
     fn newton_solve(&mut self, r: &mut [f64]) -> Result<(), Failure> {
         let r = StateMut::of(r, self.system.dofs());
-        let (r3, r4) = r.multipliers.split_at_mut(self.system.rows.len());
+        let (r3, r4) = r.others.split_at_mut(self.system.rows.len());
         match self.index {
             Index::One => self.system.solve_newton_index_one(r.u, r.v, r3),
             Index::Two => self.system.solve_newton_index_two(r.u, r.v, r3, r4),

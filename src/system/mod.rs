@@ -52,12 +52,14 @@ use source::Coupling;
 pub use spectrum::Spectrum;
 pub use summary::PhaseSummary;
 
+use crate::body::Branches;
 use crate::constraint::{Prescribed, Row};
 use crate::force::{Forces, NodalForces, Reservoir, Step};
 use crate::input::InputError;
 use crate::model::Model;
 use crate::ode::Failure;
 use crate::sparse::NodeMatrix;
+use crate::state;
 use crate::vector::dot;
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
@@ -87,6 +89,9 @@ struct Evaluation {
     rates: Vec<f64>,
     /// A^T v' as the stabilization wants it, one per row.
     demands: Vec<f64>,
+    /// Rates (1/s) of the internal strains, and the power (W) that they dissipate.
+    relaxing: Vec<f64>,
+    relaxed: f64,
 }
 
 /// Energies of a state (J).
@@ -153,8 +158,8 @@ impl System {
                 ),
             });
         }
-        let nonlinear = forces.iter().any(|force| force.is_nonlinear());
-        let newton = NewtonMatrix::new(&model, &rows, nonlinear);
+        let newton = NewtonMatrix::new(&model, &rows, follows(&model, &forces));
+        let internal = model.branches.as_ref().map_or(0, Branches::unknowns);
         let at = Evaluation {
             nodal: NodalForces::zeros(dofs),
             total: vec![0.0; dofs],
@@ -162,6 +167,8 @@ impl System {
             multipliers: vec![0.0; rows.len()],
             rates: vec![0.0; rows.len()],
             demands: vec![0.0; rows.len()],
+            relaxing: vec![0.0; internal],
+            relaxed: 0.0,
         };
         Ok(Self { model, forces, rows, alpha, inertia, newton, at, refusal: String::new() })
     }
@@ -173,7 +180,7 @@ impl System {
 
     /// Replaces the forces, if the Newton matrix has room for their tangents; all else stays as it is.
     pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
-        if forces.iter().any(|force| force.is_nonlinear()) != self.newton.follows {
+        if follows(&self.model, &forces) != self.newton.follows {
             return false;
         }
         self.forces = forces;
@@ -217,9 +224,15 @@ impl System {
         self.newton.difference_evaluations()
     }
 
-    /// The constraint forces lambda (N) at (t, u, v), row by row.
-    pub(crate) fn multipliers(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<&[f64], Failure> {
-        self.evaluate(t, u, v)?;
+    /// The constraint forces lambda (N) at (t, u, v) and the internal strains, row by row.
+    pub(crate) fn multipliers(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        internal: &[f64],
+    ) -> Result<&[f64], Failure> {
+        self.evaluate(t, u, v, internal)?;
         Ok(&self.at.multipliers)
     }
 
@@ -300,9 +313,10 @@ impl System {
         self.rows.iter().map(drift).fold(0.0, f64::max)
     }
 
-    /// Kinetic and potential energies of a state; dissipated and supplied are left at 0.
-    pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64]) -> Energy {
-        let Model { inertia, stiffness, linear_by_cells, dimension, .. } = &*self.model;
+    /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` strains
+    /// Maxwell branches have relaxed.
+    pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Energy {
+        let Model { inertia, stiffness, linear_by_cells, dimension, branches, .. } = &*self.model;
         let mut energy = Energy {
             kinetic: 0.5 * inertia.quadratic_form(*dimension, v),
             strain: match linear_by_cells {
@@ -311,6 +325,9 @@ impl System {
             },
             ..Energy::default()
         };
+        if let (Some(branches), [_, ..]) = (branches, internal) {
+            energy.strain += branches.energy(u, internal);
+        }
         for force in &self.forces {
             let potential = force.potential(t, u);
             match force.reservoir() {
@@ -324,9 +341,9 @@ impl System {
         energy
     }
 
-    /// Evaluates forces, accelerations and multipliers.
-    fn evaluate(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
-        self.evaluate_forces(t, u, v)?;
+    /// Evaluates forces, accelerations and multipliers. Without `internal` strains Maxwell branches have relaxed.
+    fn evaluate(&mut self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Result<(), Failure> {
+        self.evaluate_forces(t, u, v, internal)?;
         self.evaluate_rows(t, u, v)?;
         let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
         self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
@@ -337,8 +354,18 @@ impl System {
         Ok(())
     }
 
-    fn evaluate_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+    fn evaluate_forces(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        internal: &[f64],
+    ) -> Result<(), Failure> {
         self.collect_forces(t, u, v)?;
+        if let (Some(branches), [_, ..]) = (&self.model.branches, internal) {
+            let Evaluation { nodal, relaxing, relaxed, .. } = &mut self.at;
+            *relaxed = branches.add_forces(u, internal, &mut nodal.conservative, relaxing);
+        }
         self.at.nodal.add_up(&mut self.at.total);
         Ok(())
     }
@@ -386,7 +413,26 @@ impl System {
     /// Power dissipated and power supplied (W) at the last evaluation.
     fn powers(&self, v: &[f64], multipliers: &[f64]) -> (f64, f64) {
         let (dissipated, applied) = self.at.nodal.powers(v);
-        (dissipated, applied + dot(multipliers, &self.at.rates))
+        (dissipated + self.at.relaxed, applied + dot(multipliers, &self.at.rates))
+    }
+
+    /// Number of unknowns of the ODE form.
+    pub(crate) fn unknowns(&self) -> usize {
+        state::length(self.dofs()) + self.at.relaxing.len()
+    }
+
+    /// The internal strains with which nothing pulls at the displacements `u`.
+    pub(crate) fn relaxed(&self, u: &[f64]) -> Vec<f64> {
+        let mut internal = vec![0.0; self.at.relaxing.len()];
+        if let Some(branches) = &self.model.branches {
+            branches.relax(u, &mut internal);
+        }
+        internal
+    }
+
+    /// Largest rate (1/s) at which Maxwell branches relax; 0 without any.
+    pub(crate) fn relaxation_rate(&self) -> f64 {
+        self.model.branches.as_ref().map_or(0.0, Branches::fastest)
     }
 
     fn not_finite(&self, row: &Row, t: f64) -> Failure {
@@ -400,4 +446,9 @@ impl System {
             .into(),
         )
     }
+}
+
+/// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.
+fn follows(model: &Model, forces: &Forces) -> bool {
+    model.branches.is_some() || forces.iter().any(|force| force.is_nonlinear())
 }

@@ -12,6 +12,8 @@
 //!
 //! One sparse symmetric matrix N of half the size; alpha costs nothing, however large.
 //!
+//! Maxwell branches are eliminated point by point (`body/branches.rs`), so that Kt is what they leave in a step of gamma.
+//!
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
 //! M rv is M cv + gamma f, and no iteration solves a system with M.
 
@@ -76,6 +78,18 @@ impl System {
         true
     }
 
+    /// Adds to Kt, just renewed, what Maxwell branches exert in a step of the parameter `gamma`: at once if that is 0, and
+    /// without stress if there are no `internal` strains.
+    pub(crate) fn add_branch_tangents(&mut self, gamma: f64, u: &[f64], internal: &[f64]) {
+        let Some(branches) = &self.model.branches else { return };
+        let NewtonMatrix { stiffness, place, .. } = &mut self.newton;
+        if let Some(stiffness) = stiffness.own() {
+            branches.add_tangents(gamma, u, internal, stiffness);
+        }
+        place.clear();
+        place.extend_from_slice(u);
+    }
+
     /// Brings N = M + gamma D + gamma^2 Kt into force.
     pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
@@ -128,10 +142,20 @@ impl System {
 
     /// The Newton system of the ODE form: `ru`, `rv` become xu, xv. `share` times the accelerations that
     /// follow from the forces and demands last evaluated is added to `rv` first. Leaves in mu
-    /// gamma times the change of lambda, or with those accelerations all of `share` times lambda.
-    pub(crate) fn solve_newton_ode(&mut self, share: f64, ru: &mut [f64], rv: &mut [f64]) {
-        let NewtonMatrix { stiffness, right, demands, gamma, .. } = &mut self.newton;
+    /// gamma times the change of lambda, or with those accelerations all of `share` times lambda. `internal` are the
+    /// residuals of the internal strains.
+    pub(crate) fn solve_newton_ode(
+        &mut self,
+        share: f64,
+        ru: &mut [f64],
+        rv: &mut [f64],
+        internal: &[f64],
+    ) {
+        let NewtonMatrix { stiffness, right, demands, gamma, place, .. } = &mut self.newton;
         right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
+        if let (Some(branches), [_, ..]) = (&self.model.branches, internal) {
+            branches.add_residuals(*gamma, place, internal, right);
+        }
         self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
             *demand = row.apply(rv) + share * of_forces;
@@ -143,6 +167,14 @@ impl System {
         self.stabilize_demands(ru);
         self.solve_newton(ru);
         rv.copy_from_slice(&self.newton.xv);
+    }
+
+    /// Makes of the residuals `x` of the internal strains their changes, with those of the displacements, `xu`. Gives how the
+    /// power that they dissipate changes (W).
+    pub(super) fn solve_branches(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
+        let (NewtonMatrix { place, gamma, .. }, rates) = (&self.newton, &self.at.relaxing);
+        let branches = self.model.branches.as_ref();
+        branches.map_or(0.0, |branches| branches.solve(*gamma, place, rates, xu, x))
     }
 
     /// The Newton system of the index-1 form, cj dF/dy' + dF/dy with cj = 1/gamma: the residuals

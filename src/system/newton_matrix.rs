@@ -25,6 +25,8 @@ pub(super) struct NewtonMatrix {
     /// Whether D is not all zeros.
     pub(super) is_damped: bool,
     pub(super) gamma: f64,
+    /// Displacements (m) at which Maxwell branches have been eliminated.
+    pub(super) place: Vec<f64>,
     pub(super) accuracy: f64,
     pub(super) tangent_evaluations: usize,
     /// f of the linear system, and its solution xv.
@@ -58,12 +60,20 @@ impl Tangent {
         }
     }
 
+    /// Its own matrix, as it is.
+    pub(super) fn own(&mut self) -> Option<&mut BlockMatrix> {
+        match self {
+            Self::Own(matrix) => Some(matrix),
+            Self::Constant(_) => None,
+        }
+    }
+
     /// Its own matrix, set back to the constant part.
     pub(super) fn begin(
         &mut self,
         constant: &Option<Arc<BlockMatrix>>,
     ) -> Option<&mut BlockMatrix> {
-        let Self::Own(matrix) = self else { return None };
+        let matrix = self.own()?;
         match constant {
             Some(constant) => matrix.values.copy_from_slice(&constant.values),
             None => matrix.values.fill(0.0),
@@ -84,6 +94,7 @@ impl NewtonMatrix {
             is_set: false,
             is_damped: model.damping.is_some(),
             gamma: f64::NAN,
+            place: vec![0.0; if model.branches.is_some() { dofs } else { 0 }],
             accuracy: SOLVED_ONCE,
             tangent_evaluations: 0,
             right: vec![0.0; dofs],

@@ -52,7 +52,7 @@ impl SecondOrder for SecondOrderForm {
     }
 
     fn balance(&self, t: f64, u: &[f64], v: &[f64], integrals: &[f64]) -> Option<EnergyBalance> {
-        let mut energy = self.system.energy(t, u, v);
+        let mut energy = self.system.energy(t, u, v, &[]);
         (energy.dissipated, energy.supplied) = (integrals[0], integrals[1]);
         Some(EnergyBalance { energy: energy.balance(), scale: energy.size() })
     }

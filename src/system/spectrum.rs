@@ -10,7 +10,8 @@ use crate::sparse::{BlockMatrix, NodeMatrix};
 use crate::vector::{dot, noise};
 
 /// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
-/// the constraints allow. Contacts and springs count as far as they act in that state.
+/// the constraints allow. Contacts and springs count as far as they act in that state, Maxwell branches as springs, without
+/// their damping.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
     /// Highest angular frequency (rad/s), of Kt x = omega^2 M x: an estimate from below, good to a
@@ -62,6 +63,7 @@ impl System {
     /// The spectrum at (t, u, v).
     pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
         self.update_tangents(t, u, v, false);
+        self.add_branch_tangents(0.0, u, &[]);
         let highest = self.highest(|system| system.tangents().0);
         let damping_rate = self.highest(|system| system.tangents().1);
         let mut spectrum = Spectrum {

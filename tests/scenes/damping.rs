@@ -8,25 +8,25 @@ use pliant::{
     Strain, Substance, Trajectory,
 };
 
-const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.0, viscosity: 0.0 };
+pub const RUBBER: Material = Material { density: 1000.0, young: 1e6, poisson: 0.0, viscosity: 0.0 };
 /// Cells, and length (m), of the bar.
 const CELLS: usize = 8;
 const LENGTH: f64 = 0.1;
 
 /// A bar that is held at its left end and let go from its `k`-th shape of vibration, 1 mm at most.
-fn plucked(substance: Substance, inertia: Inertia, k: usize, until: f64) -> Scene {
+pub fn plucked(substance: Substance, inertia: Inertia, k: usize, until: f64) -> Scene {
     let body = Body::new(Mesh::bar(LENGTH, CELLS + 1).unwrap(), substance).area(1e-4);
     let body = body.strain(Strain::Cauchy).inertia(inertia).build().unwrap();
     let phase = Phase::until(until).hold("left");
     Scene::new(body).initial_displacement(move |x| vec![1e-3 * shape(k, x[0])]).phase(phase)
 }
 
-fn shape(k: usize, x: f64) -> f64 {
+pub fn shape(k: usize, x: f64) -> f64 {
     ((2 * k - 1) as f64 * PI * x / (2.0 * LENGTH)).sin()
 }
 
 /// Frequency (rad/s) of that shape, which is one of the mesh, too: (E/rho h^2) (2 - 2 cos kh) over the same of the inertia.
-fn frequency(inertia: Inertia, k: usize) -> f64 {
+pub fn frequency(inertia: Inertia, k: usize) -> f64 {
     let h = LENGTH / CELLS as f64;
     let cos = ((2 * k - 1) as f64 * PI / (2 * CELLS) as f64).cos();
     let mass = match inertia {
@@ -36,7 +36,7 @@ fn frequency(inertia: Inertia, k: usize) -> f64 {
     (RUBBER.young / RUBBER.density * 2.0 * (1.0 - cos) / mass).sqrt() / h
 }
 
-fn run(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
+pub fn run(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
     let settings = Settings { method, rtol, ..Settings::default() };
     scene.simulate(&settings, &Sampling::every(scene.end() / 40.0)).unwrap()
 }
@@ -65,7 +65,7 @@ fn vibrations_decay_by_both_parts() {
                 let omega = frequency(inertia, k);
                 let half = 0.5 * (a + beta * omega * omega);
                 let turn = (omega * omega - half * half).sqrt();
-                let trajectory = run(&plucked(damped, inertia, k, 0.05), method, rtol);
+                let trajectory = run(&plucked(damped.clone(), inertia, k, 0.05), method, rtol);
                 let first = trajectory.samples()[0].energy.balance();
                 let mut worst = 0.0_f64;
                 for sample in trajectory.samples() {
@@ -91,10 +91,10 @@ fn rigid_motion_decays() {
     let silicone = Material { poisson: 0.45, viscosity: 100.0, ..RUBBER }.mass_damping(a);
     let plane = |strain| {
         let mesh = Mesh::rectangle([0.1, 0.06], [4, 3], Cells::Triangles).unwrap();
-        Body::new(mesh, silicone).thickness(0.01).strain(strain).build().unwrap()
+        Body::new(mesh, silicone.clone()).thickness(0.01).strain(strain).build().unwrap()
     };
     let mesh = Mesh::cuboid([0.1, 0.06, 0.06], [3, 3, 3], SolidCells::Hexahedra20).unwrap();
-    let solid = Body::new(mesh, silicone).build().unwrap();
+    let solid = Body::new(mesh, silicone.clone()).build().unwrap();
     let lumped = solid.to_builder().inertia(Inertia::Lumped).build().unwrap();
     for body in [plane(Strain::Cauchy), plane(Strain::Green), solid, lumped] {
         let mut velocity = vec![0.7, -0.4];

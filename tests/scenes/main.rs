@@ -23,6 +23,7 @@ mod observer;
 mod oscillating;
 mod planes;
 mod readings;
+mod relaxing;
 mod ring;
 mod sensors;
 mod simulation;

@@ -154,7 +154,7 @@ fn energy_does_not_drift() {
             after(&mut central, 10);
             worst = worst.max((balance(&mut central, h) - start).abs());
             let (t, y) = (central.t(), central.y());
-            let energy = central.system().system.energy(t, &y[..44], &y[44..88]);
+            let energy = central.system().system.energy(t, &y[..44], &y[44..88], &[]);
             scale = scale.max(energy.kinetic);
         }
         worst
