@@ -119,7 +119,7 @@ pub(super) fn body(
     let table = value.table(&BODY)?;
     let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension))?;
     let material = table.required("material", |value| substance(value, None))?;
-    let mut body = Body::new(mesh.clone(), material);
+    let mut body = Body::new(mesh.clone(), material.clone());
     if let Some(thickness) = table.optional("thickness", Value::number)? {
         body = body.thickness(thickness);
     }
@@ -142,7 +142,7 @@ pub(super) fn body(
         body = body.dilatation(dilatation);
     }
     if let Some(regions) = table.get("region") {
-        body = add_regions(body, &regions, &mesh, material)?;
+        body = add_regions(body, &regions, &mesh, &material)?;
     }
     if let Some(points) = points {
         body = add_points(body, points, &mut mesh)?;
@@ -167,7 +167,7 @@ fn add_regions(
     mut body: BodyBuilder,
     regions: &Value,
     mesh: &Mesh,
-    base: Substance,
+    base: &Substance,
 ) -> Result<BodyBuilder, Error> {
     for table in regions.tables(&REGION)? {
         table.optional("name", Value::string)?;

@@ -4,7 +4,7 @@ use super::keys::{Holds, Key, Kind, TableKeys};
 use super::table::Table;
 use super::value::Value;
 use crate::error::Error;
-use crate::material::{Law, Material, Substance};
+use crate::material::{Law, Material, MaxwellBranch, Substance};
 
 pub(super) const MATERIAL: TableKeys = TableKeys::new(
     "material",
@@ -23,6 +23,8 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
             .law("As of air or water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by \
                   the ratio a / (2 omega).")
             .default("0; in a region, that of the body"),
+        Key::new("branch", Holds::Tables(&BRANCH), "Maxwell branches, springs that relax")
+            .default("none; in a region, those of the body"),
         Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains").default(
             "as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's",
         ),
@@ -30,6 +32,18 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
     "material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
 );
 const OF_BODY: &str = "required; in a region, that of the body";
+
+const BRANCH: TableKeys = TableKeys::new(
+    "branch",
+    "A spring and a damper in a row, beside the elasticity of the material: what is strained at once and kept so pulls by the spring, less and less, \
+     as exp(-t / `time`). `young` is what is left when all has relaxed. For BDF, Adams, ARKODE and `rk`, and for equilibria.",
+    &[
+        Key::number("share", "Young's modulus of the spring by that of the material", "1")
+            .required(),
+        Key::number("time", "the relaxation time", "s").required(),
+    ],
+    "material = { density = 1070.0, young = 2.0e5, poisson = 0.48, viscosity = 0.0, branch = [{ share = 0.2, time = 0.1 }] }",
+);
 
 const LAW: TableKeys = TableKeys::new(
     "law",
@@ -77,7 +91,7 @@ struct Constants {
 }
 
 /// What the table `value` describes; keys that are missing are those of `base`, if there is one.
-pub(super) fn substance(value: &Value, base: Option<Substance>) -> Result<Substance, Error> {
+pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Substance, Error> {
     let table = value.table(&MATERIAL)?;
     let number = |key: &str, base: Option<f64>| match base {
         Some(base) => Ok(table.optional(key, Value::number)?.unwrap_or(base)),
@@ -109,7 +123,16 @@ pub(super) fn substance(value: &Value, base: Option<Substance>) -> Result<Substa
     let law = constants.map(|law| law.law).or(base.and_then(|base| base.law));
     let mass_damping = table.optional("mass_damping", Value::number)?;
     let mass_damping = mass_damping.or(base.map(|base| base.mass_damping)).unwrap_or(0.0);
-    let substance = Substance { material, law, mass_damping };
+    let branches = table.optional("branch", |value| {
+        let tables = value.tables(&BRANCH)?;
+        let read = |table: &Table<'_>| {
+            let number = |key| table.required(key, Value::number);
+            Ok(MaxwellBranch { share: number("share")?, time: number("time")? })
+        };
+        tables.iter().map(read).collect::<Result<Vec<_>, Error>>()
+    })?;
+    let branches = branches.or(base.map(|base| base.branches.clone())).unwrap_or_default();
+    let substance = Substance { material, law, mass_damping, branches };
     substance.validate().map_err(|error| table.blame(error))?;
     Ok(substance)
 }

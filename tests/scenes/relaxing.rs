@@ -311,6 +311,6 @@ fn what_is_kept_has_them() {
         assert!((found.dissipated / later.dissipated - 1.0).abs() < 1e-2);
     }
     assert_eq!(fork.energy(), other.energy());
-    let sampled = scene.simulate(&settings, &Sampling::at(&[0.0, 0.1])).unwrap();
+    let sampled = scene.simulate(&settings, &Sampling::at([0.0, 0.1])).unwrap();
     assert!(sampled.last().energy.dissipated > 0.0);
 }

@@ -18,7 +18,8 @@ fn with_mean() -> Vec<(String, Body)> {
     let mut found = Vec::new();
     for (strain, substance) in laws {
         for (name, body) in bodies(strain) {
-            let body = body.to_builder().material(substance).dilatation(Dilatation::Mean).build();
+            let body =
+                body.to_builder().material(substance.clone()).dilatation(Dilatation::Mean).build();
             found.extend(
                 body.map(|body| (format!("{name}, {strain:?}, {:?}", substance.law), body)),
             );
