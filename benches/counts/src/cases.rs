@@ -51,7 +51,8 @@ fn cells(count: Count) -> Outcome {
     ];
     let rubber = |dilatation| {
         let body = Body::new(space(SolidCells::Hexahedra)?, RUBBER.law(Law::NeoHookean));
-        Ok::<_, InputError>(Scene::new(body.dilatation(dilatation).build()?))
+        let held = Phase::until(10.0).hold("left");
+        Ok::<_, InputError>(Scene::new(body.dilatation(dilatation).build()?).phase(held))
     };
     let of_rubber = [
         ("hexahedra, neo-Hookean", rubber(Dilatation::AtPoints)?),
