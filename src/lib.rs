@@ -48,6 +48,8 @@ pub mod error;
 mod external;
 #[cfg(any(feature = "checkpoint", feature = "output"))]
 mod file;
+#[cfg(feature = "fit")]
+pub mod fit;
 #[cfg(feature = "bodies")]
 pub mod force;
 #[cfg(feature = "bodies")]

@@ -117,7 +117,7 @@ impl Sampling {
     ///
     /// # Errors
     /// A quantity that `scene` does not have; two columns with one name.
-    #[cfg(feature = "study")]
+    #[cfg(any(feature = "fit", feature = "study"))]
     pub(crate) fn columns(&self, scene: &Scene) -> Result<Vec<Quantity>, InputError> {
         Sensors::new(&self.sensors, scene).map(|sensors| sensors.quantities)
     }

@@ -1,6 +1,7 @@
 //! The command `pliant` as a whole: what it writes, what it says, how it ends.
 
 mod beside;
+mod fit;
 mod trust;
 mod world;
 

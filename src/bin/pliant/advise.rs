@@ -8,12 +8,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 use pliant::study::{Advice, Adviser, Candidate, Quantity};
 use pliant::{Fraction, Sampling};
 
 use crate::failure::{Failure, print};
 use crate::files::Directory;
+use crate::progress::spinner;
 use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
 
@@ -80,7 +81,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let asked = interrupted.clone();
     ctrlc::set_handler(move || asked.store(true, Ordering::Relaxed))
         .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
-    let progress = bar(*quiet);
+    let progress = spinner(*quiet);
     let advice = adviser.run(&mut |what| watch(&progress, &interrupted, what));
     progress.finish_and_clear();
     let advice = advice?;
@@ -90,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "" => scene.path.display().to_string(),
             title => scene.title(title),
         };
-        let progress = bar(*quiet);
+        let progress = spinner(*quiet);
         let mut observer = |what: &str| watch(&progress, &interrupted, what);
         let scene = &file.scene;
         let samples = Sampling::every(scene.end() / FRAMES);
@@ -141,16 +142,4 @@ fn watch(bar: &ProgressBar, interrupted: &AtomicBool, what: &str) -> ControlFlow
         true => ControlFlow::Break(()),
         false => ControlFlow::Continue(()),
     }
-}
-
-/// What is being tried, on a terminal only.
-fn bar(quiet: bool) -> ProgressBar {
-    let target = match quiet {
-        true => ProgressDrawTarget::hidden(),
-        false => ProgressDrawTarget::stderr(),
-    };
-    let bar = ProgressBar::with_draw_target(None, target);
-    let style = ProgressStyle::with_template("{elapsed}, {msg}");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-    bar
 }

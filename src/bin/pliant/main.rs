@@ -7,6 +7,7 @@ mod chart;
 mod check;
 mod failure;
 mod files;
+mod fit;
 mod methods;
 mod new;
 #[cfg(feature = "play")]
@@ -48,6 +49,8 @@ enum Command {
     #[command(allow_negative_numbers = true)]
     Advise(advise::Arguments),
     Beside(beside::Arguments),
+    #[command(allow_negative_numbers = true)]
+    Fit(fit::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
     Methods(methods::Arguments),
@@ -65,6 +68,7 @@ fn main() -> ExitCode {
         Command::Plot(arguments) => plot::run(&arguments),
         Command::Advise(arguments) => advise::run(&arguments),
         Command::Beside(arguments) => beside::run(&arguments),
+        Command::Fit(arguments) => fit::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),

@@ -14,7 +14,7 @@ pub struct SceneArguments {
     /// Another value for a key of the scene file, as body.material.young=2e5 or phase.2.until=1.5 (a list of tables is
     /// followed by the name or number of one); may be given several times
     #[arg(long, value_name = "KEY=VALUE")]
-    set: Vec<String>,
+    pub set: Vec<String>,
 }
 
 impl SceneArguments {

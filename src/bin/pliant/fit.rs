@@ -1,0 +1,59 @@
+//! `pliant fit`
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pliant::fit::{Measured, SceneFit, Unknown};
+
+use crate::failure::{Failure, print};
+use crate::progress::spinner;
+use crate::scene::SceneArguments;
+
+/// Fit keys of a scene file to measurements
+///
+/// Runs the scene again and again, and finds the values that bring its sensors nearest to what was measured, by least
+/// squares. Prints them with intervals of 95 % confidence (right if what is left over is noise, too narrow if the model is
+/// off), what was and is left over, and the values as --set flags. Derivatives are central differences by the root of
+/// solver.rtol, in parts of the ranges; the runs for them go on all cores.
+#[derive(Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Table (CSV) of what was measured: a column t or time (s), the others with names of sensors of the scene, as tip.y
+    #[arg(long, value_name = "FILE")]
+    data: PathBuf,
+    /// A key to be found, and the range in which it lies, as body.material.young=1e5..5e5; may be given several times
+    #[arg(long, value_name = "KEY=LEAST..MOST", required = true, value_parser = unknown)]
+    unknown: Vec<Unknown>,
+    /// Draw what is left over, over time, to this file (SVG)
+    #[arg(long, value_name = "FILE")]
+    plot: Option<PathBuf>,
+    /// Show no progress
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+fn unknown(text: &str) -> Result<Unknown, String> {
+    let mend = || "write KEY=LEAST..MOST, as body.material.young=1e5..5e5".to_owned();
+    let (key, range) = text.split_once('=').ok_or_else(mend)?;
+    let (least, most) = range.split_once("..").ok_or_else(mend)?;
+    let [least, most] = [least, most].map(|end| end.trim().parse().map_err(|_| mend()));
+    Ok(Unknown::new(key.trim(), least?, most?))
+}
+
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let Arguments { scene, data, unknown, plot, quiet } = arguments;
+    let fit = SceneFit::new(&scene.path, &scene.set, &Measured::read(data)?)?;
+    let progress = spinner(*quiet);
+    let fitted = fit.fit(unknown, &mut |runs, rms| {
+        progress.set_message(format!("{runs} runs, {rms:.4e} left over"));
+    });
+    progress.finish_and_clear();
+    let fitted = fitted?;
+    print(&fitted)?;
+    if let Some(path) = plot {
+        fitted.write_chart(path)?;
+        print(format_args!("written: {}", path.display()))?;
+    }
+    Ok(())
+}

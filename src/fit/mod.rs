@@ -1,0 +1,12 @@
+//! Unknowns of a model, fitted to what was measured: [`least_squares`] of any residuals, and [`SceneFit`] of a scene file.
+
+mod confidence;
+mod least_squares;
+mod measured;
+mod scene;
+mod unknown;
+
+pub use least_squares::{Determined, Fitted, Residuals, least_squares};
+pub use measured::Measured;
+pub use scene::{FittedColumn, SceneFit, SceneFitted};
+pub use unknown::Unknown;
