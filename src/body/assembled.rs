@@ -4,7 +4,6 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::assembly::Elements;
-use super::branches::Branches;
 use super::dilatation::Dilatation;
 use super::elastic::{Elastic, LinearByCells};
 use super::fields::{CellField, NodalField, Probe, nodal_fields};
@@ -12,6 +11,7 @@ use super::forces::Terms;
 use super::inertia::Inertia;
 use super::recipe::Recipe;
 use super::regions::Regions;
+use super::relaxing::Branches;
 use crate::element::shares_at;
 use crate::force::NodalForces;
 use crate::input::{InputError, finite};

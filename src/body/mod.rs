@@ -16,6 +16,7 @@ mod polynomial;
 mod recipe;
 mod recovery;
 mod regions;
+mod relaxing;
 mod rows;
 mod shares;
 mod tangents;
@@ -23,7 +24,6 @@ mod tangents;
 mod tests;
 
 pub use assembled::Body;
-pub(crate) use branches::Branches;
 pub use builder::BodyBuilder;
 pub use dilatation::Dilatation;
 pub(crate) use elastic::LinearByCells;
@@ -32,5 +32,6 @@ pub use fields::{CellField, NodalField};
 pub use inertia::Inertia;
 pub use polynomial::{Coefficients, GreenPolynomial};
 pub use regions::CellSelection;
+pub(crate) use relaxing::Branches;
 
 pub use crate::material::{Strain, Viscosity};
