@@ -1,5 +1,5 @@
 .DEFAULT_GOAL := help
-.PHONY: help setup demo test bench baseline advice charts stability peers pictures docs valgrind miri clean
+.PHONY: help setup demo test bench baseline advice charts stability validation peers pictures docs valgrind miri clean
 
 VALGRIND := valgrind --leak-check=full --error-exitcode=1 \
 	--errors-for-leak-kinds=definite,indirect
@@ -43,6 +43,9 @@ advice: setup ## docs/advice.md, the adviser on trial, some 10 minutes
 
 stability: setup ## docs/stability.md with its pictures, some minutes
 	cargo run --release --example stability
+
+validation: setup ## docs/validation.md, a beam that was measured, some minutes
+	cargo run --release --example measured_beam
 
 peers: setup ## Compare with SciPy, Octave, diffsol and others (peers/README.md)
 	peers/run
