@@ -43,6 +43,9 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Whether a mean dilatation is something else than that of the points; where it is not, no loops are compiled for it.
+    pub(super) const CAN_LOCK: bool = M == D && M > 1 && Q > 1;
+
     /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
     pub(super) fn new<C: ReferenceCell<N, M>>(
         mesh: &Mesh,

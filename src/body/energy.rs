@@ -16,9 +16,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let all = 0..self.nodes.len();
         regions.runs(&all).fold(0.0, |sum, (cells, laws)| {
             with_law!(&laws.elastic, law => {
-                match self.mean_dilatation {
-                    true => Arch::new().dispatch(MeanPass(Pass { elements: self, cells, u, law, sum })),
-                    false => Arch::new().dispatch(Pass { elements: self, cells, u, law, sum }),
+                let pass = Pass { elements: self, cells, u, law, sum };
+                if const { Self::CAN_LOCK } && self.mean_dilatation {
+                    Arch::new().dispatch(MeanPass(pass))
+                } else {
+                    Arch::new().dispatch(pass)
                 }
             })
         })

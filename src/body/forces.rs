@@ -75,18 +75,24 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.elastic {
             self.share_out(&mut forces.conservative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    with_law!(laws.elastic, law => match self.mean_dilatation {
-                        true => self.add(cells, [u], first, forces, MeanPull(&law)),
-                        false => self.add(cells, [u], first, forces, ElasticPull(&law)),
+                    with_law!(laws.elastic, law => {
+                        if const { Self::CAN_LOCK } && self.mean_dilatation {
+                            self.add(cells, [u], first, forces, MeanPull(&law))
+                        } else {
+                            self.add(cells, [u], first, forces, ElasticPull(&law))
+                        }
                     })
                 })
             })?;
         }
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
-                regions.runs(run).try_for_each(|(cells, laws)| match self.mean_dilatation {
-                    true => self.add(cells, [u, v], first, forces, MeanViscousPull(&laws.viscous)),
-                    false => self.add(cells, [u, v], first, forces, ViscousPull(&laws.viscous)),
+                regions.runs(run).try_for_each(|(cells, laws)| {
+                    if const { Self::CAN_LOCK } && self.mean_dilatation {
+                        self.add(cells, [u, v], first, forces, MeanViscousPull(&laws.viscous))
+                    } else {
+                        self.add(cells, [u, v], first, forces, ViscousPull(&laws.viscous))
+                    }
                 })
             })?;
         }

@@ -17,7 +17,7 @@ use super::regions::{Laws, Regions};
 use crate::lane::{Abreast, Lane, SIDE_BY_SIDE};
 use crate::material::{
     Block, Blocks, Deformation, DilatationalLaw, Elastic, ElasticLaw, ObjectiveViscosity,
-    ViscousLaw, with_law,
+    ViscousLaw, with_curved_law, with_law,
 };
 use crate::sparse::{BlockMatrix, Rows};
 use crate::tensor::{Matrix, Real, product, times};
@@ -75,22 +75,22 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
             for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
                 if terms.elastic {
-                    with_law!(laws.elastic, law => match self.mean_dilatation {
-                        true => self.add_to(&mut stiffness, cells.clone(), [u], MeanSlope(&law)),
-                        false => self.add_to(&mut stiffness, cells.clone(), [u], ElasticSlope(&law)),
+                    with_curved_law!(laws.elastic, law => {
+                        if const { Self::CAN_LOCK } && self.mean_dilatation {
+                            self.add_to(&mut stiffness, cells.clone(), [u], MeanSlope(&law));
+                        } else {
+                            self.add_to(&mut stiffness, cells.clone(), [u], ElasticSlope(&law));
+                        }
                     });
                 }
                 if terms.viscous {
                     let law = &laws.viscous;
-                    match self.mean_dilatation {
-                        true => {
-                            self.add_to(&mut damping, cells.clone(), [u], MeanRateSlope(law));
-                            self.add_to(&mut stiffness, cells, [u, v], MeanViscousSlope(law));
-                        }
-                        false => {
-                            self.add_to(&mut damping, cells.clone(), [u], RateSlope(law));
-                            self.add_to(&mut stiffness, cells, [u, v], ViscousSlope(law));
-                        }
+                    if const { Self::CAN_LOCK } && self.mean_dilatation {
+                        self.add_to(&mut damping, cells.clone(), [u], MeanRateSlope(law));
+                        self.add_to(&mut stiffness, cells, [u, v], MeanViscousSlope(law));
+                    } else {
+                        self.add_to(&mut damping, cells.clone(), [u], RateSlope(law));
+                        self.add_to(&mut stiffness, cells, [u, v], ViscousSlope(law));
                     }
                 }
             }

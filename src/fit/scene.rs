@@ -99,7 +99,7 @@ impl SceneFit {
     /// Fits keys of the file, as `body.material.young`. `tell` is as in [`least_squares`].
     ///
     /// # Errors
-    /// As [`least_squares`]; keys that scene files do not have; runs that fail, with the values at which they do.
+    /// As [`least_squares`]; keys that scene files do not have; runs that fail.
     pub fn fit(
         &self,
         unknowns: &[Unknown],

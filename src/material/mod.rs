@@ -14,7 +14,7 @@ pub(crate) use deformation::Deformation;
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, DilatationalLaw, ElasticLaw, ViscousLaw};
-pub(crate) use laws::{Elastic, Linear, ObjectiveViscosity, with_law};
+pub(crate) use laws::{Elastic, Linear, ObjectiveViscosity, with_curved_law, with_law};
 pub use laws::{Law, Strain, Viscosity};
 pub use substance::Substance;
 

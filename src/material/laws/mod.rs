@@ -137,3 +137,15 @@ macro_rules! with_law {
     };
 }
 pub(crate) use with_law;
+
+/// The same for tangents: those of linear elasticity are constant, and nothing needs to be compiled for them.
+macro_rules! with_curved_law {
+    ($elastic:expr, $law:ident => $expression:expr) => {
+        match $elastic {
+            $crate::material::Elastic::Linear(_) => {}
+            $crate::material::Elastic::StVenantKirchhoff($law) => $expression,
+            $crate::material::Elastic::Rivlin($law) => $expression,
+        }
+    };
+}
+pub(crate) use with_curved_law;
