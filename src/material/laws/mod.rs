@@ -31,7 +31,7 @@ pub enum Strain {
 /// modulus and Poisson's ratio at small strains; what else it has are ratios, without unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
-    /// Hooke's law for Green's strain. It softens under compression, until it collapses at 42 % of the length of a bar.
+    /// Hooke's law for Green's strain. It softens under compression, until a bar collapses that is pressed to 58 % of its length (1/sqrt 3).
     StVenantKirchhoff,
     /// W = c1 (I1 - 3) + U, with I1 of J^(-2/3) C and U = (kappa/4) (J^2 - 1 - 2 ln J); c1 = mu/2. Rubber at
     /// strains up to a half.

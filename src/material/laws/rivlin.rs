@@ -78,16 +78,15 @@ impl Rivlin {
         /// More than strains of any size take.
         const MOST: usize = 100;
         let m = directions::<M>();
-        // a diagonal G with the same invariants: those of J and of C are the same
+        // det C and tr C along the cell
         let area = 1.0 + trace + minors;
+        let in_plane = M as f64 + trace;
         // as if the volume did not change
         let mut c = area.powf(-1.0 / m);
         for _ in 0..MOST {
             let volume = area * c.powf(m);
-            let i1 = 2.0 * f64::from(M == 2) + f64::from(M == 1) + trace + m * c;
-            let of_plane = if M == 2 { 1.0 + trace + minors } else { 0.0 };
-            let in_plane = i1 - m * c;
-            let i2 = of_plane + m * c * in_plane + if M == 1 { c * c } else { 0.0 };
+            let i1 = in_plane + m * c;
+            let i2 = m * c * in_plane + if M == 1 { c * c } else { area };
             let r = volume.powf(-1.0 / 3.0);
             let [w1, w11] = self.slopes(r * i1 - 3.0);
             // c dI/dc of the invariants without volume, by one direction across: x, y; times 2 is S c
