@@ -120,7 +120,7 @@ pub use external::*;
 pub use input::{Fraction, InputError};
 pub use integrate::Integrator;
 #[cfg(feature = "bodies")]
-pub use material::{Lame, Law, Material, MaxwellBranch, Plane, Substance};
+pub use material::{Course, Fibres, Lame, Law, Material, MaxwellBranch, Plane, Substance};
 #[cfg(feature = "bodies")]
 pub use mesh::{Cells, Mesh, Selection, SolidCells};
 #[cfg(feature = "bodies")]

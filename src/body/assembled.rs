@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::assembly::Elements;
 use super::dilatation::Dilatation;
 use super::elastic::{Elastic, LinearByCells};
+use super::fibres::{Families, Reinforcement};
 use super::fields::{CellField, NodalField, Probe, nodal_fields};
 use super::forces::Terms;
 use super::inertia::Inertia;
@@ -15,7 +16,7 @@ use super::relaxing::Branches;
 use crate::element::shares_at;
 use crate::force::NodalForces;
 use crate::input::{InputError, finite};
-use crate::material::{self, Hooke, Lame, Law, Linear, Material, Plane, Strain, Viscosity};
+use crate::material::{self, Hooke, Hookean, Lame, Material, Plane, Strain, Substance, Viscosity};
 use crate::mesh::{CellKind, Mesh};
 use crate::ode::Failure;
 use crate::sparse::{BlockMatrix, NodeMatrix};
@@ -46,6 +47,7 @@ pub struct Body {
     pub(super) damping: Arc<BlockMatrix>,
     /// The part a M of the damping, if there is one.
     pub(super) mass_damping: Option<Arc<NodeMatrix>>,
+    pub(super) fibres: Arc<Families>,
     /// What it was made from.
     pub(super) recipe: Arc<Recipe>,
 }
@@ -100,10 +102,10 @@ impl Body {
         self.recipe.dilatation
     }
 
-    /// The laws of its materials at large strains, where they have one of their own.
-    pub(crate) fn laws(&self) -> impl Iterator<Item = Option<Law>> {
-        let regions = self.recipe.regions.iter().map(|(_, region)| region.law);
-        std::iter::once(self.recipe.material.law).chain(regions)
+    /// What it is made of, and after that each of its regions.
+    pub fn substances(&self) -> impl Iterator<Item = &Substance> {
+        let regions = self.recipe.regions.iter().map(|(_, substance)| substance);
+        std::iter::once(&self.recipe.material).chain(regions)
     }
 
     /// Number of regions that were given.
@@ -152,7 +154,7 @@ impl Body {
     /// The connection matrices J_lambda and J_mu: geometry only (slides, "stiffness matrix").
     pub fn connection_matrices(&self) -> [BlockMatrix; 2] {
         [Lame { lambda: 1.0, mu: 0.0 }, Lame { lambda: 0.0, mu: 1.0 }].map(|unit| {
-            let unit = material::Elastic::Linear(Linear(Hooke::new(unit, 3, Plane::Strain)));
+            let unit = material::Elastic::Linear(Hookean(Hooke::new(unit, 3, Plane::Strain)));
             let mut matrix = BlockMatrix::zeros(self.stiffness.pattern(), self.dimension());
             self.elements.add_stiffness(&self.regions, &|_| unit, &mut matrix);
             matrix
@@ -328,6 +330,11 @@ impl Body {
         };
         let (elements, regions) = (self.elements.clone(), self.regions.clone());
         (terms.elastic || terms.viscous).then_some(Elastic { elements, regions, terms })
+    }
+
+    /// The forces of its fibres, if it has any.
+    pub(crate) fn reinforcement(&self) -> Option<Reinforcement> {
+        (!self.fibres.is_empty()).then(|| Reinforcement(self.fibres.clone()))
     }
 
     /// The Maxwell branches, if there are any.

@@ -2,6 +2,7 @@
 
 use super::branches::Branched;
 use super::elements::ElementsOf;
+use super::fibres::Reinforced;
 use super::fields::Fields;
 use super::forces::Forces;
 use super::inertia::Masses;
@@ -14,11 +15,14 @@ use crate::sparse::NodePattern;
 
 /// All elements of a body.
 pub(super) trait Elements:
-    Masses + Forces + Branched + Tangents + Fields + Recovery + Send + Sync
+    Masses + Forces + Branched + Reinforced + Tangents + Fields + Recovery + Send + Sync
 {
 }
 
-impl<T: Masses + Forces + Branched + Tangents + Fields + Recovery + Send + Sync> Elements for T {}
+impl<T> Elements for T where
+    T: Masses + Forces + Branched + Reinforced + Tangents + Fields + Recovery + Send + Sync
+{
+}
 
 /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
 pub(super) fn elements(

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::assembled::Body;
 use super::assembly::elements;
 use super::dilatation::Dilatation;
+use super::fibres::{add_at_rest, families};
 use super::inertia::Inertia;
 use super::recipe::Recipe;
 use super::regions::{CellSelection, Laws, Regions};
@@ -162,6 +163,11 @@ impl BodyBuilder {
             damping.add_on_all_axes(&matrix);
             Arc::new(matrix)
         });
+        let cells = regions.by_substance(mesh.cell_count()).into_iter();
+        let substances = std::iter::once(material).chain(recipe.regions.iter().map(|(_, s)| s));
+        let substances = substances.map(|substance| &substance.fibres[..]).zip(cells);
+        let fibres = families(&mesh, &*elements, substances)?;
+        add_at_rest(&fibres, mesh.node_count() * mesh.dimension(), &mut stiffness, &mut damping);
         let first_point = mesh.node_count() - recipe.points.len();
         for (node, (_, _, mass)) in (first_point..).zip(&recipe.points) {
             inertia.add(node, node, *mass);
@@ -179,6 +185,7 @@ impl BodyBuilder {
             stiffness: Arc::new(stiffness),
             damping: Arc::new(damping),
             mass_damping,
+            fibres: Arc::new(fibres),
             recipe: Arc::new(recipe),
         };
         // not the nodal masses: those of quadratic cells are 0 and below at corners

@@ -100,6 +100,29 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         })
     }
 
+    /// Elements of one dimension on the nodes of some of these cells, with strain points of their own, on a mesh of `node_count`
+    /// nodes.
+    pub(super) fn with_points(
+        &self,
+        cells: &[usize],
+        points: &[StrainPoint<f64, N, 1, D>],
+        node_count: usize,
+    ) -> ElementsOf<N, 1, D, Q> {
+        let nodes: Vec<[usize; N]> = cells.iter().map(|&cell| self.nodes[cell]).collect();
+        ElementsOf {
+            entries: cells.iter().map(|&cell| self.entries[cell]).collect(),
+            points: side_by_side::<N, 1, D, Q>(points),
+            values: self.values,
+            extrapolation: self.extrapolation,
+            products: cells.iter().map(|&cell| self.products[cell]).collect(),
+            quadratic: self.quadratic,
+            mean_dilatation: false,
+            shares: Shares::new(&nodes, node_count),
+            rows: Rows::new(&nodes),
+            nodes,
+        }
+    }
+
     /// The strain points of [`SIDE_BY_SIDE`] cells at once, from those of the first cells on.
     pub(super) fn abreast(&self) -> &[[StrainPoint<Abreast, N, M, D>; Q]] {
         self.points.as_chunks::<Q>().0
@@ -186,6 +209,20 @@ pub(super) fn gradient<T: Real, const N: usize, const M: usize, const D: usize>(
         }
     }
     h
+}
+
+/// The same of several fields.
+#[inline(always)]
+pub(super) fn gradients<T: Real, const N: usize, const M: usize, const D: usize, const K: usize>(
+    first: usize,
+    x: &[[[T; D]; N]; K],
+    gradients: &[[T; M]; N],
+) -> [Matrix<T, D, M>; K] {
+    let mut all = [[x[0][first]; M]; K];
+    for k in 0..K {
+        all[k] = gradient(first, &x[k], gradients);
+    }
+    all
 }
 
 /// All pairs of the nodes of a cell.

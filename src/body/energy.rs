@@ -7,7 +7,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, DilatationalLaw, ElasticLaw, with_law};
+use crate::material::{Deformation, ElasticLaw, with_law};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Strain energy (J), added up in the order of cells, whatever the machine computes at once.
@@ -28,13 +28,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 }
 
 /// The energy of a run of cells of one law, compiled for each kind of machine.
-struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
-    elements: &'a ElementsOf<N, M, D, Q>,
-    cells: Range<usize>,
-    u: &'a [[f64; D]],
-    law: &'a L,
+pub(super) struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
+    pub(super) elements: &'a ElementsOf<N, M, D, Q>,
+    pub(super) cells: Range<usize>,
+    pub(super) u: &'a [[f64; D]],
+    pub(super) law: &'a L,
     /// That of the cells before.
-    sum: f64,
+    pub(super) sum: f64,
 }
 
 impl<L: ElasticLaw, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
@@ -48,7 +48,7 @@ impl<L: ElasticLaw, const N: usize, const M: usize, const D: usize, const Q: usi
         self.add_up(simd, |points| {
             let mut energy = Lane::splat(simd, 0.0);
             for (volume, at) in points {
-                energy += *volume * law.energy(at);
+                energy += *volume * law.energy(&law.point(L::twice_strain(at)));
             }
             energy
         })
@@ -60,7 +60,7 @@ struct MeanPass<'a, L, const N: usize, const M: usize, const D: usize, const Q: 
     Pass<'a, L, N, M, D, Q>,
 );
 
-impl<L: DilatationalLaw, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
+impl<L: ElasticLaw, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
     for MeanPass<'_, L, N, M, D, Q>
 {
     type Output = f64;
@@ -72,8 +72,9 @@ impl<L: DilatationalLaw, const N: usize, const M: usize, const D: usize, const Q
             let zero = Lane::splat(simd, 0.0);
             let (mut energy, mut swelling, mut whole) = (zero, zero, zero);
             for (volume, at) in points {
-                energy += *volume * law.energy_of_rest(at);
-                swelling += *volume * law.dilatation(at);
+                let point = law.point(L::twice_strain(at));
+                energy += *volume * law.energy_of_shape(&point);
+                swelling += *volume * law.dilatation(&point);
                 whole += *volume;
             }
             let [of_volume, ..] = law.of_volume(swelling / whole);

@@ -21,7 +21,7 @@ pub(super) use nodal::{Probe, nodal_fields};
 
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
-use crate::material::{Deformation, DilatationalLaw, with_law};
+use crate::material::{Deformation, ElasticLaw, with_law};
 use crate::vector::norm;
 
 /// Strain, stress and strain energy density of one cell: means over its natural volume.
@@ -31,7 +31,8 @@ pub struct CellField {
     /// cells in plane stress and across strings are those that leave them without stress.
     pub strain: [[f64; 3]; 3],
     /// Stress (Pa), a tensor along the axes of space. With Green strain it is the true stress, force
-    /// per present area, but that thickness and cross-section count as those of the undeformed shape.
+    /// per present area; thickness and cross-section of cells that do not fill space count as they were in the undeformed shape
+    /// in St. Venant-Kirchhoff material, and as they are with the laws of rubber.
     pub stress: [[f64; 3]; 3],
     /// Strain energy per natural volume (J/m^3).
     pub energy_density: f64,
@@ -181,10 +182,11 @@ struct OfMean {
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// That of a cell, if its mean dilatation counts.
-    fn pull_on(&self, law: &impl DilatationalLaw, cell: usize, u: &[f64]) -> Option<OfMean> {
+    fn pull_on<L: ElasticLaw>(&self, law: &L, cell: usize, u: &[f64]) -> Option<OfMean> {
         let of_mean = || {
             let sums = self.deformed(cell, u).fold([0.0; 2], |[sum, whole], (volume, at)| {
-                [sum + volume * law.dilatation(&at), whole + volume]
+                let point = law.point(L::twice_strain(&at));
+                [sum + volume * law.dilatation(&point), whole + volume]
             });
             let [energy, pull, _] = law.of_volume(sums[0] / sums[1]);
             OfMean { pull, energy }
@@ -220,30 +222,31 @@ struct PointField {
 }
 
 impl PointField {
-    fn new<L: DilatationalLaw, const M: usize, const D: usize>(
+    fn new<L: ElasticLaw, const M: usize, const D: usize>(
         law: &L,
         at: &Deformation<f64, M, D>,
         mean: Option<OfMean>,
     ) -> Self {
-        // where strains are small the present shape counts as the natural one
-        let (twice_strain, shape, swelling) = match L::SMALL_STRAIN {
-            true => (at.twice_cauchy(), at.frame(), 1.0),
-            false => (at.twice_green(), at.gradient(), at.stretch()),
+        let twice_strain = L::twice_strain(at);
+        let point = law.point(twice_strain);
+        let pull = mean.map(|mean| mean.pull);
+        let [strain_across, stress_across] = law.across(&point, pull);
+        let energy_density = match mean {
+            None => law.energy(&point),
+            Some(mean) => law.energy_of_shape(&point) + mean.energy,
         };
+        let swelling = match L::SMALL_STRAIN {
+            true => 1.0,
+            false => at.stretch() * law.thickness(&point),
+        };
+        let [frame, shape] =
+            [at.frame(), L::shape(at)].map(|columns| in_space(&SMatrix::from(columns)));
         let strain = SMatrix::from(twice_strain) * 0.5;
-        let ([strain_across, stress_across], piola, energy_density) = match mean {
-            None => (law.across(at), law.stress(at, 1.0), law.energy(at)),
-            Some(OfMean { pull, energy }) => {
-                let stress = law.stress_under(at, pull, 1.0);
-                (law.across_under(at, pull), stress, law.energy_of_rest(at) + energy)
-            }
-        };
-        let (frame, shape) =
-            (in_space(&SMatrix::from(at.frame())), in_space(&SMatrix::from(shape)));
-        let piola = in_space(&SMatrix::from(piola));
+        let stress = SMatrix::from(law.stress(&point, pull, 1.0));
         let tensors = Tensors {
             strain: frame * strain * frame.transpose() + normal_part(&frame) * strain_across,
-            stress: (piola * shape.transpose() + normal_part(&shape) * stress_across) / swelling,
+            stress: (shape * stress * shape.transpose() + normal_part(&shape) * stress_across)
+                / swelling,
         };
         Self { tensors, energy_density }
     }

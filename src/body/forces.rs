@@ -17,17 +17,19 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::elements::{ElementsOf, gradient};
+use super::elements::{ElementsOf, gradients};
 use super::regions::{Laws, Regions};
 use super::rows;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{
-    Deformation, DilatationalLaw, ElasticLaw, Hooke, Linear, ObjectiveViscosity, ViscousLaw,
-    with_law,
-};
+use crate::material::{Deformation, Hooke, Hookean, Linear, with_law};
 use crate::ode::Failure;
 use crate::tensor::{Matrix, Real};
+
+mod pull;
+
+pub(super) use pull::ElasticPull;
+use pull::{Pull, ViscousPull};
 
 /// Which forces are computed element by element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,9 +79,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     with_law!(laws.elastic, law => {
                         if const { Self::CAN_LOCK } && self.mean_dilatation {
-                            self.add(cells, [u], first, forces, MeanPull(&law))
+                            self.add(cells, [u], first, forces, ElasticPull::<_, true>(&law))
                         } else {
-                            self.add(cells, [u], first, forces, ElasticPull(&law))
+                            self.add(cells, [u], first, forces, ElasticPull::<_, false>(&law))
                         }
                     })
                 })
@@ -88,10 +90,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
+                    let law = &laws.viscous;
                     if const { Self::CAN_LOCK } && self.mean_dilatation {
-                        self.add(cells, [u, v], first, forces, MeanViscousPull(&laws.viscous))
+                        self.add(cells, [u, v], first, forces, ViscousPull::<true>(law))
                     } else {
-                        self.add(cells, [u, v], first, forces, ViscousPull(&laws.viscous))
+                        self.add(cells, [u, v], first, forces, ViscousPull::<false>(law))
                     }
                 })
             })?;
@@ -111,8 +114,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             let x = x.as_chunks::<D>().0;
             self.share_out(forces, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    let law = Linear(hooke(laws));
-                    self.add(cells, [x], first, forces, ElasticPull(&law))
+                    let law: Linear = Hookean(hooke(laws));
+                    self.add(cells, [x], first, forces, ElasticPull::<_, false>(&law))
                 })
             })
         };
@@ -129,7 +132,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Calls `add` for all runs of cells with the forces on each share of the nodes and the first of
     /// these, on threads if there are several shares.
-    fn share_out(
+    pub(super) fn share_out(
         &self,
         forces: &mut [f64],
         add: impl Fn(&Range<usize>, usize, &mut [[f64; D]]) -> Result<(), Failure> + Sync,
@@ -148,7 +151,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 
     /// Adds the forces of `cells` to those on the nodes from `first` on, by the `fields` that `pull` asks for: in the order of
     /// cells, whatever the machine computes at once.
-    fn add<const K: usize>(
+    pub(super) fn add<const K: usize>(
         &self,
         cells: Range<usize>,
         fields: [&[[f64; D]]; K],
@@ -172,9 +175,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             let mut x = [[[0.0; D]; N]; K];
             (0..K).for_each(|k| x[k] = relative(nodes, fields[k]));
             for point in self.points(cell) {
-                let mut gradients = [[[0.0; D]; M]; K];
-                (0..K).for_each(|k| gradients[k] = gradient(1, &x[k], &point.gradients));
-                let domain = pull.domain(&Deformation::new(point.frame, gradients[0]));
+                let gradients = gradients(1, &x, &point.gradients);
+                let at = Deformation::new(point.frame, gradients[0]);
+                let (_, domain) = pull.stress(&at, &gradients, None, point.volume);
                 // which NaN is not
                 let is_inside = domain > 0.0;
                 if !is_inside {
@@ -185,153 +188,6 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             }
         }
         Ok(())
-    }
-}
-
-/// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
-trait Pull<const K: usize> {
-    /// Whether what resists a change of volume takes the mean of that over the cell.
-    const IS_MEAN: bool = false;
-
-    /// P times the `volume` of the point. `pull` is that of the mean dilatation, or any number if there is no such.
-    fn stress<T: Real, const M: usize, const D: usize>(
-        &self,
-        point: (Matrix<T, D, M>, T),
-        gradients: &[Matrix<T, D, M>; K],
-        pull: T,
-    ) -> Matrix<T, D, M>;
-
-    /// The dilatation of a point, or the rate of it.
-    fn dilatation<T: Real, const M: usize, const D: usize>(
-        &self,
-        frame: Matrix<T, D, M>,
-        _gradients: &[Matrix<T, D, M>; K],
-    ) -> T {
-        frame[0][0].constant(0.0)
-    }
-
-    /// What pulls at all points of a cell of this mean dilatation.
-    fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        dilatation
-    }
-
-    /// A number above 0 where that has meaning.
-    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        at.h[0][0].constant(1.0)
-    }
-
-    fn outside(&self, domain: f64) -> String {
-        domain.to_string()
-    }
-}
-
-struct ElasticPull<'l, L>(&'l L);
-
-impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
-    #[inline(always)]
-    fn stress<T: Real, const M: usize, const D: usize>(
-        &self,
-        (frame, volume): (Matrix<T, D, M>, T),
-        [h]: &[Matrix<T, D, M>; 1],
-        _pull: T,
-    ) -> Matrix<T, D, M> {
-        self.0.stress(&Deformation::new(frame, *h), volume)
-    }
-
-    #[inline(always)]
-    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        self.0.domain(at)
-    }
-
-    fn outside(&self, domain: f64) -> String {
-        self.0.outside(domain)
-    }
-}
-
-/// With the mean dilatation of each cell.
-struct MeanPull<'l, L>(&'l L);
-
-impl<L: DilatationalLaw> Pull<1> for MeanPull<'_, L> {
-    const IS_MEAN: bool = true;
-
-    #[inline(always)]
-    fn stress<T: Real, const M: usize, const D: usize>(
-        &self,
-        (frame, volume): (Matrix<T, D, M>, T),
-        [h]: &[Matrix<T, D, M>; 1],
-        pull: T,
-    ) -> Matrix<T, D, M> {
-        self.0.stress_under(&Deformation::new(frame, *h), pull, volume)
-    }
-
-    #[inline(always)]
-    fn dilatation<T: Real, const M: usize, const D: usize>(
-        &self,
-        frame: Matrix<T, D, M>,
-        [h]: &[Matrix<T, D, M>; 1],
-    ) -> T {
-        self.0.dilatation(&Deformation::new(frame, *h))
-    }
-
-    #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        let [_, pull, _] = self.0.of_volume(dilatation);
-        pull
-    }
-
-    #[inline(always)]
-    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        self.0.domain(at)
-    }
-
-    fn outside(&self, domain: f64) -> String {
-        self.0.outside(domain)
-    }
-}
-
-struct ViscousPull<'l, L>(&'l L);
-
-impl<L: ViscousLaw> Pull<2> for ViscousPull<'_, L> {
-    #[inline(always)]
-    fn stress<T: Real, const M: usize, const D: usize>(
-        &self,
-        (frame, volume): (Matrix<T, D, M>, T),
-        [h, rate]: &[Matrix<T, D, M>; 2],
-        _pull: T,
-    ) -> Matrix<T, D, M> {
-        self.0.stress(&Deformation::new(frame, *h), rate, volume)
-    }
-}
-
-/// With the mean rate of dilatation of each cell.
-struct MeanViscousPull<'l>(&'l ObjectiveViscosity);
-
-impl Pull<2> for MeanViscousPull<'_> {
-    const IS_MEAN: bool = true;
-
-    #[inline(always)]
-    fn stress<T: Real, const M: usize, const D: usize>(
-        &self,
-        (frame, volume): (Matrix<T, D, M>, T),
-        [h, rate]: &[Matrix<T, D, M>; 2],
-        pull: T,
-    ) -> Matrix<T, D, M> {
-        self.0.stress_under(&Deformation::new(frame, *h), rate, pull, volume)
-    }
-
-    #[inline(always)]
-    fn dilatation<T: Real, const M: usize, const D: usize>(
-        &self,
-        frame: Matrix<T, D, M>,
-        [h, rate]: &[Matrix<T, D, M>; 2],
-    ) -> T {
-        self.0.rate_of_dilatation(&Deformation::new(frame, *h), rate)
-    }
-
-    #[inline(always)]
-    fn of_mean<T: Real>(&self, rate: T) -> T {
-        let [pull, _] = self.0.of_volume(rate);
-        pull
     }
 }
 
@@ -362,31 +218,26 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
             for k in 0..K {
                 x[k] = elements.gather(simd, start, fields[k]);
             }
-            let mut pull_of_mean = zero;
+            let mut pull_of_mean = None;
             if P::IS_MEAN {
                 let (mut sum, mut volume) = (zero, zero);
                 for point in &abreast[block] {
                     let point = point.lane(simd, part);
-                    let mut gradients = [[[zero; D]; M]; K];
-                    for k in 0..K {
-                        gradients[k] = gradient(1, &x[k], &point.gradients);
-                    }
-                    sum += pull.dilatation(point.frame, &gradients) * point.volume;
+                    let gradients = gradients(1, &x, &point.gradients);
+                    let at = Deformation::new(point.frame, gradients[0]);
+                    sum += pull.dilatation(&at, &gradients) * point.volume;
                     volume += point.volume;
                 }
-                pull_of_mean = pull.of_mean(sum / volume);
+                pull_of_mean = Some(pull.of_mean(sum / volume));
             }
             let mut pulls = [[Lane::splat(simd, -0.0); D]; N];
             let mut is_inside = true;
             for point in &abreast[block] {
                 let point = point.lane(simd, part);
-                let mut gradients = [[[zero; D]; M]; K];
-                for k in 0..K {
-                    gradients[k] = gradient(1, &x[k], &point.gradients);
-                }
-                is_inside &=
-                    pull.domain(&Deformation::new(point.frame, gradients[0])).are_positive();
-                let stress = pull.stress((point.frame, point.volume), &gradients, pull_of_mean);
+                let gradients = gradients(1, &x, &point.gradients);
+                let at = Deformation::new(point.frame, gradients[0]);
+                let (stress, domain) = pull.stress(&at, &gradients, pull_of_mean, point.volume);
+                is_inside &= domain.are_positive();
                 collect(&point.gradients, &stress, &mut pulls);
             }
             let active = cells.start.max(start)..cells.end.min(start + S::F64_LANES);

@@ -8,6 +8,7 @@ mod dilatation;
 mod elastic;
 mod elements;
 mod energy;
+mod fibres;
 mod fields;
 mod forces;
 mod gather;
@@ -27,6 +28,7 @@ pub use assembled::Body;
 pub use builder::BodyBuilder;
 pub use dilatation::Dilatation;
 pub(crate) use elastic::LinearByCells;
+
 pub(crate) use fields::von_mises;
 pub use fields::{CellField, NodalField};
 pub use inertia::Inertia;

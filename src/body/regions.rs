@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::input::InputError;
 use crate::material::{
-    Elastic, Hooke, Lame, Linear, Material, ObjectiveViscosity, Plane, Relaxing, Strain, Substance,
+    Elastic, Hooke, Hookean, Lame, Material, ObjectiveViscosity, Plane, Relaxing, Strain, Substance,
 };
 use crate::mesh::Mesh;
 
@@ -110,7 +110,7 @@ pub(super) struct Laws {
 impl Laws {
     /// The law of the damping matrix B.
     pub(super) fn natural_viscosity(&self) -> Elastic {
-        Elastic::Linear(Linear(self.viscous.0))
+        Elastic::Linear(Hookean(self.viscous.0))
     }
 }
 
@@ -135,10 +135,15 @@ impl Regions {
     ) -> Result<Self, InputError> {
         let laws = |substance: &Substance| -> Result<Laws, InputError> {
             substance.validate()?;
-            let Substance { material, law, mass_damping, branches } = substance;
+            let Substance { material, law, mass_damping, branches, fibres } = substance;
             if let (Some(law), Strain::Cauchy) = (law, strain) {
                 let mend = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
                 return Err(InputError::new("material.law", format!("{law:?}"), mend));
+            }
+            if strain == Strain::Cauchy && !fibres.is_empty() {
+                let mend =
+                    "fibres take tension alone, which is not linear: measure strain by Green's";
+                return Err(InputError::new("number of families of fibres", fibres.len(), mend));
             }
             let dimension = mesh.kind().dimension();
             let hooke = |lame: Lame| Hooke::new(lame, dimension, plane);

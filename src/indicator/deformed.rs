@@ -81,8 +81,13 @@ impl Deformed {
         let is_plain = |law: Option<Law>| matches!(law, None | Some(Law::StVenantKirchhoff));
         let (factor, off) = match body.strain() {
             Strain::Cauchy => (CAUCHY_LAW, "Hooke's law is off by about as much"),
-            Strain::Green if body.laws().any(is_plain) => {
+            Strain::Green if body.substances().any(|substance| is_plain(substance.law)) => {
                 (GREEN_LAW, "St. Venant and Kirchhoff's law is off by some 2.5 times that")
+            }
+            Strain::Green
+                if body.substances().any(|substance| substance.law == Some(Law::Corotated)) =>
+            {
+                (CAUCHY_LAW, "Hooke's law of the stretches is off by about as much")
             }
             // constants of others are fitted to what they are for
             Strain::Green => (

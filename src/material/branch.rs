@@ -95,7 +95,7 @@ impl Relaxing {
         apart: &[f64],
         weight: f64,
     ) -> Matrix<f64, D, M> {
-        product(&at.shape.gradient(), &self.hooke.stress(&doubled::<M>(apart), weight))
+        product(&at.shape.gradient(), &self.hooke.stress(&doubled::<M>(apart), None, weight))
     }
 
     /// The stiffness between nodes, as of [`ElasticLaw::tangent`](super::ElasticLaw::tangent), times `weight`: `part` of
@@ -113,7 +113,7 @@ impl Relaxing {
             Strain::Cauchy => 0.0,
             Strain::Green => weight,
         };
-        let pulls = product(&self.hooke.stress(&doubled::<M>(apart), turning), gradients);
+        let pulls = product(&self.hooke.stress(&doubled::<M>(apart), None, turning), gradients);
         Tangent { spread, pulls }
     }
 }

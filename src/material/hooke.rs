@@ -61,21 +61,6 @@ impl Hooke {
         [pull * trace * 0.5, pull, trace.constant(self.lame.lambda)]
     }
 
-    /// `pull` I + 2 mu E, times `weight`, of 2 E
-    #[inline(always)]
-    pub(super) fn stress_under<T: Real, const M: usize>(
-        &self,
-        twice: &Matrix<T, M, M>,
-        pull: T,
-        weight: T,
-    ) -> Matrix<T, M, M> {
-        let shear = weight * self.lame.mu;
-        symmetric!(pull; j, k => match j == k {
-            true => shear * twice[j][k] + pull * weight,
-            false => shear * twice[j][k],
-        })
-    }
-
     /// Whether there is no stress at any strain.
     pub(crate) fn is_zero(&self) -> bool {
         self.lame == Lame { lambda: 0.0, mu: 0.0 }
@@ -93,14 +78,18 @@ impl Hooke {
         trace * (0.5 * self.lame.lambda) * trace + square * self.lame.mu
     }
 
-    /// lambda tr(E) I + 2 mu E, times `weight`, of 2 E
+    /// lambda tr(E) I + 2 mu E, times `weight`, of 2 E, with a `pull` in place of lambda tr(E).
     #[inline(always)]
     pub(super) fn stress<T: Real, const M: usize>(
         &self,
         twice: &Matrix<T, M, M>,
+        pull: Option<T>,
         weight: T,
     ) -> Matrix<T, M, M> {
-        let mean = weight * (0.5 * self.lame.lambda) * trace(twice);
+        let mean = match pull {
+            None => weight * (0.5 * self.lame.lambda) * trace(twice),
+            Some(pull) => pull * weight,
+        };
         let shear = weight * self.lame.mu;
         symmetric!(mean; j, k => match j == k {
             true => shear * twice[j][k] + mean,

@@ -2,6 +2,7 @@
 
 mod branch;
 mod deformation;
+mod fibres;
 mod hooke;
 mod law;
 mod laws;
@@ -11,10 +12,13 @@ mod substance;
 pub use branch::MaxwellBranch;
 pub(crate) use branch::{Relaxing, components};
 pub(crate) use deformation::Deformation;
+pub use fibres::{Course, Fibres};
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
-pub(crate) use law::{Block, Blocks, DilatationalLaw, ElasticLaw, ViscousLaw};
-pub(crate) use laws::{Elastic, Linear, ObjectiveViscosity, with_curved_law, with_law};
+pub(crate) use law::{Block, Blocks, ElasticLaw};
+pub(crate) use laws::{
+    Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_curved_law, with_law,
+};
 pub use laws::{Law, Strain, Viscosity};
 pub use substance::Substance;
 

@@ -1,6 +1,6 @@
 //! What a body, or a region of it, is made of: a material, the law that it keeps to when strains are large, and its damping.
 
-use super::{Material, MaxwellBranch, laws::Law};
+use super::{Fibres, Material, MaxwellBranch, laws::Law};
 use crate::input::{InputError, not_negative};
 
 /// A material with the law of its elasticity, damping in proportion to its mass, and springs that relax.
@@ -27,11 +27,13 @@ pub struct Substance {
     pub mass_damping: f64,
     /// Maxwell branches beside the elasticity.
     pub branches: Vec<MaxwellBranch>,
+    /// Families of fibres in it.
+    pub fibres: Vec<Fibres>,
 }
 
 impl From<Material> for Substance {
     fn from(material: Material) -> Self {
-        Self { material, law: None, mass_damping: 0.0, branches: Vec::new() }
+        Self { material, law: None, mass_damping: 0.0, branches: Vec::new(), fibres: Vec::new() }
     }
 }
 
@@ -55,6 +57,11 @@ impl Material {
     /// [`Substance::maxwell`].
     pub fn maxwell(self, share: f64, time: f64) -> Substance {
         Substance::from(self).maxwell(share, time)
+    }
+
+    /// This material, with a family of [fibres](Fibres).
+    pub fn fibres(self, fibres: Fibres) -> Substance {
+        Substance::from(self).fibres(fibres)
     }
 
     /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as laws of rubber have them: of
@@ -134,10 +141,17 @@ impl Substance {
         self
     }
 
+    /// The same, with one more family of [fibres](Fibres).
+    pub fn fibres(mut self, fibres: Fibres) -> Self {
+        self.fibres.push(fibres);
+        self
+    }
+
     pub(crate) fn validate(&self) -> Result<(), InputError> {
         self.material.validate()?;
         not_negative("material.mass_damping", self.mass_damping, "1/s")?;
         self.branches.iter().try_for_each(MaxwellBranch::validate)?;
+        self.fibres.iter().try_for_each(Fibres::validate)?;
         self.law.map_or(Ok(()), |law| law.validate())
     }
 }

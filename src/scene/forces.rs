@@ -19,6 +19,9 @@ impl Scene {
         if let Some(elastic) = self.body.elastic() {
             forces.push(Arc::new(elastic));
         }
+        if let Some(reinforcement) = self.body.reinforcement() {
+            forces.push(Arc::new(reinforcement));
+        }
         if let Some(gravity) = self.gravity_in(phase) {
             check_vector("gravity", gravity, dimension, "m/s^2")?;
             finite("gravity", gravity)?;

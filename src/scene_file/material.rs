@@ -4,7 +4,7 @@ use super::keys::{Holds, Key, Kind, TableKeys};
 use super::table::Table;
 use super::value::Value;
 use crate::error::Error;
-use crate::material::{Law, Material, MaxwellBranch, Substance};
+use crate::material::{Course, Fibres, Law, Material, MaxwellBranch, Substance};
 
 pub(super) const MATERIAL: TableKeys = TableKeys::new(
     "material",
@@ -24,6 +24,8 @@ pub(super) const MATERIAL: TableKeys = TableKeys::new(
                   the ratio a / (2 omega).")
             .default("0; in a region, that of the body"),
         Key::new("branch", Holds::Tables(&BRANCH), "Maxwell branches, springs that relax")
+            .default("none; in a region, those of the body"),
+        Key::new("fibres", Holds::Tables(&FIBRES), "families of fibres that stiffen it along their course")
             .default("none; in a region, those of the body"),
         Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains").default(
             "as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's",
@@ -45,7 +47,28 @@ const BRANCH: TableKeys = TableKeys::new(
     "material = { density = 1070.0, young = 2.0e5, poisson = 0.48, viscosity = 0.0, branch = [{ share = 0.2, time = 0.1 }] }",
 );
 
-const LAW: TableKeys = TableKeys::new(
+const FIBRES: TableKeys = TableKeys::new(
+    "fibres",
+    "Fibres that run through the material and take tension: with their stretch l and E = (l^2 - 1)/2 they add the energy \
+     (`young` / (8 k2)) (exp(4 k2 E^2) - 1) per natural volume where l > 1, k2 being `stiffening`. They lie along a vector, or around an axis: threads \
+     wound around an actuator. For bodies with Green's strain; stresses in results are those of the material between them.",
+    &[
+        Key::number("young", "Young's modulus that they add along their course: of a fibre, times its share of the section", "Pa")
+            .required(),
+        Key::number("stiffening", "how fast they stiffen", "1").default("0"),
+        Key::new("along", Holds::Vector, "a vector along them, of any length"),
+        Key::new("centre", Holds::Vector, "a point of the axis that they run around").in_unit("m"),
+        Key::new("axis", Holds::Vector, "direction of the axis, of any length; none in the plane").default("across the plane"),
+        Key::number("pitch", "angle by which they climb along the axis: 0 are rings, others helices", "rad").default("0"),
+    ],
+    "material = { density = 1070.0, young = 2.0e5, poisson = 0.49, viscosity = 0.0, fibres = [\n\
+     \x20   { centre = [0.0, 0.0, 0.0], axis = [1.0, 0.0, 0.0], pitch = 0.1, young = 2.0e7 },\n\
+     \x20   { centre = [0.0, 0.0, 0.0], axis = [1.0, 0.0, 0.0], pitch = -0.1, young = 2.0e7 },\n\
+     ] }",
+)
+.one_of(&[&["along"], &["centre"]]);
+
+pub(super) const LAW: TableKeys = TableKeys::new(
     "law",
     "The strain energy W per natural volume of a body with Green's strain. I1 and I2 are the invariants of J^(-2/3) C, J the \
      change of volume, and U = (kappa/4) (J^2 - 1 - 2 ln J) resists that. Bodies in plane strain, in plane stress, membranes and strings take the \
@@ -78,6 +101,22 @@ const LAW: TableKeys = TableKeys::new(
             Key::number("c3", "the constant of (I1 - 3)^3", "Pa").required(),
             BULK,
         ],
+    },
+    Kind {
+        word: "ogden",
+        about: "W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) + U, with the principal stretches l of J^(-2/3) C: rubber over its \
+                whole range; 2 mu = sum of mu_p alpha_p",
+        keys: &[
+            Key::new("moduli", Holds::List(&Holds::Number), "mu_p of one to three terms").in_unit("Pa").required(),
+            Key::new("exponents", Holds::List(&Holds::Number), "alpha_p of the same terms").in_unit("1").required(),
+            BULK,
+        ],
+    },
+    Kind {
+        word: "corotated",
+        about: "W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with the stretch U of each point: Hooke's law in a frame that turns along, for \
+                large rotations and small strains; it does not collapse under compression",
+        keys: &[],
     },
 ]);
 const C1: Key = Key::number("c1", "the constant of I1", "Pa").required();
@@ -132,7 +171,11 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
         tables.iter().map(read).collect::<Result<Vec<_>, Error>>()
     })?;
     let branches = branches.or(base.map(|base| base.branches.clone())).unwrap_or_default();
-    let substance = Substance { material, law, mass_damping, branches };
+    let families = table.optional("fibres", |value| {
+        value.tables(&FIBRES)?.iter().map(fibres).collect::<Result<Vec<_>, Error>>()
+    })?;
+    let fibres = families.or(base.map(|base| base.fibres.clone())).unwrap_or_default();
+    let substance = Substance { material, law, mass_damping, branches, fibres };
     substance.validate().map_err(|error| table.blame(error))?;
     Ok(substance)
 }
@@ -143,6 +186,11 @@ fn law(value: &Value) -> Result<Constants, Error> {
     let (law, shear) = match table.kind() {
         "st-venant-kirchhoff" => (Law::StVenantKirchhoff, None),
         "neo-hookean" => (Law::NeoHookean, None),
+        "corotated" => (Law::Corotated, None),
+        "ogden" => {
+            let (law, shear) = ogden(&table)?;
+            (law, Some(shear))
+        }
         "mooney-rivlin" => {
             let (c1, c2) = (number("c1")?, number("c2")?);
             positive(&table, "c1 + c2", c1 + c2)?;
@@ -165,6 +213,43 @@ fn law(value: &Value) -> Result<Constants, Error> {
         positive(&table, "bulk", bulk)?;
     }
     Ok(Constants { law, shear, bulk })
+}
+
+/// Ogden's law and its shear modulus (Pa).
+fn ogden(table: &Table<'_>) -> Result<(Law, f64), Error> {
+    let moduli = table.required("moduli", Value::numbers)?;
+    let exponents = table.required("exponents", Value::numbers)?;
+    if moduli.len() != exponents.len() || !(1..=3).contains(&moduli.len()) {
+        let (moduli, exponents) = (moduli.len(), exponents.len());
+        let message = format!(
+            "{moduli} `moduli` and {exponents} `exponents`: give one of each for one to three terms"
+        );
+        return Err(table.error(message));
+    }
+    let products = moduli.iter().zip(&exponents).map(|(modulus, exponent)| modulus * exponent);
+    let mut terms = [0.0; 3];
+    terms.iter_mut().zip(products).for_each(|(term, product)| *term = product);
+    let twice: f64 = terms.iter().sum();
+    positive(table, "the sum of moduli times exponents", twice)?;
+    let mut powers = [1.0; 3];
+    powers[..exponents.len()].copy_from_slice(&exponents);
+    Ok((Law::Ogden { exponents: powers, shares: terms.map(|term| term / twice) }, twice / 2.0))
+}
+
+fn fibres(table: &Table<'_>) -> Result<Fibres, Error> {
+    let course = match table.optional("along", Value::numbers)? {
+        Some(direction) => Course::Along(direction),
+        None => Course::Around {
+            centre: table.required("centre", Value::numbers)?,
+            axis: table.optional("axis", Value::numbers)?.unwrap_or_default(),
+            pitch: table.optional("pitch", Value::number)?.unwrap_or(0.0),
+        },
+    };
+    let young = table.required("young", Value::number)?;
+    let stiffening = table.optional("stiffening", Value::number)?.unwrap_or(0.0);
+    let fibres = Fibres { course, young, stiffening };
+    fibres.validate().map_err(|error| table.blame(error))?;
+    Ok(fibres)
 }
 
 fn positive(table: &Table<'_>, name: &str, value: f64) -> Result<(), Error> {

@@ -71,7 +71,7 @@ pub use self::contents::{
     AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
 };
 use self::overrides::{as_toml, merge};
-pub use self::reference::reference;
+pub use self::reference::{laws, reference};
 #[cfg(feature = "play")]
 pub(crate) use self::rewrite::{Rewritten, rewritten};
 pub use self::schema::schema;

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::keys::{Default, Holds, Key, TableKeys};
+use super::material::LAW;
 use super::top::TOP;
 
 /// All tables and keys of scene files in Markdown, with types, units, defaults and examples.
@@ -13,6 +14,15 @@ pub fn reference() -> String {
         let _ = section(&mut page, table);
     }
     page
+}
+
+/// The laws of materials: the word of each, what it is for, and its constants with their units.
+pub fn laws() -> impl Iterator<Item = (&'static str, &'static str, Vec<String>)> {
+    LAW.kinds.iter().map(|kind| {
+        let constant =
+            |key: &Key| format!("{}: {} ({})", key.name, key.meaning.text, key.meaning.unit);
+        (kind.word, kind.about, kind.keys.iter().map(constant).collect())
+    })
 }
 
 const VALUES: &str = "\

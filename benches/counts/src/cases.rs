@@ -5,8 +5,8 @@ use std::path::Path;
 
 use pliant::ode::Failure;
 use pliant::{
-    Body, Cells, Dilatation, Equations, Inertia, InputError, Law, Material, Mesh, Method, Obstacle,
-    Phase, Scene, SceneFile, Settings, SolidCells, Strain,
+    Body, Cells, Dilatation, Equations, Fibres, Inertia, InputError, Law, Material, Mesh, Method,
+    Obstacle, Phase, Scene, SceneFile, Settings, SolidCells, Strain, Substance,
 };
 
 pub type Outcome<T = ()> = Result<T, Box<dyn Error>>;
@@ -49,14 +49,20 @@ fn cells(count: Count) -> Outcome {
         ("triangles, viscous", scene(triangles()?, viscous, Strain::Green)?),
         ("triangles on a floor", green(triangles()?)?.obstacle(floor.friction_coefficient(0.3))),
     ];
-    let rubber = |dilatation| {
-        let body = Body::new(space(SolidCells::Hexahedra)?, RUBBER.law(Law::NeoHookean));
+    let rubber = |substance: Substance, dilatation| {
+        let body = Body::new(space(SolidCells::Hexahedra)?, substance);
         let held = Phase::until(10.0).hold("left");
         Ok::<_, InputError>(Scene::new(body.dilatation(dilatation).build()?).phase(held))
     };
+    let neo_hookean = RUBBER.law(Law::NeoHookean);
+    let ogden = Law::Ogden { exponents: [1.3, 5.0, -2.0], shares: [0.97, 0.01, 0.02] };
+    let threads = Fibres::along([1.0, 0.0, 0.0], 1e6);
     let of_rubber = [
-        ("hexahedra, neo-Hookean", rubber(Dilatation::AtPoints)?),
-        ("hexahedra, neo-Hookean, mean dilatation", rubber(Dilatation::Mean)?),
+        ("hexahedra, neo-Hookean", rubber(neo_hookean.clone(), Dilatation::AtPoints)?),
+        ("hexahedra, neo-Hookean, mean dilatation", rubber(neo_hookean, Dilatation::Mean)?),
+        ("hexahedra, Ogden", rubber(RUBBER.law(ogden), Dilatation::AtPoints)?),
+        ("hexahedra, corotated", rubber(RUBBER.law(Law::Corotated), Dilatation::AtPoints)?),
+        ("hexahedra with fibres", rubber(RUBBER.fibres(threads), Dilatation::AtPoints)?),
     ];
     for (name, scene) in scenes.into_iter().chain(of_rubber) {
         let cells = scene.body().mesh().cells().count();

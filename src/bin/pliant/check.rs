@@ -3,7 +3,7 @@
 use clap::Args;
 use pliant::scene_file::Format;
 use pliant::study::Look;
-use pliant::{PhaseSummary, Scene, SceneFile, Settings};
+use pliant::{Dilatation, Lame, Law, PhaseSummary, Scene, SceneFile, Settings, Strain, Substance};
 
 use crate::failure::{Failure, print};
 use crate::scene::SceneArguments;
@@ -62,7 +62,46 @@ fn body(scene: &Scene) -> Result<(), Failure> {
     let strain = format!("{:?}", body.strain()).to_lowercase();
     let viscosity = format!("{:?}", body.viscosity()).to_lowercase();
     line("body", &format!("{size:.4} m across, {mass:.4} kg, {dofs} displacements"))?;
-    line("", &format!("{strain} strain, {viscosity} viscosity"))
+    let dilatation = match body.dilatation() {
+        Dilatation::AtPoints => "",
+        Dilatation::Mean => ", mean dilatation",
+    };
+    line("", &format!("{strain} strain, {viscosity} viscosity{dilatation}"))?;
+    let labels = std::iter::once("material").chain(std::iter::repeat("region"));
+    labels
+        .zip(body.substances())
+        .try_for_each(|(label, substance)| line(label, &made_of(substance, body.strain())))
+}
+
+fn made_of(substance: &Substance, strain: Strain) -> String {
+    let Substance { material, law, mass_damping, branches, fibres } = substance;
+    let law = match (law, strain) {
+        (Some(law), _) => law.name(),
+        (None, Strain::Cauchy) => "linear elasticity",
+        (None, Strain::Green) => Law::StVenantKirchhoff.name(),
+    };
+    let Lame { lambda, mu } = material.elastic();
+    let mut text = format!(
+        "{law}, E {:.4e} Pa, nu {}, mu {mu:.4e} Pa, kappa {:.4e} Pa, {} kg/m^3",
+        material.young,
+        material.poisson,
+        lambda + mu * 2.0 / 3.0,
+        material.density
+    );
+    if material.viscosity > 0.0 {
+        text += &format!(", viscosity {} Pa s", material.viscosity);
+    }
+    if *mass_damping > 0.0 {
+        text += &format!(", mass damping {mass_damping} 1/s");
+    }
+    for (count, what) in
+        [(branches.len(), "Maxwell branches"), (fibres.len(), "families of fibres")]
+    {
+        if count > 0 {
+            text += &format!(", {what}: {count}");
+        }
+    }
+    text
 }
 
 fn surroundings(scene: &Scene) -> Result<(), Failure> {

@@ -8,6 +8,7 @@ mod check;
 mod failure;
 mod files;
 mod fit;
+mod laws;
 mod methods;
 mod new;
 #[cfg(feature = "play")]
@@ -53,6 +54,7 @@ enum Command {
     Fit(fit::Arguments),
     Check(check::Arguments),
     Chart(chart::Arguments),
+    Laws(laws::Arguments),
     Methods(methods::Arguments),
     New(new::Arguments),
     Reference(reference::Arguments),
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Chart(arguments) => chart::run(&arguments),
+        Command::Laws(arguments) => laws::run(&arguments),
         Command::Methods(arguments) => methods::run(&arguments),
         Command::New(arguments) => new::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments, Cli::command()),

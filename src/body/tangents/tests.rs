@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use pulp::Scalar;
+use pulp::{Scalar, WithSimd};
 
 use super::*;
 use crate::body::tests::{bodies, noise};
@@ -44,14 +44,14 @@ fn is_the_same_on_all_machines<
                     rows: &mut by_place.rows_mut(),
                     cells: cells.clone(),
                     fields: [u, v],
-                    slope: ViscousSlope(&law),
+                    slope: ViscousSlope::<false>(&law),
                 },
                 Pass {
                     elements,
                     rows: &mut by_rate.rows_mut(),
                     cells,
                     fields: [u],
-                    slope: RateSlope(&law),
+                    slope: RateSlope::<false>(&law),
                 },
             );
             [by_place.values, by_rate.values]

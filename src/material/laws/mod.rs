@@ -1,17 +1,23 @@
 //! The material laws, one file each, and their register: a new law is a file, a variant of [`Elastic`]
 //! that [`Strain`] chooses, and a line in `with_law`.
 
-mod linear;
+mod fibre;
+mod hookean;
+mod invariants;
 mod objective_viscosity;
+mod principal;
 mod rivlin;
-mod st_venant_kirchhoff;
+mod stretches;
 #[cfg(test)]
 mod tests;
+mod volume;
 
-pub(crate) use linear::Linear;
+pub(crate) use fibre::Fibre;
+pub(crate) use hookean::{Hookean, Linear, StVenantKirchhoff};
 pub(crate) use objective_viscosity::ObjectiveViscosity;
 pub(crate) use rivlin::Rivlin;
-pub(crate) use st_venant_kirchhoff::StVenantKirchhoff;
+pub(crate) use stretches::ByStretches;
+use stretches::Kind;
 
 use super::hooke::{Hooke, Lame, Plane};
 use crate::input::{InputError, finite};
@@ -48,12 +54,35 @@ pub enum Law {
         /// c3 / c1
         third: f64,
     },
+    /// W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) over three terms, + U, with the principal stretches l
+    /// without the change of volume, J^(-1/3) of those of F: rubber over its whole range. The sum of mu_p alpha_p is 2 mu.
+    Ogden {
+        /// alpha_p (1), not 0
+        exponents: [f64; 3],
+        /// mu_p alpha_p / (2 mu) (1): none is below 0, and they add up to 1. A share of 0 leaves a term out.
+        shares: [f64; 3],
+    },
+    /// W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with the stretch U of each point, U^2 = F^T F: Hooke's law in a frame that turns along,
+    /// for large rotations and small strains. Under compression it stays stiff, as St. Venant-Kirchhoff material does not.
+    Corotated,
 }
 
 impl Law {
+    /// Its name, as in scene files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::StVenantKirchhoff => "st-venant-kirchhoff",
+            Self::NeoHookean => "neo-hookean",
+            Self::MooneyRivlin { .. } => "mooney-rivlin",
+            Self::Yeoh { .. } => "yeoh",
+            Self::Ogden { .. } => "ogden",
+            Self::Corotated => "corotated",
+        }
+    }
+
     pub(crate) fn validate(self) -> Result<(), InputError> {
         match self {
-            Self::StVenantKirchhoff | Self::NeoHookean => Ok(()),
+            Self::StVenantKirchhoff | Self::NeoHookean | Self::Corotated => Ok(()),
             Self::MooneyRivlin { second } => match (0.0..=1.0).contains(&second) {
                 true => Ok(()),
                 false => {
@@ -61,6 +90,29 @@ impl Law {
                     Err(InputError::new("law.second", second, mend))
                 }
             },
+            Self::Ogden { exponents, shares } => {
+                finite("law.exponents", &exponents)?;
+                if let Some(share) = shares.iter().find(|share| !(0.0..=1.0).contains(*share)) {
+                    let mend = "a share mu_p alpha_p / (2 mu) lies between 0 and 1: below 0 its term would pull back where rubber is stretched";
+                    return Err(InputError::new("law.shares", share, mend));
+                }
+                let sum: f64 = shares.iter().sum();
+                if (sum - 1.0).abs() > 1e-9 {
+                    let mend = format!(
+                        "the shares mu_p alpha_p / (2 mu) of all terms add up to 1, and these to {sum}"
+                    );
+                    return Err(InputError::new("law.shares", format!("{shares:?}"), mend));
+                }
+                let is_flat = |(exponent, share): (&f64, &f64)| *exponent == 0.0 && *share > 0.0;
+                match exponents.iter().zip(&shares).any(is_flat) {
+                    true => {
+                        let mend =
+                            "an exponent of 0 has no energy: leave the term out by a share of 0";
+                        Err(InputError::new("law.exponents", format!("{exponents:?}"), mend))
+                    }
+                    false => Ok(()),
+                }
+            }
             Self::Yeoh { second, third } => {
                 finite("law.second", &[second])?;
                 // dW/dI1 = c1 (1 + 2 second x + 3 third x^2), above 0 for all x = I1 - 3 >= 0
@@ -95,6 +147,7 @@ pub(crate) enum Elastic {
     Linear(Linear),
     StVenantKirchhoff(StVenantKirchhoff),
     Rivlin(Rivlin),
+    ByStretches(ByStretches),
 }
 
 impl Elastic {
@@ -107,20 +160,26 @@ impl Elastic {
         plane: Plane,
     ) -> Self {
         let hooke = Hooke::new(lame, cell_dimension, plane);
-        let c1 = lame.mu / 2.0;
+        let (c1, bulk) = (lame.mu / 2.0, lame.lambda + lame.mu * 2.0 / 3.0);
+        let by_stretches = |kind| Self::ByStretches(ByStretches { kind, across: hooke.across });
         let rivlin = |first: [f64; 3], second: f64| {
-            let bulk = lame.lambda + lame.mu * 2.0 / 3.0;
             Self::Rivlin(Rivlin { first, second, bulk, across: hooke.across })
         };
         match (law, strain) {
-            (None, Strain::Cauchy) => Self::Linear(Linear(hooke)),
-            (None | Some(Law::StVenantKirchhoff), _) => {
-                Self::StVenantKirchhoff(StVenantKirchhoff(hooke))
-            }
+            (None, Strain::Cauchy) => Self::Linear(Hookean(hooke)),
+            (None | Some(Law::StVenantKirchhoff), _) => Self::StVenantKirchhoff(Hookean(hooke)),
             (Some(Law::NeoHookean), _) => rivlin([c1, 0.0, 0.0], 0.0),
             (Some(Law::MooneyRivlin { second }), _) => {
                 rivlin([c1 * (1.0 - second), 0.0, 0.0], c1 * second)
             }
+            (Some(Law::Ogden { exponents, shares }), _) => {
+                let term = |p: usize| match shares[p] {
+                    0.0 => [0.0, 1.0],
+                    share => [2.0 * lame.mu * share / exponents[p], exponents[p]],
+                };
+                by_stretches(Kind::Ogden { terms: [term(0), term(1), term(2)], bulk })
+            }
+            (Some(Law::Corotated), _) => by_stretches(Kind::Corotated(lame)),
             (Some(Law::Yeoh { second, third }), _) => rivlin([c1, c1 * second, c1 * third], 0.0),
         }
     }
@@ -133,6 +192,7 @@ macro_rules! with_law {
             $crate::material::Elastic::Linear($law) => $expression,
             $crate::material::Elastic::StVenantKirchhoff($law) => $expression,
             $crate::material::Elastic::Rivlin($law) => $expression,
+            $crate::material::Elastic::ByStretches($law) => $expression,
         }
     };
 }
@@ -145,6 +205,7 @@ macro_rules! with_curved_law {
             $crate::material::Elastic::Linear(_) => {}
             $crate::material::Elastic::StVenantKirchhoff($law) => $expression,
             $crate::material::Elastic::Rivlin($law) => $expression,
+            $crate::material::Elastic::ByStretches($law) => $expression,
         }
     };
 }

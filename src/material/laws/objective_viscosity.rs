@@ -4,7 +4,7 @@
 
 use crate::material::deformation::Deformation;
 use crate::material::hooke::{Hooke, Lame, Spread};
-use crate::material::law::{Block, Blocks, ViscousLaw};
+use crate::material::law::{Block, Blocks};
 use crate::tensor::{Matrix, Real, dot, product, product_transposed, times, trace};
 
 /// P = F S with E' = sym(F^T F'), S = lambda tr(E') I + 2 mu E'. A body that spins as a whole is not
@@ -12,7 +12,7 @@ use crate::tensor::{Matrix, Real, dot, product, product_transposed, times, trace
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ObjectiveViscosity(pub(crate) Hooke);
 
-/// With `pull` in place of lambda tr(E'), as where that takes the mean rate of dilatation over a cell.
+/// A `pull` is lambda times the mean rate of dilatation over a cell, where that counts in place of lambda tr(E').
 impl ObjectiveViscosity {
     /// tr(E')
     #[inline(always)]
@@ -31,79 +31,62 @@ impl ObjectiveViscosity {
         [pull, stiff]
     }
 
-    /// P, times `weight`.
+    /// First Piola stress P (Pa), times `weight`, the volume of the point.
     #[inline(always)]
-    pub(crate) fn stress_under<T: Real, const M: usize, const D: usize>(
+    pub(crate) fn stress<T: Real, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
-        pull: T,
+        pull: Option<T>,
         weight: T,
     ) -> Matrix<T, D, M> {
-        let twice = at.twice_green_rate(rate);
-        product(&at.gradient(), &self.0.stress_under(&twice, pull, weight))
+        product(&at.gradient(), &self.0.stress(&at.twice_green_rate(rate), pull, weight))
     }
 
-    /// dP/dF', as [`ViscousLaw::rate_tangent`], without lambda.
-    #[inline(always)]
-    pub(crate) fn rate_tangent_of_shear<T: Real, const N: usize, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        gradients: &[[T; M]; N],
-        weight: T,
-    ) -> impl Blocks<T, D> {
-        Spread::new(&at.gradient(), gradients, self.0.of_shear().lame, weight)
-    }
-
-    /// dP/dF, as [`ViscousLaw::tangent`]; `pull` stays as it is.
-    #[inline(always)]
-    pub(crate) fn tangent_under<T: Real, const N: usize, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        rate: &Matrix<T, D, M>,
-        pull: T,
-        gradients: &[[T; M]; N],
-        weight: T,
-    ) -> impl Blocks<T, D> {
-        let shear = self.0.of_shear();
-        let stress = shear.stress_under(&at.twice_green_rate(rate), pull, weight.constant(1.0));
-        Tangent::new(at, rate, &stress, gradients, shear.lame, weight)
-    }
-}
-
-impl ViscousLaw for ObjectiveViscosity {
-    #[inline(always)]
-    fn stress<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        rate: &Matrix<T, D, M>,
-        weight: T,
-    ) -> Matrix<T, D, M> {
-        product(&at.gradient(), &self.0.stress(&at.twice_green_rate(rate), weight))
-    }
-
+    /// dP/dF, as [`ElasticLaw::tangent`](crate::material::ElasticLaw::tangent).
+    ///
     /// The rate of strain changes with F, too, so that this is not symmetric:
     /// lambda f_a f'_b^T + mu ((g_a . g_b) F F'^T + f_b f'_a^T) + (g_a . S g_b) I, f'_a = F' g_a
     #[inline(always)]
-    fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
+    pub(crate) fn tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         rate: &Matrix<T, D, M>,
-        gradients: &[[T; M]; N],
+        pull: Option<T>,
+        gradients: &'a [[T; M]; N],
         weight: T,
-    ) -> impl Blocks<T, D> {
-        let stress = self.0.stress(&at.twice_green_rate(rate), weight.constant(1.0));
-        Tangent::new(at, rate, &stress, gradients, self.0.lame, weight)
+    ) -> impl Blocks<T, D> + use<'a, T, N, M, D> {
+        let f = at.gradient();
+        let stress = self.0.stress(&at.twice_green_rate(rate), pull, weight.constant(1.0));
+        Tangent {
+            gradients,
+            along: product(&f, gradients),
+            moving: product(rate, gradients),
+            mixed: product_transposed(rate, &f),
+            pulls: product(&stress, gradients),
+            lame: self.moduli_at_points(pull.is_some()),
+            weight,
+        }
+    }
+
+    /// dP/dF', likewise, and symmetric; `is_mean` leaves the part of a mean out.
+    #[inline(always)]
+    pub(crate) fn rate_tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        is_mean: bool,
+        gradients: &'a [[T; M]; N],
+        weight: T,
+    ) -> impl Blocks<T, D> + use<'a, T, N, M, D> {
+        Spread::new(&at.gradient(), gradients, self.moduli_at_points(is_mean), weight)
     }
 
     #[inline(always)]
-    fn rate_tangent<T: Real, const N: usize, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        gradients: &[[T; M]; N],
-        weight: T,
-    ) -> impl Blocks<T, D> {
-        Spread::new(&at.gradient(), gradients, self.0.lame, weight)
+    fn moduli_at_points(&self, is_mean: bool) -> Lame {
+        match is_mean {
+            true => self.0.of_shear().lame,
+            false => self.0.lame,
+        }
     }
 }
 
@@ -119,29 +102,6 @@ struct Tangent<'a, T, const N: usize, const M: usize, const D: usize> {
     pulls: [[T; M]; N],
     lame: Lame,
     weight: T,
-}
-
-impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Tangent<'a, T, N, M, D> {
-    #[inline(always)]
-    fn new(
-        at: &Deformation<T, M, D>,
-        rate: &Matrix<T, D, M>,
-        stress: &Matrix<T, M, M>,
-        gradients: &'a [[T; M]; N],
-        lame: Lame,
-        weight: T,
-    ) -> Self {
-        let f = at.gradient();
-        Self {
-            gradients,
-            along: product(&f, gradients),
-            moving: product(rate, gradients),
-            mixed: product_transposed(rate, &f),
-            pulls: product(stress, gradients),
-            lame,
-            weight,
-        }
-    }
 }
 
 impl<T: Real, const N: usize, const M: usize, const D: usize> Blocks<T, D>

@@ -2,11 +2,12 @@
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
-use crate::material::deformation::Deformation;
+use super::invariants::{Strained, directions, invariants_of};
+use super::volume::{less_logarithm, swollen};
 use crate::material::hooke::Plane;
-use crate::material::law::{Blocks, DilatationalLaw, ElasticLaw};
+use crate::material::law::{Blocks, ElasticLaw};
 use crate::material::response::{Elasticity, Response, Tangent, axes};
-use crate::tensor::{Matrix, Real, inverse_cube_root, product, symmetric, times, trace};
+use crate::tensor::{Matrix, Real, product, symmetric, times};
 
 /// W = c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3 + c01 (I2 - 3) + (kappa/4) (J^2 - 1 - 2 ln J), with the invariants
 /// I1 and I2 of J^(-2/3) C: neo-Hookean with c10 alone, Mooney-Rivlin with c01, Yeoh with c20 and c30
@@ -26,43 +27,7 @@ pub(crate) struct Rivlin {
     pub(super) across: Plane,
 }
 
-/// How a point is strained, with what is across the cell.
-struct Strained<T, const M: usize> {
-    /// G along the cell.
-    along: Matrix<T, M, M>,
-    /// G across it, in 3 - M directions; 0 of solids.
-    across: T,
-    /// C^-1 along the cell and across it.
-    inverse: Matrix<T, M, M>,
-    inverse_across: T,
-    /// Invariants of G: its trace, the sum of its principal minors, its determinant.
-    invariants: [T; 3],
-    /// J^2 - 1
-    swelling: T,
-    /// J^(-2/3)
-    shrink: T,
-}
-
-/// Directions across a cell of dimension `M`.
-const fn directions<const M: usize>() -> f64 {
-    (3 - M) as f64
-}
-
 impl Rivlin {
-    #[inline(always)]
-    fn strained<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-    ) -> Strained<T, M> {
-        let along = at.twice_green();
-        let across = match M {
-            3 => along[0][0].constant(0.0),
-            2 if self.across == Plane::Strain => along[0][0].constant(0.0),
-            _ => self.free_across(&along),
-        };
-        Strained::new(along, across)
-    }
-
     /// G across a cell that is free to change its thickness: where there is no stress.
     #[inline(always)]
     fn free_across<T: Real, const M: usize>(&self, along: &Matrix<T, M, M>) -> T {
@@ -119,115 +84,19 @@ impl Rivlin {
     }
 }
 
-impl<T: Real, const M: usize> Strained<T, M> {
-    #[inline(always)]
-    fn new(along: Matrix<T, M, M>, across: T) -> Self {
-        let m = directions::<M>();
-        let [trace, minors, determinant] = invariants_of(&along);
-        let area = trace + minors + determinant;
-        let mut invariants = [trace, minors, determinant];
-        let mut swelling = area;
-        if M < 3 {
-            invariants[0] = trace + across * m;
-            invariants[1] = minors + across * trace * m;
-            invariants[2] = across * minors;
-            swelling = area + across + area * across;
-        }
-        if M == 1 {
-            invariants[1] += across * across;
-            invariants[2] = across * across * trace;
-            swelling = swelling + across + swelling * across;
-        }
-        let inverse = inverse_of(&along, area + 1.0);
-        let one = across.constant(1.0);
-        let inverse_across = one / (across + 1.0);
-        let shrink = inverse_cube_root(swelling + 1.0);
-        Self { along, across, inverse, inverse_across, invariants, swelling, shrink }
-    }
-
-    /// I1 - 3 and I2 - 3 of what is left without the change of volume: differences of what is small of second order.
-    #[inline(always)]
-    fn above_rest(&self) -> [T; 2] {
-        let [g, minors, determinant] = self.invariants;
-        let one = g.constant(1.0);
-        // s = J^(2/3), and s - 1 = (s^3 - 1) / (1 + s + s^2)
-        let s = self.shrink * self.shrink * (self.swelling + 1.0);
-        let whole = s * s + s + 1.0;
-        let more = self.swelling / whole;
-        let first = g * more * (s + 2.0) - (minors + determinant) * 3.0;
-        let second = g * more * (s * 2.0 + 1.0) + minors * (s * (s + -2.0) + -2.0)
-            - determinant * (s + 1.0) * 3.0;
-        let share = one / whole * self.shrink;
-        [first * share, second * share * self.shrink]
-    }
-
-    /// C (the first invariant of which is trace + 3) times the derivative of I1 by C, over J^(-2/3), at the component `g` of G
-    /// on the diagonal: g - tr(G) / 3.
-    #[inline(always)]
-    fn first_slope(&self, of: T) -> T {
-        of - self.invariants[0] * (1.0 / 3.0)
-    }
-
-    /// The same for I2 over J^(-4/3), with the square of that component of G.
-    #[inline(always)]
-    fn second_slope(&self, of: T, square: T) -> T {
-        let [trace, minors, _] = self.invariants;
-        (trace + 1.0) * of - square - (trace + minors * 2.0) * (1.0 / 3.0)
-    }
-}
-
-/// Trace, sum of the principal minors and determinant of a symmetric matrix; what a small one does not have is 0.
-#[inline(always)]
-fn invariants_of<T: Real, const M: usize>(g: &Matrix<T, M, M>) -> [T; 3] {
-    let zero = g[0][0].constant(0.0);
-    match M {
-        1 => [g[0][0], zero, zero],
-        2 => [trace(g), minor(g, 0, 1), zero],
-        _ => {
-            let minors = minor(g, 0, 1) + minor(g, 0, 2) + minor(g, 1, 2);
-            [trace(g), minors, crate::tensor::determinant(g)]
-        }
-    }
-}
-
-#[inline(always)]
-fn minor<T: Real, const M: usize>(g: &Matrix<T, M, M>, j: usize, k: usize) -> T {
-    g[j][j] * g[k][k] - g[j][k] * g[j][k]
-}
-
-/// C^-1 of C = I + G, which has the determinant `area`.
-#[inline(always)]
-fn inverse_of<T: Real, const M: usize>(g: &Matrix<T, M, M>, area: T) -> Matrix<T, M, M> {
-    let one = area.constant(1.0);
-    let share = one / area;
-    let mut c = *g;
-    for j in 0..M {
-        c[j][j] = c[j][j] + 1.0;
-    }
-    symmetric!(one; j, k => match (M, j == k) {
-        (1, _) => share,
-        (2, true) => c[1 - j][1 - j] * share,
-        (2, false) => c[j][k] * share * -1.0,
-        _ => {
-            let (j1, j2, k1, k2) = ((j + 1) % M, (j + 2) % M, (k + 1) % M, (k + 2) % M);
-            (c[j1][k1] * c[j2][k2] - c[j1][k2] * c[j2][k1]) * share
-        }
-    })
-}
-
 impl Rivlin {
-    /// W without U.
+    /// J U'(J) and J^2 U''(J) of the volume at the point, or J times a `pull`, which stays as it is.
     #[inline(always)]
-    fn of_shape<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> T {
-        let [first, second] = at.above_rest();
-        let [c10, c20, c30] = self.first;
-        ((first * c30 + c20) * first + c10) * first + second * self.second
+    fn volume<T: Real, const M: usize>(&self, at: &Strained<T, M>, pull: Option<T>) -> [T; 2] {
+        match pull {
+            None => [at.swelling * (0.5 * self.bulk), (at.swelling + 2.0) * (0.5 * self.bulk)],
+            Some(pull) => [pull * at.stretch(), pull.constant(0.0)],
+        }
     }
 
-    /// J U'(J) and J^2 U''(J) of the volume at the point.
-    #[inline(always)]
-    fn volume_at<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> [T; 2] {
-        [at.swelling * (0.5 * self.bulk), (at.swelling + 2.0) * (0.5 * self.bulk)]
+    /// Whether the section is free to change.
+    const fn is_free<const M: usize>(&self) -> bool {
+        M == 1 || M == 2 && matches!(self.across, Plane::Stress)
     }
 
     /// S, with `volume` for J U'(J).
@@ -325,8 +194,7 @@ impl Rivlin {
                 elasticity[w][v] = elasticity[v][w];
             }
         }
-        let is_free = M == 1 || M == 2 && self.across == Plane::Stress;
-        if is_free {
+        if self.is_free::<M>() {
             let ca = at.inverse_across;
             let both =
                 dyadic * ca * ca + p_across * ca * 2.0 + curved * slope_across * slope_across;
@@ -355,53 +223,93 @@ impl Rivlin {
     }
 }
 
+/// g = J - 1
 impl ElasticLaw for Rivlin {
+    type Point<T: Real, const M: usize> = Strained<T, M>;
+
     #[inline(always)]
-    fn energy<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        let strained = self.strained(at);
-        let [volume] = T::each([strained.swelling], |[x]| [less_logarithm(x)]);
-        self.of_shape(&strained) + volume * (0.25 * self.bulk)
+    fn point<T: Real, const M: usize>(&self, twice: Matrix<T, M, M>) -> Strained<T, M> {
+        let across = match self.is_free::<M>() {
+            true => self.free_across(&twice),
+            false => twice[0][0].constant(0.0),
+        };
+        Strained::new(twice, across)
     }
 
     #[inline(always)]
-    fn stress<T: Real, const M: usize, const D: usize>(
+    fn energy<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> T {
+        let [volume] = T::each([at.swelling], |[x]| [less_logarithm(x)]);
+        self.energy_of_shape(at) + volume * (0.25 * self.bulk)
+    }
+
+    #[inline(always)]
+    fn energy_of_shape<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> T {
+        let [first, second] = at.above_rest();
+        let [c10, c20, c30] = self.first;
+        ((first * c30 + c20) * first + c10) * first + second * self.second
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> T {
+        at.swelling / (at.stretch() + 1.0)
+    }
+
+    /// J C^-1
+    #[inline(always)]
+    fn swelling<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> Matrix<T, M, M> {
+        times(at.inverse, at.stretch())
+    }
+
+    #[inline(always)]
+    fn of_volume<T: Real>(&self, dilatation: T) -> [T; 3] {
+        T::each([dilatation], |[dilatation]| swollen(self.bulk, dilatation))
+    }
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize>(
         &self,
-        at: &Deformation<T, M, D>,
+        at: &Strained<T, M>,
+        pull: Option<T>,
         weight: T,
-    ) -> Matrix<T, D, M> {
-        let strained = self.strained(at);
-        let [volume, _] = self.volume_at(&strained);
-        product(&at.gradient(), &self.second_piola(&strained, volume, weight))
+    ) -> Matrix<T, M, M> {
+        let [volume, _] = self.volume(at, pull);
+        self.second_piola(at, volume, weight)
     }
 
     #[inline(always)]
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
-        at: &Deformation<T, M, D>,
+        f: Matrix<T, D, M>,
+        at: Strained<T, M>,
+        pull: Option<T>,
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Blocks<T, D> {
-        let strained = self.strained(at);
-        let response = self.response(&strained, self.volume_at(&strained));
-        Tangent::new(&at.gradient(), &response, gradients, weight)
+        Tangent::new(&f, &self.response(&at, self.volume(&at, pull)), gradients, weight)
     }
 
     #[inline(always)]
-    fn across<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> [T; 2] {
-        let strained = self.strained(at);
-        let zero = strained.across.constant(0.0);
-        if M != 2 || self.across == Plane::Stress {
-            return [strained.across * 0.5, zero];
+    fn across<T: Real, const M: usize>(&self, at: &Strained<T, M>, pull: Option<T>) -> [T; 2] {
+        let zero = at.across.constant(0.0);
+        if M == 3 || self.is_free::<M>() {
+            return [at.across * 0.5, zero];
         }
-        let [volume, _] = self.volume_at(&strained);
-        [zero, self.stress_across(&strained, volume)]
+        let [volume, _] = self.volume(at, pull);
+        [zero, self.stress_across(at, volume)]
     }
 
     #[inline(always)]
-    fn domain<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        let stretch = at.stretch();
-        match M == 1 || M == 2 && self.across == Plane::Stress {
-            true => stretch * (self.strained(at).across + 1.0),
+    fn thickness<T: Real, const M: usize>(&self, at: &Strained<T, M>) -> T {
+        match M {
+            1 => at.across + 1.0,
+            _ => (at.across + 1.0).sqrt(),
+        }
+    }
+
+    #[inline(always)]
+    fn domain<T: Real, const M: usize>(&self, stretch: T, at: &Strained<T, M>) -> T {
+        match self.is_free::<M>() {
+            true => stretch * (at.across + 1.0),
             false => stretch,
         }
     }
@@ -411,93 +319,4 @@ impl ElasticLaw for Rivlin {
             "is inverted, det F = {domain:.3}: rubber cannot be pressed to nothing; load it less, or refine the mesh there"
         )
     }
-}
-
-/// g = J - 1
-impl DilatationalLaw for Rivlin {
-    #[inline(always)]
-    fn dilatation<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        let strained = self.strained(at);
-        strained.swelling / ((strained.swelling + 1.0).sqrt() + 1.0)
-    }
-
-    #[inline(always)]
-    fn of_volume<T: Real>(&self, dilatation: T) -> [T; 3] {
-        let swelling = dilatation * (dilatation + 2.0);
-        let [energy] = T::each([swelling], |[x]| [less_logarithm(x)]);
-        let one = dilatation.constant(1.0);
-        let share = one / (dilatation + 1.0);
-        let half = 0.5 * self.bulk;
-        [energy * (0.5 * half), swelling * share * half, (share * share + 1.0) * half]
-    }
-
-    #[inline(always)]
-    fn energy_of_rest<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-    ) -> T {
-        self.of_shape(&self.strained(at))
-    }
-
-    #[inline(always)]
-    fn stress_under<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        pull: T,
-        weight: T,
-    ) -> Matrix<T, D, M> {
-        let strained = self.strained(at);
-        let volume = pull * (strained.swelling + 1.0).sqrt();
-        product(&at.gradient(), &self.second_piola(&strained, volume, weight))
-    }
-
-    #[inline(always)]
-    fn tangent_under<T: Real, const N: usize, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        pull: T,
-        gradients: &[[T; M]; N],
-        weight: T,
-    ) -> impl Blocks<T, D> {
-        let strained = self.strained(at);
-        let volume = pull * (strained.swelling + 1.0).sqrt();
-        let response = self.response(&strained, [volume, pull.constant(0.0)]);
-        Tangent::new(&at.gradient(), &response, gradients, weight)
-    }
-
-    #[inline(always)]
-    fn across_under<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        pull: T,
-    ) -> [T; 2] {
-        let strained = self.strained(at);
-        let volume = pull * (strained.swelling + 1.0).sqrt();
-        [pull.constant(0.0), self.stress_across(&strained, volume)]
-    }
-
-    /// J F C^-1 g_a
-    #[inline(always)]
-    fn swelling_by_nodes<T: Real, const N: usize, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        gradients: &[[T; M]; N],
-        weight: T,
-    ) -> [[T; D]; N] {
-        let strained = self.strained(at);
-        let slope = product(&at.gradient(), &strained.inverse);
-        times(product(&slope, gradients), weight * (strained.swelling + 1.0).sqrt())
-    }
-}
-
-/// x - ln(1 + x), to all digits where x is small.
-fn less_logarithm(x: f64) -> f64 {
-    // ln(1 + x) = 2 artanh z
-    let z = x / (2.0 + x);
-    if z.abs() > 0.1 {
-        return x - x.ln_1p();
-    }
-    let square = z * z;
-    let rest = (0..8).rev().fold(0.0, |sum, k| sum * square + 1.0 / f64::from(2 * k + 3));
-    x * z - 2.0 * z * square * rest
 }

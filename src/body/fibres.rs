@@ -1,0 +1,192 @@
+//! The fibres of a body: strings through the strain points of its cells.
+//!
+//! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the same nodes: its
+//! gradients are those of the shape functions along it, and its frame is its direction.
+
+use std::sync::Arc;
+
+use pulp::Arch;
+
+use super::assembly::Elements;
+use super::elements::ElementsOf;
+use super::energy::Pass;
+use super::forces::ElasticPull;
+use super::tangents::ElasticSlope;
+use crate::element::StrainPoint;
+use crate::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::input::InputError;
+use crate::material::{Course, Fibre, Fibres};
+use crate::mesh::Mesh;
+use crate::ode::Failure;
+use crate::sparse::BlockMatrix;
+use crate::tensor::{apply, dot};
+
+/// Elements that fibres can lie in.
+pub(super) trait Reinforced {
+    /// The fibres of a `course` in some cells.
+    fn fibres(
+        &self,
+        mesh: &Mesh,
+        cells: &[usize],
+        course: &Course,
+    ) -> Result<Box<dyn Strings>, InputError>;
+}
+
+/// Fibres in cells, whatever these are.
+pub(super) trait Strings: Send + Sync {
+    fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure>;
+
+    /// Adds tangents to the stiffness; the rows of the damping are shared out alike.
+    fn add_tangents(
+        &self,
+        law: &Fibre,
+        u: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    );
+
+    fn energy(&self, law: &Fibre, u: &[f64]) -> f64;
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
+    for ElementsOf<N, M, D, Q>
+{
+    fn fibres(
+        &self,
+        mesh: &Mesh,
+        cells: &[usize],
+        course: &Course,
+    ) -> Result<Box<dyn Strings>, InputError> {
+        course.validate_in(D)?;
+        let positions = mesh.positions().as_chunks::<D>().0;
+        let mut points = Vec::with_capacity(Q * cells.len());
+        for &cell in cells {
+            let of_nodes = self.nodes[cell].map(|node| positions[node]);
+            for (point, values) in self.points(cell).zip(&self.values) {
+                let mut position = [0.0; D];
+                for (value, of_node) in values.iter().zip(&of_nodes) {
+                    position.iter_mut().zip(of_node).for_each(|(x, of_node)| *x += value * of_node);
+                }
+                let direction = course.at(&position);
+                let mut own: [f64; M] = std::array::from_fn(|j| {
+                    point.frame[j].iter().zip(&direction).map(|(e, d)| e * d).sum()
+                });
+                let length = dot(&own, &own).sqrt();
+                // what is left of a unit vector by rounding
+                if length < 1e-9 {
+                    let mend = "fibres have no direction there: move their axis out of the cell, turn them into the membrane, or \
+                                give them a region of their own";
+                    return Err(InputError::new("fibres in cell", cell + 1, mend));
+                }
+                own.iter_mut().for_each(|x| *x /= length);
+                points.push(StrainPoint {
+                    gradients: std::array::from_fn(|a| [dot(&point.gradients[a], &own)]),
+                    frame: [apply(&point.frame, &own)],
+                    volume: point.volume,
+                });
+            }
+        }
+        Ok(Box::new(self.with_points(cells, &points, mesh.node_count())))
+    }
+}
+
+impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1, D, Q> {
+    fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure> {
+        let u = u.as_chunks::<D>().0;
+        self.share_out(forces, |run, first, forces| {
+            self.add(run.clone(), [u], first, forces, ElasticPull::<_, false>(law))
+        })
+    }
+
+    fn add_tangents(
+        &self,
+        law: &Fibre,
+        u: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        let u = u.as_chunks::<D>().0;
+        self.shares.each(stiffness.rows_mut::<D>(), damping.rows_mut(), &|share, mut rows, _| {
+            for run in &self.shares.cells[share] {
+                self.add_to(&mut rows, run.clone(), [u], ElasticSlope::<_, false>(law));
+            }
+        });
+    }
+
+    fn energy(&self, law: &Fibre, u: &[f64]) -> f64 {
+        let (u, cells) = (u.as_chunks::<D>().0, 0..self.nodes.len());
+        Arch::new().dispatch(Pass { elements: self, cells, u, law, sum: 0.0 })
+    }
+}
+
+/// The families of fibres of a body, each with its law.
+pub(super) type Families = Vec<(Box<dyn Strings>, Fibre)>;
+
+/// Those of substances in the cells of each.
+pub(super) fn families<'a>(
+    mesh: &Mesh,
+    elements: &dyn Elements,
+    substances: impl Iterator<Item = (&'a [Fibres], Vec<usize>)>,
+) -> Result<Families, InputError> {
+    let mut families = Families::new();
+    for (fibres, cells) in substances {
+        if cells.is_empty() {
+            continue;
+        }
+        for Fibres { course, young, stiffening } in fibres {
+            let law = Fibre { young: *young, stiffening: *stiffening };
+            families.push((elements.fibres(mesh, &cells, course)?, law));
+        }
+    }
+    Ok(families)
+}
+
+/// Adds what families of fibres do around the undeformed shape.
+pub(super) fn add_at_rest(
+    families: &Families,
+    dofs: usize,
+    stiffness: &mut BlockMatrix,
+    damping: &mut BlockMatrix,
+) {
+    let rest = vec![0.0; dofs];
+    families.iter().for_each(|(strings, law)| strings.add_tangents(law, &rest, stiffness, damping));
+}
+
+/// The forces of fibres.
+pub(crate) struct Reinforcement(pub(super) Arc<Families>);
+
+impl Force for Reinforcement {
+    fn add_forces(
+        &self,
+        _t: f64,
+        u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let conservative = &mut forces.conservative;
+        self.0.iter().try_for_each(|(strings, law)| strings.add_forces(law, u, conservative))
+    }
+
+    fn add_tangents(
+        &self,
+        _t: f64,
+        u: &[f64],
+        _v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) -> Tangents {
+        self.0.iter().for_each(|(strings, law)| strings.add_tangents(law, u, stiffness, damping));
+        Tangents::Added
+    }
+
+    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
+        self.0.iter().map(|(strings, law)| strings.energy(law, u)).sum()
+    }
+
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::Strain
+    }
+}
+
+#[cfg(test)]
+mod tests;

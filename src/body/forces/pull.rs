@@ -1,0 +1,108 @@
+//! What pulls at the points of cells: elastic laws and viscosity, at points or with a mean dilatation.
+
+use crate::material::{Deformation, ElasticLaw, ObjectiveViscosity};
+use crate::tensor::{Matrix, Real, product};
+
+/// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
+pub(in crate::body) trait Pull<const K: usize> {
+    /// Whether what resists a change of volume takes the mean of that over the cell.
+    const IS_MEAN: bool;
+
+    /// First Piola stress P times the `volume` of the point, with the `pull` of the mean dilatation if that counts, and a number
+    /// above 0 where it has meaning.
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[Matrix<T, D, M>; K],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T);
+
+    /// The dilatation of a point, or the rate of it.
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[Matrix<T, D, M>; K],
+    ) -> T;
+
+    /// What pulls at all points of a cell of this mean dilatation.
+    fn of_mean<T: Real>(&self, dilatation: T) -> T;
+
+    /// Says what happened where the number of [`Self::stress`] is not above 0.
+    fn outside(&self, domain: f64) -> String;
+}
+
+pub(in crate::body) struct ElasticPull<'l, L, const MEAN: bool>(pub(in crate::body) &'l L);
+
+impl<L: ElasticLaw, const MEAN: bool> Pull<1> for ElasticPull<'_, L, MEAN> {
+    const IS_MEAN: bool = MEAN;
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T) {
+        let point = self.0.point(L::twice_strain(at));
+        let stress = product(&L::shape(at), &self.0.stress(&point, pull, volume));
+        (stress, self.0.domain(at.stretch(), &point))
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+    ) -> T {
+        self.0.dilatation(&self.0.point(L::twice_strain(at)))
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [_, pull, _] = self.0.of_volume(dilatation);
+        pull
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        self.0.outside(domain)
+    }
+}
+
+pub(super) struct ViscousPull<'l, const MEAN: bool>(pub(super) &'l ObjectiveViscosity);
+
+impl<const MEAN: bool> Pull<2> for ViscousPull<'_, MEAN> {
+    const IS_MEAN: bool = MEAN;
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T) {
+        (self.0.stress(at, rate, pull, volume), volume.constant(1.0))
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+    ) -> T {
+        self.0.rate_of_dilatation(at, rate)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, rate: T) -> T {
+        let [pull, _] = self.0.of_volume(rate);
+        pull
+    }
+
+    /// It has meaning everywhere.
+    fn outside(&self, _: f64) -> String {
+        String::new()
+    }
+}
