@@ -94,6 +94,14 @@ impl<S: Simd> Real for Lane<S> {
     }
 
     #[inline(always)]
+    fn sign(self) -> Self {
+        let Self { simd, numbers } = self;
+        let [zero, one, other] = [0.0, 1.0, -1.0].map(|number| simd.splat_f64s(number));
+        let numbers = simd.select_f64s(simd.less_than_f64s(numbers, zero), other, one);
+        Self { simd, numbers }
+    }
+
+    #[inline(always)]
     fn constant(self, number: f64) -> Self {
         Self::splat(self.simd, number)
     }

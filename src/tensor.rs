@@ -21,6 +21,9 @@ pub(crate) trait Real:
     /// The square root.
     fn sqrt(self) -> Self;
 
+    /// -1 where it is below 0, else 1.
+    fn sign(self) -> Self;
+
     /// Another number, of this kind.
     fn constant(self, number: f64) -> Self;
 
@@ -35,6 +38,11 @@ impl Real for f64 {
     #[inline(always)]
     fn sqrt(self) -> Self {
         f64::sqrt(self)
+    }
+
+    #[inline(always)]
+    fn sign(self) -> Self {
+        if self < 0.0 { -1.0 } else { 1.0 }
     }
 
     #[inline(always)]

@@ -5,19 +5,18 @@ use std::sync::Arc;
 
 use super::assembly::Elements;
 use super::dilatation::Dilatation;
-use super::elastic::{Elastic, LinearByCells};
-use super::fibres::{Families, Reinforcement};
 use super::fields::{CellField, NodalField, Probe, nodal_fields};
 use super::forces::Terms;
 use super::inertia::Inertia;
 use super::recipe::Recipe;
 use super::regions::Regions;
+use super::reinforcement::{Families, Reinforcement};
 use super::relaxing::Branches;
 use crate::element::shares_at;
 use crate::force::NodalForces;
 use crate::input::{InputError, finite};
 use crate::material::{self, Hooke, Hookean, Lame, Material, Plane, Strain, Substance, Viscosity};
-use crate::mesh::{CellKind, Mesh};
+use crate::mesh::Mesh;
 use crate::ode::Failure;
 use crate::sparse::{BlockMatrix, NodeMatrix};
 
@@ -296,7 +295,7 @@ impl Body {
     }
 
     /// Whether the viscous force is that of a constant matrix, and not 0.
-    fn has_natural_viscosity(&self) -> bool {
+    pub(super) fn has_natural_viscosity(&self) -> bool {
         self.viscosity == Viscosity::Natural && self.regions.are_viscous()
     }
 
@@ -319,17 +318,7 @@ impl Body {
 
     /// Whether -B v is least work with the matrix of all constant damping.
     pub(crate) fn damps_by_matrix(&self) -> bool {
-        self.has_natural_viscosity() && !self.is_simple()
-    }
-
-    /// The elastic and viscous forces that have no constant matrix.
-    pub(crate) fn elastic(&self) -> Option<Elastic> {
-        let terms = Terms {
-            elastic: self.strain != Strain::Cauchy,
-            viscous: self.viscosity == Viscosity::Objective && self.regions.are_viscous(),
-        };
-        let (elements, regions) = (self.elements.clone(), self.regions.clone());
-        (terms.elastic || terms.viscous).then_some(Elastic { elements, regions, terms })
+        self.has_natural_viscosity() && !self.is_linear_by_cells()
     }
 
     /// The forces of its fibres, if it has any.
@@ -341,23 +330,6 @@ impl Body {
     pub(crate) fn branches(&self) -> Option<Branches> {
         let (elements, regions) = (self.elements.clone(), self.regions.clone());
         self.regions.branches().next().is_some().then_some(Branches { elements, regions })
-    }
-
-    /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of K has some 7
-    /// blocks in a mesh of triangles, and 15 in one of tetrahedra, each of which adds up in its turn.
-    pub(crate) fn linear_by_cells(&self) -> Option<LinearByCells> {
-        let terms = Terms {
-            elastic: self.constant_stiffness().is_some(),
-            viscous: self.has_natural_viscosity(),
-        };
-        let (elements, regions) = (self.elements.clone(), self.regions.clone());
-        let is_linear = terms.elastic || terms.viscous;
-        (self.is_simple() && is_linear).then_some(LinearByCells { elements, regions, terms })
-    }
-
-    /// Whether linear forces are less work cell by cell.
-    fn is_simple(&self) -> bool {
-        matches!(self.mesh.kind(), CellKind::Triangle | CellKind::Tetrahedron)
     }
 
     /// Total mass (kg).

@@ -2,10 +2,13 @@
 
 use std::sync::Arc;
 
+use super::assembled::Body;
 use super::assembly::Elements;
 use super::forces::Terms;
 use super::regions::Regions;
 use crate::force::{Force, NodalForces, Reservoir, Tangents};
+use crate::material::{Strain, Viscosity};
+use crate::mesh::CellKind;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 
@@ -68,5 +71,38 @@ impl LinearByCells {
     /// Strain energy (J).
     pub(crate) fn energy(&self, u: &[f64]) -> f64 {
         if self.terms.elastic { self.elements.energy(&self.regions, u) } else { 0.0 }
+    }
+}
+
+impl Body {
+    /// The elastic and viscous forces that have no constant matrix.
+    pub(crate) fn elastic(&self) -> Option<Elastic> {
+        let terms = Terms {
+            elastic: self.strain != Strain::Cauchy,
+            viscous: self.viscosity == Viscosity::Objective && self.regions.are_viscous(),
+        };
+        let (elements, regions) = (self.elements.clone(), self.regions.clone());
+        (terms.elastic || terms.viscous).then_some(Elastic { elements, regions, terms })
+    }
+
+    /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of K has some 7
+    /// blocks in a mesh of triangles, and 15 in one of tetrahedra, each of which adds up in its turn.
+    pub(crate) fn linear_by_cells(&self) -> Option<LinearByCells> {
+        let terms = Terms {
+            elastic: self.constant_stiffness().is_some(),
+            viscous: self.has_natural_viscosity(),
+        };
+        let (elements, regions) = (self.elements.clone(), self.regions.clone());
+        let is_linear = terms.elastic || terms.viscous;
+        (self.is_linear_by_cells() && is_linear).then_some(LinearByCells {
+            elements,
+            regions,
+            terms,
+        })
+    }
+
+    /// Whether linear forces are less work cell by cell.
+    pub(super) fn is_linear_by_cells(&self) -> bool {
+        matches!(self.mesh.kind(), CellKind::Triangle | CellKind::Tetrahedron)
     }
 }

@@ -3,19 +3,15 @@
 //! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the same nodes: its
 //! gradients are those of the shape functions along it, and its frame is its direction.
 
-use std::sync::Arc;
-
 use pulp::Arch;
 
-use super::assembly::Elements;
 use super::elements::ElementsOf;
 use super::energy::Pass;
 use super::forces::ElasticPull;
 use super::tangents::ElasticSlope;
 use crate::element::StrainPoint;
-use crate::force::{Force, NodalForces, Reservoir, Tangents};
 use crate::input::InputError;
-use crate::material::{Course, Fibre, Fibres};
+use crate::material::{Course, Fibre};
 use crate::mesh::Mesh;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
@@ -116,75 +112,6 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64 {
         let (u, cells) = (u.as_chunks::<D>().0, 0..self.nodes.len());
         Arch::new().dispatch(Pass { elements: self, cells, u, law, sum: 0.0 })
-    }
-}
-
-/// The families of fibres of a body, each with its law.
-pub(super) type Families = Vec<(Box<dyn Strings>, Fibre)>;
-
-/// Those of substances in the cells of each.
-pub(super) fn families<'a>(
-    mesh: &Mesh,
-    elements: &dyn Elements,
-    substances: impl Iterator<Item = (&'a [Fibres], Vec<usize>)>,
-) -> Result<Families, InputError> {
-    let mut families = Families::new();
-    for (fibres, cells) in substances {
-        if cells.is_empty() {
-            continue;
-        }
-        for Fibres { course, young, stiffening } in fibres {
-            let law = Fibre { young: *young, stiffening: *stiffening };
-            families.push((elements.fibres(mesh, &cells, course)?, law));
-        }
-    }
-    Ok(families)
-}
-
-/// Adds what families of fibres do around the undeformed shape.
-pub(super) fn add_at_rest(
-    families: &Families,
-    dofs: usize,
-    stiffness: &mut BlockMatrix,
-    damping: &mut BlockMatrix,
-) {
-    let rest = vec![0.0; dofs];
-    families.iter().for_each(|(strings, law)| strings.add_tangents(law, &rest, stiffness, damping));
-}
-
-/// The forces of fibres.
-pub(crate) struct Reinforcement(pub(super) Arc<Families>);
-
-impl Force for Reinforcement {
-    fn add_forces(
-        &self,
-        _t: f64,
-        u: &[f64],
-        _v: &[f64],
-        forces: &mut NodalForces,
-    ) -> Result<(), Failure> {
-        let conservative = &mut forces.conservative;
-        self.0.iter().try_for_each(|(strings, law)| strings.add_forces(law, u, conservative))
-    }
-
-    fn add_tangents(
-        &self,
-        _t: f64,
-        u: &[f64],
-        _v: &[f64],
-        stiffness: &mut BlockMatrix,
-        damping: &mut BlockMatrix,
-    ) -> Tangents {
-        self.0.iter().for_each(|(strings, law)| strings.add_tangents(law, u, stiffness, damping));
-        Tangents::Added
-    }
-
-    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
-        self.0.iter().map(|(strings, law)| strings.energy(law, u)).sum()
-    }
-
-    fn reservoir(&self) -> Reservoir {
-        Reservoir::Strain
     }
 }
 

@@ -17,6 +17,7 @@ mod polynomial;
 mod recipe;
 mod recovery;
 mod regions;
+mod reinforcement;
 mod relaxing;
 mod rows;
 mod shares;

@@ -1,44 +1,47 @@
-//! Principal stretches of a point and their directions, and how a law of the stretches resists a change of strain.
+//! Principal strains of a point and their directions, and how a law of the stretches resists a change of strain.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
-
-use nalgebra::{Const, DimDiff, DimSub, Matrix2, Matrix3, OMatrix, SymmetricEigen, U1};
 
 use crate::material::response::{Elasticity, Response, axes};
 use crate::tensor::{Matrix, Real, symmetric};
 
-/// Principal stretches of a point of a cell of dimension `M`.
+/// How a point of a cell of dimension `M` is strained, in principal directions.
 pub(crate) struct Principal<T, const M: usize> {
-    /// Logarithms of the stretches: along the cell and across it.
-    pub(super) logarithms: [T; 3],
+    /// Principal values of 2E: along the cell and across it.
+    pub(super) twice: [T; 3],
     /// Unit vectors along the cell.
     directions: [[T; M]; M],
 }
 
 impl<T: Real, const M: usize> Principal<T, M> {
-    /// From the logarithms and, one after the other, the components of the directions.
+    /// Those of a point with `twice` the strain along the cell; `across` tells 2E across it by that along it.
     #[inline(always)]
-    pub(super) fn new(found: [T; 12]) -> Self {
-        let [x, y, z, ..] = found;
-        let mut directions = [[x; M]; M];
+    pub(super) fn new(twice: Matrix<T, M, M>, across: impl Fn([f64; 3]) -> f64) -> Self {
+        let (along, directions) = principal_of(twice);
+        let zero = twice[0][0].constant(0.0);
+        let mut values = [zero; 3];
         for i in 0..M {
-            for j in 0..M {
-                directions[i][j] = found[3 + M * i + j];
+            values[i] = along[i];
+        }
+        if M < 3 {
+            let [of_all] = T::each(values, |values| [across(values)]);
+            for i in M..3 {
+                values[i] = of_all;
             }
         }
-        Self { logarithms: [x, y, z], directions }
+        Self { twice: values, directions }
     }
 
-    /// What `of` makes of the logarithms and of `pull`, if there is one.
+    /// What `of` makes of the principal values and of `pull`, if there is one.
     #[inline(always)]
     pub(super) fn each_with<const O: usize>(
         &self,
         pull: Option<T>,
         of: impl Fn([f64; 3], Option<f64>) -> [f64; O],
     ) -> [T; O] {
-        let [x, y, z] = self.logarithms;
+        let [x, y, z] = self.twice;
         match pull {
-            None => T::each([x, y, z], |x| of(x, None)),
+            None => T::each([x, y, z], |twice| of(twice, None)),
             Some(pull) => T::each([x, y, z, pull], |[x, y, z, pull]| of([x, y, z], Some(pull))),
         }
     }
@@ -124,42 +127,92 @@ impl Slopes {
     }
 }
 
-/// Logarithms of the principal stretches along a cell of dimension `M` with these numbers of 2 E, column by column, and the unit
-/// vectors of their directions; NaN where there are none.
-#[inline(never)]
-pub(super) fn directions_of<const M: usize>(twice: [f64; 9]) -> ([f64; 3], [f64; 9]) {
-    let mut x = [0.0; 3];
-    let mut directions = [0.0; 9];
-    directions[0] = 1.0;
-    match M {
-        1 => x[0] = twice[0],
-        2 => eigen(Matrix2::from_column_slice(&twice[..4]), &mut x, &mut directions),
-        _ => eigen(Matrix3::from_column_slice(&twice), &mut x, &mut directions),
+/// Turns of a symmetric matrix after which it is diagonal to the last digit: six times about each axis (Jacobi's method, whose digits
+/// double with each).
+const ROUNDS: usize = 6;
+
+/// Principal values and directions of a symmetric matrix, by Jacobi's method: the same work for all matrices, so that several are
+/// computed at once.
+#[inline(always)]
+fn principal_of<T: Real, const M: usize>(mut a: Matrix<T, M, M>) -> ([T; M], Matrix<T, M, M>) {
+    let zero = a[0][0].constant(0.0);
+    let one = a[0][0].constant(1.0);
+    let mut n = [[zero; M]; M];
+    for i in 0..M {
+        n[i][i] = one;
     }
-    for x in &mut x[..M] {
-        *x = 0.5 * x.ln_1p();
+    for _ in 0..ROUNDS {
+        for p in 0..M {
+            for q in p + 1..M {
+                // the tangent t of the smaller angle that makes a_pq vanish; 0 if it has
+                let apart = a[q][q] - a[p][p];
+                let twice = a[p][q] * 2.0;
+                let sign = apart.sign();
+                let whole = apart * sign + (apart * apart + twice * twice).sqrt();
+                let t = twice * sign / (whole + f64::MIN_POSITIVE);
+                let cos = one / (t * t + 1.0).sqrt();
+                let sin = t * cos;
+                a[p][p] = a[p][p] - t * a[p][q];
+                a[q][q] = a[q][q] + t * a[p][q];
+                a[p][q] = zero;
+                a[q][p] = zero;
+                for r in 0..M {
+                    if r != p && r != q {
+                        let (left, right) = (a[p][r], a[q][r]);
+                        a[p][r] = cos * left - sin * right;
+                        a[q][r] = sin * left + cos * right;
+                        a[r][p] = a[p][r];
+                        a[r][q] = a[q][r];
+                    }
+                    let (left, right) = (n[p][r], n[q][r]);
+                    n[p][r] = cos * left - sin * right;
+                    n[q][r] = sin * left + cos * right;
+                }
+            }
+        }
     }
-    (x, directions)
+    let mut values = [zero; M];
+    for i in 0..M {
+        values[i] = a[i][i];
+    }
+    (values, n)
 }
 
-fn eigen<const M: usize>(
-    matrix: OMatrix<f64, Const<M>, Const<M>>,
-    values: &mut [f64; 3],
-    vectors: &mut [f64; 9],
-) where
-    Const<M>: DimSub<U1> + nalgebra::DimName,
-    nalgebra::DefaultAllocator: nalgebra::allocator::Allocator<Const<M>, Const<M>>
-        + nalgebra::allocator::Allocator<Const<M>>
-        + nalgebra::allocator::Allocator<DimDiff<Const<M>, U1>>,
-    OMatrix<f64, Const<M>, Const<M>>: Copy,
-{
-    /// QR steps: a few a direction are enough.
-    const MOST: usize = 100;
-    match SymmetricEigen::try_new(matrix, f64::EPSILON, MOST) {
-        Some(found) => {
-            values[..M].copy_from_slice(found.eigenvalues.as_slice());
-            vectors[..M * M].copy_from_slice(found.eigenvectors.as_slice());
+#[cfg(test)]
+mod tests {
+    use nalgebra::{Matrix3, SymmetricEigen};
+
+    use super::*;
+
+    /// Against nalgebra's, with values far apart, alike, in pairs, and of any size: to the last digits of the largest one.
+    #[test]
+    fn principal_values_and_directions() {
+        let turn = nalgebra::Rotation3::new(nalgebra::Vector3::new(0.7, -1.1, 0.9));
+        let turn = turn.matrix();
+        for values in [
+            [1.0, 2.0, 3.0],
+            [2.0, 2.0, 2.0],
+            [1.0, 1.0, 5.0],
+            [1.0, 1.0 + 1e-9, -0.5],
+            [1e-8, -2e-8, 1e-9],
+            [1e8, 1.0, 1e-8],
+            [0.0; 3],
+        ] {
+            let matrix = turn * Matrix3::from_diagonal(&values.into()) * turn.transpose();
+            let matrix = (matrix + matrix.transpose()) * 0.5;
+            let size = matrix.norm();
+            let (mut found, n) = principal_of(<[[f64; 3]; 3]>::from(matrix));
+            for (value, n) in found.iter().zip(&n) {
+                let n = nalgebra::Vector3::from(*n);
+                assert!((n.norm() - 1.0).abs() < 1e-15 * 8.0, "{values:?}: {}", n.norm());
+                assert!((matrix * n - n * *value).norm() <= 4e-16 * 8.0 * size, "{values:?}");
+            }
+            let mut expected = SymmetricEigen::new(matrix).eigenvalues;
+            found.sort_by(f64::total_cmp);
+            expected.as_mut_slice().sort_by(f64::total_cmp);
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!((found - expected).abs() <= 4e-16 * 8.0 * size, "{values:?}");
+            }
         }
-        None => values[..M].fill(f64::NAN),
     }
 }

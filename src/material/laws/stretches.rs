@@ -2,14 +2,14 @@
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
-use super::principal::{Principal, Slopes, directions_of};
+use super::principal::{Principal, Slopes};
 use super::volume::{less_exponential, swollen};
 use crate::material::hooke::{Lame, Plane};
 use crate::material::law::{Blocks, ElasticLaw};
 use crate::material::response::Tangent;
 use crate::tensor::{Matrix, Real};
 
-/// A law of the logarithms x of the principal stretches l = exp(x), those along the cell first.
+/// A law of the principal stretches l, those along the cell first; x are their logarithms.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ByStretches {
     pub(super) kind: Kind,
@@ -39,10 +39,11 @@ impl ByStretches {
 }
 
 impl Kind {
-    /// W_shape (J/m^3)
-    fn energy_of_shape(self, x: [f64; 3]) -> f64 {
+    /// W_shape (J/m^3) at the principal values of 2E, l_i^2 - 1.
+    fn energy_of_shape(self, twice: [f64; 3]) -> f64 {
         match self {
             Self::Ogden { terms, .. } => {
+                let x = twice.map(logarithm);
                 let mean = (x[0] + x[1] + x[2]) / 3.0;
                 let of_term = |[modulus, power]: [f64; 2]| {
                     // the exponents add up to 0
@@ -52,25 +53,29 @@ impl Kind {
                 terms.map(of_term).iter().sum()
             }
             Self::Corotated(Lame { mu, .. }) => {
-                mu * x.map(|x| x.exp_m1() * x.exp_m1()).iter().sum::<f64>()
+                let squares = twice.map(|twice| longer(twice) * longer(twice));
+                mu * squares.iter().sum::<f64>()
             }
         }
     }
 
     /// g
-    fn dilatation(self, x: [f64; 3]) -> f64 {
+    fn dilatation(self, twice: [f64; 3]) -> f64 {
         match self {
-            Self::Ogden { .. } => (x[0] + x[1] + x[2]).exp_m1(),
-            Self::Corotated(_) => x.map(f64::exp_m1).iter().sum(),
+            Self::Ogden { .. } => twice.map(logarithm).iter().sum::<f64>().exp_m1(),
+            Self::Corotated(_) => twice.map(longer).iter().sum(),
         }
     }
 
     /// dg/dE_i
-    fn swelling(self, x: [f64; 3]) -> [f64; 3] {
-        match self {
-            Self::Ogden { .. } => x.map(|own| (x[0] + x[1] + x[2] - 2.0 * own).exp()),
-            Self::Corotated(_) => x.map(|x| (-x).exp()),
-        }
+    fn swelling(self, twice: [f64; 3]) -> [f64; 3] {
+        let stretch = match self {
+            Self::Ogden { .. } => {
+                return twice.map(|own| (self.dilatation(twice) + 1.0) / (own + 1.0));
+            }
+            Self::Corotated(_) => twice.map(|twice| longer(twice) + 1.0),
+        };
+        stretch.map(|stretch| 1.0 / stretch)
     }
 
     /// U (J/m^3), U' and U'' at g.
@@ -85,67 +90,91 @@ impl Kind {
     }
 
     /// U' and U'', which a `pull` leaves out.
-    fn volume(self, x: [f64; 3], pull: Option<f64>) -> [f64; 2] {
+    fn volume(self, twice: [f64; 3], pull: Option<f64>) -> [f64; 2] {
         match pull {
             Some(pull) => [pull, 0.0],
             None => {
-                let [_, pull, stiff] = self.of_volume(self.dilatation(x));
+                let [_, pull, stiff] = self.of_volume(self.dilatation(twice));
                 [pull, stiff]
             }
         }
     }
 
     /// S_i (Pa)
-    fn stress(self, x: [f64; 3], pull: Option<f64>) -> [f64; 3] {
-        let [pull, _] = self.volume(x, pull);
+    #[inline(never)]
+    fn stress(self, twice: [f64; 3], pull: Option<f64>) -> [f64; 3] {
         match self {
-            Self::Ogden { terms, .. } => {
-                let stretch = (x[0] + x[1] + x[2]).exp();
-                let mut kirchhoff = [stretch * pull; 3];
+            Self::Ogden { terms, bulk } => {
+                let x = twice.map(logarithm);
+                let dilatation = (x[0] + x[1] + x[2]).exp_m1();
+                let pull = match pull {
+                    Some(pull) => (dilatation + 1.0) * pull,
+                    None => 0.5 * bulk * dilatation * (dilatation + 2.0),
+                };
+                let mut kirchhoff = [pull; 3];
                 for [modulus, power] in terms.into_iter().filter(|[modulus, _]| *modulus != 0.0) {
                     let (more, mean) = more_of(power, x);
                     (0..3).for_each(|i| kirchhoff[i] += modulus * (more[i] - mean));
                 }
-                std::array::from_fn(|i| kirchhoff[i] * (-2.0 * x[i]).exp())
+                std::array::from_fn(|i| kirchhoff[i] / (twice[i] + 1.0))
             }
-            // 2 mu (1 - 1 / l_i), which small strains do not round off
+            // S_i l_i = U' + 2 mu (l_i - 1)
             Self::Corotated(Lame { mu, .. }) => {
-                x.map(|x| pull * (-x).exp() - 2.0 * mu * (-x).exp_m1())
+                let [pull, _] = self.volume(twice, pull);
+                twice.map(longer).map(|longer| (pull + 2.0 * mu * longer) / (longer + 1.0))
             }
         }
     }
 
     /// S_i and its derivatives by E_j; a `pull` stays as it is.
-    fn slopes(self, x: [f64; 3], pull: Option<f64>) -> Slopes {
-        let stress = self.stress(x, pull);
-        let volume = self.volume(x, pull);
+    #[inline(never)]
+    fn slopes(self, twice: [f64; 3], pull: Option<f64>) -> Slopes {
+        let stress = self.stress(twice, pull);
+        let volume = self.volume(twice, pull);
         match self {
-            Self::Ogden { terms, .. } => ogden(terms, x, stress, volume),
-            Self::Corotated(Lame { mu, .. }) => corotated(mu, x, stress, volume),
+            Self::Ogden { terms, .. } => ogden(terms, twice, stress, volume),
+            Self::Corotated(Lame { mu, .. }) => corotated(mu, twice, stress, volume),
         }
     }
 
-    /// The logarithm of the stretch across a cell where there is no stress, given those along it, by Newton's method; NaN if there
-    /// is none.
+    /// 2E across a cell of dimension `M` where there is no stress, given that along it; NaN if there is none. With Ogden's law by
+    /// Newton's method in the logarithm.
+    #[inline(never)]
     fn free_across<const M: usize>(self, along: [f64; 3]) -> f64 {
+        if let Self::Corotated(Lame { lambda, mu }) = self {
+            // 2 mu (l - 1) + lambda (sum of all l - 1) = 0
+            let sum: f64 = along[..M].iter().map(|twice| longer(*twice)).sum();
+            let across = -lambda * sum / (2.0 * mu + (3 - M) as f64 * lambda);
+            return if across > -1.0 { across * (across + 2.0) } else { f64::NAN };
+        }
         /// More than strains of any size take.
         const MOST: usize = 100;
-        let mut x = along;
+        let mut twice = along;
         let m = (3 - M) as f64;
-        let mut across = -along[..M].iter().sum::<f64>() / m;
+        let mut across = -along[..M].iter().map(|twice| logarithm(*twice)).sum::<f64>() / m;
         for _ in 0..MOST {
-            x[M..].fill(across);
-            let Slopes { stress, normal, .. } = self.slopes(x, None);
+            twice[M..].fill((2.0 * across).exp_m1());
+            let Slopes { stress, normal, .. } = self.slopes(twice, None);
             let slope: f64 = normal[2][M..].iter().sum();
             // dE = exp(2 x) dx
-            let change = stress[2] / (slope * (2.0 * across).exp());
+            let change = stress[2] / (slope * (twice[2] + 1.0));
             across -= change.clamp(-1.0, 1.0);
             if change.abs() < 1e-15 {
-                return across;
+                return (2.0 * across).exp_m1();
             }
         }
         f64::NAN
     }
+}
+
+/// ln l of l^2 - 1
+fn logarithm(twice: f64) -> f64 {
+    0.5 * twice.ln_1p()
+}
+
+/// l - 1 of l^2 - 1
+fn longer(twice: f64) -> f64 {
+    twice / ((twice + 1.0).sqrt() + 1.0)
 }
 
 /// e_i - 1 of e_i = (l_i / J^(1/3))^power, and their mean.
@@ -156,9 +185,15 @@ fn more_of(power: f64, x: [f64; 3]) -> ([f64; 3], f64) {
 }
 
 /// Ogden's law: S_i = t_i / l_i^2 with t_i = sum mu_p (e_i - mean of e) + J U'.
-fn ogden(terms: [[f64; 2]; 3], x: [f64; 3], stress: [f64; 3], [pull, stiff]: [f64; 2]) -> Slopes {
+fn ogden(
+    terms: [[f64; 2]; 3],
+    twice: [f64; 3],
+    stress: [f64; 3],
+    [pull, stiff]: [f64; 2],
+) -> Slopes {
+    let x = twice.map(logarithm);
     let stretch = (x[0] + x[1] + x[2]).exp();
-    let squares = x.map(|x| (2.0 * x).exp());
+    let squares = twice.map(|twice| twice + 1.0);
     // dt_i/dx_j, and (t_j - t_k) / (l_j^2 - l_k^2)
     let mut by = [[stretch * (pull + stretch * stiff); 3]; 3];
     let mut apart = [0.0; 3];
@@ -200,8 +235,8 @@ fn growth(a: f64, d: f64) -> f64 {
 }
 
 /// Hooke's law of the stretches: S_i = 2 mu + c / l_i with c = U' - 2 mu.
-fn corotated(mu: f64, x: [f64; 3], stress: [f64; 3], [pull, stiff]: [f64; 2]) -> Slopes {
-    let inverse = x.map(|x| (-x).exp());
+fn corotated(mu: f64, twice: [f64; 3], stress: [f64; 3], [pull, stiff]: [f64; 2]) -> Slopes {
+    let inverse = twice.map(|twice| 1.0 / (longer(twice) + 1.0));
     let c = pull - 2.0 * mu;
     let mut slopes = Slopes { stress, ..Slopes::default() };
     for i in 0..3 {
@@ -220,48 +255,34 @@ impl ElasticLaw for ByStretches {
 
     #[inline(always)]
     fn point<T: Real, const M: usize>(&self, twice: Matrix<T, M, M>) -> Principal<T, M> {
-        let mut numbers = [twice[0][0]; 9];
-        for j in 0..M {
-            for k in 0..M {
-                numbers[M * j + k] = twice[j][k];
-            }
-        }
-        let found = T::each(numbers, |numbers| {
-            let (mut x, directions) = directions_of::<M>(numbers);
-            let across = if self.is_free::<M>() { self.kind.free_across::<M>(x) } else { 0.0 };
-            x[M..].fill(across);
-            let mut found = [0.0; 12];
-            found[..3].copy_from_slice(&x);
-            found[3..].copy_from_slice(&directions);
-            found
-        });
-        Principal::new(found)
+        let is_free = self.is_free::<M>();
+        Principal::new(twice, |along| if is_free { self.kind.free_across::<M>(along) } else { 0.0 })
     }
 
     #[inline(always)]
     fn energy<T: Real, const M: usize>(&self, at: &Principal<T, M>) -> T {
         let kind = self.kind;
-        let [energy] = T::each(at.logarithms, |x| {
-            [kind.energy_of_shape(x) + kind.of_volume(kind.dilatation(x))[0]]
+        let [energy] = T::each(at.twice, |twice| {
+            [kind.energy_of_shape(twice) + kind.of_volume(kind.dilatation(twice))[0]]
         });
         energy
     }
 
     #[inline(always)]
     fn energy_of_shape<T: Real, const M: usize>(&self, at: &Principal<T, M>) -> T {
-        let [energy] = T::each(at.logarithms, |x| [self.kind.energy_of_shape(x)]);
+        let [energy] = T::each(at.twice, |twice| [self.kind.energy_of_shape(twice)]);
         energy
     }
 
     #[inline(always)]
     fn dilatation<T: Real, const M: usize>(&self, at: &Principal<T, M>) -> T {
-        let [dilatation] = T::each(at.logarithms, |x| [self.kind.dilatation(x)]);
+        let [dilatation] = T::each(at.twice, |twice| [self.kind.dilatation(twice)]);
         dilatation
     }
 
     #[inline(always)]
     fn swelling<T: Real, const M: usize>(&self, at: &Principal<T, M>) -> Matrix<T, M, M> {
-        at.tensor(&T::each(at.logarithms, |x| self.kind.swelling(x)))
+        at.tensor(&T::each(at.twice, |twice| self.kind.swelling(twice)))
     }
 
     #[inline(always)]
@@ -276,7 +297,7 @@ impl ElasticLaw for ByStretches {
         pull: Option<T>,
         weight: T,
     ) -> Matrix<T, M, M> {
-        let mut stress = at.each_with(pull, |x, pull| self.kind.stress(x, pull));
+        let mut stress = at.each_with(pull, |twice, pull| self.kind.stress(twice, pull));
         for i in 0..3 {
             stress[i] = stress[i] * weight;
         }
@@ -293,8 +314,8 @@ impl ElasticLaw for ByStretches {
         weight: T,
     ) -> impl Blocks<T, D> {
         let is_free = self.is_free::<M>();
-        let numbers = at.each_with(pull, |x, pull| {
-            let mut slopes = self.kind.slopes(x, pull);
+        let numbers = at.each_with(pull, |twice, pull| {
+            let mut slopes = self.kind.slopes(twice, pull);
             if is_free {
                 slopes.free_across::<M>();
             }
@@ -305,18 +326,19 @@ impl ElasticLaw for ByStretches {
 
     #[inline(always)]
     fn across<T: Real, const M: usize>(&self, at: &Principal<T, M>, pull: Option<T>) -> [T; 2] {
-        let zero = at.logarithms[2].constant(0.0);
+        let zero = at.twice[2].constant(0.0);
         if M == 3 || self.is_free::<M>() {
-            let [strain] = T::each([at.logarithms[2]], |[x]| [0.5 * (2.0 * x).exp_m1()]);
-            return [strain, zero];
+            return [at.twice[2] * 0.5, zero];
         }
-        [zero, at.each_with(pull, |x, pull| self.kind.stress(x, pull))[2]]
+        [zero, at.each_with(pull, |twice, pull| self.kind.stress(twice, pull))[2]]
     }
 
     #[inline(always)]
     fn thickness<T: Real, const M: usize>(&self, at: &Principal<T, M>) -> T {
-        let [thickness] = T::each([at.logarithms[2]], |[x]| [((3 - M) as f64 * x).exp()]);
-        thickness
+        match M {
+            1 => at.twice[2] + 1.0,
+            _ => (at.twice[2] + 1.0).sqrt(),
+        }
     }
 
     #[inline(always)]
