@@ -141,11 +141,6 @@ impl BodyBuilder {
 
         let pattern = Arc::new(NodePattern::new(mesh.node_count(), mesh.cells()));
         let mean = recipe.dilatation.is_mean(mesh.kind(), mesh.dimension(), plane)?;
-        if mean && regions.branches().next().is_some() {
-            let mend = "Maxwell branches resist a change of volume at each point of a cell, and the cell would lock by them: \
-                        leave one of the two out";
-            return Err(InputError::new("dilatation", "mean", mend));
-        }
         let elements = elements(&mesh, section, mean, &pattern)?;
         let mut inertia = NodeMatrix::zeros(&pattern);
         let mut stiffness = BlockMatrix::zeros(&pattern, mesh.dimension());

@@ -11,7 +11,7 @@ use crate::mesh::CellKind;
 /// the cell it is one condition a cell. ("Mean dilatation", B-bar of linear elasticity, Q1-P0: J. C. Nagtegaal, D. M. Parks, J. R.
 /// Rice, Computer Methods in Applied Mechanics and Engineering 4 (1974) 153-177; J. C. Simo, R. L. Taylor, K. S. Pister, ibid. 51
 /// (1985) 177-208.) The law's energy U of the volume is taken at the mean of its measure: of J with the laws of rubber, of tr E
-/// with linear elasticity and St. Venant-Kirchhoff material. Energy is conserved, and tangents are symmetric, as without it.
+/// with linear elasticity, St. Venant-Kirchhoff material and Maxwell branches. Energy is conserved, and tangents are symmetric, as without it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Dilatation {
     /// At each point of a cell.

@@ -136,7 +136,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 }
 
 /// Adds the blocks of all pairs of nodes of a cell to a matrix.
-fn add_blocks<const N: usize, const D: usize>(
+pub(super) fn add_blocks<const N: usize, const D: usize>(
     entries: &[[u32; N]; N],
     rows: &mut Rows<'_, D>,
     blocks: &impl Blocks<f64, D>,

@@ -1,7 +1,7 @@
 //! Maxwell branches: springs that relax, beside the elasticity of a substance.
 
 use super::deformation::Deformation;
-use super::hooke::{Hooke, Spread};
+use super::hooke::{Hooke, Lame, Spread};
 use super::law::{Block, Blocks};
 use super::response::axes;
 use super::{Material, Plane, Strain};
@@ -49,6 +49,17 @@ pub(crate) struct Strained<const M: usize, const D: usize> {
     shape: Deformation<f64, M, D>,
 }
 
+/// A strain by its components; 0 where cells have none.
+pub(crate) type Components = [f64; components(3)];
+
+/// A strain of the spring of a branch.
+#[derive(Clone, Copy)]
+pub(crate) struct Stretch {
+    pub(crate) strain: Components,
+    /// What resists a change of volume takes this trace: its own, or the mean of that over the cell.
+    pub(crate) trace: f64,
+}
+
 impl Relaxing {
     /// That of cells of `dimension`.
     pub(crate) fn new(
@@ -83,50 +94,71 @@ impl Relaxing {
         }
     }
 
+    /// What it resists a change of volume with (Pa).
+    pub(crate) fn lambda(&self) -> f64 {
+        self.hooke.lame.lambda
+    }
+
     /// 2 W (J/m^3) of the strain E - G.
-    pub(crate) fn twice_energy<const M: usize>(&self, apart: &[f64]) -> f64 {
-        2.0 * self.hooke.energy(&doubled::<M>(apart))
+    pub(crate) fn twice_energy<const M: usize>(&self, apart: &Stretch) -> f64 {
+        let of_volume = apart.trace * (0.5 * self.lambda()) * trace::<M>(&apart.strain);
+        2.0 * (of_volume + self.hooke.of_shear().energy(&doubled::<M>(&apart.strain)))
+    }
+
+    /// Second Piola stress (Pa) of the strain E - G, times `weight`.
+    fn second<const M: usize>(&self, apart: &Stretch, weight: f64) -> Matrix<f64, M, M> {
+        let pull = self.lambda() * apart.trace;
+        self.hooke.stress(&doubled::<M>(&apart.strain), Some(pull), weight)
     }
 
     /// First Piola stress (Pa) of the strain E - G, times `weight`.
     pub(crate) fn stress<const M: usize, const D: usize>(
         &self,
         at: &Strained<M, D>,
-        apart: &[f64],
+        apart: &Stretch,
         weight: f64,
     ) -> Matrix<f64, D, M> {
-        product(&at.shape.gradient(), &self.hooke.stress(&doubled::<M>(apart), None, weight))
+        product(&at.shape.gradient(), &self.second(apart, weight))
     }
 
     /// The stiffness between nodes, as of [`ElasticLaw::tangent`](super::ElasticLaw::tangent), times `weight`: `part` of
-    /// that of the spring, and what the turning of the stress of E - G adds.
+    /// that of the spring with `lambda` (Pa) for its own, and what the turning of the stress of E - G adds.
     pub(crate) fn tangent<'a, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Strained<M, D>,
-        apart: &[f64],
-        part: f64,
+        apart: &Stretch,
+        (part, lambda): (f64, f64),
         gradients: &'a [[f64; M]; N],
         weight: f64,
     ) -> Tangent<'a, N, M, D> {
-        let spread = Spread::new(&at.shape.gradient(), gradients, self.hooke.lame, part * weight);
+        let lame = Lame { lambda, ..self.hooke.lame };
+        let spread = Spread::new(&at.shape.gradient(), gradients, lame, part * weight);
         let turning = match self.strain {
             Strain::Cauchy => 0.0,
             Strain::Green => weight,
         };
-        let pulls = product(&self.hooke.stress(&doubled::<M>(apart), None, turning), gradients);
-        Tangent { spread, pulls }
+        Tangent { spread, pulls: product(&self.second(apart, turning), gradients) }
     }
 }
 
 impl<const M: usize, const D: usize> Strained<M, D> {
-    /// Writes E, component by component.
-    pub(crate) fn strain(&self, strain: &mut [f64]) {
-        halved(&self.twice, strain);
+    /// E
+    pub(crate) fn strain(&self) -> Components {
+        halved(&self.twice)
     }
 
-    /// Writes the change of E with that of the displacements, whose gradient is `h`.
-    pub(crate) fn change(&self, h: &Matrix<f64, D, M>, strain: &mut [f64]) {
-        halved(&self.shape.twice_green_rate(h), strain);
+    /// How E changes with the displacements, whose change has the gradient `h`.
+    pub(crate) fn change(&self, h: &Matrix<f64, D, M>) -> Components {
+        halved(&self.shape.twice_green_rate(h))
+    }
+
+    /// How the trace of E follows the nodes, times `weight`.
+    pub(crate) fn swelling<const N: usize>(
+        &self,
+        gradients: &[[f64; M]; N],
+        weight: f64,
+    ) -> [[f64; D]; N] {
+        times(product(&self.shape.gradient(), gradients), weight)
     }
 }
 
@@ -135,16 +167,22 @@ pub(crate) const fn components(dimension: usize) -> usize {
     dimension * (dimension + 1) / 2
 }
 
-fn halved<const M: usize>(twice: &Matrix<f64, M, M>, strain: &mut [f64]) {
-    for (v, component) in strain.iter_mut().enumerate() {
+pub(crate) fn trace<const M: usize>(strain: &Components) -> f64 {
+    strain[..M].iter().sum()
+}
+
+fn halved<const M: usize>(twice: &Matrix<f64, M, M>) -> Components {
+    let mut strain = Components::default();
+    for (v, component) in strain[..components(M)].iter_mut().enumerate() {
         let (j, k) = axes::<M>(v);
         *component = 0.5 * twice[j][k];
     }
+    strain
 }
 
-fn doubled<const M: usize>(strain: &[f64]) -> Matrix<f64, M, M> {
+fn doubled<const M: usize>(strain: &Components) -> Matrix<f64, M, M> {
     let mut twice = [[0.0; M]; M];
-    for (v, component) in strain.iter().enumerate() {
+    for (v, component) in strain[..components(M)].iter().enumerate() {
         let (j, k) = axes::<M>(v);
         twice[j][k] = 2.0 * component;
         twice[k][j] = twice[j][k];

@@ -10,7 +10,7 @@ mod response;
 mod substance;
 
 pub use branch::MaxwellBranch;
-pub(crate) use branch::{Relaxing, components};
+pub(crate) use branch::{Components, Relaxing, Strained, Stretch, components, trace};
 pub(crate) use deformation::Deformation;
 pub use fibres::{Course, Fibres};
 pub(crate) use hooke::Hooke;
