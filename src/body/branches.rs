@@ -2,11 +2,12 @@
 //!
 //! A branch has a strain G at each strain point of a cell, its components one after the other: those of the branches of a point, of
 //! the points of a cell, of the cells. Nothing couples those of two points but the displacements, so that the Newton system
-//! is solved for them point by point: with part = 1 / (1 + gamma/tau) and the change B xu of the strain,
+//! is solved for them point by point: with P = 1 / (1 + gamma/tau), or what a flow above the yield stress makes of it, and the
+//! change B xu of the strain,
 //!
 //! ```text
-//! xG = part rG + (1 - part) B xu
-//! (... + gamma^2 sum part B^T C B) xv = ... + gamma sum part B^T C rG
+//! xG = P rG + (I - P) B xu
+//! (... + gamma^2 sum B^T C P B) xv = ... + gamma sum B^T C P rG
 //! ```
 //!
 //! With a mean dilatation the stress at a point takes the mean over the cell of the trace of E - G, which no other equation does.
@@ -16,7 +17,7 @@ use super::forces::{collect, relative};
 use super::regions::Regions;
 use super::tangents::add_blocks;
 use crate::element::StrainPoint;
-use crate::material::{Block, Blocks, Components, Relaxing, Strained, Stretch, components, trace};
+use crate::material::{Block, Blocks, Components, Relaxing, Step, Strained, Stretch, trace};
 use crate::sparse::{BlockMatrix, Rows};
 use crate::tensor::Matrix;
 
@@ -50,10 +51,19 @@ pub(super) trait Branched {
         regions: &Regions,
         gamma: f64,
         at: [&[f64]; 2],
+        residuals: &[f64],
         right: &mut [f64],
     );
 
-    fn solve_branches(&self, regions: &Regions, gamma: f64, at: [&[f64]; 3], x: &mut [f64]) -> f64;
+    fn solve_branches(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        at: [&[f64]; 2],
+        rates: &[f64],
+        xu: &[f64],
+        x: &mut [f64],
+    ) -> f64;
 }
 
 /// A branch at a point of a cell.
@@ -82,12 +92,18 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
     /// Its own of the internal strains, or of their rates or residuals.
     fn own(&self, internal: &[f64]) -> Components {
         let mut own = Components::default();
-        own.iter_mut().zip(&internal[self.first..][..components(M)]).for_each(|(g, all)| *g = *all);
+        let all = &internal[self.first..][..self.branch.components()];
+        own[..all.len()].copy_from_slice(all);
         own
     }
 
     fn own_mut<'i>(&self, internal: &'i mut [f64]) -> &'i mut [f64] {
-        &mut internal[self.first..][..components(M)]
+        &mut internal[self.first..][..self.branch.components()]
+    }
+
+    /// What passes to E - G in a step of the parameter `gamma`.
+    fn step(&self, gamma: f64, internal: &[f64]) -> Step {
+        self.branch.step::<M>(gamma, &self.apart(internal))
     }
 
     /// E - G
@@ -116,9 +132,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 continue;
             }
             let x = relative(nodes, u);
-            let own = |point: usize, branch: usize| {
-                of_cells + (point * branches.len() + branch) * components(M)
-            };
+            let of_point =
+                |count: usize| branches[..count].iter().map(Relaxing::components).sum::<usize>();
+            let all = of_point(branches.len());
+            let own = |point: usize, branch: usize| of_cells + point * all + of_point(branch);
             // a mean is that of one branch
             let together = if self.mean_dilatation { 1 } else { branches.len() };
             for start in (0..branches.len()).step_by(together) {
@@ -135,17 +152,19 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                     sums.map(|sum| sum / volume)
                 });
                 for (q, point) in self.points(cell).enumerate() {
-                    for k in start..start + together {
-                        let site = Site::new(&branches[k], &point, &x, cell, own(q, k));
+                    let mut first = own(q, start);
+                    for branch in &branches[start..start + together] {
+                        let site = Site::new(branch, &point, &x, cell, first);
                         let strains = strains(&site);
                         let traces =
                             mean.unwrap_or_else(|| strains.map(|strain| trace::<M>(&strain)));
                         let stretch = |k: usize| Stretch { strain: strains[k], trace: traces[k] };
                         work(&site, std::array::from_fn(stretch));
+                        first += branch.components();
                     }
                 }
             }
-            of_cells += Q * branches.len() * components(M);
+            of_cells += Q * all;
         }
     }
 
@@ -192,7 +211,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 }
                 (volume, points) = (volume + point.volume, points + 1);
                 if points == Q {
-                    let share = branch.part(gamma) * branch.lambda() / volume;
+                    // what flows keeps its volume
+                    let part = branch.step::<M>(gamma, &Components::default()).part;
+                    let share = part * branch.lambda() / volume;
                     add_blocks(&self.entries[*cell], stiffness, &OfMean { swelling, share });
                     (swelling, volume, points) = ([[0.0; D]; N], 0.0, 0);
                 }
@@ -218,14 +239,15 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
     for ElementsOf<N, M, D, Q>
 {
     fn internal_strains(&self, regions: &Regions) -> usize {
-        let of_cell = |cell| Q * components(M) * regions.of(cell).branches.len();
-        (0..self.nodes.len()).map(of_cell).sum()
+        let of_point =
+            |cell| -> usize { regions.of(cell).branches.iter().map(Relaxing::components).sum() };
+        (0..self.nodes.len()).map(|cell| Q * of_point(cell)).sum()
     }
 
     fn relax(&self, regions: &Regions, u: &[f64], internal: &mut [f64]) {
         let strain = |site: &Site<'_, N, M, D>| [site.at.strain()];
         self.visit(regions, u, strain, |site, [Stretch { strain, .. }]| {
-            site.own_mut(internal).copy_from_slice(&strain[..components(M)]);
+            site.own_mut(internal).iter_mut().zip(strain).for_each(|(g, e)| *g = e);
         });
     }
 
@@ -242,9 +264,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         self.visit(regions, u, apart, |site, [apart]| {
             let (branch, volume) = (site.branch, site.point.volume);
             self.pull(site, &branch.stress(&site.at, &apart, volume), -1.0, forces);
-            power += volume * branch.twice_energy::<M>(&apart) / branch.time;
-            let rates = site.own_mut(rates).iter_mut();
-            rates.zip(apart.strain).for_each(|(rate, e)| *rate = e / branch.time);
+            power += volume * branch.loss::<M>(&apart) / branch.time;
+            let own = branch.rate::<M>(&apart.strain);
+            site.own_mut(rates).iter_mut().zip(own).for_each(|(rate, own)| *rate = own);
         });
         power
     }
@@ -272,10 +294,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         };
         self.visit(regions, u, apart, |site, [apart]| {
             let Site { branch, point, at, cell, .. } = site;
-            let part = branch.part(gamma);
+            let step = branch.step::<M>(gamma, &apart.strain);
             let lambda = if self.mean_dilatation { 0.0 } else { branch.lambda() };
             let tangent =
-                branch.tangent(at, &apart, (part, lambda), &point.gradients, point.volume);
+                branch.tangent(at, &apart, (&step, lambda), &point.gradients, point.volume);
             add_blocks(&self.entries[*cell], &mut stiffness, &tangent);
         });
         if self.mean_dilatation {
@@ -287,13 +309,23 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         &self,
         regions: &Regions,
         gamma: f64,
-        [u, residuals]: [&[f64]; 2],
+        [u, internal]: [&[f64]; 2],
+        residuals: &[f64],
         right: &mut [f64],
     ) {
-        let residual = |site: &Site<'_, N, M, D>| [site.own(residuals)];
-        self.visit(regions, u, residual, |site, [residual]| {
-            let stress = site.branch.stress(&site.at, &residual, site.point.volume);
-            self.pull(site, &stress, gamma * site.branch.part(gamma), right);
+        // what passes is not the same part at all points, so that the mean is that of all of it
+        let passed = |site: &Site<'_, N, M, D>| {
+            let step = site.step(gamma, internal);
+            let passed = step.passed::<M>(&site.own(residuals));
+            [passed, passed.map(|passed| step.part * passed)]
+        };
+        self.visit(regions, u, passed, |site, [mut passed, whole]| {
+            let part = site.step(gamma, internal).part;
+            if self.mean_dilatation {
+                passed.trace = whole.trace / part;
+            }
+            let stress = site.branch.stress(&site.at, &passed, site.point.volume);
+            self.pull(site, &stress, gamma * part, right);
         });
     }
 
@@ -301,7 +333,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         &self,
         regions: &Regions,
         gamma: f64,
-        [u, rates, xu]: [&[f64]; 3],
+        [u, internal]: [&[f64]; 2],
+        rates: &[f64],
+        xu: &[f64],
         x: &mut [f64],
     ) -> f64 {
         let xu = xu.as_chunks::<D>().0;
@@ -314,21 +348,27 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
             u,
             |site| [change(site)],
             |site, [Stretch { strain, .. }]| {
-                let part = site.branch.part(gamma);
-                for (x, strain) in site.own_mut(x).iter_mut().zip(strain) {
-                    *x = part * *x + (1.0 - part) * strain;
+                let step = site.step(gamma, internal);
+                let [passed, left] = [site.own(x), strain].map(|strain| step.passed::<M>(&strain));
+                for (v, x) in site.own_mut(x).iter_mut().enumerate() {
+                    let flows = step.part * (left[v] - strain[v]);
+                    *x = step.part * passed[v] + (1.0 - step.part) * strain[v] - flows;
                 }
             },
         );
         let mut power = 0.0;
         let apart = |site: &Site<'_, N, M, D>| {
-            let before = site.own(rates).map(|rate| site.branch.time * rate);
+            // below the yield stress rates do not tell it
+            let before = match site.branch.yields() {
+                true => site.apart(internal),
+                false => site.own(rates).map(|rate| site.branch.time * rate),
+            };
             let (strain, x) = (change(site), site.own(x));
             [before, std::array::from_fn(|v| before[v] + strain[v] - x[v])]
         };
-        self.visit(regions, u, apart, |site, apart| {
-            let [before, after] = apart.map(|apart| site.branch.twice_energy::<M>(&apart));
-            power += site.point.volume * (after - before) / site.branch.time;
+        self.visit(regions, u, apart, |site, [before, after]| {
+            let change = site.branch.loss_change::<M>(&before, &after);
+            power += site.point.volume * change / site.branch.time;
         });
         power
     }

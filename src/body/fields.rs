@@ -33,8 +33,9 @@ pub struct CellField {
     /// Stress (Pa), a tensor along the axes of space. With Green strain it is the true stress, force
     /// per present area; thickness and cross-section of cells that do not fill space count as they were in the undeformed shape
     /// in St. Venant-Kirchhoff material, and as they are with the laws of rubber.
+    /// It is that of the elasticity alone: what Maxwell branches pull with hangs on what went before, and not on the shape.
     pub stress: [[f64; 3]; 3],
-    /// Strain energy per natural volume (J/m^3).
+    /// Strain energy per natural volume (J/m^3), of the elasticity alone.
     pub energy_density: f64,
 }
 

@@ -56,27 +56,27 @@ impl Branches {
         self.elements.add_branch_tangents(&self.regions, gamma, [u, internal], stiffness);
     }
 
-    /// Adds gamma sum part B^T C rG, of the `residuals` rG.
+    /// Adds gamma sum B^T C P rG, of the `residuals` rG, in a step from the displacements and internal strains `at`.
     pub(crate) fn add_residuals(
         &self,
         gamma: f64,
-        u: &[f64],
+        at: [&[f64]; 2],
         residuals: &[f64],
         right: &mut [f64],
     ) {
-        self.elements.add_branch_residuals(&self.regions, gamma, [u, residuals], right);
+        self.elements.add_branch_residuals(&self.regions, gamma, at, residuals, right);
     }
 
     /// Makes xG of the residuals `x`, with the changes `xu` of the displacements; gives how the power dissipated (W) changes
-    /// from where the internal strains had the `rates`: exactly under small strains.
+    /// from where the internal strains had the `rates`: exactly under small strains and without a yield stress.
     pub(crate) fn solve(
         &self,
         gamma: f64,
-        u: &[f64],
+        at: [&[f64]; 2],
         rates: &[f64],
         xu: &[f64],
         x: &mut [f64],
     ) -> f64 {
-        self.elements.solve_branches(&self.regions, gamma, [u, rates, xu], x)
+        self.elements.solve_branches(&self.regions, gamma, at, rates, xu, x)
     }
 }

@@ -1,11 +1,12 @@
 //! Maxwell branches: springs that relax, beside the elasticity of a substance.
 
 use super::deformation::Deformation;
+use super::flow::{Components, Flowing, Step, components, trace};
 use super::hooke::{Hooke, Lame, Spread};
 use super::law::{Block, Blocks};
 use super::response::axes;
 use super::{Material, Plane, Strain};
-use crate::input::{InputError, positive};
+use crate::input::{InputError, not_negative, positive};
 use crate::tensor::{Matrix, dot, product, times};
 
 /// A spring and a damper in a row, beside the elasticity of a [`Substance`](crate::Substance): what is strained at once and
@@ -16,6 +17,10 @@ use crate::tensor::{Matrix, dot, product, times};
 /// computed, goes after it by G' = (E - G)/tau (finite viscoelasticity by internal variables: J. C. Simo, T. J. R. Hughes,
 /// *Computational Inelasticity*, chapter 10). So it is not felt by rigid rotation under Green's strain, and dissipates
 /// S : G' >= 0.
+///
+/// With a yield stress Y the damper holds up to it, as dough does and tissue: pressed, held and let go, it keeps part of its shape. With the
+/// von Mises stress q of the spring, G' = max(0, 1 - Y/q) dev(E - G)/tau (P. Perzyna, Advances in Applied Mechanics 9 (1966)
+/// 243-377, with a linear overstress): what shears relaxes to q = Y and no further, and a change of volume not at all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaxwellBranch {
     /// Share g of stiffness (1), above 0: Young's modulus of the spring over that of the material, which is what is left
@@ -23,12 +28,15 @@ pub struct MaxwellBranch {
     pub share: f64,
     /// Relaxation time tau (s), above 0.
     pub time: f64,
+    /// Yield stress Y (Pa), 0 or above, of second Piola stress; 0 is a Maxwell branch without one.
+    pub yield_stress: f64,
 }
 
 impl MaxwellBranch {
-    pub(super) fn validate(&self) -> Result<(), InputError> {
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
         positive("material.branch.share", self.share, "1")?;
-        positive("material.branch.time", self.time, "s").map(drop)
+        positive("material.branch.time", self.time, "s")?;
+        not_negative("material.branch.yield_stress", self.yield_stress, "Pa").map(drop)
     }
 }
 
@@ -39,6 +47,8 @@ pub(crate) struct Relaxing {
     /// tau (s)
     pub(crate) time: f64,
     strain: Strain,
+    dimension: usize,
+    flowing: Option<Flowing>,
 }
 
 /// The strain of a point, and the shape in which stress acts there.
@@ -48,9 +58,6 @@ pub(crate) struct Strained<const M: usize, const D: usize> {
     /// As it is deformed, or not at all under small strains.
     shape: Deformation<f64, M, D>,
 }
-
-/// A strain by its components; 0 where cells have none.
-pub(crate) type Components = [f64; components(3)];
 
 /// A strain of the spring of a branch.
 #[derive(Clone, Copy)]
@@ -71,12 +78,55 @@ impl Relaxing {
     ) -> Self {
         let spring = Material { young: branch.share * material.young, ..*material };
         let hooke = Hooke::new(spring.elastic(), dimension, plane);
-        Self { hooke, time: branch.time, strain }
+        let flowing = (branch.yield_stress > 0.0)
+            .then(|| Flowing::new(&hooke, dimension, branch.yield_stress));
+        Self { hooke, time: branch.time, strain, dimension, flowing }
     }
 
-    /// The part of a strain that passes to E - G in a step of the parameter `gamma` (s): 1 / (1 + gamma/tau).
-    pub(crate) fn part(&self, gamma: f64) -> f64 {
-        1.0 / (1.0 + gamma / self.time)
+    /// Components of G.
+    pub(crate) fn components(&self) -> usize {
+        let across = self.flowing.is_some_and(|flowing| flowing.strains_across(self.dimension));
+        components(self.dimension) + usize::from(across)
+    }
+
+    /// Whether it holds up to a stress.
+    pub(crate) fn yields(&self) -> bool {
+        self.flowing.is_some()
+    }
+
+    /// G' (1/s), where E - G is `apart`.
+    pub(crate) fn rate<const M: usize>(&self, apart: &Components) -> Components {
+        match &self.flowing {
+            None => apart.map(|apart| apart / self.time),
+            Some(flowing) => flowing.towards::<M>(apart).map(|flow| flow / self.time),
+        }
+    }
+
+    /// The heat S : G' of the time tau (J/m^3).
+    pub(crate) fn loss<const M: usize>(&self, apart: &Stretch) -> f64 {
+        match &self.flowing {
+            None => self.twice_energy::<M>(apart),
+            Some(flowing) => flowing.loss::<M>(&apart.strain),
+        }
+    }
+
+    /// How that changes `from` one strain `to` another: with a yield stress to first order.
+    pub(crate) fn loss_change<const M: usize>(&self, from: &Stretch, to: &Stretch) -> f64 {
+        match &self.flowing {
+            None => self.twice_energy::<M>(to) - self.twice_energy::<M>(from),
+            Some(flowing) => {
+                let change = std::array::from_fn(|v| to.strain[v] - from.strain[v]);
+                flowing.loss_change::<M>(&from.strain, &change)
+            }
+        }
+    }
+
+    /// What passes to E - G in a step of the parameter `gamma` (s), where it is `apart` now.
+    pub(crate) fn step<const M: usize>(&self, gamma: f64, apart: &Components) -> Step {
+        match &self.flowing {
+            None => Step::of_all(1.0 / (1.0 + gamma / self.time)),
+            Some(flowing) => flowing.step::<M>(gamma / self.time, apart),
+        }
     }
 
     /// The strain at a point with the displacement gradient `h`.
@@ -102,7 +152,9 @@ impl Relaxing {
     /// 2 W (J/m^3) of the strain E - G.
     pub(crate) fn twice_energy<const M: usize>(&self, apart: &Stretch) -> f64 {
         let of_volume = apart.trace * (0.5 * self.lambda()) * trace::<M>(&apart.strain);
-        2.0 * (of_volume + self.hooke.of_shear().energy(&doubled::<M>(&apart.strain)))
+        let across = if M == 2 { apart.strain[3] } else { 0.0 };
+        let of_shape = self.hooke.of_shear().energy(&doubled::<M>(&apart.strain));
+        2.0 * (of_volume + (of_shape + self.hooke.lame.mu * across * across))
     }
 
     /// Second Piola stress (Pa) of the strain E - G, times `weight`.
@@ -121,23 +173,27 @@ impl Relaxing {
         product(&at.shape.gradient(), &self.second(apart, weight))
     }
 
-    /// The stiffness between nodes, as of [`ElasticLaw::tangent`](super::ElasticLaw::tangent), times `weight`: `part` of
-    /// that of the spring with `lambda` (Pa) for its own, and what the turning of the stress of E - G adds.
+    /// The stiffness between nodes, as of [`ElasticLaw::tangent`](super::ElasticLaw::tangent), times `weight`: what a `step`
+    /// feels of that of the spring with `lambda` (Pa) for its own, and what the turning of the stress of E - G adds.
     pub(crate) fn tangent<'a, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Strained<M, D>,
         apart: &Stretch,
-        (part, lambda): (f64, f64),
+        (step, lambda): (&Step, f64),
         gradients: &'a [[f64; M]; N],
         weight: f64,
     ) -> Tangent<'a, N, M, D> {
-        let lame = Lame { lambda, ..self.hooke.lame };
-        let spread = Spread::new(&at.shape.gradient(), gradients, lame, part * weight);
+        let Lame { mu, .. } = self.hooke.lame;
+        let lame = Lame { lambda: lambda + step.swelling * (lambda + step.of_mean(2.0 * mu)), mu };
+        let (f, part) = (at.shape.gradient(), step.part * weight);
+        let spread = Spread::new(&f, gradients, lame, part);
         let turning = match self.strain {
             Strain::Cauchy => 0.0,
             Strain::Green => weight,
         };
-        Tangent { spread, pulls: product(&self.second(apart, turning), gradients) }
+        let pulls = product(&self.second(apart, turning), gradients);
+        let along = product(&product(&f, &times(doubled::<M>(&step.along), 0.5)), gradients);
+        Tangent { spread, pulls, along, drop: 2.0 * mu * step.drop * part }
     }
 }
 
@@ -160,15 +216,6 @@ impl<const M: usize, const D: usize> Strained<M, D> {
     ) -> [[f64; D]; N] {
         times(product(&self.shape.gradient(), gradients), weight)
     }
-}
-
-/// Components of a symmetric tensor of cells of `dimension`.
-pub(crate) const fn components(dimension: usize) -> usize {
-    dimension * (dimension + 1) / 2
-}
-
-pub(crate) fn trace<const M: usize>(strain: &Components) -> f64 {
-    strain[..M].iter().sum()
 }
 
 fn halved<const M: usize>(twice: &Matrix<f64, M, M>) -> Components {
@@ -194,6 +241,9 @@ pub(crate) struct Tangent<'a, const N: usize, const M: usize, const D: usize> {
     spread: Spread<'a, f64, N, M, D>,
     /// S g_a, times the weight
     pulls: [[f64; M]; N],
+    /// What the direction of a flow takes off: `drop` times the products of these vectors.
+    along: [[f64; D]; N],
+    drop: f64,
 }
 
 impl<const N: usize, const M: usize, const D: usize> Blocks<f64, D> for Tangent<'_, N, M, D> {
@@ -201,6 +251,14 @@ impl<const N: usize, const M: usize, const D: usize> Blocks<f64, D> for Tangent<
         let mut block = times(self.spread.material(a, b), self.spread.weight);
         let geometric = dot(&self.spread.gradients[a], &self.pulls[b]);
         (0..D).for_each(|i| block[i][i] += geometric);
+        if self.drop > 0.0 {
+            for (row, along) in block.iter_mut().zip(&self.along[a]) {
+                let taken = self.drop * along;
+                row.iter_mut()
+                    .zip(&self.along[b])
+                    .for_each(|(entry, other)| *entry -= taken * other);
+            }
+        }
         block
     }
 }

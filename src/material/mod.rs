@@ -3,6 +3,7 @@
 mod branch;
 mod deformation;
 mod fibres;
+mod flow;
 mod hooke;
 mod law;
 mod laws;
@@ -10,9 +11,10 @@ mod response;
 mod substance;
 
 pub use branch::MaxwellBranch;
-pub(crate) use branch::{Components, Relaxing, Strained, Stretch, components, trace};
+pub(crate) use branch::{Relaxing, Strained, Stretch};
 pub(crate) use deformation::Deformation;
 pub use fibres::{Course, Fibres};
+pub(crate) use flow::{Components, Step, trace};
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};

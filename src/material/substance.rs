@@ -64,6 +64,11 @@ impl Material {
         Substance::from(self).fibres(fibres)
     }
 
+    /// This material, with a Maxwell branch that flows above a yield stress (Pa) alone: see [`Substance::yielding`].
+    pub fn yielding(self, share: f64, time: f64, yield_stress: f64) -> Substance {
+        Substance::from(self).yielding(share, time, yield_stress)
+    }
+
     /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as laws of rubber have them: of
     /// Mooney-Rivlin's law 2 (c1 + c2), of Yeoh's 2 c1.
     ///
@@ -137,7 +142,27 @@ impl Substance {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn maxwell(mut self, share: f64, time: f64) -> Self {
-        self.branches.push(MaxwellBranch { share, time });
+        self.branches.push(MaxwellBranch { share, time, yield_stress: 0.0 });
+        self
+    }
+
+    /// The same, with one more [branch](MaxwellBranch) that flows above its `yield_stress` (Pa, 0 or above) alone: below it is a spring,
+    /// and what flowed stays. As dough it keeps part of its shape: where the branch pulls with Y against the elasticity E of
+    /// the material, all that is above a strain of about Y/E springs back.
+    ///
+    /// Stress is measured in the axes of the body as it was made (second Piola stress), by von Mises; what relaxes is its deviator.
+    /// Sheared and held, it is Y + (q - Y) exp(-t/tau); a string takes 1.5/(1 + nu) times as long, as its stretching shears less.
+    /// Motion and equilibria begin as with [`maxwell`](Self::maxwell), in a shape that pulls nowhere.
+    ///
+    /// ```
+    /// use pliant::Material;
+    ///
+    /// let crumb = Material { density: 1100.0, young: 2e3, poisson: 0.4, viscosity: 10.0 };
+    /// let dough = crumb.yielding(4.0, 0.5, 300.0);
+    /// assert_eq!(dough.branches[0].yield_stress, 300.0); // Pa
+    /// ```
+    pub fn yielding(mut self, share: f64, time: f64, yield_stress: f64) -> Self {
+        self.branches.push(MaxwellBranch { share, time, yield_stress });
         self
     }
 

@@ -38,11 +38,16 @@ const OF_BODY: &str = "required; in a region, that of the body";
 const BRANCH: TableKeys = TableKeys::new(
     "branch",
     "A spring and a damper in a row, beside the elasticity of the material: what is strained at once and kept so pulls by the spring, less and less, \
-     as exp(-t / `time`). `young` is what is left when all has relaxed. For BDF, Adams, ARKODE and `rk`, and for equilibria.",
+     as exp(-t / `time`). `young` is what is left when all has relaxed. For BDF, Adams, ARKODE and `rk`, and for equilibria. Energies and forces have its part, fields and sensors of \
+     stress do not.",
     &[
         Key::number("share", "Young's modulus of the spring by that of the material", "1")
             .required(),
         Key::number("time", "the relaxation time", "s").required(),
+        Key::number("yield_stress", "the von Mises stress below which nothing relaxes", "Pa")
+            .law("Above it G' = (1 - `yield_stress` / q) dev(E - G) / `time`, q being the spring's: what shears relaxes down to it, a change of volume does not, and \
+                  what has flowed stays, as in dough.")
+            .default("0"),
     ],
     "material = { density = 1070.0, young = 2.0e5, poisson = 0.48, viscosity = 0.0, branch = [{ share = 0.2, time = 0.1 }] }",
 );
@@ -166,7 +171,11 @@ pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Subst
         let tables = value.tables(&BRANCH)?;
         let read = |table: &Table<'_>| {
             let number = |key| table.required(key, Value::number);
-            Ok(MaxwellBranch { share: number("share")?, time: number("time")? })
+            let yield_stress = table.optional("yield_stress", Value::number)?.unwrap_or(0.0);
+            let branch =
+                MaxwellBranch { share: number("share")?, time: number("time")?, yield_stress };
+            branch.validate().map_err(|error| table.blame(error))?;
+            Ok(branch)
         };
         tables.iter().map(read).collect::<Result<Vec<_>, Error>>()
     })?;

@@ -86,8 +86,10 @@ impl System {
         if let Some(stiffness) = stiffness.own() {
             branches.add_tangents(gamma, u, internal, stiffness);
         }
-        place.clear();
-        place.extend_from_slice(u);
+        for (place, now) in place.iter_mut().zip([u, internal]) {
+            place.clear();
+            place.extend_from_slice(now);
+        }
     }
 
     /// Brings N = M + gamma D + gamma^2 Kt into force.
@@ -154,7 +156,7 @@ impl System {
         let NewtonMatrix { stiffness, right, demands, gamma, place, .. } = &mut self.newton;
         right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
         if let (Some(branches), [_, ..]) = (&self.model.branches, internal) {
-            branches.add_residuals(*gamma, place, internal, right);
+            branches.add_residuals(*gamma, place.each_ref().map(|at| &at[..]), internal, right);
         }
         self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
@@ -174,6 +176,7 @@ impl System {
     pub(super) fn solve_branches(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
         let (NewtonMatrix { place, gamma, .. }, rates) = (&self.newton, &self.at.relaxing);
         let branches = self.model.branches.as_ref();
+        let place = place.each_ref().map(|at| &at[..]);
         branches.map_or(0.0, |branches| branches.solve(*gamma, place, rates, xu, x))
     }
 

@@ -25,8 +25,8 @@ pub(super) struct NewtonMatrix {
     /// Whether D is not all zeros.
     pub(super) is_damped: bool,
     pub(super) gamma: f64,
-    /// Displacements (m) at which Maxwell branches have been eliminated.
-    pub(super) place: Vec<f64>,
+    /// Displacements (m) and internal strains at which Maxwell branches have been eliminated.
+    pub(super) place: [Vec<f64>; 2],
     pub(super) accuracy: f64,
     pub(super) tangent_evaluations: usize,
     /// f of the linear system, and its solution xv.
@@ -94,7 +94,10 @@ impl NewtonMatrix {
             is_set: false,
             is_damped: model.damping.is_some(),
             gamma: f64::NAN,
-            place: vec![0.0; if model.branches.is_some() { dofs } else { 0 }],
+            place: match &model.branches {
+                Some(branches) => [vec![0.0; dofs], vec![0.0; branches.unknowns()]],
+                None => [Vec::new(), Vec::new()],
+            },
             accuracy: SOLVED_ONCE,
             tangent_evaluations: 0,
             right: vec![0.0; dofs],

@@ -132,6 +132,25 @@ fn stick_slip() {
     }
 }
 
+/// The dough keeps part of what it was pressed by, 1 cm of 4, and nearly nothing without a yield stress.
+#[test]
+fn pressed_dough() {
+    let path = path("scenes/pressed-dough.toml");
+    let kept = |yield_stress: &str| {
+        let set = format!("body.material.branch.yield_stress={yield_stress}");
+        let file = SceneFile::read_with(&path, &[set]).unwrap();
+        let (trajectory, error) = run(&file);
+        assert_eq!(error, None);
+        let mesh = trajectory.body().mesh();
+        let top = &mesh.sets()["top"];
+        let sunk = top.iter().map(|node| -trajectory.last().u[2 * node + 1]);
+        sunk.sum::<f64>() / top.len() as f64 / 0.01
+    };
+    let (dough, rubber) = (kept("300.0"), kept("0.0"));
+    println!("{dough} {rubber}");
+    assert!((0.2..0.8).contains(&dough) && rubber.abs() < 0.02, "{dough} {rubber}");
+}
+
 /// Scenes written to the first description of the format.
 #[test]
 fn scenes_of_the_page() {
@@ -156,6 +175,7 @@ fn all_scenes_are_run() {
         "beam-static-cauchy",
         "beam-static-green",
         "stick-slip",
+        "pressed-dough",
     ];
     for entry in std::fs::read_dir(path("scenes")).unwrap() {
         let file = entry.unwrap().path();

@@ -36,3 +36,4 @@ mod tunnelling;
 mod turning;
 mod varying;
 mod warnings;
+mod yielding;

@@ -402,14 +402,27 @@ fn in_scene_files() {
     let scene = Scene::new(body.unwrap()).phase(phase);
     let run = |scene: &Scene| scene.simulate(&file.settings, &Sampling::phase_ends()).unwrap();
     assert_eq!(run(&file.scene).samples(), run(&scene).samples());
-    for (right, wrong, message) in [
-        ("share = 0.5", "share = -0.5", "share"),
-        ("time = 0.02", "time = 0.0", "time"),
-        (", time = 0.02", "", "time"),
-        ("mass_damping = 3.0", "mass_damping = -3.0", "mass_damping"),
+    // each on the line of its own key
+    let text = text
+        .replace(
+            "branch = [{ share = 0.5, time = 0.02 }, ",
+            "branch = [\n{\nshare = 0.5,\ntime = 0.02,\nyield_stress = 0.0 }, ",
+        )
+        .replace(", mass_damping = 3.0, ", ",\nmass_damping = 3.0, ");
+    for (right, wrong, message, line) in [
+        ("share = 0.5", "share = -0.5", "share", 7),
+        ("time = 0.02", "time = 0.0", "time", 8),
+        ("time = 0.02,", "", "time", 6),
+        ("yield_stress = 0.0", "yield_stress = -1.0", "yield_stress", 9),
+        ("mass_damping = 3.0", "mass_damping = -3.0", "mass_damping", 5),
     ] {
-        let Err(error) = parse(&text.replace(right, wrong)) else { panic!("{wrong}") };
+        let wrong = text.replace(right, wrong);
+        assert_ne!(wrong, text);
+        let Err(error) = parse(&wrong) else { panic!("{wrong}") };
         let error = error.to_string();
-        assert!(error.contains(message) && error.contains("scene.toml:4"), "{error}");
+        assert!(
+            error.contains(message) && error.contains(&format!("scene.toml:{line}")),
+            "{error}"
+        );
     }
 }
