@@ -1,8 +1,8 @@
 //! The beam as a model: half of it, on one side of its plane of symmetry.
 
 use pliant::{
-    Axis, Body, Law, Material, Mesh, Phase, Sampling, Scene, Selection, Settings, SolidCells,
-    Spring, Statics,
+    Axis, Body, Dilatation, Law, Material, Mesh, Phase, Sampling, Scene, Selection, Settings,
+    SolidCells, Spring, Statics,
 };
 
 use super::Outcome;
@@ -15,8 +15,6 @@ const HUNG: f64 = 0.052;
 /// Length of the thread (m), where it counts as one.
 const THREAD: f64 = 0.05;
 const GRAVITY: f64 = 9.807;
-/// Tolerance of the runs.
-pub const RTOL: f64 = 1e-4;
 /// As the article has it (kg/m^3).
 const DENSITY: f64 = 1070.0;
 
@@ -28,6 +26,9 @@ pub struct Model {
     pub nodes: [usize; 3],
     pub law: Law,
     pub poisson: f64,
+    pub dilatation: Dilatation,
+    /// Tolerance of the runs.
+    pub rtol: f64,
 }
 
 /// What was fitted of the material.
@@ -39,6 +40,8 @@ pub struct Matter {
     pub viscosity: f64,
     /// Damping in proportion to mass (1/s).
     pub drag: f64,
+    /// Shares of stiffness and times (s) of Maxwell branches; a share of 0 is none.
+    pub branches: [[f64; 2]; 2],
 }
 
 /// What hangs from the upper edge of the free end.
@@ -81,7 +84,12 @@ impl Model {
             poisson: self.poisson,
             viscosity: matter.viscosity,
         };
-        let mut body = Body::new(mesh, material.law(self.law).mass_damping(matter.drag));
+        let branches = matter.branches.into_iter().filter(|[share, _]| *share > 0.0);
+        let substance = branches.fold(material.law(self.law), |substance, [share, time]| {
+            substance.maxwell(share, time)
+        });
+        let mut body =
+            Body::new(mesh, substance.mass_damping(matter.drag)).dilatation(self.dilatation);
         // all that acts node by node is halved
         body = match hung {
             Hung::Nothing | Hung::Weight => body,
@@ -134,7 +142,7 @@ impl Model {
             }
         };
         let motion = scene
-            .simulate(&Settings { rtol: RTOL, ..Settings::default() }, &Sampling::at(after))?;
+            .simulate(&Settings { rtol: self.rtol, ..Settings::default() }, &Sampling::at(after))?;
         let start = end.markers(rest.displacements());
         let falling = motion.samples()[1..].iter().map(|sample| {
             let now = end.markers(&sample.u);

@@ -6,25 +6,76 @@ use pliant::Error;
 use pliant::fit::{Fitted, Unknown, least_squares};
 
 use super::Outcome;
-use super::beam::{Hung, Matter, Model, RTOL, Release};
+use super::beam::{Hung, Matter, Model, Release};
 use super::capture::{Place, Trial, height};
 
-/// How long (s) after the release fits look.
+/// How long (s) after the release fits look, and where there are branches, which take time.
 const FITTED: f64 = 0.8;
+const FITTED_LONG: f64 = 4.2;
 /// From how long (s) before the release on.
 const BEFORE: f64 = 0.1;
 /// Until when (s) after the release swings are counted, and from which size on (m).
 const SWINGS: f64 = 1.3;
 const LEAST_SWING: f64 = 4e-4;
+/// Between which times (s) after the release it hardly swings any more.
+const SETTLED: [f64; 2] = [2.0, 2.5];
 /// Frames that make up the rest at the end.
 const LATE: usize = 60;
 
-/// What damps.
+/// Times (s) of two branches of which only the shares are fitted.
+const TIMES: [f64; 2] = [0.3, 2.0];
+
+/// What damps, and what is fitted of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Damping {
     Viscosity,
-    Drag,
     Both,
+    /// Viscosity and a Maxwell branch.
+    Branch,
+    /// Viscosity and Maxwell branches of the [`TIMES`].
+    Branches,
+}
+
+impl Damping {
+    /// How long (s) after the release the fit looks.
+    fn fitted(self) -> f64 {
+        match self {
+            Self::Viscosity | Self::Both => FITTED,
+            Self::Branch | Self::Branches => FITTED_LONG,
+        }
+    }
+
+    /// The unknowns of the material.
+    fn unknowns(self) -> Vec<Unknown> {
+        let mut unknowns =
+            vec![Unknown::new("E", 1.5e5, 4e5), Unknown::new("viscosity", 20.0, 2000.0)];
+        match self {
+            Self::Viscosity => {}
+            Self::Both => unknowns.push(Unknown::new("rate", 0.0, 8.0)),
+            Self::Branch => {
+                unknowns.push(Unknown::new("share 1", 0.01, 0.3));
+                unknowns.push(Unknown::new("time", 0.1, 4.0));
+            }
+            Self::Branches => {
+                let share = |number| Unknown::new(format!("share {number}"), 0.0, 0.3);
+                unknowns.extend([share(1), share(2)]);
+            }
+        }
+        unknowns
+    }
+
+    /// The material of their values, and of no more.
+    fn matter(self, at: &[f64]) -> Matter {
+        let mut matter =
+            Matter { young: at[0], viscosity: at[1], drag: 0.0, branches: [[0.0; 2]; 2] };
+        match self {
+            Self::Viscosity => {}
+            Self::Both => matter.drag = at[2],
+            Self::Branch => matter.branches[0] = [at[2], at[3]],
+            Self::Branches => matter.branches = [[at[2], TIMES[0]], [at[3], TIMES[1]]],
+        }
+        matter
+    }
 }
 
 /// How near a model comes to a trial.
@@ -35,11 +86,20 @@ pub struct Nearness {
     pub swing: Swing,
     /// How far the markers have sunk at last (m).
     pub sag: f64,
+    /// How much of that came late (m): [`creep`].
+    pub creep: f64,
 }
 
 /// How far markers have sunk in the end (m).
 pub fn sag(moved: &[[Place; 3]]) -> f64 {
     -moved[moved.len() - LATE..].iter().map(height).sum::<f64>() / LATE as f64
+}
+
+/// How far (m) markers that fall at `falls` (s) sink from the time when they hardly swing any more to the end.
+pub fn creep(times: &[f64], moved: &[[Place; 3]], falls: f64) -> f64 {
+    let at = |time: f64| times.partition_point(|frame| *frame < time);
+    let settled = &moved[at(falls + SETTLED[0])..at(falls + SETTLED[1])];
+    sag(moved) + settled.iter().map(height).sum::<f64>() / settled.len() as f64
 }
 
 /// Frequency (Hz) and damping ratio.
@@ -70,105 +130,81 @@ fn misses(
     Ok(pairs.map(|(model, measured)| model - measured).collect())
 }
 
-/// The same as residuals.
-fn residuals(misses: Outcome<Vec<Place>>) -> Result<Vec<f64>, Error> {
+/// The same as residuals: a series for each marker and axis.
+fn residuals(misses: Outcome<Vec<Place>>) -> Result<Vec<Vec<f64>>, Error> {
     let misses = misses.map_err(|error| match error.downcast::<Error>() {
         Ok(error) => *error,
         Err(other) => panic!("{other}"),
     })?;
-    Ok(misses.iter().flat_map(|miss| [miss.x, miss.y, miss.z]).collect())
+    let series = |marker: usize, axis: usize| {
+        misses.iter().skip(marker).step_by(3).map(|miss| miss[axis]).collect()
+    };
+    Ok((0..9).map(|number| series(number / 3, number % 3)).collect())
 }
 
 /// The release of a trial as two unknowns: its time, within two frames, and the height from which.
 fn release(trial: &Trial) -> [Unknown; 2] {
-    let time = Unknown::new("time", trial.falls - 0.02, trial.falls + 0.01);
+    let time = Unknown::new("release", trial.falls - 0.02, trial.falls + 0.01);
     [time, Unknown::new("lift", -0.003, 0.003)]
 }
 
+/// A material that was fitted: with the releases of the trials under its own weight, and what the fit tells of each number.
+pub struct Found {
+    pub matter: Matter,
+    pub releases: [Release; 2],
+    pub fitted: Fitted,
+}
+
 /// Fits the material to the trials under its own weight.
-pub fn own_weight(
+pub fn own_weight(model: &Model, damping: Damping, trials: &[Trial; 2]) -> Outcome<Found> {
+    fit(model, damping, &trials.each_ref().map(|trial| (Hung::Nothing, trial)))
+}
+
+/// Fits the material to all trials, those of the loaded beam with a mass that moves with its edge.
+pub fn all_trials(
     model: &Model,
     damping: Damping,
-    trials: &[Trial; 2],
-) -> Outcome<(Matter, [Release; 2])> {
-    let mut unknowns: Vec<Unknown> = trials.iter().flat_map(release).collect();
-    unknowns.extend(material(damping));
-    let own = |at: &[f64]| {
-        let [time, lift, time_b, lift_b, young, ..] = *at else { panic!("five unknowns and more") };
-        let (viscosity, drag) = match damping {
-            Damping::Viscosity => (at[5], 0.0),
-            Damping::Drag => (0.0, at[5]),
-            Damping::Both => (at[5], at[6]),
-        };
-        let releases = [Release { time, lift }, Release { time: time_b, lift: lift_b }];
-        (Matter { young, viscosity, drag }, releases)
+    own: &[Trial; 2],
+    loaded: &[Trial; 2],
+) -> Outcome<Found> {
+    let own = own.iter().map(|trial| (Hung::Nothing, trial));
+    let trials: Vec<_> = own.chain(loaded.iter().map(|trial| (Hung::Mass, trial))).collect();
+    fit(model, damping, &trials)
+}
+
+/// Fits the material and the releases of trials, the first two of which are those under its own weight.
+fn fit(model: &Model, damping: Damping, trials: &[(Hung, &Trial)]) -> Outcome<Found> {
+    let mut unknowns = damping.unknowns();
+    let of_matter = unknowns.len();
+    unknowns.extend(trials.iter().flat_map(|(_, trial)| release(trial)));
+    let releases = |at: &[f64]| -> Vec<Release> {
+        let pairs = at[of_matter..].as_chunks::<2>().0;
+        pairs.iter().map(|&[time, lift]| Release { time, lift }).collect()
     };
     let fitted = least_squares(
         &unknowns,
-        RTOL,
+        model.rtol,
         &|at| {
-            let (matter, releases) = own(at);
+            let matter = damping.matter(&at[..of_matter]);
             let mut all = Vec::new();
-            for (release, trial) in releases.iter().zip(trials) {
-                let misses = misses(model, &matter, Hung::Nothing, release, trial, FITTED);
+            for ((hung, trial), release) in trials.iter().zip(releases(at)) {
+                let misses = misses(model, &matter, *hung, &release, trial, damping.fitted());
                 all.extend(residuals(misses)?);
             }
             Ok(all)
         },
         &mut |_, _| {},
     )?;
-    Ok(own(&values(&fitted)))
-}
-
-/// Fits the material to all trials, those of the loaded beam with a mass that moves with its edge.
-pub fn all_trials(
-    model: &Model,
-    own: &[Trial; 2],
-    loaded: &[Trial; 2],
-) -> Outcome<(Matter, [Release; 2])> {
-    let trials = || {
-        own.iter()
-            .map(|trial| (Hung::Nothing, trial))
-            .chain(loaded.iter().map(|trial| (Hung::Mass, trial)))
-    };
-    let mut unknowns = material(Damping::Both);
-    unknowns.extend(trials().flat_map(|(_, trial)| release(trial)));
-    let matter = |at: &[f64]| Matter { young: at[0], viscosity: at[1], drag: at[2] };
-    let fitted = least_squares(
-        &unknowns,
-        RTOL,
-        &|at| {
-            let releases = at[3..].chunks_exact(2).map(|at| Release { time: at[0], lift: at[1] });
-            let mut all = Vec::new();
-            for ((hung, trial), release) in trials().zip(releases) {
-                all.extend(residuals(misses(model, &matter(at), hung, &release, trial, FITTED))?);
-            }
-            Ok(all)
-        },
-        &mut |_, _| {},
-    )?;
-    let found = values(&fitted);
-    let own = [3, 5].map(|at| Release { time: found[at], lift: found[at + 1] });
-    Ok((matter(&found), own))
-}
-
-/// The unknowns of the material.
-fn material(damping: Damping) -> Vec<Unknown> {
-    let mut unknowns = vec![Unknown::new("young", 1.5e5, 4e5)];
-    if damping != Damping::Drag {
-        unknowns.push(Unknown::new("viscosity", 20.0, 2000.0));
-    }
-    if damping != Damping::Viscosity {
-        unknowns.push(Unknown::new("drag", 0.0, 8.0));
-    }
-    unknowns
+    let at = values(&fitted);
+    let own = releases(&at);
+    Ok(Found { matter: damping.matter(&at[..of_matter]), releases: [own[0], own[1]], fitted })
 }
 
 /// How a trial under a load was let go; all else is known.
 pub fn let_go(model: &Model, matter: &Matter, hung: Hung, trial: &Trial) -> Outcome<Release> {
     let fitted = least_squares(
         &release(trial),
-        RTOL,
+        model.rtol,
         &|at| {
             let release = Release { time: at[0], lift: at[1] };
             residuals(misses(model, matter, hung, &release, trial, FITTED))
@@ -185,7 +221,7 @@ pub fn thread(model: &Model, matter: &Matter, trial: &Trial) -> Outcome<Hung> {
     unknowns.push(Unknown::new("damping", 1.0, 30.0));
     let fitted = least_squares(
         &unknowns,
-        RTOL,
+        model.rtol,
         &|at| {
             let release = Release { time: at[0], lift: at[1] };
             let hung = Hung::Thread(at[2], at[3]);
@@ -217,7 +253,8 @@ pub fn nearness(
     let distance = [distance(1.0)?, distance(f64::INFINITY)?];
     let moved = model.moved(matter, hung, release, &trial.times)?;
     let swing = Swing::of(&trial.times, &moved, trial.falls);
-    Ok(Nearness { distance, swing, sag: sag(&moved) })
+    let creep = creep(&trial.times, &moved, trial.falls);
+    Ok(Nearness { distance, swing, sag: sag(&moved), creep })
 }
 
 impl Swing {

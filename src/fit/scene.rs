@@ -99,7 +99,7 @@ impl SceneFit {
     /// Fits keys of the file, as `body.material.young`. `tell` is as in [`least_squares`].
     ///
     /// # Errors
-    /// As [`least_squares`]; keys that scene files do not have; runs that fail.
+    /// As [`least_squares`]; keys that scene files do not have.
     pub fn fit(
         &self,
         unknowns: &[Unknown],
@@ -107,10 +107,9 @@ impl SceneFit {
     ) -> Result<SceneFitted, Error> {
         let at = |values: &[f64]| {
             let residuals = self.residuals(unknowns, values)?;
-            let weighed = residuals
-                .iter()
-                .zip(&self.scales)
-                .flat_map(|(column, scale)| column.iter().map(move |residual| residual / scale));
+            let columns = residuals.iter().zip(&self.scales);
+            let weighed = columns
+                .map(|(column, scale)| column.iter().map(|residual| residual / scale).collect());
             Ok(weighed.collect())
         };
         let fitted = least_squares(unknowns, self.precision, &at, tell)?;
@@ -230,7 +229,8 @@ impl SceneFitted {
 
 impl fmt::Display for SceneFitted {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Fitted { unknowns, runs, is_converged, .. } = &self.fitted;
+        let Fitted { unknowns, residuals, independent, runs, failed, is_converged, .. } =
+            &self.fitted;
         let width =
             unknowns.iter().map(|found| found.unknown.name.chars().count()).max().unwrap_or(0);
         for found in unknowns {
@@ -256,8 +256,17 @@ impl fmt::Display for SceneFitted {
                 "{name}: off by {before:.3e} {unit} before, {after:.3e} {unit} after (root mean square of {count})"
             )?;
         }
+        if *independent < *residuals as f64 {
+            writeln!(
+                f,
+                "what is left over is alike from one time to the next: {residuals} residuals count as {independent:.0} independent ones"
+            )?;
+        }
         let end = if *is_converged { "" } else { "; the search has not come to its end" };
-        writeln!(f, "{runs} runs{end}")?;
+        match failed {
+            0 => writeln!(f, "{runs} runs{end}")?,
+            failed => writeln!(f, "{runs} runs, {failed} of which failed{end}")?,
+        }
         let set: Vec<String> = self.overrides().iter().map(|set| format!("--set {set}")).collect();
         write!(f, "{}", set.join(" "))
     }

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::fs;
 
 use pliant::fit::{Measured, SceneFit, Unknown, least_squares};
+use pliant::{Error, InputError};
 
 use super::{Place, stdout};
 
@@ -153,7 +154,8 @@ fn what_cannot_be_fitted_is_refused() {
 #[test]
 fn the_confidence_of_a_line_is_that_of_the_books() {
     let points = [(0.0, 1.1), (1.0, 2.9), (2.0, 5.2), (3.0, 6.9), (4.0, 9.1), (5.0, 10.8)];
-    let residuals = |at: &[f64]| Ok(points.iter().map(|(x, y)| at[0] + at[1] * x - y).collect());
+    let residuals =
+        |at: &[f64]| Ok(vec![points.iter().map(|(x, y)| at[0] + at[1] * x - y).collect()]);
     let unknowns = [Unknown::new("constant", -10.0, 10.0), Unknown::new("slope", -5.0, 10.0)];
     let found = least_squares(&unknowns, 1e-12, &residuals, &mut |_, _| {}).unwrap();
     let mean = [3.5 - 1.0, points.iter().map(|point| point.1).sum::<f64>() / 6.0];
@@ -168,4 +170,30 @@ fn the_confidence_of_a_line_is_that_of_the_books() {
         (found.value - slope).abs() < 1e-6 && (found.confidence / confidence - 1.0).abs() < 0.005,
         "{found:?} {confidence}"
     );
+}
+
+/// A run that fails is a bad step: the search goes around it, and comes to what it seeks.
+#[test]
+fn runs_that_fail_are_bad_steps() {
+    let seen: Vec<(f64, f64)> =
+        (1..40).map(f64::from).map(|t| (t, (0.9 - 0.1 * t).exp())).collect();
+    let [mut before, mut failed] = [0, 0];
+    for end in [f64::INFINITY, 0.2] {
+        let residuals = |at: &[f64]| match at[0] < end {
+            true => Ok(vec![seen.iter().map(|(t, x)| (at[1] - at[0] * t).exp() - x).collect()]),
+            false => Err(Error::Input(InputError {
+                input: "rate".into(),
+                value: at[0].to_string(),
+                mend: "it runs away".into(),
+            })),
+        };
+        let unknowns = [Unknown::new("rate", 0.0, 0.39), Unknown::new("start", 0.0, 2.0)];
+        let found = least_squares(&unknowns, 1e-12, &residuals, &mut |_, _| {}).unwrap();
+        for (found, value) in found.unknowns.iter().zip([0.1, 0.9]) {
+            assert!((found.value - value).abs() < 1e-5, "{found:?}");
+        }
+        assert!(found.is_converged);
+        [before, failed] = [failed, found.failed];
+    }
+    assert!(before == 0 && failed > 0, "{before} {failed}");
 }
