@@ -16,7 +16,7 @@ use pliant::{
 const INNER: f64 = 0.010;
 const OUTER: f64 = 0.011;
 const LENGTH: f64 = 0.05;
-const PRESSURE: f64 = 4e3;
+const PRESSURE: f64 = 1e3;
 
 fn main() -> Result<(), Error> {
     println!("pitch (degrees)   longer by (%)   thicker by (%)");

@@ -58,12 +58,19 @@ pub struct Quantity {
 }
 
 /// A sampled motion and the report of its computation.
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct Trajectory {
     scene: Scene,
     samples: Vec<Sample>,
     pub(crate) sensors: Vec<Quantity>,
     pub(crate) report: Report,
+}
+
+/// Short: errors hold trajectories, and a program that ends with one prints it.
+impl fmt::Debug for Trajectory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Trajectory").field("samples", &self.samples.len()).finish_non_exhaustive()
+    }
 }
 
 impl Trajectory {

@@ -108,10 +108,13 @@ fn nonsense_is_named() {
             Fibres::along([0.0; 3], 1e5),
             "fibres.along = [0.0, 0.0, 0.0] cannot be used: a direction needs a length",
         ),
-        (Fibres::along([1.0, 0.0], 1e5), "fibres.along = [1.0, 0.0]: it needs 3 numbers"),
+        (
+            Fibres::along([1.0, 0.0], 1e5),
+            "fibres.along = [1.0, 0.0] cannot be used: it needs 3 numbers",
+        ),
         (Fibres::along([1.0, 0.0, 0.0], -1.0), "fibres.young = -1"),
         (Fibres::along([1.0, 0.0, 0.0], 1e5).stiffening(f64::NAN), "fibres.stiffening = NaN"),
-        (Fibres::around([0.0; 3], [], 1e5), "fibres.axis = []: it needs 3 numbers"),
+        (Fibres::around([0.0; 3], [], 1e5), "fibres.axis = [] cannot be used: it needs 3 numbers"),
     ] {
         let message = build(fibres);
         assert!(message.starts_with(start), "{message}");
