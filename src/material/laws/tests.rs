@@ -307,6 +307,47 @@ fn laws_are_linear_elasticity_at_small_strains() {
     in_all_dimensions!(check);
 }
 
+/// Simple shear by gamma: the shear stress P_12 in closed form. Rubber: 2 (W1 + W2) gamma at I1 - 3 = gamma^2, and with Ogden's law
+/// the sum of mu_p (l^alpha_p - l^-alpha_p) / (l + 1/l) of the stretches l and 1/l, with l - 1/l = gamma.
+#[test]
+fn simple_shear() {
+    let Lame { lambda, mu } = LAME;
+    let gamma = 0.8_f64;
+    let stretch = 0.5 * gamma + (1.0 + 0.25 * gamma * gamma).sqrt();
+    for chosen in LAWS {
+        let expected = match chosen {
+            (Strain::Cauchy, ..) => mu * gamma,
+            (_, None | Some(Law::StVenantKirchhoff), _) => {
+                mu * gamma + gamma.powi(3) * (0.5 * lambda + mu)
+            }
+            (_, Some(Law::NeoHookean | Law::MooneyRivlin { .. }), _) => mu * gamma,
+            (_, Some(Law::Yeoh { second, third }), _) => {
+                let above = gamma * gamma;
+                mu * gamma * (1.0 + 2.0 * second * above + 3.0 * third * above * above)
+            }
+            (_, Some(Law::Ogden { exponents, shares }), _) => {
+                let term = |(a, share): (&f64, &f64)| {
+                    2.0 * mu * share / a * (stretch.powf(*a) - stretch.powf(-a))
+                };
+                exponents.iter().zip(&shares).map(term).sum::<f64>() / (stretch + 1.0 / stretch)
+            }
+            // turned by tan(angle) = gamma / 2
+            (_, Some(Law::Corotated), _) => {
+                let longer = stretch + 1.0 / stretch - 2.0;
+                let turn = (lambda * longer - 2.0 * mu) * 0.5 * gamma;
+                2.0 * mu * gamma + turn / (1.0 + 0.25 * gamma * gamma).sqrt()
+            }
+        };
+        let mut h = [[0.0; 3]; 3];
+        h[1][0] = gamma;
+        let here = Deformation::new(frame::<3, 3>(), h);
+        with_law!(law(chosen, 3), law => {
+            let apart = at(&law, &here).stress(1.0)[1][0] - expected;
+            assert!(apart.abs() < 1e-14, "{chosen:?}: {apart:e}");
+        });
+    }
+}
+
 /// Laws at the points of as many cells as a register of the machine holds.
 struct AtOnce<const M: usize, const D: usize>;
 
