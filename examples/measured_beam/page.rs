@@ -182,14 +182,15 @@ pub fn write(trials: &Trials, out: &Path) -> Outcome<()> {
         ("{sag}", format!("{:.1}", mm(sag(&trials.loaded[1].moved)))),
         ("{model sag}", format!("{:.1}", mm(best.loaded[1].sag))),
         ("{young}", kilo(best)),
-        ("{fine young}", rows.last().map(kilo).unwrap_or_default()),
+        ("{mean young}", kilo(&rows[rows.len() - 2])),
+        ("{fine young}", kilo(&rows[rows.len() - 1])),
         ("{branch own}", left_after.join(" and ")),
         ("{plain own}", left_before.join(" and ")),
         ("{branch a}", of_branch_a),
         ("{branch b}", of_branch_b),
         ("{branch thread a}", on_spring_a),
         ("{branch thread b}", on_spring_b),
-        ("{branch sag}", format!("{:.1}", mm(branch.loaded[1].sag))),
+        ("{branch sag}", format!("{:.1}", mm(rows[6].loaded[1].sag))),
     ];
     let after = include_str!("after.md").to_owned();
     page += &numbers.iter().fold(after, |text, (name, number)| text.replace(name, number));
