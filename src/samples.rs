@@ -7,6 +7,8 @@ mod actuated;
 mod equations;
 mod oscillator;
 #[cfg(feature = "bodies")]
+mod rubber;
+#[cfg(feature = "bodies")]
 mod scenes;
 #[cfg(feature = "bodies")]
 mod statics;
@@ -21,6 +23,8 @@ pub use equations::{
     Robertson, TransistorAmplifier, VanDerPol,
 };
 pub use oscillator::DampedOscillator;
+#[cfg(feature = "bodies")]
+pub use rubber::{LoadedCantilever, TumblingBlock, TwistingColumn};
 #[cfg(feature = "bodies")]
 pub use scenes::{
     BEAM_MATERIAL, BENT_BEAM_MATERIAL, BeamJump, ClampedBeam, FLAG_MATERIAL, RingRoll,

@@ -25,6 +25,7 @@ mod planes;
 mod readings;
 mod relaxing;
 mod ring;
+mod rubber_motion;
 mod sensors;
 mod simulation;
 mod slips;
