@@ -21,7 +21,7 @@ pub(super) use nodal::{Probe, nodal_fields};
 
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
-use crate::material::{Deformation, ElasticLaw, with_law};
+use crate::material::{Deformation, ElasticLaw, Strain, with_law};
 use crate::vector::norm;
 
 /// Strain, stress and strain energy density of one cell: means over its natural volume.
@@ -43,6 +43,23 @@ impl CellField {
     /// The stress of von Mises (Pa): sqrt(3/2) times the norm of the stress without its mean pressure.
     pub fn von_mises(&self) -> f64 {
         von_mises(&self.stress)
+    }
+
+    /// The pressure (Pa): the mean normal stress with the other sign, above 0 where the body is pressed together.
+    pub fn pressure(&self) -> f64 {
+        -Matrix3::from(self.stress).trace() / 3.0
+    }
+
+    /// The principal stretches (1), the largest first: how many times as long as before fibres along the principal axes of the strain
+    /// are. `strain` is the measure of the body: of Green's strain E they are sqrt(1 + 2 E), of Cauchy's 1 more than it.
+    pub fn stretches(&self, strain: Strain) -> [f64; 3] {
+        let principal = Matrix3::from(self.strain).symmetric_eigenvalues();
+        let mut stretches = principal.map(|value| match strain {
+            Strain::Cauchy => 1.0 + value,
+            Strain::Green => (1.0 + 2.0 * value).max(0.0).sqrt(),
+        });
+        stretches.as_mut_slice().sort_unstable_by(|a, b| b.total_cmp(a));
+        stretches.into()
     }
 }
 

@@ -30,6 +30,8 @@ use crate::trajectory::{Sample, Trajectory};
 /// | cells | `strain` | Cauchy's or Green's, as the body's |
 /// | cells | `stress`, `von_mises` | Pa |
 /// | cells | `strain_energy_density` | J/m^3 of natural volume |
+/// | cells | `pressure` | Pa, the mean normal stress with the other sign |
+/// | cells | `largest_stretch`, `least_stretch` | 1, of the principal stretches |
 ///
 /// Vectors have three components and tensors the six XX, YY, ZZ, XY, YZ, XZ, whatever the
 /// dimension; [`CellField`] says more of those at the cells.
@@ -91,6 +93,8 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
     };
     let nodal = trajectory.body().nodal_fields(&sample.u);
     let fields = trajectory.body().cell_fields(&sample.u);
+    let strain = trajectory.body().strain();
+    let stretches: Vec<[f64; 3]> = fields.iter().map(|field| field.stretches(strain)).collect();
     let scalars = |name: &str, value: fn(&CellField) -> f64| {
         scalars(name, fields.iter().map(value).collect())
     };
@@ -135,6 +139,9 @@ fn grid(trajectory: &Trajectory, sample: &Sample) -> Result<Vtk, Error> {
                     tensors("stress", |field| field.stress),
                     scalars("von_mises", CellField::von_mises),
                     scalars("strain_energy_density", |field| field.energy_density),
+                    scalars("pressure", CellField::pressure),
+                    self::scalars("largest_stretch", stretches.iter().map(|s| s[0]).collect()),
+                    self::scalars("least_stretch", stretches.iter().map(|s| s[2]).collect()),
                 ],
             },
         }),

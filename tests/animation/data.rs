@@ -89,20 +89,34 @@ fn the_data_are_those_of_the_samples() -> Outcome {
 
     let values = |sample: &Sample| body.cell_fields(&sample.u);
     let fields: Vec<_> = samples.iter().flat_map(values).collect();
-    let quantities: [fn(&CellField) -> f64; 2] = [CellField::von_mises, |f| f.energy_density];
-    for (quantity, value) in data["quantities"].as_array().ok_or("no list")?.iter().zip(quantities)
-    {
+    let strain = body.strain();
+    let quantities: [fn(&CellField, Strain) -> f64; 5] = [
+        |f, _| f.von_mises(),
+        |f, _| f.energy_density,
+        |f, _| -(f.stress[0][0] + f.stress[1][1] + f.stress[2][2]) / 3.0,
+        |f, strain| (f.stretches(strain)[0] - 1.0).max(0.0),
+        |f, strain| (1.0 - f.stretches(strain)[2]).max(0.0),
+    ];
+    let told = data["quantities"].as_array().ok_or("no list")?;
+    // Cauchy's strain knows nothing of stretches
+    assert_eq!(told.len(), if strain == Strain::Cauchy { 3 } else { 5 });
+    for (quantity, value) in told.iter().zip(quantities) {
+        let value = |field: &CellField| value(field, strain);
+        let signed = quantity["name"] == "Pressure";
+        assert_eq!(quantity["signed"], signed);
         let scale = quantity["scale"].as_f64().ok_or("no scale")?;
         let bytes = decoded(&quantity["values"])?;
         assert_eq!(bytes.len(), fields.len());
-        let above = fields.iter().filter(|field| value(field) > scale).count();
+        let above = fields.iter().filter(|field| value(field).abs() > scale).count();
         assert!(100 * above <= fields.len(), "{above} of {} beyond {scale}", fields.len());
         for (&byte, field) in bytes.iter().zip(&fields) {
-            let (found, expected) = (f64::from(byte) / 255.0, (value(field) / scale).min(1.0));
+            let part = (value(field) / scale).clamp(-1.0, 1.0);
+            let expected = if signed { 0.5 + 0.5 * part } else { part };
+            let found = f64::from(byte) / 255.0;
             assert!((found - expected).abs() < 0.501 / 255.0, "{found} is not {expected}");
         }
         // in single precision
-        let peak = fields.iter().map(value).fold(0.0, f64::max);
+        let peak = fields.iter().map(|field| value(field).abs()).fold(0.0, f64::max);
         let told = quantity["peak"].as_f64().ok_or("no peak")?;
         assert!((told / peak - 1.0).abs() < 1e-6, "{told} is not {peak}");
     }

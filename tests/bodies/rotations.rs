@@ -98,3 +98,25 @@ fn of_lower_dimension() {
         assert_all(&body, &u, turned([1.0, 0.0, 0.0], angle)[0].clamp(-1.0, 1.0).acos());
     }
 }
+
+/// A block that is stretched along its axes and turned has these stretches, by Green's strain; and the pressure is a third of the trace
+/// of the stress, which is that of St. Venant and Kirchhoff: S = lambda tr(E) + 2 mu E, sigma = F S F^T / J.
+#[test]
+fn stretches_and_pressure_of_a_turned_block() {
+    let stretches = [1.5, 1.1, 0.8];
+    let mesh = Mesh::cuboid([1.0, 1.0, 1.0], [2, 2, 2], SolidCells::Hexahedra).unwrap();
+    let map = |x: &[f64]| turned([0, 1, 2].map(|i| stretches[i] * x[i]), 1.7).to_vec();
+    let u = displacements(&mesh, map);
+    let body = Body::new(mesh, SOFT).strain(Strain::Green).build().unwrap();
+    let field = body.cell_fields(&u)[0];
+    let found = field.stretches(Strain::Green);
+    let apart = found.iter().zip(stretches).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-14, "{found:?}");
+    let (lambda, mu) = (5e4 * 0.3 / (1.3 * 0.4), 5e4 / 2.6);
+    let green = stretches.map(|l: f64| 0.5 * (l * l - 1.0));
+    let trace: f64 = green.iter().sum();
+    let normal = |(e, l): (f64, f64)| l * l * (lambda * trace + 2.0 * mu * e);
+    let pressure = -green.into_iter().zip(stretches).map(normal).sum::<f64>()
+        / (3.0 * stretches.iter().product::<f64>());
+    assert!((field.pressure() / pressure - 1.0).abs() < 1e-12, "{} {pressure}", field.pressure());
+}

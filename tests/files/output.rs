@@ -362,7 +362,16 @@ fn vtk_files_hold_mesh_motion_and_forces() -> Outcome {
             check_arrays(of_cells, 6, &[("strain", strain), ("stress", stress)])?;
             let von_mises = cells.iter().map(CellField::von_mises).collect();
             let energy = cells.iter().map(|cell| cell.energy_density).collect();
-            let expected = [("von_mises", von_mises), ("strain_energy_density", energy)];
+            let pressure = |f: &CellField| -(0..3).map(|i| f.stress[i][i]).sum::<f64>() / 3.0;
+            let strain = trajectory.body().strain();
+            let stretch = |k| cells.iter().map(|cell| cell.stretches(strain)[k]).collect();
+            let expected = [
+                ("von_mises", von_mises),
+                ("strain_energy_density", energy),
+                ("pressure", cells.iter().map(pressure).collect()),
+                ("largest_stretch", stretch(0)),
+                ("least_stretch", stretch(2)),
+            ];
             check_arrays(scalars, 1, &expected)?;
         }
         assert!(held && touched == (name == "square"), "{name}");

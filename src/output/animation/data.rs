@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::geometry::{Geometry, in_view};
 use super::{contacts, pack};
-use crate::body::{Body, CellField};
+use crate::body::{Body, CellField, Strain};
 use crate::error::Error;
 use crate::external::{Joint, Obstacle, Shape, ShapeKind};
 use crate::input::InputError;
@@ -28,13 +28,66 @@ const FOLLOWED: f64 = 1e-3;
 /// Part of the values of cells that the scale of colours covers.
 const PERCENTILE: f64 = 0.99;
 
-/// A quantity of cells: its name, unit, and how it is found.
-pub(super) type Quantity = (&'static str, &'static str, fn(&CellField) -> f64);
+/// A quantity of cells.
+pub(super) struct Quantity {
+    pub(super) name: &'static str,
+    pub(super) unit: &'static str,
+    /// Whether its scale of colours goes from the largest value with the other sign to the largest one, and not from 0.
+    pub(super) signed: bool,
+    /// How it is found, strains being measured as the body's are.
+    pub(super) value: fn(&CellField, Strain) -> f64,
+}
 
-pub(super) const QUANTITIES: [Quantity; 2] = [
-    ("Von Mises stress", "Pa", CellField::von_mises),
-    ("Strain energy density", "J/m\u{b3}", |field| field.energy_density),
+/// Those of which Cauchy's strain knows nothing, the stretches, come last.
+static QUANTITIES: [Quantity; 5] = [
+    Quantity {
+        name: "Von Mises stress",
+        unit: "Pa",
+        signed: false,
+        value: |field, _| field.von_mises(),
+    },
+    Quantity {
+        name: "Strain energy density",
+        unit: "J/m\u{b3}",
+        signed: false,
+        value: |field, _| field.energy_density,
+    },
+    Quantity { name: "Pressure", unit: "Pa", signed: true, value: |field, _| field.pressure() },
+    Quantity {
+        name: "Largest stretch, above 1",
+        unit: "1",
+        signed: false,
+        value: |field, strain| (field.stretches(strain)[0] - 1.0).max(0.0),
+    },
+    Quantity {
+        name: "Least stretch, below 1",
+        unit: "1",
+        signed: false,
+        value: |field, strain| (1.0 - field.stretches(strain)[2]).max(0.0),
+    },
 ];
+
+impl Quantity {
+    /// Those of a body with this measure of strain.
+    pub(super) fn all(strain: Strain) -> &'static [Self] {
+        match strain {
+            Strain::Cauchy => &QUANTITIES[..3],
+            Strain::Green => &QUANTITIES,
+        }
+    }
+
+    /// What a page has to know of it beside its values.
+    pub(super) fn to_json(&self) -> Value {
+        json!({ "name": self.name, "unit": self.unit, "signed": self.signed })
+    }
+
+    /// `values` for a page, the end of their scale, and the largest size of them.
+    pub(super) fn packed(&self, values: &[f32]) -> (Value, f64, f64) {
+        let (scale, peak) = scale(values);
+        let from = if self.signed { -scale } else { 0.0 };
+        (pack::values(values, [from, scale]), scale, peak)
+    }
+}
 
 /// Everything that the page shows of a motion.
 pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error> {
@@ -79,7 +132,8 @@ fn bytes_per_frame(trajectory: &Trajectory, geometry: &Geometry) -> usize {
     // a place and a force of each
     let contacts = 2 * axes * trajectory.scene().obstacles().len();
     let singles = size_of::<f32>() * (sensors + contacts);
-    2 * axes * geometry.count() + QUANTITIES.len() * geometry.cells.len() + singles
+    let quantities = Quantity::all(trajectory.body().strain()).len();
+    2 * axes * geometry.count() + quantities * geometry.cells.len() + singles
 }
 
 /// Positions of the drawn nodes and anchors, sample by sample.
@@ -99,24 +153,29 @@ fn motion(trajectory: &Trajectory, frames: &[&Sample], geometry: &Geometry) -> V
 
 /// The values of each quantity in the cell of each face, sample by sample.
 fn quantities(body: &Body, frames: &[&Sample], geometry: &Geometry) -> Value {
-    let mut values = QUANTITIES.map(|_| Vec::with_capacity(frames.len() * geometry.cells.len()));
+    let quantities = Quantity::all(body.strain());
+    let mut values =
+        vec![Vec::with_capacity(frames.len() * geometry.cells.len()); quantities.len()];
     for sample in frames {
         let fields = body.cell_fields(&sample.u);
-        for ((_, _, value), values) in QUANTITIES.iter().zip(&mut values) {
-            values.extend(geometry.cells.iter().map(|&cell| value(&fields[cell]) as f32));
+        for (quantity, values) in quantities.iter().zip(&mut values) {
+            let of_fields: Vec<f64> =
+                fields.iter().map(|field| (quantity.value)(field, body.strain())).collect();
+            values.extend(geometry.cells.iter().map(|&cell| of_fields[cell] as f32));
         }
     }
-    let packed = QUANTITIES.iter().zip(values).map(|((name, unit, _), values)| {
-        let (scale, peak) = scale(&values);
-        let values = pack::values(&values, scale);
-        json!({ "name": name, "unit": unit, "scale": scale, "peak": peak, "values": values })
+    let packed = quantities.iter().zip(values).map(|(quantity, values)| {
+        let (values, scale, peak) = quantity.packed(&values);
+        let mut told = quantity.to_json();
+        (told["scale"], told["peak"], told["values"]) = (scale.into(), peak.into(), values);
+        told
     });
     packed.collect()
 }
 
-/// The end of the scale for `values`, a round number, and the largest of them.
-pub(super) fn scale(values: &[f32]) -> (f64, f64) {
-    let mut values = values.to_vec();
+/// The end of the scale for the sizes of `values`, a round number, and the largest of them.
+fn scale(values: &[f32]) -> (f64, f64) {
+    let mut values: Vec<f32> = values.iter().map(|value| value.abs()).collect();
     let peak: f64 = values.iter().copied().fold(0.0, f32::max).into();
     let rank = (PERCENTILE * values.len() as f64) as usize;
     let robust = match values.get(rank) {

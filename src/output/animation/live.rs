@@ -2,6 +2,7 @@
 
 use serde_json::{Value, json};
 
+use super::data::Quantity;
 use super::geometry::Geometry;
 use super::{STYLE, data, filled, pack};
 use crate::body::Body;
@@ -40,7 +41,8 @@ impl Picture {
         let points = data::point_masses(mesh);
         let ends = data::spring_ends(scene)?;
         let geometry = Geometry::new(mesh, ends.iter().flatten().copied(), &points);
-        let names = data::QUANTITIES.map(|(name, unit, _)| json!({ "name": name, "unit": unit }));
+        let quantities: Vec<Value> =
+            Quantity::all(scene.body().strain()).iter().map(Quantity::to_json).collect();
         let springs = scene.springs().iter().zip(&ends);
         let springs = springs
             .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends) }));
@@ -48,7 +50,7 @@ impl Picture {
             "axes": axes(mesh),
             "phases": data::phases(scene, &geometry)?,
             "body": geometry.to_json(),
-            "quantities": names,
+            "quantities": quantities,
             "energies": data::ENERGIES,
             "absent": absent(scene),
             "obstacles": data::obstacles(scene),
@@ -93,12 +95,11 @@ impl Picture {
     /// The values of a quantity in the cell of each face, and the end of their scale; none for a number that no
     /// quantity has.
     pub(crate) fn colours(&self, body: &Body, u: &[f64], quantity: usize) -> Option<Value> {
-        let (_, _, value) = data::QUANTITIES.get(quantity)?;
+        let shown = Quantity::all(body.strain()).get(quantity)?;
         let fields = body.cell_fields(u);
-        let values: Vec<f32> =
-            self.geometry.cells.iter().map(|&cell| value(&fields[cell]) as f32).collect();
-        let (scale, _) = data::scale(&values);
-        let values = pack::values(&values, scale);
+        let value = |&cell: &usize| (shown.value)(&fields[cell], body.strain()) as f32;
+        let values: Vec<f32> = self.geometry.cells.iter().map(value).collect();
+        let (values, scale, _) = shown.packed(&values);
         Some(json!({ "quantity": quantity, "scale": scale, "values": values }))
     }
 

@@ -21,9 +21,10 @@ pub(super) fn points(points: &[f64], axes: usize) -> Value {
     json!({ "ranges": ranges, "numbers": STANDARD.encode(bytes) })
 }
 
-/// `values` between 0 and `scale` as 8-bit numbers; what is beyond counts as `scale`.
-pub(super) fn values(values: &[f32], scale: f64) -> Value {
-    let byte = |&value: &f32| share(value.into(), scale, u8::MAX.into()) as u8;
+/// `values` between two others as 8-bit numbers; what is beyond counts as the nearer one.
+pub(super) fn values(values: &[f32], [least, largest]: [f64; 2]) -> Value {
+    let byte =
+        |&value: &f32| share(f64::from(value) - least, largest - least, u8::MAX.into()) as u8;
     STANDARD.encode(values.iter().map(byte).collect::<Vec<u8>>()).into()
 }
 

@@ -105,9 +105,8 @@ function positionsAt() {
 }
 
 /** Value of the chosen quantity in the cell of a face, in 255ths of its scale. */
-function valueAt(_, { scale }, face) {
-  const { colours } = frame;
-  return colours && scale > 0 ? (colouring[face] * colours.scale) / scale || 0 : 0;
+function valueAt(_, { scale, signed }, face) {
+  return rescaled(colouring[face], frame.colours?.scale ?? 0, scale, signed) || 0;
 }
 
 function seriesAt(_, { values }) {

@@ -3,6 +3,12 @@
 /** Number of the chosen quantity; beyond the last: one colour. */
 let chosen = 0;
 
+/** A value in 255ths of the scale that goes to `own`, in 255ths of the one that goes to `scale`; both are 0 at the same place. */
+function rescaled(value, own, scale, signed) {
+  const zero = signed ? 127.5 : 0;
+  return scale > 0 ? zero + ((value - zero) * own) / scale : zero;
+}
+
 /** The choice of quantities; `redraw` is called after a choice. */
 function offerQuantities(quantities, redraw) {
   const choice = document.getElementById("quantity");
@@ -24,16 +30,17 @@ function showScale(quantity) {
   const ends = document.getElementById("ends");
   peak.textContent = "";
   if (!quantity) return;
-  const { factor, unit } = prefixed(quantity.scale, quantity.unit);
+  const { factor, unit } = (quantity.unit === "1" ? scaled : prefixed)(quantity.scale, quantity.unit);
   const most = quantity.scale / factor;
   const beyond = quantity.peak > 1.001 * quantity.scale;
-  const labels = ["0", number(most / 2), `${beyond ? "\u2265 " : ""}${number(most)} ${unit}`];
+  const end = `${beyond ? "\u2265 " : ""}${number(most)} ${unit}`.trim();
+  const labels = quantity.signed ? [number(-most), "0", end] : ["0", number(most / 2), end];
   ends.replaceChildren(...(most > 0 ? labels : ["0 everywhere"]).map((label) => {
-    const end = document.createElement("span");
-    end.textContent = label;
-    return end;
+    const mark = document.createElement("span");
+    mark.textContent = label;
+    return mark;
   }));
   if (beyond) {
-    peak.textContent = `99 % of all cells and times are below; largest ${number(quantity.peak / factor)} ${unit}`;
+    peak.textContent = `99 % of all cells and times are below; largest ${number(quantity.peak / factor)} ${unit}`.trim();
   }
 }

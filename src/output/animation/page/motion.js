@@ -33,10 +33,10 @@ function positionsAt({ before, after, share }) {
 }
 
 /** Value of a quantity in the cell of a face, in 255ths of the scale that is shown. */
-function valueAt({ before, after, share }, { values, own, scale }, face) {
+function valueAt({ before, after, share }, { values, own, scale, signed }, face) {
   const count = body.faces.length;
   const value = between(values, before * count + face, after * count + face, share);
-  return scale > 0 ? (value * own) / scale : 0;
+  return rescaled(value, own, scale, signed);
 }
 
 /** Force of the actuator of a spring (N): that of the sample at hand or, between two, of the next. */

@@ -30,7 +30,7 @@ const pictures = page.motions.map((motion, k) =>
 
 // the same colours for the same values
 pictures[0].quantities.forEach((_, k) => {
-  const same = pictures.map(({ quantities }) => quantities[k]);
+  const same = pictures.map(({ quantities }) => quantities[k]).filter((quantity) => quantity);
   const largest = (key) => Math.max(...same.map((quantity) => quantity[key]));
   const [scale, peak] = [largest("scale"), largest("peak")];
   for (const quantity of same) Object.assign(quantity, { scale, peak });
