@@ -168,6 +168,7 @@ impl<'a> Search<'a> {
     pub(super) fn balance(&mut self) -> Result<(), Stuck> {
         let Statics { rtol, max_iterations, .. } = *self.statics;
         self.shift = self.floor;
+        self.residual = f64::INFINITY;
         self.evaluate()?;
         for iteration in 0..max_iterations {
             self.iterations += 1;
@@ -176,6 +177,7 @@ impl<'a> Search<'a> {
             self.rest.lacking(self.tried, &self.u, &mut self.d);
             self.rest.solve(&self.at.total, &self.d, &mut self.x, &mut self.mu);
             self.keep_place();
+            let before = self.residual;
             self.residual = self.rest.residual(&self.at.total, &self.mu, &mut self.work);
             let (lacking, length) = (largest(&self.d), largest(&self.x));
             if !length.is_finite() {
@@ -189,7 +191,7 @@ impl<'a> Search<'a> {
             }
             let is_newton = self.shift == self.floor;
             let is_round_off = is_newton && length <= 1e-3 * rtol * self.size;
-            if self.residual <= rtol * self.at.scale || is_round_off {
+            if self.residual <= rtol * self.at.scale || is_round_off || self.is_exhausted(before) {
                 return Ok(());
             }
             self.descend((0.5 * self.size / length).min(1.0))?;
@@ -197,6 +199,16 @@ impl<'a> Search<'a> {
         Err(self.stuck(format!(
             "not converged after {max_iterations} iterations: raise max_iterations or load_steps"
         )))
+    }
+
+    /// Whether round-off is all that is left of the forces, and iterations no longer make it less than it was `before`: in a nearly
+    /// incompressible body what nodes pull at each other is so much larger than what is left of it that the tolerance is out of reach.
+    fn is_exhausted(&mut self, before: f64) -> bool {
+        if self.residual < 0.5 * before {
+            return false;
+        }
+        self.work.iter_mut().zip(&self.u).for_each(|(size, u)| *size = u.abs());
+        self.residual <= self.rest.round_off(&self.work)
     }
 
     pub(super) fn evaluate(&mut self) -> Result<(), Stuck> {

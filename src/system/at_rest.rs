@@ -272,6 +272,14 @@ impl AtRest {
         nodal_multipliers(rows, mu, |dof| -f[dof]);
     }
 
+    /// Size of the round-off in nodal forces (N) at displacements of these `sizes` (m): some of the last digits of the terms of K u, of which
+    /// forces are what is left. K is that of the last [`update_tangent`](Self::update_tangent).
+    pub(crate) fn round_off(&self, sizes: &[f64]) -> f64 {
+        let k = self.tangent();
+        let terms = (0..sizes.len()).map(|dof| k.absolute_row_product(dof, sizes));
+        8.0 * f64::EPSILON * terms.fold(0.0, f64::max)
+    }
+
     /// Largest component of f + A mu (N).
     pub(crate) fn residual(&self, f: &[f64], mu: &[f64], work: &mut [f64]) -> f64 {
         work.copy_from_slice(f);

@@ -4,6 +4,7 @@ mod cells;
 mod equations;
 mod finer;
 mod frequencies;
+mod incompressible;
 mod matrices;
 mod meshes;
 mod own_force;
