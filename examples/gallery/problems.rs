@@ -3,7 +3,10 @@
 use clap::ValueEnum;
 use pliant::samples::{self, ClampedBeam, RingRoll};
 use pliant::study::{Problem, Scenes, all_methods};
-use pliant::{Cells, Error, Inertia, InputError, Method, Scene, Settings, Strain};
+use pliant::{
+    Body, Cells, Dilatation, Error, Inertia, InputError, Law, Material, Mesh, Method, Phase, Scene,
+    Settings, SolidCells, Strain,
+};
 
 /// In the order of the page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, ValueEnum)]
@@ -25,6 +28,8 @@ pub enum Sample {
     ClampedBeamLumped,
     ClampedBeamLumpedDamped,
     ClampedBeamMeshes,
+    RubberStVenantKirchhoff,
+    RubberNeoHookean,
 }
 
 /// Viscosity of the damped clamped beam (Pa s): 1 % of critical damping in its lowest mode.
@@ -56,12 +61,17 @@ impl Sample {
             Self::ClampedBeamLumped => "Clamped beam, undamped, lumped inertia",
             Self::ClampedBeamLumpedDamped => "Clamped beam, lightly damped, lumped inertia",
             Self::ClampedBeamMeshes => "Clamped beam, mesh by mesh",
+            Self::RubberStVenantKirchhoff => {
+                "Bent rubber, St. Venant and Kirchhoff's law, mesh by mesh"
+            }
+            Self::RubberNeoHookean => "Bent rubber, neo-Hookean, mesh by mesh",
         }
     }
 
     /// Whether its lines are methods, and not meshes.
     pub fn compares_methods(self) -> bool {
-        self != Self::ClampedBeamMeshes
+        use Sample::{ClampedBeamMeshes, RubberNeoHookean, RubberStVenantKirchhoff};
+        !matches!(self, ClampedBeamMeshes | RubberStVenantKirchhoff | RubberNeoHookean)
     }
 
     /// To be solved at these `tolerances`.
@@ -87,6 +97,8 @@ impl Sample {
             Self::ClampedBeamLumped => beam(Inertia::Lumped, 0.0),
             Self::ClampedBeamLumpedDamped => beam(Inertia::Lumped, LIGHT),
             Self::ClampedBeamMeshes => return Ok(Box::new(meshes(self.title())?)),
+            Self::RubberStVenantKirchhoff => return Ok(Box::new(rubber(self.title(), None)?)),
+            Self::RubberNeoHookean => return Ok(Box::new(rubber(self.title(), Law::NeoHookean)?)),
         };
         let scenes = Scenes::new(self.title(), scene?).tolerances(tolerances);
         let all = all_methods().into_iter();
@@ -119,4 +131,46 @@ fn meshes(title: &str) -> Result<Scenes, Error> {
         scenes = scenes.meshes(cells.name(), meshes, &settings);
     }
     Ok(scenes)
+}
+
+/// A cantilever of rubber by a `law`, St. Venant and Kirchhoff's if none, on meshes of all solid cells with and without a mean dilatation.
+fn rubber(title: &str, law: impl Into<Option<Law>>) -> Result<Scenes, Error> {
+    let law = law.into();
+    let settings = Settings { rtol: 1e-4, ..Settings::default() };
+    let mean = Dilatation::Mean;
+    let mut scenes = Scenes::new(title, bent_rubber(law, SolidCells::Hexahedra20, mean, 6)?)
+        .checked_by(bent_rubber(law, SolidCells::Hexahedra20, mean, 5)?)
+        .finest(1e-3);
+    for (name, cells, dilatation, across) in [
+        ("tetrahedra", SolidCells::Tetrahedra, Dilatation::AtPoints, [1, 2, 4]),
+        ("hexahedra", SolidCells::Hexahedra, Dilatation::AtPoints, [1, 2, 4]),
+        ("hexahedra, mean", SolidCells::Hexahedra, mean, [1, 2, 4]),
+        ("tetrahedra10", SolidCells::Tetrahedra10, Dilatation::AtPoints, [1, 2, 3]),
+        ("tetrahedra10, mean", SolidCells::Tetrahedra10, mean, [1, 2, 3]),
+        ("hexahedra20", SolidCells::Hexahedra20, Dilatation::AtPoints, [1, 2, 3]),
+        ("hexahedra20, mean", SolidCells::Hexahedra20, mean, [1, 2, 3]),
+    ] {
+        let mesh = |n: usize| -> Result<(String, Scene), InputError> {
+            Ok((format!("{} x {n} x {n}", 4 * n), bent_rubber(law, cells, dilatation, n)?))
+        };
+        let meshes = across.into_iter().map(mesh).collect::<Result<Vec<_>, _>>()?;
+        scenes = scenes.meshes(name, meshes, &settings);
+    }
+    Ok(scenes)
+}
+
+/// A block of 12 x 3 x 3 cm with `across` cells along its short sides, nearly incompressible and lightly damped, clamped at
+/// one end; a load that acts at once on the other one bends it until that has moved by 30 % of its length.
+fn bent_rubber(
+    law: Option<Law>,
+    cells: SolidCells,
+    dilatation: Dilatation,
+    across: usize,
+) -> Result<Scene, InputError> {
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 200.0 };
+    let substance = law.map_or(rubber.into(), |law| rubber.law(law));
+    let mesh = Mesh::cuboid([0.12, 0.03, 0.03], [4 * across + 1, across + 1, across + 1], cells)?;
+    let body = Body::new(mesh, substance).strain(Strain::Green).dilatation(dilatation).build()?;
+    let bends = Phase::until(0.05).hold("left").traction("right", [0.0, 0.0, -2400.0]);
+    Ok(Scene::new(body).phase(bends))
 }

@@ -41,6 +41,6 @@ function showScale(quantity) {
     return mark;
   }));
   if (beyond) {
-    peak.textContent = `99 % of all cells and times are below; largest ${number(quantity.peak / factor)} ${unit}`.trim();
+    peak.textContent = `99 % of all cells and times are ${quantity.signed ? "within" : "below"}; largest ${number(quantity.peak / factor)} ${unit}`.trim();
   }
 }
