@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::data::Quantity;
+use super::colours::Quantity;
 use super::geometry::Geometry;
 use super::{STYLE, data, filled, pack};
 use crate::body::Body;

@@ -1,5 +1,6 @@
 //! The motion as a page for a web browser.
 
+mod colours;
 mod contacts;
 mod data;
 mod geometry;
