@@ -20,9 +20,7 @@ impl<T: Real, const M: usize> Principal<T, M> {
         let (along, directions) = principal_of(twice);
         let zero = twice[0][0].constant(0.0);
         let mut values = [zero; 3];
-        for i in 0..M {
-            values[i] = along[i];
-        }
+        values[..M].copy_from_slice(&along);
         if M < 3 {
             let [of_all] = T::each(values, |values| [across(values)]);
             for i in M..3 {
@@ -153,7 +151,7 @@ fn principal_of<T: Real, const M: usize>(mut a: Matrix<T, M, M>) -> ([T; M], Mat
                 let cos = one / (t * t + 1.0).sqrt();
                 let sin = t * cos;
                 a[p][p] = a[p][p] - t * a[p][q];
-                a[q][q] = a[q][q] + t * a[p][q];
+                a[q][q] += t * a[p][q];
                 a[p][q] = zero;
                 a[q][p] = zero;
                 for r in 0..M {
