@@ -66,10 +66,7 @@ const FIBRES: TableKeys = TableKeys::new(
         Key::new("axis", Holds::Vector, "direction of the axis, of any length; none in the plane").default("across the plane"),
         Key::number("pitch", "angle by which they climb along the axis: 0 are rings, others helices", "rad").default("0"),
     ],
-    "material = { density = 1070.0, young = 2.0e5, poisson = 0.49, viscosity = 0.0, fibres = [\n\
-     \x20   { centre = [0.0, 0.0, 0.0], axis = [1.0, 0.0, 0.0], pitch = 0.1, young = 2.0e7 },\n\
-     \x20   { centre = [0.0, 0.0, 0.0], axis = [1.0, 0.0, 0.0], pitch = -0.1, young = 2.0e7 },\n\
-     ] }",
+    "material = { density = 1070.0, young = 2.0e5, poisson = 0.49, viscosity = 0.0, fibres = [{ along = [1.0, 0.2], young = 2.0e7 }] }",
 )
 .one_of(&[&["along"], &["centre"]]);
 
