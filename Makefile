@@ -17,13 +17,12 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 	@echo "The pictures are in $(CURDIR)/out:"
 	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
 
-test: ## Every check: format, lints, tests, documentation and its examples, numbers of instructions
+test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh chromium valgrind
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --features play -- -D warnings
 	cargo test --features play
 	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --features play
-	cargo run --release -p counts
 
 bench: ## What cells and the parts of steps cost, and what has become slower; all others: cargo bench
 	@scripts/setup.sh valgrind
