@@ -24,6 +24,13 @@ pub enum Plane {
     Stress,
 }
 
+impl Plane {
+    /// Whether the section of cells of dimension `M` is free to change.
+    pub(super) const fn is_free<const M: usize>(self) -> bool {
+        M == 1 || M == 2 && matches!(self, Self::Stress)
+    }
+}
+
 /// S = lambda tr(E) I + 2 mu E in the coordinates of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hooke {

@@ -94,11 +94,6 @@ impl Rivlin {
         }
     }
 
-    /// Whether the section is free to change.
-    const fn is_free<const M: usize>(&self) -> bool {
-        M == 1 || M == 2 && matches!(self.across, Plane::Stress)
-    }
-
     /// S, with `volume` for J U'(J).
     #[inline(always)]
     fn second_piola<T: Real, const M: usize>(
@@ -194,7 +189,7 @@ impl Rivlin {
                 elasticity[w][v] = elasticity[v][w];
             }
         }
-        if self.is_free::<M>() {
+        if self.across.is_free::<M>() {
             let ca = at.inverse_across;
             let both =
                 dyadic * ca * ca + p_across * ca * 2.0 + curved * slope_across * slope_across;
@@ -229,7 +224,7 @@ impl ElasticLaw for Rivlin {
 
     #[inline(always)]
     fn point<T: Real, const M: usize>(&self, twice: Matrix<T, M, M>) -> Strained<T, M> {
-        let across = match self.is_free::<M>() {
+        let across = match self.across.is_free::<M>() {
             true => self.free_across(&twice),
             false => twice[0][0].constant(0.0),
         };
@@ -291,7 +286,7 @@ impl ElasticLaw for Rivlin {
     #[inline(always)]
     fn across<T: Real, const M: usize>(&self, at: &Strained<T, M>, pull: Option<T>) -> [T; 2] {
         let zero = at.across.constant(0.0);
-        if M == 3 || self.is_free::<M>() {
+        if M == 3 || self.across.is_free::<M>() {
             return [at.across * 0.5, zero];
         }
         let [volume, _] = self.volume(at, pull);
@@ -308,7 +303,7 @@ impl ElasticLaw for Rivlin {
 
     #[inline(always)]
     fn domain<T: Real, const M: usize>(&self, stretch: T, at: &Strained<T, M>) -> T {
-        match self.is_free::<M>() {
+        match self.across.is_free::<M>() {
             true => stretch * (at.across + 1.0),
             false => stretch,
         }

@@ -32,12 +32,6 @@ pub(super) enum Kind {
     Corotated(Lame),
 }
 
-impl ByStretches {
-    const fn is_free<const M: usize>(&self) -> bool {
-        M == 1 || M == 2 && matches!(self.across, Plane::Stress)
-    }
-}
-
 impl Kind {
     /// W_shape (J/m^3) at the principal values of 2E, l_i^2 - 1.
     fn energy_of_shape(self, twice: [f64; 3]) -> f64 {
@@ -255,7 +249,7 @@ impl ElasticLaw for ByStretches {
 
     #[inline(always)]
     fn point<T: Real, const M: usize>(&self, twice: Matrix<T, M, M>) -> Principal<T, M> {
-        let is_free = self.is_free::<M>();
+        let is_free = self.across.is_free::<M>();
         Principal::new(twice, |along| if is_free { self.kind.free_across::<M>(along) } else { 0.0 })
     }
 
@@ -313,7 +307,7 @@ impl ElasticLaw for ByStretches {
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Blocks<T, D> {
-        let is_free = self.is_free::<M>();
+        let is_free = self.across.is_free::<M>();
         let numbers = at.each_with(pull, |twice, pull| {
             let mut slopes = self.kind.slopes(twice, pull);
             if is_free {
@@ -327,7 +321,7 @@ impl ElasticLaw for ByStretches {
     #[inline(always)]
     fn across<T: Real, const M: usize>(&self, at: &Principal<T, M>, pull: Option<T>) -> [T; 2] {
         let zero = at.twice[2].constant(0.0);
-        if M == 3 || self.is_free::<M>() {
+        if M == 3 || self.across.is_free::<M>() {
             return [at.twice[2] * 0.5, zero];
         }
         [zero, at.each_with(pull, |twice, pull| self.kind.stress(twice, pull))[2]]
@@ -343,7 +337,7 @@ impl ElasticLaw for ByStretches {
 
     #[inline(always)]
     fn domain<T: Real, const M: usize>(&self, stretch: T, at: &Principal<T, M>) -> T {
-        match self.is_free::<M>() {
+        match self.across.is_free::<M>() {
             true => stretch * self.thickness(at),
             false => stretch,
         }
