@@ -10,7 +10,7 @@ use super::records::{self, energy, project};
 use super::run::Run;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
-use super::stage::{At, Stage};
+use super::stage::{At, Stage, Way};
 use crate::constraint::Row;
 use crate::error::Error;
 use crate::external::Live;
@@ -316,7 +316,7 @@ impl Run {
     /// Goes on from the present state by the equations `system` of the phase in force.
     fn resume(&mut self, system: System) {
         self.find_stops();
-        self.stage.ended = Some(Ending::Reached);
+        (self.stage.ended, self.stage.way) = (Some(Ending::Reached), Way::default());
         self.begin_events(&system);
         self.at = At::Rest(system);
         self.remember();

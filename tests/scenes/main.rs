@@ -32,6 +32,7 @@ mod slips;
 mod square_jump;
 mod square_press;
 mod start;
+mod sticking;
 mod threads;
 mod tunnelling;
 mod turning;
