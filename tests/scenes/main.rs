@@ -38,4 +38,5 @@ mod tunnelling;
 mod turning;
 mod varying;
 mod warnings;
+mod watches;
 mod yielding;
