@@ -73,6 +73,8 @@ struct Chosen {
     explicit_step: Option<f64>,
     central_step: Option<f64>,
     patience: u64,
+    #[serde(default)]
+    implicit_step: f64,
 }
 
 impl Head {
@@ -176,8 +178,16 @@ impl Record {
 
 impl From<Choice> for Chosen {
     fn from(choice: Choice) -> Self {
-        let Choice { method, max_order, part, reason, explicit_step, central_step, patience } =
-            choice;
+        let Choice {
+            method,
+            max_order,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+        } = choice;
         let bounded = |step: f64| Some(step).filter(|step| step.is_finite());
         Self {
             method: method.name().into(),
@@ -187,6 +197,7 @@ impl From<Choice> for Chosen {
             explicit_step: bounded(explicit_step),
             central_step: bounded(central_step),
             patience: patience as u64,
+            implicit_step,
         }
     }
 }
@@ -201,6 +212,7 @@ impl Chosen {
             explicit_step: self.explicit_step.unwrap_or(f64::INFINITY),
             central_step: self.central_step.unwrap_or(f64::INFINITY),
             patience: count("patience", self.patience)?,
+            implicit_step: self.implicit_step,
         })
     }
 }

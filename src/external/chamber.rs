@@ -17,6 +17,9 @@ use crate::vector::{cross, dot};
 /// its nodes is p h dS/du in the plane, with the area S of the polygon of its nodes and the
 /// thickness h, and p dV/du in space, with the enclosed volume V. Phases set the pressure
 /// ([`Phase::pressure`](crate::Phase::pressure)); without it a chamber does nothing.
+///
+/// Walls do not feel each other. A run ends with an error where a chamber under pressure encloses a volume below 0; without
+/// pressure, that is a warning.
 #[derive(Debug, Clone)]
 pub struct Chamber {
     name: String,
@@ -143,7 +146,11 @@ impl Chamber {
                 return Err(InputError::new(self.input("in dimension"), dimension, mend));
             }
         };
-        Ok(ChamberForce { name: self.name.clone(), geometry, pressure })
+        let mut force =
+            ChamberForce { name: self.name.clone(), geometry, pressure, has_room: false };
+        let natural = force.volume(&vec![0.0; body.dofs()]);
+        force.has_room = orientation(natural, body) == Some(1.0);
+        Ok(force)
     }
 
     fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {
@@ -198,11 +205,17 @@ fn orientation(enclosed: f64, body: &Body) -> Option<f64> {
     (enclosed.abs() > least).then(|| enclosed.signum())
 }
 
+/// What a volume below 0 means.
+pub(crate) const TURNED: &str = "its walls have passed through each other, which they do not feel. Draw less out of it, make \
+                                 its walls stiffer, or hold them apart by springs between them";
+
 /// The force of one chamber.
 pub(crate) struct ChamberForce {
     name: String,
     geometry: Geometry,
     pressure: Vec<Signal>,
+    /// Whether its walls enclose a volume in the undeformed shape, and are not flat.
+    has_room: bool,
 }
 
 impl ChamberForce {
@@ -212,6 +225,11 @@ impl ChamberForce {
             Geometry::Polygon(polygon, factor) => factor * polygon.area(u),
             Geometry::Surface(surface, factor) => factor * surface.volume(u),
         }
+    }
+
+    /// Whether its walls enclose a volume in the undeformed shape, and are not flat.
+    pub(crate) fn has_room(&self) -> bool {
+        self.has_room
     }
 
     /// Adds `factor` times the derivative of that volume by `u` (m^2).
@@ -363,6 +381,22 @@ impl Force for ChamberForce {
         finite_at(t, format_args!("the pressure in chamber \"{}\"", self.name), pressure)?;
         self.add_gradient(pressure, u, &mut forces.applied);
         Ok(())
+    }
+
+    /// Pressure in a volume below 0 is none: it would draw walls further through each other that it should push apart.
+    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        let pressure = signal::sum(&self.pressure, t);
+        if pressure == 0.0 {
+            return Ok(());
+        }
+        let volume = self.volume(after);
+        if !self.has_room || volume >= 0.0 {
+            return Ok(());
+        }
+        Err(Failure::Recoverable(format!(
+            "chamber \"{}\" encloses {volume:.1e} m^3 at t = {t} s under {pressure} Pa: {TURNED}",
+            self.name
+        )))
     }
 
     fn add_tangents(

@@ -18,7 +18,7 @@ mod tests;
 mod travel;
 
 pub use chamber::Chamber;
-pub(crate) use chamber::ChamberForce;
+pub(crate) use chamber::{ChamberForce, TURNED};
 pub(crate) use contact::Contact;
 pub(crate) use faces::{areas, shares};
 pub(crate) use gravity::Gravity;

@@ -12,6 +12,7 @@
 //! | [`touch`]: how deep nodes are inside obstacles | half a cell, 2 % of the body |
 //! | [`touch`]: obstacles with friction that are met in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never met | none |
+//! | [`chamber`]: the least volume of a chamber | 0 |
 //! | [`pace`]: absolute tolerance of displacements | 1 % of the way that nodes go, or 10 `rtol` |
 //!
 //! Those are measured at the end of each run, and before it as far as they need none. Others take longer, or are no cause
@@ -33,6 +34,7 @@
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
+mod chamber;
 mod coarse;
 mod deformed;
 mod felt;
@@ -129,6 +131,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let missed = || touch::missed(&meetings, touch::Reach::between(scene, &samples));
     let measured = scene.indicators().into_iter().chain(of_cells(trajectory, &samples));
     let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
@@ -141,6 +144,7 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
     let measured = measured.chain(of_cells(trajectory, &samples));
     let measured = measured.chain(touch::depths(&meetings));
     let measured = measured.chain(touch::slippery(trajectory, &meetings));
+    let measured = measured.chain(chamber::volumes(trajectory.scene(), trajectory.samples()));
     measured
         .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())
         .collect()

@@ -187,6 +187,7 @@ impl Session {
             let mend = format!("there are {} sliders, counted from 0", self.sliders.len());
             InputError::new("slider", number, mend)
         })?;
+        self.simulation.check_goes_on()?;
         let (scene, t) = (self.simulation.scene(), self.simulation.time());
         let course = self.record.moved(scene, &slider.target, t, value);
         course.command(&mut self.simulation)
@@ -204,7 +205,9 @@ impl Session {
     }
 
     fn let_go(&mut self) -> Result<(), Error> {
-        self.hand.take().map_or(Ok(()), |hand| hand.let_go(&mut self.simulation))
+        let goes_on = self.simulation.check_goes_on().is_ok();
+        let held = self.hand.take().filter(|_| goes_on);
+        held.map_or(Ok(()), |hand| hand.let_go(&mut self.simulation))
     }
 
     /// Lets a portion of time pass.

@@ -18,11 +18,12 @@ pub(crate) struct Choice {
     /// Part of the tolerances asked for that the method is given.
     pub(crate) part: f64,
     pub(crate) reason: String,
-    /// Longest stable steps of explicit Runge-Kutta and of central differences (s), and steps after which the
-    /// implicit method is tried again: see [`Plan`].
+    /// Longest stable steps of explicit Runge-Kutta and of central differences (s), steps after which the
+    /// implicit method is tried again, and the mean of its last steps (s): see [`Plan`].
     pub(crate) explicit_step: f64,
     pub(crate) central_step: f64,
     pub(crate) patience: usize,
+    pub(crate) implicit_step: f64,
 }
 
 impl Checkpoint {
@@ -36,7 +37,16 @@ impl Checkpoint {
 
     /// The method, if it was chosen.
     pub(crate) fn choice(&self) -> Option<Choice> {
-        let Plan { settings, part, reason, explicit_step, central_step, patience, .. } = &self.plan;
+        let Plan {
+            settings,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+            ..
+        } = &self.plan;
         Some(Choice {
             method: settings.method,
             max_order: settings.max_order,
@@ -45,6 +55,7 @@ impl Checkpoint {
             explicit_step: *explicit_step,
             central_step: *central_step,
             patience: *patience,
+            implicit_step: *implicit_step,
         })
     }
 }
@@ -52,7 +63,16 @@ impl Checkpoint {
 impl Choice {
     /// The plan that this was, under the settings `asked`.
     fn plan(self, asked: &Settings) -> Result<Plan, InputError> {
-        let Self { method, max_order, part, reason, explicit_step, central_step, patience } = self;
+        let Self {
+            method,
+            max_order,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+        } = self;
         if method == Method::Auto {
             return Err(InputError::new("chosen method", method, "it must be one of the others"));
         }
@@ -63,9 +83,19 @@ impl Choice {
         for step in [explicit_step, central_step].into_iter().filter(|step| step.is_finite()) {
             not_negative("longest stable step", step, "s")?;
         }
+        not_negative("mean step of the implicit method", implicit_step, "s")?;
         let reason = Some(reason);
         let asked = asked.clone();
-        Ok(Plan { settings, asked, part, reason, explicit_step, central_step, patience })
+        Ok(Plan {
+            settings,
+            asked,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+        })
     }
 }
 

@@ -27,6 +27,8 @@ pub(super) struct Plan {
     pub(super) central_step: f64,
     /// Steps of explicit Runge-Kutta after which the implicit one is tried again.
     pub(super) patience: usize,
+    /// Mean step (s) of the implicit method when an explicit one took over from it; 0 as long as none has.
+    pub(super) implicit_step: f64,
 }
 
 /// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well
@@ -59,6 +61,10 @@ const CLEARLY: f64 = 0.7;
 /// and a method of higher order is better.
 const SHORT: f64 = 0.1;
 
+/// Part of the way of the implicit method below which an explicit one, for the same cost, does not pay. (Where one pays it is
+/// above 0.8; it may fall as the motion, and not what bounds the steps, becomes faster.)
+const LOSING: f64 = 0.25;
+
 /// Steps on the real axis and on the imaginary one that Dormand-Prince 5(4) takes, times the rate.
 const EXPLICIT_REACH: f64 = 3.3;
 const EXPLICIT_REACH_UNDAMPED: f64 = 1.0;
@@ -77,6 +83,9 @@ const TIGHTEST: f64 = 1e-13;
 pub(super) const TRIAL: usize = 32;
 pub(super) const TRIALS: usize = 4;
 
+/// Steps of a plan after which it is asked how far they have led, whatever legs they lie in.
+pub(super) const LONG: usize = TRIAL * TRIALS;
+
 impl Plan {
     /// The plan for a phase whose equations are `system`, from time `t` and `state` = (u, v, ...).
     pub(super) fn new(asked: &Settings, system: &mut System, t: f64, state: &[f64]) -> Self {
@@ -89,6 +98,7 @@ impl Plan {
                 explicit_step: 0.0,
                 central_step: 0.0,
                 patience: 0,
+                implicit_step: 0.0,
             };
         }
         let n = system.dofs();
@@ -109,6 +119,7 @@ impl Plan {
             explicit_step: explicit_step(&spectrum, alpha.max(relaxation)),
             central_step: if is_for_central { central_step(&spectrum) } else { 0.0 },
             patience: 8 * TRIAL,
+            implicit_step: 0.0,
         }
     }
 
@@ -162,7 +173,7 @@ impl Plan {
         };
         let explicit = |method| {
             let reason = format!("accuracy asks for steps of {step:.1e} s");
-            Some(self.followed_by(method, None, &reason))
+            Some(Self { implicit_step: step, ..self.followed_by(method, None, &reason) })
         };
         let implicit = |central_step| {
             let plan = self.followed_by(
@@ -186,6 +197,22 @@ impl Plan {
             }
             _ => None,
         }
+    }
+
+    /// What to go on with when steps of an explicit method that took over turn out to lead but `step` (s) in the mean:
+    /// the implicit one again, if that led farther for what its steps cost. (What bounds explicit steps may have come
+    /// since: a body that sticks to a floor, or events one after the other.) From then on explicit steps count as that long.
+    pub(super) fn turned_back(&self, step: f64) -> Option<Self> {
+        let (worth, [explicit_step, central_step]) = match self.settings.method {
+            Method::Rk => (WORTH_EXPLICIT, [step, self.central_step]),
+            Method::CentralDifference => (WORTH_CENTRAL, [self.explicit_step, step]),
+            _ => return None,
+        };
+        (worth * step < LOSING * self.implicit_step).then(|| {
+            let reason = format!("steps of {step:.1e} s lead less far for what they cost");
+            let plan = self.followed_by(Method::Arkode, self.asked.max_order, &reason);
+            Self { explicit_step, central_step, ..plan }
+        })
     }
 
     /// What to go on with where commands change the forces again and again, each of which would make BDF start anew.
@@ -308,6 +335,7 @@ mod tests {
             explicit_step: 1.0,
             central_step,
             patience: 8 * TRIAL,
+            implicit_step: 0.0,
         };
         plan.reconsidered(means, TRIAL).map(|plan| plan.settings.method)
     }

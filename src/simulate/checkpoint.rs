@@ -1,5 +1,6 @@
 //! States of a simulation to come back to.
 
+use std::fmt;
 use std::sync::Arc;
 
 use super::auto::Plan;
@@ -43,6 +44,16 @@ pub(crate) struct Kept {
     pub(crate) balance: f64,
     /// Error, rise and scale of the energy balance (J).
     pub(crate) energies: [f64; 3],
+}
+
+/// Short: where it was made.
+impl fmt::Debug for Checkpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Checkpoint")
+            .field("time", &self.kept.time)
+            .field("phase", &self.kept.phase.name)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Checkpoint {

@@ -10,7 +10,8 @@ use crate::mesh::Selection;
 use crate::scene::{Load, Phase, Scene};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
-/// phase ends: the next phase of the scene begins as the scene has it.
+/// phase ends: the next phase of the scene begins as the scene has it. At the end of the scene, where nothing is left for
+/// them to act on, all of them are errors.
 ///
 /// Commands that change forces alone keep matrices and orderings. `rk` and `arkode` go on with the step size they
 /// had; `cvode-bdf`, `cvode-adams` and the IDA methods begin anew with small steps of order 1. So
@@ -196,6 +197,7 @@ impl Simulation {
             return Ok(false);
         }
         let Some(live) = find(&self.run.phase) else { return Ok(false) };
+        self.check_goes_on()?;
         finite(input, values)?;
         if self.run.time > self.time {
             self.run.set_state(self.time, &self.now)?;
@@ -221,6 +223,7 @@ impl Simulation {
         change: Change,
         edit: impl FnOnce(&mut Phase, &Scene) -> Result<(), InputError>,
     ) -> Result<(), Error> {
+        self.check_goes_on()?;
         if self.run.time <= self.time {
             self.run.leave_phase()?;
         }

@@ -7,13 +7,33 @@ use crate::report::Counts;
 /// Steps in a row that may be too small to move time ahead in double precision.
 pub(super) const STANDING: usize = 100;
 
+/// Mean step, in units of round-off of the time, below which a run does not get on.
+const CRAWLING: f64 = 16.0;
+
 pub(super) fn standing_still(refusal: &str) -> Failed {
-    let reason = match refusal {
-        "" => "the motion changes without end in no time: check the model near this time",
-        reason => reason,
-    };
+    let reason = change_in_no_time(refusal);
     format!("{STANDING} steps, too small to move time ahead, have not led past this: {reason}")
         .into()
+}
+
+/// The error of `count` steps up to `time` (s) whose mean size is `step` (s), if that is nothing.
+pub(super) fn crawling(count: usize, step: f64, time: f64, refusal: &str) -> Option<Failed> {
+    let reason = change_in_no_time(refusal);
+    (step < CRAWLING * f64::EPSILON * time.abs()).then(|| {
+        format!("{count} steps of {step:.1e} s in the mean, which is next to round-off, lead nowhere: {reason}")
+            .into()
+    })
+}
+
+fn change_in_no_time(refusal: &str) -> &str {
+    match refusal {
+        "" => {
+            "the motion changes without end in no time: a part of the body has collapsed or is driven without end, or a force \
+             has no meaning there (walls that have passed through each other, a contact, spring or load that is far too stiff or \
+             large); look at the last samples, and at what acts near this time"
+        }
+        reason => reason,
+    }
 }
 
 pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {

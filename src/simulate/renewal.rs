@@ -10,7 +10,7 @@ use super::records::{self, energy, project};
 use super::run::Run;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
-use super::stage::{At, Stage};
+use super::stage::{At, Stage, Way};
 use crate::constraint::Row;
 use crate::error::Error;
 use crate::external::Live;
@@ -74,7 +74,13 @@ impl Run {
 
     /// Energies of `state` = (u, v, energies) at time `t` (s).
     pub(super) fn energy(&self, t: f64, state: &[f64]) -> Energy {
-        self.system().map_or_else(Energy::default, |system| energy(system, t, state))
+        match self.system() {
+            Some(system) => energy(system, t, state),
+            // lost in a panic, or with an integrator that could not be made
+            None => self
+                .equations(&self.phase, &self.state)
+                .map_or_else(|_| Energy::default(), |system| energy(&system, t, state)),
+        }
     }
 
     /// The sample of `state` = (u, v, energies) at time `t` (s).
@@ -275,7 +281,10 @@ impl Run {
 
     /// A run of its own from `state` = (u, v, energies) at time `t` (s) on.
     pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
-        let rows = self.system().map_or_else(Vec::new, |system| system.rows().to_vec());
+        let rows = match self.system() {
+            Some(system) => system.rows().to_vec(),
+            None => self.equations(&self.phase, &self.state)?.rows().to_vec(),
+        };
         let phase = self.phase.frozen();
         let forces = self.scene.forces_in(&phase)?;
         let (alpha, name) = (self.settings.alpha, &phase.name);
@@ -316,7 +325,7 @@ impl Run {
     /// Goes on from the present state by the equations `system` of the phase in force.
     fn resume(&mut self, system: System) {
         self.find_stops();
-        self.stage.ended = Some(Ending::Reached);
+        (self.stage.ended, self.stage.way) = (Some(Ending::Reached), Way::default());
         self.begin_events(&system);
         self.at = At::Rest(system);
         self.remember();
@@ -359,6 +368,8 @@ impl Run {
             self.trajectory.replace_last(now);
         }
         self.sample_from(self.time);
+        // what was sampled at other times is not gone back behind
+        self.remember();
     }
 
     /// Takes the samples after time `t` (s), whether they were taken before or not.

@@ -1,5 +1,7 @@
 //! A simulation that other programs hold in their hands.
 
+use std::fmt;
+use std::mem::take;
 use std::ops::ControlFlow;
 use std::time::Instant;
 
@@ -41,8 +43,12 @@ use crate::trajectory::{Sample, Trajectory};
 /// the next look after each command ends a step there.
 ///
 /// After an error that is no [`Error::Integration`] the simulation is as it was before the call; after one of
-/// those it rests where the integrator gave up. A panic of a function that was given to the scene or the
-/// simulation becomes such an error, too.
+/// those it rests where the integrator gave up, and after one of an event, where that was looked at. A panic of a function that
+/// was given to the scene or the simulation becomes such an error, too.
+///
+/// [`Method::Auto`](crate::Method::Auto) goes back where a method has created energy, and on by another one. Time as it is seen
+/// here never runs backwards, and what came before the last command stays; but the motion since, though it was seen, may
+/// have been another one than what goes on.
 pub struct Simulation {
     pub(super) run: Run,
     /// The present: at the end of the last step or within it.
@@ -72,6 +78,17 @@ impl Scene {
         let run = Run::new(self, settings, sampling, clock, own, first)?;
         let (time, now) = (run.time, run.state.clone());
         Ok(Simulation { run, time, now, commanded: false, watches: Vec::new() })
+    }
+}
+
+/// Short: where it is.
+impl fmt::Debug for Simulation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Simulation")
+            .field("time", &self.time)
+            .field("phase", &self.run.phase.name)
+            .field("steps", &self.run.steps)
+            .finish_non_exhaustive()
     }
 }
 
@@ -214,10 +231,10 @@ impl Simulation {
     /// gives up.
     pub fn advance_to(&mut self, t: f64) -> Result<bool, Error> {
         self.check(t)?;
-        self.run.pause = Some(t).filter(|_| self.commanded);
-        self.commanded = false;
+        let commanded = take(&mut self.commanded);
+        self.run.pause = Some(t).filter(|_| commanded);
         if !self.watches.is_empty() {
-            let arrival = self.advance_watched(t, None);
+            let arrival = self.advance_watched(t, None, commanded);
             self.run.pause = None;
             return Ok(arrival? == Arrival::Time);
         }
@@ -249,8 +266,8 @@ impl Simulation {
         mut event: impl FnMut(&View) -> f64,
     ) -> Result<bool, Error> {
         self.check(t)?;
-        self.commanded = false;
-        Ok(self.advance_watched(t, Some(&mut event))? == Arrival::Event)
+        let commanded = take(&mut self.commanded);
+        Ok(self.advance_watched(t, Some(&mut event), commanded)? == Arrival::Event)
     }
 
     /// Calls `controller` now and after each `period` (s), until time `t` (s): it looks and gives commands. Returns
@@ -282,11 +299,12 @@ impl Simulation {
     /// counts as supplied from outside.
     ///
     /// # Errors
-    /// Numbers that are not finite: the state stays as it was.
+    /// Numbers that are not finite: the state stays as it was. A scene that has ended.
     pub fn change_state(
         &mut self,
         change: impl FnOnce(&mut [f64], &mut [f64]),
     ) -> Result<(), Error> {
+        self.check_goes_on()?;
         let before = self.energy().balance();
         let mut state = self.now.clone();
         let parts = StateMut::of(&mut state, self.run.scene.body().dofs());
@@ -328,6 +346,16 @@ impl Simulation {
         let run = self.run.fork(self.time, &self.now)?;
         let (time, now, commanded) = (self.time, self.now.clone(), self.commanded);
         Ok(Self { run, time, now, commanded, watches: Vec::new() })
+    }
+
+    /// Checks that there is time left for a command to act in.
+    pub(crate) fn check_goes_on(&self) -> Result<(), InputError> {
+        let (time, end) = (self.time, self.run.scene.end());
+        if time < end {
+            return Ok(());
+        }
+        let mend = "the scene has ended, and nothing moves any more: restore a checkpoint, or let the last phase end later";
+        Err(InputError::new("command at time", format!("{time} s"), mend))
     }
 
     fn check(&self, t: f64) -> Result<(), InputError> {

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::auto::{Plan, TRIALS};
+use super::auto::{LONG, Plan, TRIALS};
 use super::events::Events;
 use super::leg::{Ending, Leg};
 use super::sampling::Schedule;
@@ -24,6 +24,7 @@ pub(super) struct Stage {
     pub(super) commands: usize,
     /// First step of the next integrator (s), if it is known.
     pub(super) first_step: Option<f64>,
+    pub(super) way: Way,
     /// What the integrators have cost that are done.
     counts: Counts,
     /// Unknowns of the last one.
@@ -55,6 +56,25 @@ pub(super) struct Work {
     pub(super) means: [f64; TRIALS],
 }
 
+/// How far the last steps of a plan have led, whatever legs they lay in.
+#[derive(Default)]
+pub(super) struct Way {
+    steps: usize,
+    /// Where the first one began (s).
+    began: f64,
+}
+
+impl Way {
+    /// Adds a step; after each [`LONG`] of them gives their mean size (s).
+    pub(super) fn add(&mut self, [start, end]: [f64; 2]) -> Option<f64> {
+        if self.steps == 0 {
+            self.began = start;
+        }
+        self.steps = (self.steps + 1) % LONG;
+        (self.steps == 0).then(|| (end - self.began) / LONG as f64)
+    }
+}
+
 impl Work {
     pub(super) fn new(stepper: Box<dyn Stepper>, time: f64, stop: f64) -> Self {
         let sample = vec![0.0; stepper.state().len()];
@@ -74,6 +94,7 @@ impl Stage {
             ended: Some(Ending::Reached),
             commands: 0,
             first_step: None,
+            way: Way::default(),
             counts: Counts::default(),
             states: 0,
         }
@@ -81,7 +102,7 @@ impl Stage {
 
     /// Goes on with another plan.
     pub(super) fn follow(&mut self, plan: Plan) {
-        self.plan = plan;
+        (self.plan, self.way) = (plan, Way::default());
         self.counts.notice = None;
     }
 

@@ -1,8 +1,8 @@
 //! The steps of a leg: how far they go, what casts doubt on them, and the samples within them.
 
-use super::auto::TRIAL;
+use super::auto::{LONG, TRIAL};
 use super::events::Met;
-use super::failure::{STANDING, standing_still, too_many_steps};
+use super::failure::{STANDING, crawling, standing_still, too_many_steps};
 use super::leg::{Ending, Good, Outcome};
 use super::progress::{Observer, Progress};
 use super::records::{self, energy};
@@ -38,6 +38,7 @@ impl Run {
             work.stepper.stop_at(stop)?;
             work.stop = stop;
         }
+        let start = self.time;
         let (step, is_event) = match self.step(work)? {
             Outcome::Taken(step) => (step, false),
             Outcome::CutOff(step) => (step, true),
@@ -58,6 +59,16 @@ impl Run {
             }
         }
         self.report_progress(step, work.stepper.last_order(), observer)?;
+        let led = self.stage.way.add([start, self.time]);
+        if let Some(mean) = led {
+            let refusal = work.stepper.system().refusal();
+            if let Some(failed) = crawling(LONG, mean, self.time, refusal) {
+                return Err(failed);
+            }
+            if let Some(other) = self.stage.plan.turned_back(mean) {
+                return Ok(Some(Ending::Better(other)));
+            }
+        }
         if is_event {
             return Ok(Some(Ending::Event));
         }

@@ -1,5 +1,6 @@
 //! What is seen of a simulation at one time.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::body::{Body, CellField};
@@ -44,6 +45,16 @@ impl Gauges {
             forces.push(chamber.clone());
         }
         forces
+    }
+}
+
+/// Short: where it is.
+impl fmt::Debug for View<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("View")
+            .field("time", &self.time)
+            .field("phase", &self.phase.name)
+            .finish_non_exhaustive()
     }
 }
 

@@ -120,9 +120,9 @@ impl Energy {
         self.kinetic + stored + self.dissipated - self.supplied
     }
 
-    /// Sum of all but gravity, whose zero is arbitrary, as the scale of the balance.
+    /// Sum of all but gravity, whose zero is arbitrary, as the scale of the balance; potentials may be below 0.
     pub(crate) fn size(&self) -> f64 {
-        let stored = self.strain + self.contact + self.springs;
+        let stored = self.strain.abs() + self.contact.abs() + self.springs.abs();
         self.kinetic + stored + self.dissipated.abs() + self.supplied.abs()
     }
 }

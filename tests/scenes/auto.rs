@@ -178,6 +178,34 @@ fn a_choice_that_creates_energy_is_revoked() {
     assert!(apart < 2e-6, "{apart}");
 }
 
+/// Samples that are asked for in mid-run are all taken, though the run goes back behind them to another method.
+#[test]
+fn what_is_recorded_before_a_choice_is_revoked_is_complete() {
+    let scene = bar_with_undamped_end(1e6);
+    let mut revoked = 0;
+    for asked in 1..20 {
+        let mut bar = scene.start(&auto(1e-2)).unwrap();
+        bar.record(&Sampling::every(0.05)).unwrap();
+        let asked = 0.01 * f64::from(asked);
+        bar.advance_to(asked).unwrap();
+        let before = bar.report().phases[0].reason.clone();
+        bar.record(&Sampling::every(0.002)).unwrap();
+        bar.advance_to(scene.end()).unwrap();
+        revoked += usize::from(before != bar.report().phases[0].reason);
+        let motion = bar.into_trajectory();
+        let times: Vec<f64> = motion.samples().iter().map(|sample| sample.time).collect();
+        assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{asked}: {times:?}");
+        let fine = times.iter().filter(|time| **time > asked + 1e-9).count();
+        // the last step of the advance may have led on by some samples, which are not asked for
+        let all = ((scene.end() - asked) / 0.002).round() as usize;
+        assert!((all - 10..=all).contains(&fine), "{asked}: {fine} of {all}");
+        let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let widest = gaps.skip_while(|gap| *gap > 0.0021).fold(0.0, f64::max);
+        assert!(widest < 0.0021, "{asked}: {widest} s");
+    }
+    assert!(revoked > 0);
+}
+
 /// Where the fastest motions are damped far less than the slowest one, BDF is not even tried.
 #[test]
 fn the_damping_of_fast_motions_counts() {

@@ -264,3 +264,71 @@ fn names_with_typing_errors_are_understood() {
     let message = strip.move_obstacle("plate", [0.0]).unwrap_err().to_string();
     assert!(message.contains("velocity") && message.contains("2 component"), "{message}");
 }
+
+/// After a panic a fork is held where the simulation is, and both have energies.
+#[test]
+fn a_fork_after_a_panic_keeps_what_is_held() {
+    for method in [Method::Auto, Method::CvodeBdf, Method::Arkode, Method::Rk] {
+        let mut strip = strip().start(&settings(method, 1e-6)).unwrap();
+        strip.advance_to(0.01).unwrap();
+        strip
+            .load_with("right", |t| if t > 0.02 { panic!("sabotage") } else { [0.0, 0.0] })
+            .unwrap();
+        strip.advance_to(0.05).unwrap_err();
+        let mut fork = strip.fork().unwrap();
+        let energies = [strip.energy(), fork.energy()];
+        assert_eq!(energies[0], energies[1], "{method}");
+        assert!(energies[0].gravity != 0.0, "{method}: {energies:?}");
+        fork.load("right", [0.0, 0.0]).unwrap();
+        fork.advance_to(0.05).unwrap();
+        let clamped = fork.view().position("left").unwrap();
+        let natural = strip.view().position("left").unwrap();
+        let moved = (clamped[0] - natural[0]).hypot(clamped[1] - natural[1]);
+        // free, it would fall by some 4 mm
+        assert!(moved < 1e-9, "{method}: {moved:e} m");
+    }
+}
+
+/// At the end of a scene commands have nothing to act on, and say so.
+#[test]
+fn commands_after_the_end_are_refused() {
+    type Command<'a> = &'a dyn Fn(&mut Simulation) -> Result<(), Error>;
+    let commands: [Command; 10] = [
+        &|strip| strip.pressure("inside", 1.0),
+        &|strip| strip.actuate("tendon", 1.0),
+        &|strip| strip.load("right", [0.0, 1.0]),
+        &|strip| strip.load_with("right", |_| [0.0, 1.0]),
+        &|strip| strip.hold("right"),
+        &|strip| strip.move_nodes("right", [0.0, 1.0]),
+        &|strip| strip.release("left"),
+        &|strip| strip.contact("plate", false),
+        &|strip| strip.move_obstacle("plate", [0.0, 1.0]),
+        &|strip| strip.change_state(|_, v| v.fill(0.0)),
+    ];
+    let mut strip = strip().start(&settings(Method::Arkode, 1e-4)).unwrap();
+    strip.pressure("inside", 0.0).unwrap();
+    strip.load("right", [0.0, 0.0]).unwrap();
+    let start = strip.checkpoint();
+    strip.advance_to(0.1).unwrap();
+    let last = strip.sample().unwrap();
+    for command in commands {
+        let message = command(&mut strip).unwrap_err().to_string();
+        assert!(message.contains("0.1 s") && message.contains("has ended"), "{message}");
+        assert_eq!(strip.sample().unwrap(), last);
+    }
+    strip.restore(&start).unwrap();
+    commands.into_iter().for_each(|command| command(&mut strip).unwrap());
+}
+
+/// What is printed of a simulation, of a checkpoint and of a view is where they are, in one line.
+#[test]
+fn debug_tells_where_it_is() {
+    let mut strip = strip().start(&settings(Method::Arkode, 1e-4)).unwrap();
+    strip.advance_to(0.025).unwrap();
+    let checkpoint = strip.checkpoint();
+    for told in [format!("{strip:?}"), format!("{checkpoint:?}"), format!("{:?}", strip.view())] {
+        println!("{told}");
+        assert!(told.contains("time: 0.025") && told.contains("phase: \"phase 1\""), "{told}");
+        assert!(told.len() < 100 && !told.contains('\n'), "{told}");
+    }
+}

@@ -413,3 +413,42 @@ fn friction_in_statics() {
     assert_eq!(warnings(0.0, 0.0), NONE);
     only(&warnings(-0.05, 0.9), &["never touched"]);
 }
+
+/// A well in which a body swings: its potential is below 0 all the time, and by more than the body's kinetic energy is above.
+struct Well;
+
+impl pliant::force::Force for Well {
+    fn add_forces(
+        &self,
+        _t: f64,
+        u: &[f64],
+        _v: &[f64],
+        forces: &mut pliant::force::NodalForces,
+    ) -> Result<(), pliant::ode::Failure> {
+        forces.conservative.iter_mut().zip(u).for_each(|(f, u)| *f -= 10.0 * u);
+        Ok(())
+    }
+
+    fn reservoir(&self) -> pliant::force::Reservoir {
+        pliant::force::Reservoir::Springs
+    }
+
+    fn potential(&self, _t: f64, u: &[f64]) -> f64 {
+        u.iter().map(|u| 5.0 * u * u).sum::<f64>() - 100.0
+    }
+}
+
+/// The balance is measured by the size of energies that are below 0, too: an error of round-off is none.
+#[test]
+fn energies_below_zero_are_energies() {
+    let body = square(Cells::Triangles, SOFT).build().unwrap();
+    let scene = Scene::new(body).initial_velocity(|_| vec![0.1, 0.0]).force(Well);
+    let motion = scene
+        .phase(Phase::until(0.3))
+        .simulate(&Settings::default(), &Sampling::every(0.02))
+        .unwrap();
+    let report = motion.report();
+    assert!(report.energy_error > 0.0 && motion.samples().iter().all(|s| s.energy.springs < -90.0));
+    let warnings = report.warnings();
+    assert!(!warnings.iter().any(|warning| warning.contains("energ")), "{warnings:?}");
+}
