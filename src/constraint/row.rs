@@ -116,6 +116,13 @@ impl Row {
         }
     }
 
+    /// The node of a row of a single one, of a body in `dimension` dimensions.
+    pub(crate) fn node(&self, dimension: usize) -> Option<usize> {
+        let mut nodes = self.terms.iter().map(|(dof, _)| dof / dimension);
+        let first = nodes.next();
+        first.filter(|first| nodes.all(|node| node == *first))
+    }
+
     /// The nodes and axes of the row, nodes counted from 1, for messages.
     pub(crate) fn label(&self, dimension: usize) -> String {
         let name = |&(dof, _): &(usize, f64)| {

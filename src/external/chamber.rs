@@ -1,21 +1,24 @@
 //! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
 
+mod enclosure;
 #[cfg(test)]
 mod tests;
 mod walls;
+
+use enclosure::{Polygon, Surface};
 
 use super::signal::{self, Signal, finite_at};
 use crate::body::Body;
 use crate::force::{Force, NodalForces, Tangents};
 use crate::input::{InputError, positive};
-use crate::mesh::{Mesh, Selection};
+use crate::mesh::Selection;
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
-use crate::vector::{cross, dot};
 
 /// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart: the force on
-/// its nodes is p h dS/du in the plane, with the area S of the polygon of its nodes and the
-/// thickness h, and p dV/du in space, with the enclosed volume V. Phases set the pressure
+/// its nodes is p h dS/du in the plane, with the area S within its walls and the
+/// thickness h, and p dV/du in space, with the enclosed volume V. Walls with mid nodes are curved as
+/// the shape functions have it. Phases set the pressure
 /// ([`Phase::pressure`](crate::Phase::pressure)); without it a chamber does nothing.
 ///
 /// Walls do not feel each other. A run ends with an error where a chamber under pressure encloses a volume below 0; without
@@ -42,14 +45,11 @@ impl Chamber {
     /// nodes belong to it. The chamber lies on their other side than the body.
     /// - In the plane they make closed loops, rooms with the same pressure; or one of them is open and
     ///   [closed by a line](Self::closed_by_line).
-    /// - In space they make closed surfaces. Quadratic faces count as four triangles,
-    ///   quadrilaterals as the mean of both their divisions into two.
+    /// - In space they make closed surfaces.
     ///
     /// Numbers in the plane are a closed polygon, given in its order around, either way; it need not
-    /// lie on the boundary. Pressure enlarges its area; if that is 0 (a flat membrane), the chamber
+    /// lie on the boundary. Where they run along edges of cells with mid nodes, these are curved. Pressure enlarges its area; if that is 0 (a flat membrane), the chamber
     /// is on the other side of the boundary than the body. In space they are as a named set.
-    ///
-    /// Edges with mid nodes count as two straight ones.
     pub fn within(name: impl Into<String>, nodes: impl Into<Selection>) -> Self {
         Self::new(name.into(), Walls::Nodes(nodes.into()))
     }
@@ -155,10 +155,11 @@ impl Chamber {
 
     fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {
         let mesh = body.mesh();
-        let polygon = Polygon::new(mesh, self.edges(mesh, selection)?);
-        let area = polygon.area(&vec![0.0; body.dofs()]);
+        let edges = self.edges(mesh, selection)?;
+        let polygon = Polygon::new(mesh, walls::edge_parts(&edges));
+        let area = polygon.measure(&vec![0.0; body.dofs()]);
         let by_area = orientation(area, body);
-        let by_boundary = || walls::against_boundary(mesh, &polygon.edges);
+        let by_boundary = || walls::against_boundary(mesh, &edges);
         let sign = match selection {
             // the cells of a string have no sides
             Selection::Set(_) | Selection::Box { .. } if mesh.kind().dimension() == 2 => {
@@ -173,7 +174,7 @@ impl Chamber {
 
     /// 1 or -1, so that pressure enlarges the volume.
     fn surface_sign(&self, body: &Body, surface: &Surface) -> Result<f64, InputError> {
-        let volume = surface.volume(&vec![0.0; body.dofs()]);
+        let volume = surface.measure(&vec![0.0; body.dofs()]);
         orientation(volume, body).ok_or_else(|| self.encloses_nothing("volume (m^3)", volume))
     }
 
@@ -222,8 +223,8 @@ impl ChamberForce {
     /// The volume that its walls enclose under the displacements `u` (m^3).
     pub(crate) fn volume(&self, u: &[f64]) -> f64 {
         match &self.geometry {
-            Geometry::Polygon(polygon, factor) => factor * polygon.area(u),
-            Geometry::Surface(surface, factor) => factor * surface.volume(u),
+            Geometry::Polygon(polygon, factor) => factor * polygon.measure(u),
+            Geometry::Surface(surface, factor) => factor * surface.measure(u),
         }
     }
 
@@ -241,132 +242,11 @@ impl ChamberForce {
     }
 }
 
-fn position<const D: usize>(mesh: &Mesh, node: usize) -> [f64; D] {
-    std::array::from_fn(|i| mesh.position(node)[i])
-}
-
-/// Where `nodes` with the undeformed positions `from` are under the displacements `u`.
-fn present<const N: usize, const D: usize>(
-    nodes: &[usize; N],
-    from: &[[f64; D]; N],
-    u: &[f64],
-) -> [[f64; D]; N] {
-    std::array::from_fn(|k| std::array::from_fn(|i| from[k][i] + u[D * nodes[k] + i]))
-}
-
 /// What encloses a chamber, with the factor from p times the gradient of its area or volume to
 /// the force: +-h, or +-1.
 enum Geometry {
     Polygon(Polygon, f64),
     Surface(Surface, f64),
-}
-
-/// Closed polygons.
-struct Polygon {
-    edges: Vec<[usize; 2]>,
-    /// Natural positions of their ends.
-    ends: Vec<[[f64; 2]; 2]>,
-}
-
-impl Polygon {
-    fn new(mesh: &Mesh, edges: Vec<[usize; 2]>) -> Self {
-        let ends = edges.iter().map(|nodes| nodes.map(|node| position(mesh, node))).collect();
-        Self { edges, ends }
-    }
-
-    /// Edges with the present positions of their ends.
-    fn iter<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (&'a [usize; 2], [[f64; 2]; 2])> {
-        self.edges.iter().zip(&self.ends).map(|(nodes, ends)| (nodes, present(nodes, ends, u)))
-    }
-
-    /// Signed area S = (1/2) sum (x_a y_b - x_b y_a) over the edges ab.
-    fn area(&self, u: &[f64]) -> f64 {
-        self.iter(u).map(|(_, [a, b])| 0.5 * (a[0] * b[1] - b[0] * a[1])).sum()
-    }
-
-    /// Adds `factor` dS/du.
-    fn add_gradient(&self, factor: f64, u: &[f64], forces: &mut [f64]) {
-        let half = 0.5 * factor;
-        for ([node, next], [a, b]) in self.iter(u) {
-            // both ends take half of the normal: edges that share a node make up the shoelace formula
-            for node in [node, next] {
-                forces[2 * node] += half * (b[1] - a[1]);
-                forces[2 * node + 1] += half * (a[0] - b[0]);
-            }
-        }
-    }
-
-    /// Adds `factor` d^2S/du^2, which does not depend on u.
-    fn add_hessian(&self, factor: f64, matrix: &mut BlockMatrix) {
-        let half = 0.5 * factor;
-        for &[node, next] in &self.edges {
-            for (row, column, sign) in [(node, next, 1.0), (next, node, -1.0)] {
-                if let Some(block) = matrix.block_mut(row, column) {
-                    block[1] += sign * half;
-                    block[2] -= sign * half;
-                }
-            }
-        }
-    }
-}
-
-/// The corners of a triangle, and what it counts as: where surfaces are means of others, they are parts of 1.
-type Triangle = ([usize; 3], f64);
-
-struct Surface {
-    triangles: Vec<Triangle>,
-    /// Natural positions of their corners.
-    corners: Vec<[[f64; 3]; 3]>,
-}
-
-impl Surface {
-    fn new(mesh: &Mesh, triangles: Vec<Triangle>) -> Self {
-        let corners = triangles.iter().map(|(nodes, _)| nodes.map(|node| position(mesh, node)));
-        let corners = corners.collect();
-        Self { triangles, corners }
-    }
-
-    /// Triangles with the present positions of their corners.
-    fn iter<'a>(&'a self, u: &'a [f64]) -> impl Iterator<Item = (&'a Triangle, [[f64; 3]; 3])> {
-        let triangles = self.triangles.iter().zip(&self.corners);
-        triangles.map(|(triangle, corners)| (triangle, present(&triangle.0, corners, u)))
-    }
-
-    /// Signed volume V = (1/6) sum a . (b x c) over the triangles abc.
-    fn volume(&self, u: &[f64]) -> f64 {
-        self.iter(u).map(|((_, part), [a, b, c])| part * dot(&a, &cross(&b, &c)) / 6.0).sum()
-    }
-
-    /// Adds `factor` dV/du.
-    fn add_gradient(&self, factor: f64, u: &[f64], forces: &mut [f64]) {
-        for ((nodes, part), x) in self.iter(u) {
-            let factor = factor * part;
-            for k in 0..3 {
-                let normal = cross(&x[(k + 1) % 3], &x[(k + 2) % 3]);
-                for i in 0..3 {
-                    forces[3 * nodes[k] + i] += factor / 6.0 * normal[i];
-                }
-            }
-        }
-    }
-
-    /// Adds `factor` d^2V/du^2: for the edge from a to b of a triangle abc, the blocks
-    /// -[c x]/6 and, transposed, [c x]/6.
-    fn add_hessian(&self, factor: f64, u: &[f64], matrix: &mut BlockMatrix) {
-        for ((nodes, part), x) in self.iter(u) {
-            let factor = factor * part;
-            for k in 0..3 {
-                let (a, b) = (nodes[k], nodes[(k + 1) % 3]);
-                let c = x[(k + 2) % 3].map(|c| factor / 6.0 * c);
-                let times = [0.0, -c[2], c[1], c[2], 0.0, -c[0], -c[1], c[0], 0.0];
-                for (row, column, sign) in [(a, b, -1.0), (b, a, 1.0)] {
-                    if let Some(block) = matrix.block_mut(row, column) {
-                        block.iter_mut().zip(&times).for_each(|(x, c)| *x += sign * c);
-                    }
-                }
-            }
-        }
-    }
 }
 
 impl Force for ChamberForce {
@@ -421,11 +301,8 @@ impl Force for ChamberForce {
 
     fn couplings(&self) -> Vec<[usize; 2]> {
         match &self.geometry {
-            Geometry::Polygon(polygon, _) => polygon.edges.clone(),
-            Geometry::Surface(surface, _) => {
-                let edges = |&([a, b, c], _): &Triangle| [[a, b], [b, c], [c, a]];
-                surface.triangles.iter().flat_map(edges).collect()
-            }
+            Geometry::Polygon(polygon, _) => polygon.couplings(),
+            Geometry::Surface(surface, _) => surface.couplings(),
         }
     }
 }

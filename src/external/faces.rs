@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::surface::section;
+use super::surface::{pieces, section};
 use crate::body::Body;
 use crate::element::{
     Quadrilateral, Quadrilateral8, ReferenceCell, Segment, Segment3, Triangle, Triangle6,
 };
 use crate::mesh::{Face, FaceKind, Mesh};
+use crate::tensor::determinant;
 use crate::vector::{cross, norm};
 
 /// Nodes of a face at most.
@@ -62,6 +63,41 @@ impl FacePoint {
         tangents
     }
 }
+
+/// What a face of `N` corners takes part in the area or volume within walls by: (1/N!) sum w det(x_a, ...) over sets of
+/// `N` of its nodes, local numbers, with the weight w of each. They are straight pieces of a face without mid nodes; with
+/// them, w = (N - 1)! int det(N_a, N_a,1, ...), for determinants of positions are linear in each of them and change sign
+/// with every exchange.
+pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f64)> {
+    let count: usize = match kind {
+        FaceKind::Segment3 => 3,
+        FaceKind::Triangle6 => 6,
+        FaceKind::Quadrilateral8 => 8,
+        _ => {
+            let parts = pieces(kind);
+            return parts.map(|(part, w)| (std::array::from_fn(|k| part[k]), w)).collect();
+        }
+    };
+    let points = face_points(kind);
+    let weight = |nodes: &[usize; N]| -> f64 {
+        let at = |point: &FacePoint| {
+            let row = |a: usize, k: usize| match k {
+                0 => point.values[a],
+                _ => point.derivatives[a][k - 1],
+            };
+            point.weight * determinant(&nodes.map(|a| std::array::from_fn(|k| row(a, k))))
+        };
+        points.iter().map(at).sum::<f64>() * (N - 1) as f64
+    };
+    let ascending = |nodes: &[usize; N]| nodes.windows(2).all(|pair| pair[0] < pair[1]);
+    let all = (0..count.pow(N as u32))
+        .map(|number| std::array::from_fn(|k| number / count.pow(k as u32) % count));
+    let weighed = all.filter(ascending).map(|nodes| (nodes, weight(&nodes)));
+    weighed.filter(|(_, w)| w.abs() > NO_PART).collect()
+}
+
+/// Weights of parts, of the order of 1, below which they are round-off of 0.
+const NO_PART: f64 = 1e-12;
 
 /// Natural position of a node; components beyond the dimension are 0.
 pub(super) fn natural(mesh: &Mesh, node: usize) -> [f64; 3] {

@@ -13,6 +13,9 @@ use crate::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 /// Inertia and the constant parts of the tangents. What is `None` is nowhere needed.
 pub(crate) struct Model {
     pub(crate) dimension: usize,
+    /// Undeformed positions of the nodes (m), and the size of the body (m).
+    pub(crate) positions: Vec<f64>,
+    pub(crate) size: f64,
     /// M = m (x) I.
     pub(crate) inertia: Arc<NodeMatrix>,
     /// Constant part of -df/du: K, for Cauchy strain.
@@ -50,7 +53,8 @@ impl Model {
             let is_large = pattern.nodes() >= LARGE;
             is_large.then(|| nested_dissection(pattern, positions, dimension))
         };
-        let scales = [body.mesh().size(), body.material().wave_speed()].map(|scale| 0.01 * scale);
+        let size = body.mesh().size();
+        let scales = [size, body.material().wave_speed()].map(|scale| 0.01 * scale);
         let (inertia, stiffness, damping) =
             (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
         let (linear_by_cells, mass_damping) = (body.linear_by_cells(), body.mass_damping());
@@ -59,6 +63,8 @@ impl Model {
             let dissection = dissection(pattern);
             return Self {
                 dimension,
+                positions: positions.to_vec(),
+                size,
                 inertia,
                 stiffness,
                 damping,
@@ -74,6 +80,8 @@ impl Model {
         let moved = |matrix: Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
         Self {
             dimension,
+            positions: positions.to_vec(),
+            size,
             inertia: Arc::new(inertia.moved_to(&pattern)),
             stiffness: stiffness.map(moved),
             damping: damping.map(moved),

@@ -36,6 +36,16 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
         keys: &[NODES],
     },
     Kind {
+        word: "constraint-moment",
+        about: "the moment of what holds or moves nodes about a point that stays where it is (N m), counter-clockwise in the plane",
+        keys: &[
+            NODES,
+            Key::new("about", Holds::Vector, "the point").in_unit("m").required(),
+            Key::new("axis", Holds::Vector, "the direction along which it is read, of a body in space")
+                .default("all components, each a column"),
+        ],
+    },
+    Kind {
         word: "contact-force",
         about: "the force of an obstacle on the body (N)",
         keys: &[Key::new("obstacle", Holds::Text, "the name of the obstacle").required()],
@@ -109,6 +119,14 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
         "displacement" => Reading::displacement(nodes()?),
         "velocity" => Reading::velocity(nodes()?),
         "constraint-force" => Reading::constraint_force(nodes()?),
+        "constraint-moment" => {
+            let vector = |value: &Value| value.vector(mesh.dimension());
+            let about = table.required("about", vector)?;
+            match table.optional("axis", vector)? {
+                Some(axis) => Reading::constraint_torque(nodes()?, about, axis),
+                None => Reading::constraint_moment(nodes()?, about),
+            }
+        }
         "contact-force" => Reading::contact_force(named("obstacle")?),
         "spring-pull" => Reading::spring_pull(named("spring")?),
         "spring-length" => Reading::spring_length(named("spring")?),

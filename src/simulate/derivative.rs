@@ -64,6 +64,7 @@ impl Reading {
             What::Position(_) | What::Displacement(_) | What::CentreOfMass => true,
             What::Distance(_) | What::Angle(_) | What::ChamberVolume(_) => true,
             What::ConstraintForce(_) => true,
+            What::ConstraintMoment(..) => false,
             What::Velocity(_) | What::ContactForce(_) | What::Rotation | What::Pressure(_) => false,
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
                 false

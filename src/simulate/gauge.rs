@@ -1,11 +1,11 @@
 //! How the quantities of a scene are read: what a [`Reading`] names is looked up once, before the run.
 
-use super::reading::{Component, Place, Reading, What};
+use super::reading::{Component, Lever, Place, Reading, What};
 use super::view::{View, mean};
 use crate::body::{NodalField, von_mises};
 use crate::constraint::{PhaseStart, Row};
 use crate::external::Contact;
-use crate::input::InputError;
+use crate::input::{InputError, finite};
 use crate::mesh::Selection;
 use crate::scene::{Phase, Scene};
 use crate::trajectory::Sample;
@@ -63,7 +63,13 @@ impl Reading {
                 let nodes = select(nodes)?;
                 Box::new(move |view, _| Value::Vector(mean(&nodes, view.velocities(), d)))
             }
-            What::ConstraintForce(nodes) => constraint_force(scene, select(nodes)?)?,
+            What::ConstraintForce(nodes) => {
+                let sum = constraint_sum(scene, select(nodes)?, move |_, dof| {
+                    std::array::from_fn(|i| f64::from(i == dof % d))
+                })?;
+                Box::new(move |view, sample| Value::Vector(sum(view, sample)))
+            }
+            What::ConstraintMoment(nodes, lever) => moment(scene, select(nodes)?, lever)?,
             What::ContactForce(obstacle) => contact_force(scene, obstacle.clone())?,
             What::SpringPull(spring) => {
                 scene.spring_number(spring, "spring")?;
@@ -190,18 +196,69 @@ fn contact_force(scene: &Scene, obstacle: String) -> Result<Gauge, InputError> {
     }))
 }
 
-/// A constraint's row, the axis along which it acts, and its coefficient.
+/// Moment of the constraints on `nodes` (counted from 0).
+fn moment(scene: &Scene, nodes: Vec<usize>, lever: &Lever) -> Result<Gauge, InputError> {
+    let d = scene.body().dimension();
+    let Lever { about, axis } = lever.clone();
+    let vector = |input: &str, given: &[f64]| -> Result<[f64; 3], InputError> {
+        finite(input, given)?;
+        if given.len() != d {
+            let mend = format!("it needs {d} component(s)");
+            return Err(InputError::new(input, format!("{given:?}"), mend));
+        }
+        Ok(std::array::from_fn(|i| given.get(i).copied().unwrap_or(0.0)))
+    };
+    if d == 1 {
+        let mend = "nothing turns on a line: read the constraint force";
+        return Err(InputError::new("moment in dimension", d, mend));
+    }
+    let about = vector("point of a moment", &about)?;
+    let axis = match axis {
+        Some(axis) if d == 2 => {
+            let mend = "in the plane it is across: leave it out";
+            return Err(InputError::new("axis of a moment", format!("{axis:?}"), mend));
+        }
+        Some(axis) => {
+            let along = vector("axis of a moment", &axis)?;
+            if norm(&along) == 0.0 {
+                let mend = "it must have a direction";
+                return Err(InputError::new("axis of a moment", format!("{axis:?}"), mend));
+            }
+            Some(along.map(|x| x / norm(&along)))
+        }
+        None if d == 2 => Some([0.0, 0.0, 1.0]),
+        None => None,
+    };
+    let sum = constraint_sum(scene, nodes, move |view, dof| {
+        let x = position(view, &[dof / d]);
+        let arm = std::array::from_fn(|i| x[i] - about[i]);
+        cross(&arm, &std::array::from_fn(|i| f64::from(i == dof % d)))
+    })?;
+    Ok(Box::new(move |view, sample| {
+        let moment = sum(view, sample);
+        axis.map_or(Value::Vector(moment), |axis| Value::Number(dot(&axis, &moment)))
+    }))
+}
+
+/// A constraint's row, the degree of freedom on which it acts, and its coefficient.
 type Term = (usize, usize, f64);
 
-/// Force of the constraints on `nodes` (counted from 0).
-fn constraint_force(scene: &Scene, nodes: Vec<usize>) -> Result<Gauge, InputError> {
+/// Sums up vectors over constraint forces.
+type Sum = Box<dyn Fn(&View, &Sample) -> [f64; 3] + Send + Sync>;
+
+/// Sum of the constraint forces on the degrees of freedom of `nodes` (counted from 0), each times a vector.
+fn constraint_sum(
+    scene: &Scene,
+    nodes: Vec<usize>,
+    vector: impl Fn(&View, usize) -> [f64; 3] + Send + Sync + 'static,
+) -> Result<Sum, InputError> {
     let d = scene.body().dimension();
     let mut is_read = vec![false; scene.body().mesh().node_count()];
     nodes.into_iter().for_each(|node| is_read[node] = true);
     let terms = move |rows: &[Row]| -> Vec<Term> {
         let of_row = |(number, row): (usize, &Row)| -> Vec<Term> {
             let read = row.terms.iter().filter(|(dof, _)| is_read[dof / d]);
-            read.map(|&(dof, coefficient)| (number, dof % d, coefficient)).collect()
+            read.map(|&(dof, coefficient)| (number, dof, coefficient)).collect()
         };
         rows.iter().enumerate().flat_map(of_row).collect()
     };
@@ -223,11 +280,13 @@ fn constraint_force(scene: &Scene, nodes: Vec<usize>) -> Result<Gauge, InputErro
                 of_commanded.as_ref()
             }
         };
-        let Some(acting) = acting else { return Value::Vector([f64::NAN; 3]) };
-        let mut force = [0.0; 3];
-        for &(row, axis, coefficient) in acting {
-            force[axis] += coefficient * sample.multipliers.get(row).copied().unwrap_or(f64::NAN);
+        let Some(acting) = acting else { return [f64::NAN; 3] };
+        let mut sum = [0.0; 3];
+        for &(row, dof, coefficient) in acting {
+            let force = coefficient * sample.multipliers.get(row).copied().unwrap_or(f64::NAN);
+            let along = vector(view, dof);
+            sum.iter_mut().zip(along).for_each(|(sum, along)| *sum += along * force);
         }
-        Value::Vector(force)
+        sum
     }))
 }

@@ -19,6 +19,7 @@ pub(super) enum What {
     Displacement(Selection),
     Velocity(Selection),
     ConstraintForce(Selection),
+    ConstraintMoment(Selection, Lever),
     ContactForce(String),
     SpringPull(String),
     SpringLength(String),
@@ -30,6 +31,15 @@ pub(super) enum What {
     Angle([[Selection; 2]; 2]),
     CentreOfMass,
     Rotation,
+}
+
+/// What a moment turns about.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Lever {
+    /// A point (m).
+    pub(super) about: Vec<f64>,
+    /// The direction through it along which the moment counts; all of them if there is none.
+    pub(super) axis: Option<Vec<f64>>,
 }
 
 /// Where a field is read.
@@ -122,6 +132,24 @@ impl Reading {
         What::ConstraintForce(nodes.into()).into()
     }
 
+    /// Moment (N m) of the constraints on nodes together about the point `about` (m) of space, which does not move: the sum of
+    /// (x - about) x f over the nodes, x being where they are and f what holds or moves them. In the plane a number,
+    /// counter-clockwise; on a line there is none.
+    pub fn constraint_moment(nodes: impl Into<Selection>, about: impl Into<Vec<f64>>) -> Self {
+        What::ConstraintMoment(nodes.into(), Lever { about: about.into(), axis: None }).into()
+    }
+
+    /// Its part along an `axis` through that point, of any length above 0, of a body in space: a number, the torque that
+    /// [`Phase::rotate`](crate::Phase::rotate) takes about its axis.
+    pub fn constraint_torque(
+        nodes: impl Into<Selection>,
+        about: impl Into<Vec<f64>>,
+        axis: impl Into<Vec<f64>>,
+    ) -> Self {
+        let lever = Lever { about: about.into(), axis: Some(axis.into()) };
+        What::ConstraintMoment(nodes.into(), lever).into()
+    }
+
     /// Force of an obstacle on the body (N).
     pub fn contact_force(obstacle: impl Into<String>) -> Self {
         What::ContactForce(obstacle.into()).into()
@@ -203,6 +231,7 @@ impl Reading {
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
             What::ConstraintForce(_) | What::ContactForce(_) | What::SpringPull(_) => "N",
+            What::ConstraintMoment(..) => "N m",
             What::Pressure(_) | What::Stress(_) => "Pa",
             What::ChamberVolume(_) => "m^3",
             What::Strain(_) => "1",
@@ -228,6 +257,7 @@ impl Reading {
             | (What::ConstraintForce(_) | What::ContactForce(_) | What::CentreOfMass, _) => {
                 (&[X, Y, Z][..dimension], Some(Norm))
             }
+            (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
             _ => (&[], None),
         };
         let Some(one) = self.component else { return Ok(all.to_vec()) };

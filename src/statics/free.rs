@@ -8,7 +8,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::newton::{Search, Stuck};
-use super::rigid::{self, RigidMotion, Shape};
+use crate::system::rigid::{self, RigidMotion, Shape};
 use crate::vector::{dot, largest};
 
 /// Turns before each step of Newton's method: ten do from anywhere.

@@ -25,15 +25,13 @@ mod arc_length;
 mod free;
 mod newton;
 mod options;
-mod rigid;
 
 use std::time::Instant;
 
-use newton::{Point, Search, Stuck};
+use newton::{Hold, Point, Search, Stuck};
 pub use options::Statics;
-use rigid::RigidMotion;
 
-use crate::constraint::{PhaseStart, prescribe};
+use crate::constraint::{PhaseStart, Row, prescribe};
 use crate::equilibrium::{Equilibrium, NoEquilibrium, Stability};
 use crate::error::Error;
 use crate::indicator;
@@ -41,6 +39,7 @@ use crate::input::{InputError, find};
 use crate::report::Report;
 use crate::scene::{Phase, Scene};
 use crate::system::AtRest;
+use crate::system::rigid::{self, RigidMotion};
 use crate::trajectory::{Commanded, Quantity, Sample, Trajectory};
 
 impl Scene {
@@ -95,9 +94,7 @@ impl Scene {
         statics.validate()?;
         let rest = self.at_rest_in(number)?;
         let phase = &self.phases()[number];
-        let mesh = self.body().mesh();
-        let (dimension, size, positions) = (mesh.dimension(), mesh.size(), mesh.positions());
-        let natural = rigid::Shape { dimension, size, positions };
+        let natural = rigid::Shape::natural(self.body().mesh());
         let pattern = self.body().inertia().pattern();
         let free = rigid::free_motions(natural, pattern, rest.system().rows());
         let words: Vec<&str> = free.iter().map(|motion| &*motion.words).collect();
@@ -108,7 +105,21 @@ impl Scene {
             Error::from(InputError::new(input, value, mend))
         };
         let linear = rest.is_linear();
-        let mut search = Search::new(rest, statics, self.body(), !free.is_empty());
+        // rows of several nodes hold nothing while K is factorized
+        let (of_nodes, sums): (Vec<Row>, Vec<Row>) = rest
+            .system()
+            .rows()
+            .iter()
+            .cloned()
+            .partition(|row| row.node(natural.dimension).is_some());
+        let is_held_by_nodes =
+            || sums.is_empty() || rigid::free_motions(natural, pattern, &of_nodes).is_empty();
+        let hold = match free.is_empty() {
+            false => Hold::Loose,
+            true if is_held_by_nodes() => Hold::Whole,
+            true => Hold::BySums,
+        };
+        let mut search = Search::new(rest, statics, self.body(), hold);
         if !free.is_empty() && search.rest.is_under_dead_loads() {
             // forces in the undeformed shape have a meaning
             let _ = search.rest.evaluate(1.0, &search.u, &mut search.at);

@@ -31,6 +31,17 @@ impl Point {
     }
 }
 
+/// What the constraints leave of the freedom of the body to move as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// Nothing, by those on single nodes alone.
+    Whole,
+    /// Nothing, but only together with those that tie several nodes.
+    BySums,
+    /// Something.
+    Loose,
+}
+
 /// A search on its way.
 pub(super) struct Search<'a> {
     pub(super) rest: AtRest,
@@ -70,29 +81,29 @@ pub(super) struct Search<'a> {
     pub(super) work: Vec<f64>,
 }
 
+/// Iterations of Newton's method to an equilibrium that is near, stable or not, and what is near, as a part of the size of
+/// the body.
+const MOST_CLIMBING: usize = 20;
+const NEAR: f64 = 0.5;
+
 /// Parts of the highest eigenvalue: the smallest shift that is tried (and the one that stays on if
-/// rigid motions are free), and the largest.
+/// rigid motions are free, or held by rows of several nodes), and the largest.
 const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
 impl<'a> Search<'a> {
-    /// From the undeformed shape of a `body`, which `is_loose` if the constraints alone do not hold it.
-    pub(super) fn new(
-        mut rest: AtRest,
-        statics: &'a Statics,
-        body: &'a Body,
-        is_loose: bool,
-    ) -> Self {
+    /// From the undeformed shape of a `body`.
+    pub(super) fn new(mut rest: AtRest, statics: &'a Statics, body: &'a Body, hold: Hold) -> Self {
         let (dofs, rows) = (rest.system().dofs(), rest.system().rows().len());
         let u = vec![0.0; dofs];
         rest.update_tangent(1.0, &u);
         let highest = rest.highest();
-        let floor = if is_loose { SHIFTS[0] * highest } else { 0.0 };
+        let floor = if hold == Hold::Whole { 0.0 } else { SHIFTS[0] * highest };
         Self {
             is_linear: rest.is_linear(),
             rest,
             statics,
             body,
-            is_loose,
+            is_loose: hold == Hold::Loose,
             size: body.mesh().size(),
             floor,
             shift: floor,
@@ -169,6 +180,7 @@ impl<'a> Search<'a> {
         let Statics { rtol, max_iterations, .. } = *self.statics;
         self.shift = self.floor;
         self.residual = f64::INFINITY;
+        let from = self.u.clone();
         self.evaluate()?;
         for iteration in 0..max_iterations {
             self.iterations += 1;
@@ -196,9 +208,57 @@ impl<'a> Search<'a> {
             }
             self.descend((0.5 * self.size / length).min(1.0))?;
         }
+        if self.shift > self.floor && self.climb(&from) {
+            return Ok(());
+        }
+        let beyond = match self.shift > self.floor {
+            true => {
+                "the stiffness has become indefinite, as beyond buckling, and the way down from there is long: give it a side \
+                 to buckle to by a small load, or "
+            }
+            false => "",
+        };
         Err(self.stuck(format!(
-            "not converged after {max_iterations} iterations: raise max_iterations or load_steps"
+            "not converged after {max_iterations} iterations: {beyond}raise max_iterations or load_steps"
         )))
+    }
+
+    /// Goes on from where the search began by Newton's method without regard to the energy, to an equilibrium that may be
+    /// unstable. Returns whether there is one near; if not, all is as it was.
+    fn climb(&mut self, from: &[f64]) -> bool {
+        let before = (self.u.clone(), self.mu.clone(), self.at.clone(), self.residual);
+        let rtol = self.statics.rtol;
+        self.u.copy_from_slice(from);
+        for _ in 0..MOST_CLIMBING {
+            self.iterations += 1;
+            if self.evaluate().is_err() {
+                break;
+            }
+            self.rest.update_tangent(self.tried, &self.u);
+            if !self.rest.factorize_any() {
+                break;
+            }
+            self.rest.lacking(self.tried, &self.u, &mut self.d);
+            self.rest.solve(&self.at.total, &self.d, &mut self.x, &mut self.mu);
+            self.residual = self.rest.residual(&self.at.total, &self.mu, &mut self.work);
+            let (lacking, length) = (largest(&self.d), largest(&self.x));
+            let is_round_off = length <= 1e-3 * rtol * self.size;
+            if lacking <= 1e-12 * self.size
+                && (self.residual <= rtol * self.at.scale || is_round_off)
+            {
+                // what stability is told by
+                self.shift = self.floor;
+                return self.prepare().is_ok();
+            }
+            self.u.iter_mut().zip(&self.x).for_each(|(u, x)| *u += x);
+            let way = self.u.iter().zip(from).map(|(u, from)| (u - from).abs());
+            let is_near = way.fold(0.0, f64::max) <= NEAR * self.size;
+            if !is_near || self.x.iter().any(|x| !x.is_finite()) {
+                break;
+            }
+        }
+        (self.u, self.mu, self.at, self.residual) = before;
+        false
     }
 
     /// Whether round-off is all that is left of the forces, and iterations no longer make it less than it was `before`: in a nearly
@@ -324,7 +384,7 @@ mod tests {
         let system = scene.system(&model, &phase, forces.remove(0), &start, 0.0).unwrap();
         let rest = AtRest::new(system, 1.0, "test").unwrap();
         let statics = Statics::default();
-        let mut search = Search::new(rest, &statics, scene.body(), false);
+        let mut search = Search::new(rest, &statics, scene.body(), Hold::Whole);
         search.tried = 1.0;
         assert!(search.evaluate().is_ok());
         let start = search.at.clone();

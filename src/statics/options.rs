@@ -24,7 +24,7 @@ pub struct Statics {
     /// Most steps by arc length; default: 0, the load is given. With them the load rises and falls as the path of
     /// equilibria has it, stable or not, past limit points in load or displacement (snap-through, snap-back), until it
     /// reaches 1 for the first time. The first step is that of a `load_steps`th of the load, and no later one
-    /// moves the body further. The trajectory is the load curve, its samples evenly spread over the phase.
+    /// moves the body further by more than a tenth, nor turns by more than 60 degrees: such steps are halved. The trajectory is the load curve, its samples evenly spread over the phase.
     /// Of what the equilibria look like between steps nothing is known: take enough `load_steps`.
     pub arc_steps: usize,
     /// Smallest load step, as a part of the whole load, at most 1 (by arc length, as a part of the first step). Default: 1e-3.

@@ -71,8 +71,8 @@ impl MeshEstimate {
         let trajectory = equilibrium.trajectory();
         let (scene, sample) = (trajectory.scene(), equilibrium.sample());
         let refused = |value: &str, mend: &str| {
-            let input = format!("mesh estimate of \"{quantity}\" for an equilibrium");
-            Error::from(InputError::new(input, value, mend))
+            let value = format!("\"{quantity}\" {value}");
+            Error::from(InputError::new("quantity of a mesh estimate", value, mend))
         };
         let reading = quantity.of_equilibrium(scene)?;
         if !equilibrium.removed.is_empty() {
@@ -91,7 +91,7 @@ impl MeshEstimate {
                 Failure::Recoverable(reason) => reason,
                 Failure::Fatal(error) => error.to_string(),
             };
-            refused(&format!("on a richer mesh: {reason}"), "take a finer mesh from the start")
+            refused(&format!("on a richer mesh ({reason})"), "take a finer mesh from the start")
         })?;
         let moved = Moved { scene: &richer, finer: &finer, rows: &rows, u: &u };
         let Linearized { value: there, by_displacements, by_multipliers } =

@@ -18,7 +18,7 @@ use super::System;
 use super::newton_matrix::NewtonMatrix;
 use super::reduced::nodal_multipliers;
 use super::source::Source;
-use crate::constraint::Prescribed;
+use crate::constraint::{Prescribed, Row};
 use crate::force::{Force, NodalForces, Reservoir};
 use crate::input::InputError;
 use crate::ode::Failure;
@@ -264,11 +264,23 @@ impl AtRest {
         self.factorize(0.0) || self.system.newton.solver.factorize_indefinite().is_ok()
     }
 
-    /// Solves the saddle-point system above, K shifted as in the last factorization. `mu` gets the
-    /// multipliers that balance `f` where the rows act: those of an equilibrium once x vanishes.
+    /// Solves the saddle-point system above, K shifted as in the last factorization. `mu` are the multipliers known so far, and
+    /// become those that balance `f` where the rows act: those of an equilibrium once x vanishes. Those of general rows are
+    /// found by their change, so that iterations leave round-off of what is not balanced yet alone.
     pub(crate) fn solve(&mut self, f: &[f64], d: &[f64], x: &mut [f64], mu: &mut [f64]) {
         let System { rows, newton, .. } = &mut self.system;
-        newton.solver.solve(rows, f, d, x, mu);
+        let NewtonMatrix { solver, right, mu: change, .. } = newton;
+        right.copy_from_slice(f);
+        let general = |(row, _): &(&Row, _)| row.nodal().is_none();
+        for (row, mu) in rows.iter().zip(&*mu).filter(general) {
+            row.terms.iter().for_each(|&(dof, c)| right[dof] += c * mu);
+        }
+        solver.solve(rows, right, d, x, change);
+        for ((_, mu), change) in
+            rows.iter().zip(&mut *mu).zip(&*change).filter(|(of, _)| of.0.nodal().is_none())
+        {
+            *mu += change;
+        }
         nodal_multipliers(rows, mu, |dof| -f[dof]);
     }
 

@@ -31,6 +31,7 @@ mod newton_matrix;
 mod ode;
 mod rates;
 mod reduced;
+pub(crate) mod rigid;
 mod scene;
 mod second_order;
 mod source;

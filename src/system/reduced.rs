@@ -4,6 +4,10 @@
 //! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is
 //! a Cholesky solve with the free part of X. General rows, few of them, are met by a Schur
 //! complement as large as their number.
+//!
+//! X may be singular without the general rows: planes of symmetry off the axes may be all that holds a body. So where X is
+//! factorized as it is, springs of its own stiffness rho act along the rows g of single nodes, which have room in its
+//! pattern: X + rho g g^T has the same solution where g.x = d, with a multiplier that is rho d larger.
 
 #[cfg(test)]
 mod tests;
@@ -34,8 +38,21 @@ pub(super) struct Reduced {
     border: Vec<(usize, usize, Source)>,
     border_values: Vec<f64>,
     general: GeneralRows,
+    springs: Vec<Spring>,
+    /// What they add, to which entries of the free part.
+    stiffening: Vec<(usize, f64)>,
     /// Right-hand side and solution at the free degrees of freedom.
     work: Vec<f64>,
+}
+
+/// A spring along a general row of a single node.
+struct Spring {
+    /// Number of the row among the general ones.
+    row: usize,
+    /// Entries of the free part of X with the products of two coefficients of the row.
+    entries: Vec<(usize, f64)>,
+    /// The diagonal of X there.
+    diagonal: Vec<Source>,
 }
 
 impl Reduced {
@@ -77,6 +94,27 @@ impl Reduced {
                 offsets.push(row_indices.len());
             }
         }
+        let general = GeneralRows::new(rows, &position);
+        let entry = |row: usize, column: usize| {
+            let [start, end] = [offsets[column], offsets[column + 1]];
+            (start..end).find(|&at| row_indices[at] == row)
+        };
+        let spring = |number: usize| {
+            let general: &GeneralRow = &general.rows[number];
+            rows[general.number].node(dimension)?;
+            let mut spring = Spring { row: number, entries: Vec::new(), diagonal: Vec::new() };
+            for &(row, c) in &general.free {
+                for &(column, other) in general.free.iter().filter(|term| term.0 <= row) {
+                    let at = entry(row, column)?;
+                    spring.entries.push((at, c * other));
+                    if row == column {
+                        spring.diagonal.push(sources[at]);
+                    }
+                }
+            }
+            Some(spring)
+        };
+        let springs: Vec<Spring> = (0..general.rows.len()).filter_map(spring).collect();
         let lower =
             SymbolicSparseColMat::new_checked(free.len(), free.len(), offsets, None, row_indices);
         let of_nodes = |nodes: &Vec<usize>| -> Vec<usize> {
@@ -100,7 +138,9 @@ impl Reduced {
         let gradients = || Gradients::new(model, rows, coupling);
         Self {
             border_values: vec![0.0; border.len()],
-            general: GeneralRows::new(rows, &position),
+            general,
+            stiffening: Vec::with_capacity(springs.iter().map(|spring| spring.entries.len()).sum()),
+            springs,
             work: vec![0.0; free.len()],
             symmetric: Symmetric::new(free, sources, lower, order, gradients),
             border,
@@ -117,14 +157,21 @@ impl Reduced {
         // prescribed components are as exact as the systems are
         let accuracy = if self.general.rows.is_empty() { accuracy } else { EXACT };
         self.assemble_border(&value);
+        self.general.rows.iter_mut().for_each(|row| row.spring = 0.0);
         self.symmetric.begin(accuracy, value)?;
         self.general.factorize(&mut self.symmetric)
     }
 
-    /// Factorizes X, positive definite, whose entries `value` gives.
+    /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value` gives.
     pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
         self.assemble_border(&value);
-        self.symmetric.factorize(value)?;
+        self.stiffening.clear();
+        for Spring { row, entries, diagonal } in &self.springs {
+            let stiffness: f64 = diagonal.iter().map(|&source| value(source).abs()).sum();
+            self.general.rows[*row].spring = stiffness;
+            self.stiffening.extend(entries.iter().map(|&(at, product)| (at, stiffness * product)));
+        }
+        self.symmetric.factorize(value, &self.stiffening)?;
         self.general.factorize(&mut self.symmetric)
     }
 
@@ -205,6 +252,8 @@ struct GeneralRow {
     number: usize,
     free: Vec<(usize, f64)>,
     fixed: Vec<(usize, f64)>,
+    /// Stiffness of the spring along it in the X in force.
+    spring: f64,
 }
 
 impl GeneralRows {
@@ -218,6 +267,7 @@ impl GeneralRows {
                     number,
                     free: row.terms.iter().filter_map(split).collect(),
                     fixed: row.terms.iter().filter(is_fixed).copied().collect(),
+                    spring: 0.0,
                 }
             })
             .collect();
@@ -289,7 +339,8 @@ impl GeneralRows {
             MemStack::new(&mut self.memory),
         );
         for (k, (multiplier, row)) in self.right.iter().zip(&self.rows).enumerate() {
-            mu[row.number] = *multiplier;
+            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
+            mu[row.number] = *multiplier - row.spring * (d[row.number] - fixed);
             let column = self.inverse_g.col_as_slice(k);
             free.iter_mut().zip(column).for_each(|(x, g)| *x += g * multiplier);
         }

@@ -5,7 +5,9 @@ use nalgebra::{DMatrix, SymmetricEigen};
 use super::System;
 use super::at_rest::shifted;
 use super::reduced::Reduced;
+use super::rigid::{self, Shape};
 use super::source::Coupling;
+use crate::model::Model;
 use crate::sparse::{BlockMatrix, NodeMatrix};
 use crate::vector::{dot, noise};
 
@@ -54,10 +56,12 @@ impl Spectrum {
 const POWER_ITERATIONS: usize = 40;
 const SUBSPACE_ITERATIONS: usize = 12;
 
-/// Parts of the highest eigenvalue: those below the first are of rigid motions; the second is the
+/// Parts of the highest eigenvalue: those below the first are of motions without stiffness; the second is the
 /// shift that makes Kt + shift M definite and leaves the solves their digits.
 const RIGID: f64 = 1e-12;
 const SHIFT: f64 = 1e-8;
+/// Part of the lowest eigenvalue that the shift is lowered to where it is above that: slender bodies are so soft.
+const LOWER_SHIFT: f64 = 0.1;
 
 impl System {
     /// The spectrum at (t, u, v).
@@ -73,7 +77,8 @@ impl System {
             lowest_damping_ratio: 0.0,
             mass_damping_ratio: 0.0,
         };
-        if let Some((eigenvalue, x)) = self.lowest(highest) {
+        let rigid = self.rigid_motions(u, highest);
+        if let Some((eigenvalue, x)) = self.lowest(highest, &rigid) {
             let omega = eigenvalue.sqrt();
             spectrum.lowest_frequency = Some(omega);
             spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
@@ -112,9 +117,30 @@ impl System {
         highest
     }
 
-    /// Lowest eigenvalue of Kt x = eigenvalue M x above those of rigid motions, and its x of length 1
-    /// in the norm of M, by subspace iteration.
-    fn lowest(&mut self, highest: f64) -> Option<(f64, Vec<f64>)> {
+    /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, orthonormal by M.
+    fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
+        let Model { positions, size, stiffness, dimension, inertia, .. } = &*self.model;
+        let mut positions = positions.clone();
+        // under linear strain turns along straight lines strain nothing
+        if stiffness.is_none() {
+            positions.iter_mut().zip(u).for_each(|(x, u)| *x += u);
+        }
+        let shape = Shape { dimension: *dimension, size: *size, positions: &positions };
+        let free = rigid::free_motions(shape, inertia.pattern(), &self.rows);
+        let mut motions = free.into_iter().map(|motion| motion.values).collect();
+        self.orthonormalize(&[], &mut motions);
+        if motions.is_empty() {
+            return motions;
+        }
+        let values = self.ritz(&mut motions);
+        let unresisted = motions.into_iter().zip(values);
+        let unresisted = unresisted.filter(|(_, value)| value.abs() <= RIGID * highest);
+        unresisted.map(|(motion, _)| motion).collect()
+    }
+
+    /// Lowest eigenvalue of Kt x = eigenvalue M x above those of motions without stiffness, and its x of length 1
+    /// in the norm of M, by subspace iteration across the `rigid` motions, which are orthonormal by M.
+    fn lowest(&mut self, highest: f64, rigid: &[Vec<f64>]) -> Option<(f64, Vec<f64>)> {
         let (dofs, d) = (self.dofs(), self.model.dimension);
         if highest == 0.0 {
             return None;
@@ -122,18 +148,17 @@ impl System {
         let mut solver = Reduced::new(&self.model, &self.rows, Coupling::AllAxes);
         let mut shift = SHIFT * highest;
         // Kt may have become indefinite by compression
-        let (inertia, stiffness) = (&self.model.inertia, self.tangents().0);
-        while solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_err() {
+        while !self.shift(&mut solver, shift) {
             shift *= 100.0;
             if shift > highest {
                 return None;
             }
         }
-        // as many as there are rigid motions of one piece, and some more
         let mut block = (d * (d + 1) / 2 + 2).min(dofs);
         let mut basis: Vec<Vec<f64>> = (0..block).map(|k| noise(dofs, k)).collect();
         let (nowhere, mut mu) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
         let mut found: Option<(f64, Vec<f64>)> = None;
+        let mut can_be_lower = shift <= SHIFT * highest;
         let mut iterations = 0;
         while iterations < SUBSPACE_ITERATIONS {
             for x in &mut basis {
@@ -141,7 +166,7 @@ impl System {
                 self.model.inertia.add_product(d, 1.0, x, &mut image);
                 solver.solve(&self.rows, &image, &nowhere, x, &mut mu);
             }
-            self.orthonormalize(&mut basis);
+            self.orthonormalize(rigid, &mut basis);
             if basis.is_empty() {
                 return None; // numbers beyond double precision
             }
@@ -150,26 +175,49 @@ impl System {
                 if basis.len() < block || block == dofs {
                     return None;
                 }
-                // those of several pieces fill it
+                // mechanisms fill it
                 let filled = block;
                 block = (2 * block).min(dofs);
                 basis.extend((filled..block).map(|k| noise(dofs, k)));
                 continue;
             };
             iterations += 1;
-            let before = found.replace((values[lowest], basis[lowest].clone()));
-            if before.is_some_and(|(value, _)| (value - values[lowest]).abs() < 1e-3 * value) {
+            let value = values[lowest];
+            let before = found.replace((value, basis[lowest].clone()));
+            if can_be_lower && value < shift {
+                let lower = (LOWER_SHIFT * value).max(RIGID * highest);
+                can_be_lower = self.shift(&mut solver, lower);
+                if can_be_lower {
+                    shift = lower;
+                } else {
+                    self.shift(&mut solver, shift);
+                }
+                iterations = 0;
+                continue;
+            }
+            if before.is_some_and(|(before, _)| (before - value).abs() < 1e-3 * before) {
                 break;
             }
         }
         found
     }
 
-    /// Makes `basis` orthonormal by M, one vector after the other; what follows from the others is
-    /// dropped.
-    fn orthonormalize(&self, basis: &mut Vec<Vec<f64>>) {
+    /// Has `solver` solve with Kt + `shift` M. Returns whether that is positive definite.
+    fn shift(&self, solver: &mut Reduced, shift: f64) -> bool {
+        let (inertia, stiffness) = (&self.model.inertia, self.tangents().0);
+        solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
+    }
+
+    /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are orthonormal; what
+    /// follows from others is dropped.
+    fn orthonormalize(&self, others: &[Vec<f64>], basis: &mut Vec<Vec<f64>>) {
         let Self { model, .. } = self;
-        let mut done: Vec<(Vec<f64>, Vec<f64>)> = Vec::with_capacity(basis.len());
+        let with_image = |x: Vec<f64>| {
+            let mut image = vec![0.0; x.len()];
+            model.inertia.add_product(model.dimension, 1.0, &x, &mut image);
+            (x, image)
+        };
+        let mut done: Vec<(Vec<f64>, Vec<f64>)> = others.iter().cloned().map(with_image).collect();
         for mut x in basis.drain(..) {
             let before = self.length(&x);
             // twice is enough: the first round leaves round-off of the part it takes out
@@ -182,12 +230,10 @@ impl System {
             let length = self.length(&x);
             if length > 1e-12 * before {
                 x.iter_mut().for_each(|x| *x /= length);
-                let mut image = vec![0.0; x.len()];
-                model.inertia.add_product(model.dimension, 1.0, &x, &mut image);
-                done.push((x, image));
+                done.push(with_image(x));
             }
         }
-        basis.extend(done.into_iter().map(|(x, _)| x));
+        basis.extend(done.into_iter().skip(others.len()).map(|(x, _)| x));
     }
 
     /// Turns a basis that is orthonormal by M into one that is orthogonal by Kt as well, and tells

@@ -84,15 +84,20 @@ impl Symmetric {
         accuracy: f64,
         value: impl Fn(Source) -> f64,
     ) -> Result<(), Indefinite> {
-        let Some(rented) = &mut self.rented else { return self.factorize(value) };
+        let Some(rented) = &mut self.rented else { return self.factorize(value, &[]) };
         rented.begin(accuracy);
         if rented.gradients.take(value) { Ok(()) } else { Err(Indefinite) }
     }
 
-    /// Factorizes the positive definite matrix whose entries `value` gives.
-    pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
+    /// Factorizes the positive definite matrix whose entries `value` gives, `more` added to some of them.
+    pub(super) fn factorize(
+        &mut self,
+        value: impl Fn(Source) -> f64,
+        more: &[(usize, f64)],
+    ) -> Result<(), Indefinite> {
         self.rented.iter_mut().for_each(|rented| rented.is_open = false);
         self.values.iter_mut().zip(&self.sources).for_each(|(x, &source)| *x = value(source));
+        more.iter().for_each(|&(at, more)| self.values[at] += more);
         self.cholesky.factorize(&self.values)
     }
 

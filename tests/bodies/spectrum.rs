@@ -3,7 +3,7 @@
 use faer::Mat;
 use faer::prelude::Solve;
 use pliant::samples::{self, SquareJump};
-use pliant::{Phase, Scene, Spectrum};
+use pliant::{Body, Cells, Material, Mesh, Phase, Plane, Scene, SolidCells, Spectrum, Strain};
 
 /// Eigenvalues of M^-1 X at the degrees of freedom that `is_free`, ascending.
 fn eigenvalues(scene: &Scene, matrix: &Mat<f64>, is_free: impl Fn(usize) -> bool) -> Vec<f64> {
@@ -95,4 +95,46 @@ fn what_cannot_move_has_no_vibration() {
     let spectrum = held.spectrum().unwrap()[0];
     assert_eq!((spectrum.highest_frequency, spectrum.lowest_frequency), (0.0, None));
     assert_eq!((spectrum.stiffest_rate(), spectrum.retardation_time()), (0.0, 0.0));
+}
+
+/// Bodies that nothing holds, alone in a phase of one second.
+fn free(mesh: Mesh, material: Material) -> Scene {
+    let is_flat = mesh.dimension() == 2;
+    let body = Body::new(mesh, material);
+    let body = if is_flat { body.thickness(0.01).plane(Plane::Stress) } else { body };
+    Scene::new(body.build().unwrap()).phase(Phase::until(1.0))
+}
+
+/// Thin rings and beams swing as slowly as bars of the same length would a thousand times: their slowest vibrations are those
+/// of Euler's bending, without extension (Love), not what round-off makes of rigid motions. Damping is that of the material.
+#[test]
+fn slender_bodies_that_nothing_holds_bend() {
+    let material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 10.0 };
+    let euler = |thickness: f64| (1e6 * thickness * thickness / 12.0 / 1000.0).sqrt();
+    let mut cases = Vec::new();
+    for (thickness, around) in [(1e-3, 48), (1e-3, 96), (5e-4, 128)] {
+        let [inner, outer] = [0.05 - 0.5 * thickness, 0.05 + 0.5 * thickness];
+        let mesh = Mesh::ring(inner, outer, [around, 3], Cells::Triangles6).unwrap();
+        cases.push((mesh, euler(thickness) / 0.05_f64.powi(2) * (36.0_f64 / 5.0).sqrt()));
+    }
+    for thickness in [2e-3, 5e-4] {
+        let mesh = Mesh::rectangle([0.1, thickness], [41, 3], Cells::Triangles6).unwrap();
+        cases.push((mesh, euler(thickness) / 0.1_f64.powi(2) * 4.730_040_745_f64.powi(2)));
+    }
+    for (mesh, expected) in cases {
+        let spectrum = free(mesh, material).spectrum().unwrap()[0];
+        let found = spectrum.lowest_frequency.unwrap();
+        println!("{found:.5} for {expected:.5} 1/s: {:.1e}", found / expected - 1.0);
+        assert!((found / expected - 1.0).abs() < 0.02, "{found} {expected}");
+        assert!((spectrum.retardation_time() / 1e-5 - 1.0).abs() < 1e-6, "{spectrum:?}");
+    }
+}
+
+#[test]
+fn a_block_that_nothing_holds() {
+    let material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 10.0 };
+    let mesh = Mesh::cuboid([0.1, 0.02, 0.01], [6, 3, 2], SolidCells::Hexahedra).unwrap();
+    let body = Body::new(mesh, material).strain(Strain::Cauchy).build().unwrap();
+    let scene = Scene::new(body).phase(Phase::until(1.0));
+    compare(&scene, &scene.spectrum().unwrap()[0], |_| true, 6);
 }

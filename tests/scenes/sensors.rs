@@ -247,3 +247,73 @@ fn what_the_scene_lacks_is_named_before_the_run() -> Outcome {
     assert!(refused.contains("name of a sensor = \"tip.x\""), "{refused}");
     Ok(())
 }
+
+/// The moment of a clamp about a point: the sum over its nodes in motion, and at rest that of a force at the end of the arm as it
+/// is, in the plane and about an axis in space.
+#[test]
+fn moments_of_constraints() -> Outcome {
+    let damped = Material { viscosity: 3000.0, ..SOFT };
+    let plane = Mesh::rectangle([0.1, 0.02], [11, 3], Cells::Triangles6)?;
+    let solid = Mesh::cuboid([0.1, 0.02, 0.02], [6, 2, 2], SolidCells::Hexahedra20)?;
+    let about = [0.01, -0.02, 0.005];
+    for mesh in [plane, solid] {
+        let d = mesh.dimension();
+        let body = Body::new(mesh, damped);
+        let body = if d == 2 { body.thickness(0.02) } else { body }.build()?;
+        let force = &[0.002, -0.005, 0.003][..d];
+        let mut sampling = Sampling::every(0.5)
+            .read("moment", Reading::constraint_moment("left", &about[..d]))
+            .read("tip", Reading::position("right"));
+        if d == 3 {
+            let axis = [1.0, 2.0, -2.0];
+            let torque = Reading::constraint_torque("left", about, axis);
+            sampling = sampling.read("torque", torque);
+        }
+        let trajectory = Scene::new(body)
+            .phase(Phase::until(4.0).hold("left").load_total("right", force))
+            .simulate(&Settings { rtol: 1e-8, ..Settings::default() }, &sampling)?;
+        let mesh = trajectory.body().mesh();
+        let vector =
+            |x: &[f64]| -> [f64; 3] { std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0)) };
+        let cross = |a: [f64; 3], b: [f64; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let arm = |x: &[f64]| -> [f64; 3] {
+            std::array::from_fn(|i| vector(x)[i] - vector(&about[..d])[i])
+        };
+        let names = if d == 2 { vec!["moment"] } else { vec!["moment.x", "moment.y", "moment.z"] };
+        for (at, sample) in trajectory.samples().iter().enumerate() {
+            let forces = trajectory.constraint_forces(sample)?;
+            let mut expected = [0.0; 3];
+            for &node in &mesh.sets()["left"] {
+                // held where it is
+                let moment = cross(arm(mesh.position(node)), vector(&forces[d * node..][..d]));
+                expected.iter_mut().zip(moment).for_each(|(sum, x)| *sum += x);
+            }
+            for (k, name) in names.iter().enumerate() {
+                assert_close(
+                    read(&trajectory, name)[at],
+                    expected[if d == 2 { 2 } else { k }],
+                    1e-15,
+                );
+            }
+            if d == 3 {
+                let along = (expected[0] + 2.0 * expected[1] - 2.0 * expected[2]) / 3.0;
+                assert_close(read(&trajectory, "torque")[at], along, 1e-15);
+            }
+        }
+        // at rest: the load is spread over an end that has turned, so that its middle is the arm but for the strain there
+        let last = trajectory.samples().len() - 1;
+        let tip: Vec<f64> = ["tip.x", "tip.y", "tip.z"][..d]
+            .iter()
+            .map(|name| read(&trajectory, name)[last])
+            .collect();
+        let expected = cross(arm(&tip), vector(force)).map(|x| -x);
+        for (k, name) in names.iter().enumerate() {
+            let expected = expected[if d == 2 { 2 } else { k }];
+            println!("{name}: {} {expected}", read(&trajectory, name)[last]);
+            assert_close(read(&trajectory, name)[last], expected, 2e-6);
+        }
+    }
+    Ok(())
+}

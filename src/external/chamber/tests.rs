@@ -46,8 +46,8 @@ fn enclosed(body: &Body, walls: impl Into<Selection>) -> f64 {
     let force = Chamber::within("air", walls).force(body, Vec::new()).unwrap();
     let rest = vec![0.0; body.dofs()];
     match &force.geometry {
-        Geometry::Polygon(polygon, factor) => factor / 0.01 * polygon.area(&rest),
-        Geometry::Surface(surface, factor) => factor * surface.volume(&rest),
+        Geometry::Polygon(polygon, factor) => factor / 0.01 * polygon.measure(&rest),
+        Geometry::Surface(surface, factor) => factor * surface.measure(&rest),
     }
 }
 
@@ -173,7 +173,7 @@ fn chains() {
         let x = flat.mesh().position(node)[0];
         u[2 * node + 1] = if x == 0.0 || x == 4.0 { 0.0 } else { 1.0 };
     }
-    assert!((factor / 0.01 * polygon.area(&u) + 3.0).abs() < 1e-13);
+    assert!((factor / 0.01 * polygon.measure(&u) + 3.0).abs() < 1e-13);
 }
 
 fn body_of_rectangle() -> Body {
@@ -190,7 +190,7 @@ fn bags() {
         let string = body(mesh.unwrap());
         let chamber = Chamber::within("air", "all").thickness(0.01).force(&string, Vec::new());
         let Geometry::Polygon(polygon, factor) = &chamber.unwrap().geometry else { panic!() };
-        assert_eq!(factor / 0.01 * polygon.area(&[0.0; 8]), 1.0);
+        assert_eq!(factor / 0.01 * polygon.measure(&[0.0; 8]), 1.0);
     }
     let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     for cells in [[0, 1, 2, 0, 3, 1, 1, 3, 2, 0, 2, 3], [1, 0, 2, 3, 0, 1, 3, 1, 2, 2, 0, 3]] {

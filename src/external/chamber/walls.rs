@@ -2,32 +2,29 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Chamber, Triangle};
-use crate::external::faces::{between, list};
-use crate::external::surface::pieces;
+use super::Chamber;
+use super::enclosure::Part;
+use crate::external::faces::{between, list, volume_parts};
 use crate::input::InputError;
-use crate::mesh::{Mesh, Selection};
+use crate::mesh::{Face, FaceKind, Mesh, Selection};
 
 impl Chamber {
-    /// The edges of closed polygons.
+    /// The edges of closed polygons: their ends and, of curved ones, the node in their middle.
     pub(super) fn edges(
         &self,
         mesh: &Mesh,
         selection: &Selection,
-    ) -> Result<Vec<[usize; 2]>, InputError> {
+    ) -> Result<Vec<Face>, InputError> {
         let nodes = mesh.select(selection)?;
         if nodes.len() < 3 {
             let mend = "a polygon needs 3 nodes at least";
             return Err(InputError::new(self.input("number of nodes"), nodes.len(), mend));
         }
         match selection {
-            Selection::Numbers(_) => {
-                let next = nodes.iter().cycle().skip(1);
-                Ok(nodes.iter().zip(next).map(|(&node, &next)| [node, next]).collect())
-            }
+            Selection::Numbers(_) => Ok(polygon(mesh, &nodes)),
             Selection::Set(_) | Selection::Box { .. } => {
                 let nodes = nodes.into_iter().collect();
-                let edges = walls(boundary_edges(mesh), &nodes);
+                let edges = walls(mesh.boundary_faces(), &nodes);
                 let edges = edges.and_then(|edges| closed(edges, self.is_closed_by_line));
                 edges.map_err(|problem| self.bad_walls(selection, &problem))
             }
@@ -39,7 +36,7 @@ impl Chamber {
         &self,
         mesh: &Mesh,
         selection: &Selection,
-    ) -> Result<Vec<Triangle>, InputError> {
+    ) -> Result<Vec<Part<3>>, InputError> {
         let nodes = mesh.select(selection)?.into_iter().collect();
         let mut faces = mesh.boundary_faces();
         // the cells of a string are no walls
@@ -48,12 +45,12 @@ impl Chamber {
         let is_quadratic = mesh.kind().is_quadratic();
         let outlines = faces.iter().map(|face| outline(face, is_quadratic));
         let lids = self.lids(outlines).map_err(|problem| self.bad_walls(selection, &problem))?;
-        let parts = pieces(mesh.face_kind());
-        let corner = |face: &[usize], part: &[usize]| [0, 1, 2].map(|corner| face[part[corner]]);
-        let triangles = faces
-            .iter()
-            .flat_map(|face| parts.clone().map(move |(part, weight)| (corner(face, part), weight)));
-        Ok(triangles.chain(lids).collect())
+        let parts = volume_parts(mesh.face_kind());
+        let of_face = |face: &Face| {
+            let part = |&(part, weight): &Part<3>| (part.map(|local| face[local]), weight);
+            parts.iter().map(part).collect::<Vec<_>>()
+        };
+        Ok(faces.iter().flat_map(of_face).chain(lids).collect())
     }
 
     /// The triangles of a surface, and those of lids.
@@ -61,13 +58,13 @@ impl Chamber {
         &self,
         mesh: &Mesh,
         triangles: &[[usize; 3]],
-    ) -> Result<Vec<Triangle>, InputError> {
+    ) -> Result<Vec<Part<3>>, InputError> {
         for triangle in triangles {
             mesh.select(&(*triangle).into())?;
         }
         let triangles: Vec<[usize; 3]> =
             triangles.iter().map(|triangle| triangle.map(|number| number - 1)).collect();
-        let lids = self.lids(triangles.iter().map(|triangle| triangle.to_vec()));
+        let lids = self.lids(triangles.iter().map(|triangle| outline(triangle, false)));
         let lids = lids.map_err(|problem| {
             InputError::new(self.input("number of triangles"), triangles.len(), problem)
         })?;
@@ -75,18 +72,9 @@ impl Chamber {
     }
 
     /// The lids on the rims of faces with these outlines. A lid goes from the mean of the nodes of its rim to each of its
-    /// edges. Volumes are linear in that mean, so it is the mean of fans from each of the nodes.
-    fn lids(&self, outlines: impl Iterator<Item = Vec<usize>>) -> Result<Vec<Triangle>, String> {
+    /// edges, curved or not. Volumes are linear in that mean, so it is the mean of fans from each of the nodes.
+    fn lids(&self, outlines: impl Iterator<Item = Vec<Face>>) -> Result<Vec<Part<3>>, String> {
         let open = open_edges(outlines)?;
-        let mut next = BTreeMap::new();
-        for &[a, b] in &open {
-            if next.insert(a, b).is_some() && self.is_closed_by_lid {
-                return Err(format!(
-                    "two rims meet at {}: a lid closes a rim that is by itself",
-                    list(&[a])
-                ));
-            }
-        }
         if !open.is_empty() && !self.is_closed_by_lid {
             let rim: BTreeSet<usize> = open.into_iter().flatten().collect();
             let rim: Vec<usize> = rim.into_iter().collect();
@@ -96,21 +84,34 @@ impl Chamber {
                 list(&rim)
             ));
         }
+        // by their first nodes
+        let mut next = BTreeMap::new();
+        for edge in open {
+            let start = edge[0];
+            if next.insert(start, edge).is_some() {
+                return Err(format!(
+                    "two rims meet at {}: a lid closes a rim that is by itself",
+                    list(&[start])
+                ));
+            }
+        }
         let mut triangles = Vec::new();
-        while let Some((start, second)) = next.pop_first() {
-            let mut rim = vec![start];
-            let mut node = second;
+        while let Some((start, first)) = next.pop_first() {
+            let mut rim = vec![first];
+            let mut node = rim[0][1];
             while node != start {
-                rim.push(node);
-                node = next.remove(&node).ok_or_else(|| {
+                let edge = next.remove(&node).ok_or_else(|| {
                     format!("the rim ends at {}: a lid closes a rim that runs round", list(&[node]))
                 })?;
+                node = edge[1];
+                rim.push(edge);
             }
-            let share = 1.0 / rim.len() as f64;
-            for (k, &a) in rim.iter().enumerate() {
-                let b = rim[(k + 1) % rim.len()];
-                let apexes = rim.iter().filter(|apex| **apex != a && **apex != b);
-                triangles.extend(apexes.map(|apex| ([*apex, b, a], share)));
+            let on_it = |edge: &Face| [&edge[..1], &edge[2..]].concat();
+            let apexes: Vec<usize> = rim.iter().flat_map(on_it).collect();
+            let share = 1.0 / apexes.len() as f64;
+            for ([a, b], part) in edge_parts(&rim) {
+                let others = apexes.iter().filter(|apex| **apex != a && **apex != b);
+                triangles.extend(others.map(|apex| ([*apex, b, a], share * part)));
             }
         }
         Ok(triangles)
@@ -121,28 +122,55 @@ impl Chamber {
     }
 }
 
-/// The edges of the boundary of a body in the plane, two nodes each, the body to their left.
-fn boundary_edges(mesh: &Mesh) -> Vec<[usize; 2]> {
-    let parts = pieces(mesh.face_kind());
-    let faces = mesh.boundary_faces();
-    let edges =
-        faces.iter().flat_map(|face| parts.clone().map(|(part, _)| [face[part[0]], face[part[1]]]));
-    edges.collect()
+/// The edges of the polygon through `nodes`: curved where it runs along edges of cells with mid nodes.
+fn polygon(mesh: &Mesh, nodes: &[usize]) -> Vec<Face> {
+    let edges = mesh.kind().edges().iter().filter(|edge| edge.len() == 3);
+    let ends_of_middles: BTreeMap<usize, [usize; 2]> = edges
+        .flat_map(|edge| mesh.cells().map(|cell| (cell[edge[2]], [cell[edge[0]], cell[edge[1]]])))
+        .collect();
+    let count = nodes.len();
+    let at = |k: usize| nodes[k % count];
+    let is_middle = |k: usize| {
+        let [before, after] = [at(k + count - 1), at(k + 1)];
+        let ends = ends_of_middles.get(&at(k));
+        ends.is_some_and(|ends| *ends == [before, after] || *ends == [after, before])
+    };
+    let edge = |k: usize| match (is_middle(k), is_middle(k + 1)) {
+        (true, _) => None,
+        (_, true) => Some(vec![at(k), at(k + 2), at(k + 1)]),
+        _ => Some(vec![at(k), at(k + 1)]),
+    };
+    (0..count).filter_map(edge).collect()
+}
+
+/// The parts of edges in the area that they enclose.
+pub(super) fn edge_parts(edges: &[Face]) -> Vec<Part<2>> {
+    let [straight, curved] = [FaceKind::Segment, FaceKind::Segment3].map(volume_parts::<2>);
+    let of_edge = |edge: &Face| {
+        let parts = if edge.len() == 2 { &straight } else { &curved };
+        let part = |&(part, weight): &Part<2>| (part.map(|local| edge[local]), weight);
+        parts.iter().map(part).collect::<Vec<_>>()
+    };
+    edges.iter().flat_map(of_edge).collect()
 }
 
 /// 1 if the edges of a polygon run against the boundary of the body, -1 if along it.
-pub(super) fn against_boundary(mesh: &Mesh, polygon: &[[usize; 2]]) -> Option<f64> {
-    let edges: BTreeSet<[usize; 2]> = boundary_edges(mesh).into_iter().collect();
-    let sense = |&[a, b]: &[usize; 2]| match [[b, a], [a, b]].map(|edge| edges.contains(&edge)) {
-        [true, false] => Some(1.0),
-        [false, true] => Some(-1.0),
-        _ => None,
+pub(super) fn against_boundary(mesh: &Mesh, polygon: &[Face]) -> Option<f64> {
+    let faces = mesh.boundary_faces();
+    let boundary: BTreeSet<&[usize]> = faces.iter().map(|face| &face[..2]).collect();
+    let sense = |edge: &Face| {
+        let [a, b] = [edge[0], edge[1]];
+        match [[b, a], [a, b]].map(|ends| boundary.contains(&ends[..])) {
+            [true, false] => Some(1.0),
+            [false, true] => Some(-1.0),
+            _ => None,
+        }
     };
     polygon.iter().find_map(sense)
 }
 
 /// The faces between `nodes`, if they touch all of them.
-fn walls<F: AsRef<[usize]>>(faces: Vec<F>, nodes: &BTreeSet<usize>) -> Result<Vec<F>, String> {
+fn walls(faces: Vec<Face>, nodes: &BTreeSet<usize>) -> Result<Vec<Face>, String> {
     between(faces, nodes).map_err(|loose| {
         let walls = "walls are faces of the boundary of the body with all their nodes given";
         format!("{walls}, and {} are on none", list(&loose))
@@ -150,18 +178,18 @@ fn walls<F: AsRef<[usize]>>(faces: Vec<F>, nodes: &BTreeSet<usize>) -> Result<Ve
 }
 
 /// Loops of edges as they are; one open chain with the edge that closes it, if a line may.
-fn closed(mut edges: Vec<[usize; 2]>, by_line: bool) -> Result<Vec<[usize; 2]>, String> {
+fn closed(mut edges: Vec<Face>, by_line: bool) -> Result<Vec<Face>, String> {
     // how many more edges begin at a node than end there
     let mut surplus: BTreeMap<usize, i32> = BTreeMap::new();
-    for &[first, last] in &edges {
-        *surplus.entry(first).or_default() += 1;
-        *surplus.entry(last).or_default() -= 1;
+    for edge in &edges {
+        *surplus.entry(edge[0]).or_default() += 1;
+        *surplus.entry(edge[1]).or_default() -= 1;
     }
     surplus.retain(|_, surplus| *surplus != 0);
     match *surplus.iter().collect::<Vec<_>>() {
         [] => Ok(edges),
         [(&first, 1), (&last, -1)] | [(&last, -1), (&first, 1)] if by_line => {
-            edges.push([last, first]);
+            edges.push(vec![last, first]);
             Ok(edges)
         }
         [(first, 1 | -1), (last, 1 | -1)] => Err(format!(
@@ -179,31 +207,25 @@ fn closed(mut edges: Vec<[usize; 2]>, by_line: bool) -> Result<Vec<[usize; 2]>, 
     }
 }
 
-/// The nodes around a face, mid nodes between the corners.
-fn outline(face: &[usize], is_quadratic: bool) -> Vec<usize> {
-    match is_quadratic {
-        false => face.to_vec(),
-        true => {
-            let (corners, middles) = face.split_at(face.len() / 2);
-            corners.iter().zip(middles).flat_map(|(corner, middle)| [*corner, *middle]).collect()
-        }
-    }
+/// The edges around a face: two ends each, and the node between them if it is quadratic.
+fn outline(face: &[usize], is_quadratic: bool) -> Vec<Face> {
+    let count = if is_quadratic { face.len() / 2 } else { face.len() };
+    let (corners, middles) = face.split_at(count);
+    let ends = |k: usize| [corners[k], corners[(k + 1) % count]];
+    (0..count).map(|k| ends(k).iter().chain(middles.get(k)).copied().collect()).collect()
 }
 
 /// The edges of faces with these outlines that no other face runs along the other way.
-fn open_edges(outlines: impl Iterator<Item = Vec<usize>>) -> Result<Vec<[usize; 2]>, String> {
-    let mut edges = BTreeSet::new();
-    for face in outlines {
-        for (k, &a) in face.iter().enumerate() {
-            let b = face[(k + 1) % face.len()];
-            if !edges.insert([a, b]) {
-                let mend = "turn the cells on one side of it round";
-                return Err(format!(
-                    "two faces run along the edge of {} the same way: {mend}",
-                    list(&[a, b])
-                ));
-            }
+fn open_edges(outlines: impl Iterator<Item = Vec<Face>>) -> Result<Vec<Face>, String> {
+    let mut edges: BTreeMap<[usize; 2], Face> = BTreeMap::new();
+    for edge in outlines.flatten() {
+        let ends = [edge[0], edge[1]];
+        if edges.insert(ends, edge).is_some() {
+            let mend = "turn the cells on one side of it round";
+            let nodes = list(&ends);
+            return Err(format!("two faces run along the edge of {nodes} the same way: {mend}"));
         }
     }
-    Ok(edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a])).copied().collect())
+    let is_open = |[a, b]: &[usize; 2]| !edges.contains_key(&[*b, *a]);
+    Ok(edges.iter().filter(|(ends, _)| is_open(ends)).map(|(_, edge)| edge.clone()).collect())
 }

@@ -108,7 +108,9 @@ impl ElasticLaw for Fibre {
 
     #[inline(always)]
     fn domain<T: Real, const M: usize>(&self, _: T, twice: &Matrix<T, M, M>) -> T {
-        twice[0][0] * twice[0][0] * -self.stiffening + LARGEST
+        // slack fibres have no limit
+        let [stretched] = T::each([twice[0][0]], |[twice]| [twice.max(0.0)]);
+        stretched * stretched * -self.stiffening + LARGEST
     }
 
     fn outside(&self, domain: f64) -> String {

@@ -1,7 +1,7 @@
 //! Load curves: in steps of the load, and by arc length past limit points, against closed forms and displacement control.
 
 use pliant::{
-    Axis, Body, Cells, Equilibrium, Error, Material, Mesh, Obstacle, Phase, Scene, Stability,
+    Axis, Body, Cells, Equilibrium, Error, Law, Material, Mesh, Obstacle, Phase, Scene, Stability,
     Statics, Strain,
 };
 
@@ -139,6 +139,48 @@ fn an_arch_snaps_at_the_load_that_displacement_control_finds() {
         count += 1;
     }
     assert!(count > 2);
+}
+
+/// Half of a shallow arch of 20 x 0.2 cm that rises by 1 cm, level at both ends. Between its limit points other branches pass so
+/// near by that steps beside the tangent end on them. None does, so that it comes out where the whole load at once leads.
+#[test]
+fn no_step_leads_to_another_branch() {
+    let flat = Mesh::rectangle([0.1, 0.002], [21, 2], Cells::Triangles6).unwrap();
+    let rise = |x: f64| 0.01 * (0.5 * std::f64::consts::PI * x / 0.1).sin().powi(2);
+    let mesh = flat.mapped(|x| [x[0], x[1] - 0.001 + rise(x[0])]).unwrap();
+    let soft = Material { density: 1000.0, young: 1e6, poisson: 0.0, viscosity: 0.0 };
+    let body = Body::new(mesh, soft.law(Law::Corotated)).thickness(0.01).build().unwrap();
+    let phase = Phase::until(1.0)
+        .hold("left")
+        .symmetry("right", [1.0, 0.0])
+        .load_total("right", [0.0, -0.005]);
+    let scene = Scene::new(body).phase(phase);
+    let statics = Statics { load_steps: 5, arc_steps: 400, ..Statics::default() };
+    let found = scene.equilibrium(&statics).unwrap();
+    let samples = found.trajectory().samples();
+
+    let count = scene.body().mesh().node_count();
+    let pairs = (0..count).flat_map(|i| (0..count).map(move |j| (i, j)));
+    let masses = pairs.map(|(i, j)| (i, j, scene.body().inertia().get(i, j)));
+    let masses: Vec<_> = masses.filter(|(_, _, mass)| *mass != 0.0).collect();
+    let way = |pair: &[pliant::Sample]| {
+        let way: Vec<f64> = pair[1].u.iter().zip(&pair[0].u).map(|(u, v)| u - v).collect();
+        let product = |&(i, j, m): &(usize, usize, f64)| {
+            m * (way[2 * i] * way[2 * j] + way[2 * i + 1] * way[2 * j + 1])
+        };
+        masses.iter().map(product).sum::<f64>().sqrt()
+    };
+    let ways: Vec<f64> = samples.windows(2).map(way).collect();
+    let longest = ways.iter().fold(0.0, |most: f64, way| most.max(*way));
+    println!("{} steps, the longest {:.3} times the first", ways.len(), longest / ways[0]);
+    // a step is longer than its way along the tangent by a tenth at most
+    assert!(longest < 1.1 * ways[0], "{ways:?}");
+
+    let at_once = scene.equilibrium(&Statics::default()).unwrap();
+    let apart = at_once.displacements().iter().zip(found.displacements());
+    let apart = apart.map(|(u, v)| (u - v).abs()).fold(0.0, f64::max);
+    println!("{apart:e} m, {found}");
+    assert!(apart < 1e-9, "{apart}");
 }
 
 #[test]

@@ -1,8 +1,10 @@
 //! Equilibria against printed and closed forms, and against what mechanics demands of them.
 
+mod chambers;
 mod free;
 mod free_green;
 mod load_curve;
+mod oblique;
 mod phases;
 mod spread;
 mod stability;

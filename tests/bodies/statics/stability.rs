@@ -130,3 +130,28 @@ fn a_square_hangs_from_its_corner() {
     let stiff = (9.8 / 2f64.sqrt() / (2.0 / 3.0 * 0.3)).sqrt() / TAU;
     assert!((frequency(&equilibrium) / stiff - 1.0).abs() < 0.02, "{}", frequency(&equilibrium));
 }
+
+/// A column of 10 x 0.2 cm under 1.15 of Euler's load, straight but for what its clamp does across: it is in equilibrium, and a
+/// push aside grows, whatever Poisson's ratio.
+#[test]
+fn a_column_beyond_buckling_is_unstable() {
+    for poisson in [0.0, 0.3] {
+        let material = Material { density: 1000.0, young: 1e6, poisson, viscosity: 0.0 };
+        let mesh = Mesh::rectangle([0.1, 0.002], [21, 3], Cells::Triangles6).unwrap();
+        let body = Body::new(mesh, material).thickness(0.01).strain(Strain::Green).build().unwrap();
+        // plane strain: E/(1 - nu^2)
+        let euler = std::f64::consts::PI.powi(2) * 1e6 / (1.0 - poisson * poisson)
+            * (0.01 * 0.002_f64.powi(3) / 12.0)
+            / (4.0 * 0.1 * 0.1);
+        for (part, is_unstable) in [(0.9, false), (1.15, true)] {
+            let pressed = Phase::until(1.0).hold("left").load_total("right", [-part * euler, 0.0]);
+            let found = solve(&Scene::new(body.clone()).phase(pressed));
+            println!("nu {poisson}, {part}: {found}");
+            assert_eq!(
+                matches!(found.stability, Stability::Unstable { .. }),
+                is_unstable,
+                "{found}"
+            );
+        }
+    }
+}

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::constraint::Row;
+use crate::mesh::Mesh;
 use crate::sparse::{NodeMatrix, NodePattern};
 use crate::vector::{dot, norm};
 
@@ -14,26 +15,31 @@ const BALANCED: f64 = 1e-12;
 
 /// A body as it is.
 #[derive(Clone, Copy)]
-pub(super) struct Shape<'a> {
-    pub(super) dimension: usize,
+pub(crate) struct Shape<'a> {
+    pub(crate) dimension: usize,
     /// Its size (m).
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// Positions (m), dimension components per node.
-    pub(super) positions: &'a [f64],
+    pub(crate) positions: &'a [f64],
 }
 
 impl<'a> Shape<'a> {
+    /// The undeformed body.
+    pub(crate) fn natural(mesh: &'a Mesh) -> Self {
+        Self { dimension: mesh.dimension(), size: mesh.size(), positions: mesh.positions() }
+    }
+
     fn position(&self, node: usize) -> &'a [f64] {
         &self.positions[node * self.dimension..][..self.dimension]
     }
 }
 
 /// A rigid motion.
-pub(super) struct RigidMotion {
-    pub(super) words: String,
+pub(crate) struct RigidMotion {
+    pub(crate) words: String,
     /// Displacements (m): of a unit along a direction, or of a unit angle about a point.
-    pub(super) values: Vec<f64>,
-    pub(super) is_turn: bool,
+    pub(crate) values: Vec<f64>,
+    pub(crate) is_turn: bool,
     /// The nodes that move.
     nodes: Vec<usize>,
     /// W and t of the displacements W x + t of a node at x, as [W, t; 0, 0].
@@ -43,7 +49,7 @@ pub(super) struct RigidMotion {
 impl RigidMotion {
     /// Carries nodes, of undeformed positions `natural`, on by `size` (rad or m) of this motion, turns along circles: what that adds
     /// to the displacements `u`.
-    pub(super) fn carry(&self, size: f64, natural: &[f64], u: &mut [f64]) {
+    pub(crate) fn carry(&self, size: f64, natural: &[f64], u: &mut [f64]) {
         let order = self.generator.nrows();
         let motion = (&self.generator * size).exp() - DMatrix::identity(order, order);
         for &node in &self.nodes {
@@ -54,7 +60,7 @@ impl RigidMotion {
     }
 
     /// Makes this motion that of the body with displacements `u`.
-    pub(super) fn move_to(&mut self, natural: &[f64], u: &[f64]) {
+    pub(crate) fn move_to(&mut self, natural: &[f64], u: &[f64]) {
         let order = self.generator.nrows();
         for &node in &self.nodes {
             let dofs = node * (order - 1)..(node + 1) * (order - 1);
@@ -64,7 +70,7 @@ impl RigidMotion {
     }
 
     /// Work (J) of nodal forces `f` (N) as the displacements `x` (m) turn by a unit angle of this motion: f . W x.
-    pub(super) fn turned_work(&self, f: &[f64], x: &[f64]) -> f64 {
+    pub(crate) fn turned_work(&self, f: &[f64], x: &[f64]) -> f64 {
         let dimension = self.generator.nrows() - 1;
         let work = |&node: &usize| {
             let [f, x] = [f, x].map(|values| &values[node * dimension..][..dimension]);
@@ -76,7 +82,7 @@ impl RigidMotion {
     }
 
     /// What the nodal `loads` (N) that are not in balance come to along the motion, in words.
-    pub(super) fn resultant(&self, loads: &[f64]) -> Option<String> {
+    pub(crate) fn resultant(&self, loads: &[f64]) -> Option<String> {
         let sum = dot(&self.values, loads);
         let terms: f64 = self.values.iter().zip(loads).map(|(r, f)| (r * f).abs()).sum();
         let what = if self.is_turn { "moment of" } else { "force of" };
@@ -93,14 +99,14 @@ fn at(natural: &[f64], u: &[f64]) -> DVector<f64> {
 }
 
 /// Takes the small `motions` out of the displacements `u`: R^T M u = 0 after that. `inertia` is M.
-pub(super) fn remove(motions: &[RigidMotion], inertia: &NodeMatrix, u: &mut [f64]) {
+pub(crate) fn remove(motions: &[RigidMotion], inertia: &NodeMatrix, u: &mut [f64]) {
     for (motion, part) in motions.iter().zip(parts(motions, inertia, u)) {
         u.iter_mut().zip(&motion.values).for_each(|(u, r)| *u -= part * r);
     }
 }
 
 /// The parts c of the `motions` R in the displacements `u`, R^T M (u - R c) = 0. `inertia` is M.
-pub(super) fn parts(motions: &[RigidMotion], inertia: &NodeMatrix, u: &[f64]) -> Vec<f64> {
+pub(crate) fn parts(motions: &[RigidMotion], inertia: &NodeMatrix, u: &[f64]) -> Vec<f64> {
     let Some(first) = motions.first() else { return Vec::new() };
     let dimension = first.values.len() / inertia.pattern().nodes();
     let weigh = |motion: &RigidMotion| {
@@ -117,7 +123,7 @@ pub(super) fn parts(motions: &[RigidMotion], inertia: &NodeMatrix, u: &[f64]) ->
 }
 
 /// The rigid motions that `rows` leave free; those of each connected piece of the body.
-pub(super) fn free_motions(shape: Shape, pattern: &NodePattern, rows: &[Row]) -> Vec<RigidMotion> {
+pub(crate) fn free_motions(shape: Shape, pattern: &NodePattern, rows: &[Row]) -> Vec<RigidMotion> {
     let pieces = pattern.pieces();
     let count = pieces.iter().max().map_or(0, |last| last + 1);
     let mut nodes = vec![Vec::new(); count];
