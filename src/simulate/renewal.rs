@@ -232,6 +232,7 @@ impl Run {
                 commands: self.stage.commands,
                 balance: self.balance,
                 energies: self.trajectory.noted(),
+                angles: self.angles.clone(),
             },
         }
     }
@@ -247,6 +248,7 @@ impl Run {
         let mut system = self.rest()?;
         self.time = time;
         self.state.copy_from_slice(state);
+        self.angles.clone_from(&kept.angles);
         if !Arc::ptr_eq(&self.phase, phase) {
             let forces = self.scene.forces_in(phase)?;
             let same = Arc::ptr_eq(&self.constraints, constraints) && system.change_forces(forces);
@@ -319,6 +321,7 @@ impl Run {
         self.stage.ended = Some(Ending::Reached);
         self.begin_events(&system);
         self.at = At::Rest(system);
+        self.follow_angles();
         self.remember();
     }
 
@@ -352,12 +355,14 @@ impl Run {
     /// Takes samples at other times from the end of the last step on.
     pub(super) fn record(&mut self, sampling: &Sampling, sensors: Sensors) {
         self.trajectory.unread(sensors.quantities.clone());
+        self.angles.keep(|name| sensors.quantities.iter().any(|quantity| quantity.name == name));
         (self.sampling, self.sensors) = (sampling.clone(), sensors);
         if self.trajectory.last().time == self.time {
             let mut now = self.trajectory.last().clone();
             self.complete(&mut now);
             self.trajectory.replace_last(now);
         }
+        self.follow_angles();
         self.sample_from(self.time);
     }
 

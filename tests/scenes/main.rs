@@ -37,4 +37,5 @@ mod tunnelling;
 mod turning;
 mod varying;
 mod warnings;
+mod whole_turns;
 mod yielding;
