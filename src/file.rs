@@ -1,13 +1,13 @@
 //! Files that are complete or not there at all.
 
-use std::fs::{self, Permissions};
+use std::fs::{self, File, Permissions};
 use std::io::{self, BufWriter, Write};
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 
 use crate::error::Error;
 
-/// Has `content` written to a file beside `path`, which takes its place when it is complete.
+/// Has `content` written to a file beside `path`, which takes its place when it is complete and on the disk.
 ///
 /// # Errors
 /// [`Error::Output`] with `path`.
@@ -31,6 +31,12 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     content(&mut buffer)?;
     buffer.flush()?;
     drop(buffer);
+    // after a loss of power there is the old file or the new one, not a new one without content
+    file.as_file().sync_all()?;
     file.persist(path)?;
-    Ok(())
+    // its name is kept, too, on file systems that know of that
+    match File::open(directory)?.sync_all() {
+        Err(error) if error.kind() != io::ErrorKind::InvalidInput => Err(error),
+        _ => Ok(()),
+    }
 }

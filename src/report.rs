@@ -13,6 +13,8 @@ use crate::settings::Method;
 /// How a trajectory was computed.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
+    /// Title of the scene, of a file that has one; empty otherwise.
+    pub title: String,
     /// Integration method.
     pub method: Method,
     /// Relative tolerance.

@@ -7,7 +7,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::body::Body;
-use crate::input::told;
+use crate::input::{InputError, told};
 use crate::report::Report;
 use crate::scene::{BodyState, Phase, Scene};
 use crate::settings::Method;
@@ -57,6 +57,28 @@ pub struct Quantity {
     pub unit: String,
 }
 
+/// The unit of angles in degrees, the one that is none of SI.
+pub(crate) const DEGREES: &str = "deg";
+
+impl Quantity {
+    /// What stands above its column in a table: its name, with degrees behind it, as all else is in SI units.
+    #[cfg(any(feature = "output", feature = "fit"))]
+    pub(crate) fn heading(&self) -> String {
+        match self.unit == DEGREES {
+            true => format!("{} ({DEGREES})", self.name),
+            false => self.name.clone(),
+        }
+    }
+
+    /// The name that stands above a column, and whether degrees stand behind it.
+    #[cfg(feature = "output")]
+    pub(crate) fn of_heading(heading: &str) -> (&str, bool) {
+        let name = heading.strip_suffix(')').and_then(|heading| heading.strip_suffix(DEGREES));
+        let name = name.and_then(|heading| heading.strip_suffix(" ("));
+        (name.unwrap_or(heading), name.is_some())
+    }
+}
+
 /// A sampled motion and the report of its computation.
 #[derive(Clone)]
 pub struct Trajectory {
@@ -85,6 +107,25 @@ impl Trajectory {
     pub(crate) fn push(&mut self, sample: Sample) {
         self.note_energy(&sample.energy);
         self.samples.push(sample);
+    }
+
+    /// Adds columns of sensors, with a row for each sample.
+    ///
+    /// # Errors
+    /// A name that another column has.
+    pub(crate) fn add_columns(
+        &mut self,
+        columns: Vec<Quantity>,
+        rows: Vec<Vec<f64>>,
+    ) -> Result<(), InputError> {
+        let is_known = |column: &&Quantity| self.sensors.iter().any(|own| own.name == column.name);
+        if let Some(Quantity { name, .. }) = columns.iter().find(is_known) {
+            let mend = "a column of the equilibria has it: name the sensor otherwise";
+            return Err(InputError::new("name of a sensor", format!("\"{name}\""), mend));
+        }
+        self.sensors.extend(columns);
+        self.samples.iter_mut().zip(rows).for_each(|(sample, row)| sample.sensors.extend(row));
+        Ok(())
     }
 
     /// From now on has these sensors, which have not read anything so far.
@@ -239,9 +280,10 @@ impl Trajectory {
         planes.iter().map(moment).collect()
     }
 
-    /// Angle (rad, counter-clockwise) by which a two-dimensional body has turned as a whole: that
+    /// Angle (rad, counter-clockwise, between -pi and pi) by which a two-dimensional body has turned as a whole: that
     /// of the rotation which, in the mean over its mass, brings the undeformed shape nearest to the
-    /// present one. `None` in other dimensions.
+    /// present one. `None` in other dimensions. The sensor
+    /// [`Reading::rotation`](crate::simulate::Reading::rotation) goes on over whole turns.
     pub fn rotation(&self, sample: &Sample) -> Option<f64> {
         self.body().rotation(&sample.u)
     }

@@ -274,3 +274,26 @@ fn tangents_by_differences_do_not_allocate() {
     assert!(many > few + 300, "{few} and {many}");
     assert!(allocations_of_many <= allocations_of_few + 5);
 }
+
+/// One table more in a phase of a scene file costs what it says, not what the body has: the whole scene is checked once.
+#[test]
+fn tables_in_a_phase_are_read_at_the_cost_of_what_they_say() {
+    let bytes = |nodes: [usize; 2], count: usize| {
+        let load = |k: usize| format!("{{ nodes = [{}], force = [0.0, 1.0] }}", 1 + k % 15);
+        let loads: Vec<String> = (0..count).map(load).collect();
+        let text = format!(
+            "[body]\nmesh = {{ kind = \"rectangle\", size = [0.1, 0.02], nodes = {nodes:?}, cells = \"triangles\" }}\n\
+             thickness = 0.01\n\
+             material = {{ density = 1000.0, young = 1e5, poisson = 0.3, viscosity = 40.0 }}\n\
+             [[phase]]\nuntil = 1.0\nload = [{}]\n",
+            loads.join(", ")
+        );
+        let path = std::path::Path::new("many.toml");
+        measure(|| drop(pliant::SceneFile::parse(&text, path).unwrap())).bytes_total as f64
+    };
+    let per_table = |nodes| (bytes(nodes, 800) - bytes(nodes, 400)) / 400.0;
+    let [coarse, fine] = [[5, 3], [41, 21]].map(per_table);
+    println!("{coarse} bytes per table on 15 nodes, {fine} on 861");
+    // lists that grow by doubling
+    assert!((fine / coarse - 1.0).abs() < 0.05, "{coarse} {fine}");
+}

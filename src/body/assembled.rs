@@ -362,16 +362,28 @@ impl Body {
         if self.dimension() != 2 {
             return None;
         }
+        Some(self.turned(&self.arms(), u))
+    }
+
+    /// The mass of each node of a body in the plane times where the node naturally is from the centre of mass (kg m). They add up to 0.
+    pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
         let positions = self.mesh().positions();
-        let x: Vec<f64> = positions.iter().zip(u).map(|(x, u)| x + u).collect();
-        let (centre, natural) = (self.mass_average(&x), self.mass_average(positions));
+        let centre = self.mass_average(positions);
+        let masses = self.nodal_masses();
+        let arm = |(mass, x): (&f64, &[f64])| [0, 1].map(|i| mass * (x[i] - centre[i]));
+        masses.iter().zip(positions.chunks_exact(2)).map(arm).collect()
+    }
+
+    /// The [`rotation`](Self::rotation) of a body in the plane, by its `arms`.
+    pub(crate) fn turned(&self, arms: &[[f64; 2]], u: &[f64]) -> f64 {
+        let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
         let (mut along, mut across) = (0.0, 0.0);
-        for (node, mass) in self.nodal_masses().iter().enumerate() {
-            let arm = |i: usize| positions[2 * node + i] - natural[i];
-            let now = |i: usize| positions[2 * node + i] + u[2 * node + i] - centre[i];
-            along += mass * (arm(0) * now(0) + arm(1) * now(1));
-            across += mass * (arm(0) * now(1) - arm(1) * now(0));
+        for ([a, b], (x, u)) in arms.iter().zip(nodes) {
+            // from any point: the arms add up to 0
+            let [x, y] = [x[0] + u[0], x[1] + u[1]];
+            along += a * x + b * y;
+            across += a * y - b * x;
         }
-        Some(across.atan2(along))
+        across.atan2(along)
     }
 }

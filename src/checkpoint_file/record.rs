@@ -7,11 +7,11 @@ use super::identity::Identity;
 use crate::input::{InputError, finite};
 use crate::scene::Scene;
 use crate::settings::Method;
-use crate::simulate::{Checkpoint, Choice, Kept};
+use crate::simulate::{Angles, Checkpoint, Choice, Kept};
 use crate::state::State;
 
 /// Format of the files that this version writes and reads.
-const FORMAT: u32 = 3;
+const FORMAT: u32 = 4;
 
 /// What a file says that it is.
 pub(super) const WHAT: &str = "pliant checkpoint";
@@ -60,6 +60,9 @@ pub(super) struct Record {
     /// Of Maxwell branches.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     internal_strains: Vec<f64>,
+    /// Where angles that sensors read are, in turns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    angles: Vec<(String, f64)>,
 }
 
 /// A [`Choice`]; a step without a bound is `null`.
@@ -119,6 +122,7 @@ impl Record {
             displacements: state.u.into(),
             velocities: state.v.into(),
             internal_strains: state.others.into(),
+            angles: kept.angles.0.clone(),
         })
     }
 
@@ -171,6 +175,7 @@ impl Record {
             commands: count("load_commands", self.load_commands)?,
             balance: self.energy_balance,
             energies: self.energies_noted,
+            angles: Angles(self.angles),
         };
         Ok((kept, self.chosen.map(Chosen::read).transpose()?))
     }

@@ -188,18 +188,28 @@ impl Contact {
         })
     }
 
-    /// Force on the body as a whole (N); 0 beyond the dimension.
+    /// Force on the body as a whole (N), or its part on the nodes that `is_read` names; 0 beyond the dimension.
     ///
     /// # Errors
     /// A distance function of the user's own that has no meaning.
-    pub(crate) fn force(&self, t: f64, u: &[f64], v: &[f64]) -> Result<[f64; 3], Failure> {
+    pub(crate) fn force(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        is_read: Option<&[bool]>,
+    ) -> Result<[f64; 3], Failure> {
         let mut total = [0.0; 3];
         for touch in self.touches(t, u, v) {
             self.check(t, &touch)?;
+            let part = is_read.map_or(1.0, |is_read| {
+                let read = touch.point.on.nodes().filter(|(node, _)| is_read[*node]);
+                read.map(|(_, share)| share).sum()
+            });
             let drag = touch.drag();
             for (i, total) in total.iter_mut().enumerate().take(self.dimension) {
                 let [elastic, braking] = touch.force(drag, i);
-                *total += elastic + braking;
+                *total += part * (elastic + braking);
             }
         }
         Ok(total)

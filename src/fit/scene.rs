@@ -82,9 +82,10 @@ impl SceneFit {
         let times: Vec<f64> = rows.iter().map(|&row| measured.times[row]).collect();
         let known = sensors(&file)?;
         let columns = measured.columns.iter().map(|(name, values)| {
-            let quantity = known.iter().find(|quantity| quantity.name == *name);
+            let quantity = known.iter().find(|quantity| quantity.heading() == *name);
             let quantity = quantity.ok_or_else(|| {
-                let known: Vec<&str> = known.iter().map(|quantity| &quantity.name[..]).collect();
+                let known: Vec<String> = known.iter().map(Quantity::heading).collect();
+                let known: Vec<&str> = known.iter().map(String::as_str).collect();
                 let mend = unknown_among(name, &known, "scene", "sensors");
                 Error::from(InputError::new("column of the data", format!("\"{name}\""), mend))
             })?;

@@ -9,7 +9,7 @@ use super::write_file;
 use crate::error::Error;
 use crate::input::InputError;
 use crate::mesh::Selection;
-use crate::trajectory::{Sample, Trajectory};
+use crate::trajectory::{Quantity, Sample, Trajectory};
 
 /// Writes one row per sample, after a row with the names of the columns: those of [`reference`](super::reference),
 /// with displacements of the nodes that `track` names.
@@ -130,7 +130,7 @@ impl GrowingTable {
 }
 
 fn header(columns: &Columns, trajectory: &Trajectory) -> Vec<String> {
-    columns.quantities(trajectory).into_iter().map(|quantity| quantity.name).collect()
+    columns.quantities(trajectory).iter().map(Quantity::heading).collect()
 }
 
 fn append(path: &Path, rows: impl Iterator<Item = Vec<f64>>) -> io::Result<()> {

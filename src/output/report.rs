@@ -17,6 +17,7 @@ pub(super) type ReportKey = (&'static str, &'static str, &'static str);
 /// The keys of [`write_report`].
 pub(super) const OF_RUN: &[ReportKey] = &[
     ("status", "", "`\"finished\"`, `\"failed\"` or `\"interrupted\"`"),
+    ("title", "", "title of the scene; empty without one"),
     ("failure", "", "what ended the run; `null` of one that was finished"),
     ("failure.phase", "", "name of the phase"),
     ("failure.time", "s", "time reached"),
@@ -167,6 +168,9 @@ pub(super) const OF_STATICS: &[ReportKey] = &[
     ("mesh_estimate.wall_seconds", "s", "wall-clock time of the estimate"),
     ("wall_seconds", "s", "wall-clock time of the search"),
     ("max_constraint_drift", "m", "largest error of a constraint"),
+    ("sensors", "", "the sensors, in the order of their columns in `trajectory.csv`"),
+    ("sensors[].name", "", "name of the column"),
+    ("sensors[].unit", "", "its unit"),
     ("warnings", "", "what makes the result doubtful, in words"),
     ("indicators", "", "what was measured once the search had ended, beyond its limits or not"),
     ("indicators[].name", "", "what was measured"),
@@ -226,13 +230,12 @@ pub fn write_report(
         }
     };
     let report = trajectory.report();
-    let sensor = |sensor: &Quantity| json!({ "name": sensor.name, "unit": sensor.unit });
-    let sensors: Vec<Value> = trajectory.sensors().iter().map(sensor).collect();
     let phases: Vec<Value> = report.phases.iter().map(|phase| of_phase(report, phase)).collect();
     write_json(
         path.as_ref(),
         &json!({
             "status": status,
+            "title": report.title,
             "failure": failure,
             "method": report.method.name(),
             "rtol": report.rtol,
@@ -254,7 +257,7 @@ pub fn write_report(
             "max_constraint_drift": report.constraint_drift,
             "chosen": report.chosen,
             "achieved": report.achieved.as_ref().map(of_achieved),
-            "sensors": sensors,
+            "sensors": of_sensors(trajectory),
             "warnings": report.warnings(),
             "indicators": report.indicators.iter().map(of_indicator).collect::<Vec<_>>(),
             "versions": versions(),
@@ -362,11 +365,17 @@ pub fn write_static_report(
             "mesh_estimate": found.ok().and_then(|found| found.mesh_estimate.as_ref()).map(of_mesh),
             "wall_seconds": trajectory.report().wall_seconds,
             "max_constraint_drift": trajectory.samples().last().map(|sample| sample.constraint_drift),
+            "sensors": of_sensors(trajectory),
             "warnings": trajectory.report().warnings(),
             "indicators": trajectory.report().indicators.iter().map(of_indicator).collect::<Vec<_>>(),
             "versions": versions(),
         }),
     )
+}
+
+fn of_sensors(trajectory: &Trajectory) -> Vec<Value> {
+    let sensor = |sensor: &Quantity| json!({ "name": sensor.name, "unit": sensor.unit });
+    trajectory.sensors().iter().map(sensor).collect()
 }
 
 fn of_mesh(estimate: &MeshEstimate) -> Value {

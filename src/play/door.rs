@@ -8,6 +8,8 @@ use crate::input::InputError;
 
 /// Bytes of the token.
 const LENGTH: usize = 16;
+/// The port that browsers leave out of an address.
+const PORT_OF_HTTP: u16 = 80;
 
 /// The address of the page, whose path is a secret.
 #[derive(Clone)]
@@ -55,7 +57,12 @@ impl Door {
     pub(super) fn admit(&self, head: &Head) -> Result<Wanted, Refusal> {
         let forbidden = |reason: &str| Refusal::new("403 Forbidden", reason);
         // names of other machines that lead here are no way in
-        let hosts = ["127.0.0.1", "localhost"].map(|host| format!("{host}:{}", self.port));
+        let mut hosts: Vec<String> =
+            ["127.0.0.1", "localhost"].map(|host| format!("{host}:{}", self.port)).into();
+        if self.port == PORT_OF_HTTP {
+            // the one that goes without saying
+            hosts.extend(["127.0.0.1", "localhost"].map(String::from));
+        }
         if !head.header("host").is_some_and(|host| hosts.iter().any(|own| own == host)) {
             return Err(forbidden("this is another machine's name: take the address as printed"));
         }
@@ -103,4 +110,33 @@ impl Door {
 fn same(a: &str, b: &str) -> bool {
     let differ = a.bytes().zip(b.bytes()).fold(0, |differ, (a, b)| differ | (a ^ b));
     a.len() == b.len() && differ == 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Browsers leave port 80 out of the names of hosts and origins, and no other one.
+    #[test]
+    fn the_port_of_http_goes_without_saying() {
+        for (port, host, is_let_in) in [
+            (80, "127.0.0.1", true),
+            (80, "localhost", true),
+            (80, "127.0.0.1:80", true),
+            (80, "evil.example", false),
+            (8080, "127.0.0.1", false),
+            (8080, "127.0.0.1:8080", true),
+        ] {
+            let door = Door { port, token: "secret".into() };
+            let socket = format!(
+                "GET /secret/socket HTTP/1.1\r\nHost: {host}\r\nOrigin: http://{host}\r\nUpgrade: websocket\r\n\
+                 Connection: Upgrade\r\nSec-WebSocket-Version: 13\r\nSec-WebSocket-Key: k\r\n\r\n"
+            );
+            let page = format!("GET /secret/ HTTP/1.1\r\nHost: {host}\r\n\r\n");
+            for request in [socket, page] {
+                let head = Head::parse(request.as_bytes()).ok().flatten().unwrap();
+                assert_eq!(door.admit(&head).is_ok(), is_let_in, "{port} {request}");
+            }
+        }
+    }
 }

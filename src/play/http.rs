@@ -63,7 +63,7 @@ impl Head {
     }
 
     /// The head that `bytes` begin with, if it is there as a whole.
-    fn parse(bytes: &[u8]) -> Result<Option<Self>, Refusal> {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Option<Self>, Refusal> {
         let mut headers = [httparse::EMPTY_HEADER; HEADERS];
         let mut request = httparse::Request::new(&mut headers);
         let bad = |error| Refusal::new("400 Bad Request", format!("this is not HTTP: {error}"));

@@ -96,22 +96,25 @@ impl Record {
         if self.tracks.is_empty() {
             return Err("no slider was moved since the start: there is nothing to be saved".into());
         }
-        let mut changes: Vec<Rewritten> = Vec::new();
-        for track in &self.tracks {
-            let number = track.phase;
-            let known = changes.iter().position(|change| change.number == number);
-            let at = known.or_else(|| {
-                let phase = scene.phases().get(number)?.clone();
-                changes.push(Rewritten { number, phase, keys: BTreeSet::new() });
-                Some(changes.len() - 1)
-            });
-            let Some(change) = at.map(|at| &mut changes[at]) else { continue };
-            // a file has no functions of time, of which one moment would be taken
-            let key = self.course(scene, track, 0.0).write(&mut change.phase);
-            change.keys.insert(key);
-        }
         let Original { text, path } = original;
         let cannot = |reason: String| format!("{} cannot be changed: {reason}", path.display());
+        let written = SceneFile::parse(text, path).map_err(|error| cannot(error.to_string()))?;
+        let mut changes: Vec<Rewritten> = Vec::new();
+        for (number, phase) in scene.phases().iter().enumerate() {
+            let mut change = Rewritten { number, phase: phase.clone(), keys: BTreeSet::new() };
+            for track in self.tracks.iter().filter(|track| track.phase == number) {
+                // a file has no functions of time, of which one moment would be taken
+                let key = self.course(scene, track, 0.0).write(&mut change.phase);
+                change.keys.insert(key);
+            }
+            // it was played for longer
+            if written.scene.phases().get(number).is_some_and(|own| own.end() < phase.end()) {
+                change.keys.insert("until");
+            }
+            if !change.keys.is_empty() {
+                changes.push(change);
+            }
+        }
         let text = rewritten(text, scene.body().dimension(), &changes).map_err(cannot)?;
         SceneFile::parse(&text, path).map_err(|error| cannot(error.to_string()))?;
         let name = file_name(path);

@@ -36,6 +36,8 @@ const MOST: usize = 32;
 const LONGEST: usize = 64 * 1024;
 /// How long a browser may take to accept an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
+/// How long a page may say nothing until it is asked whether it is there, and how long it may take to answer that.
+const QUIET: Duration = Duration::from_secs(3);
 /// Pause after a connection that failed before it was one.
 const RECOVERY: Duration = Duration::from_millis(50);
 
@@ -64,9 +66,44 @@ struct House {
     door: Door,
     page: String,
     requests: Sender<Request>,
-    connections: AtomicUsize,
+    connections: Arc<AtomicUsize>,
     /// Pages that are open.
-    pages: AtomicUsize,
+    pages: Arc<AtomicUsize>,
+}
+
+/// One of several who are counted, until it is dropped, by a panic, too.
+struct Guest {
+    count: Arc<AtomicUsize>,
+    /// How many there are with it.
+    number: usize,
+}
+
+impl Guest {
+    fn among(count: &Arc<AtomicUsize>) -> Self {
+        let number = count.fetch_add(1, Ordering::SeqCst) + 1;
+        Self { count: count.clone(), number }
+    }
+}
+
+impl Drop for Guest {
+    fn drop(&mut self) {
+        self.count.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+/// An open page; when it is dropped, the simulation is told.
+struct Page<'a> {
+    house: &'a House,
+    guest: Option<Guest>,
+}
+
+impl Drop for Page<'_> {
+    fn drop(&mut self) {
+        drop(self.guest.take());
+        let was_last = self.house.pages.load(Ordering::SeqCst) == 0;
+        // without a simulation there is nobody to be told
+        let _ = self.house.requests.send(Request::Gone { was_last });
+    }
 }
 
 impl Player {
@@ -124,26 +161,25 @@ impl Player {
             door,
             page,
             requests,
-            connections: AtomicUsize::new(0),
-            pages: AtomicUsize::new(0),
+            connections: Arc::default(),
+            pages: Arc::default(),
         });
         for stream in listener.incoming() {
             let Ok(stream) = stream else {
                 thread::sleep(RECOVERY);
                 continue;
             };
-            if house.connections.fetch_add(1, Ordering::Relaxed) >= MOST {
-                house.connections.fetch_sub(1, Ordering::Relaxed);
+            let guest = Guest::among(&house.connections);
+            if guest.number > MOST {
                 continue;
             }
-            let visited = house.clone();
+            let house = house.clone();
             let visit = move || {
-                visited.receive(stream);
-                visited.connections.fetch_sub(1, Ordering::Relaxed);
+                let _guest = guest;
+                house.receive(stream);
             };
-            if thread::Builder::new().name("page".into()).spawn(visit).is_err() {
-                house.connections.fetch_sub(1, Ordering::Relaxed);
-            }
+            // without a thread there is no visit, and the guest is gone
+            let _ = thread::Builder::new().name("page".into()).spawn(visit);
         }
         Ok(())
     }
@@ -184,7 +220,7 @@ impl House {
         let ready = stream
             .write_all(accepted.as_bytes())
             .and_then(|()| stream.set_nodelay(true))
-            .and_then(|()| stream.set_read_timeout(None));
+            .and_then(|()| stream.set_read_timeout(Some(QUIET)));
         if ready.is_err() {
             return;
         }
@@ -192,21 +228,33 @@ impl House {
             .max_message_size(Some(LONGEST))
             .max_frame_size(Some(LONGEST));
         let mut socket = WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
-        self.pages.fetch_add(1, Ordering::SeqCst);
-        while let Ok(parcel) = socket.read() {
-            let answer = match parcel {
-                Parcel::Text(text) => self.pass_on(&text),
-                Parcel::Binary(_) => error_answer("a message is text, this was none"),
+        let _page = Page { house: self, guest: Some(Guest::among(&self.pages)) };
+        let mut was_asked = false;
+        loop {
+            let answer = match socket.read() {
+                Ok(Parcel::Text(text)) => Some(Parcel::text(self.pass_on(&text).to_string())),
+                Ok(Parcel::Binary(_)) => {
+                    let answer = error_answer("a message is text, this was none");
+                    Some(Parcel::text(answer.to_string()))
+                }
                 // pings are answered by the next call, a farewell, too
-                _ => continue,
+                Ok(_) => None,
+                // a page that does not draw says nothing, but its browser answers this
+                Err(tungstenite::Error::Io(error)) if is_late(&error) && !was_asked => {
+                    was_asked = true;
+                    if socket.send(Parcel::Ping(Default::default())).is_err() {
+                        return;
+                    }
+                    continue;
+                }
+                // gone, or vanished without a word
+                Err(_) => return,
             };
-            if socket.send(Parcel::text(answer.to_string())).is_err() {
-                break;
+            was_asked = false;
+            if answer.is_some_and(|answer| socket.send(answer).is_err()) {
+                return;
             }
         }
-        let was_last = self.pages.fetch_sub(1, Ordering::SeqCst) == 1;
-        // without a simulation there is nobody to be told
-        let _ = self.requests.send(Request::Gone { was_last });
     }
 
     /// Has a message answered by the simulation.
@@ -222,8 +270,35 @@ impl House {
     }
 }
 
+/// Whether nothing has come in time.
+fn is_late(error: &io::Error) -> bool {
+    matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
+}
+
 fn refuse(stream: &mut TcpStream, refusal: Option<Refusal>) {
     if let Some(Refusal { status, reason }) = refusal {
         let _ = answer(stream, status, "text/plain", &format!("{reason}\n"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
+    use super::*;
+
+    /// A panic in a conversation takes none of the places for good.
+    #[test]
+    fn guests_who_panic_are_gone() {
+        let count = Arc::default();
+        let first = Guest::among(&count);
+        let visit = AssertUnwindSafe(|| {
+            let guest = Guest::among(&count);
+            assert_eq!(guest.number, 1, "this one is the second");
+        });
+        assert!(catch_unwind(visit).is_err());
+        assert_eq!((first.number, count.load(Ordering::SeqCst)), (1, 1));
+        drop(first);
+        assert_eq!(count.load(Ordering::SeqCst), 0);
     }
 }

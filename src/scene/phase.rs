@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::load::Load;
 use crate::constraint::{Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline, Turn};
-use crate::external::{Live, Obstacle, Signal};
+use crate::external::{Live, Obstacle, Signal, VectorSignal};
 #[cfg(feature = "scene-file")]
 use crate::formula::Formula;
 use crate::input::{InputError, find};
@@ -385,6 +385,30 @@ impl Phase {
             *signal = signal.frozen();
         }
         Arc::new(frozen)
+    }
+
+    /// What acts at rest at a `fraction` of the load, for good: loads, pressures and the forces of actuators are so much of those at the end,
+    /// and `obstacles` stand where they have come to by then.
+    pub(crate) fn at_rest(&self, fraction: f64, obstacles: &[Obstacle], dimension: usize) -> Self {
+        let (mut rest, end) = (self.clone(), self.until);
+        for (_, load) in &mut rest.loads {
+            let force = load.value.components(end, dimension);
+            let part = force.iter().map(|force| fraction * force).collect();
+            load.value = VectorSignal::Constant(part);
+        }
+        let actuations = rest.actuations.iter_mut().map(|(_, force)| force);
+        let pressures = rest.pressures.iter_mut().map(|(_, pressure)| pressure);
+        let on_faces = rest.face_pressures.iter_mut().map(|(_, pressure)| pressure);
+        for signal in actuations.chain(pressures).chain(on_faces) {
+            *signal = Signal::constant(fraction * signal.at(end));
+        }
+        let reached = fraction * end;
+        for obstacle in obstacles {
+            if self.moving(obstacle).velocity_at(reached) != [0.0; 3] {
+                rest.turn(obstacle, reached, vec![0.0; dimension]);
+            }
+        }
+        rest
     }
 
     /// Whether there are any.

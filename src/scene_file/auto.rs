@@ -10,7 +10,7 @@ use crate::trajectory::Trajectory;
 const FEW_DEGREES: f64 = 0.8;
 
 impl SceneFile {
-    /// Puts what was chosen where the file says `auto`, and why, into the report of a motion of its scene: see
+    /// Puts the title, and what was chosen where the file says `auto`, and why, into the report of a motion of its scene: see
     /// [`Report::chosen`](crate::Report::chosen). What `accuracy` and `method = "auto"` have chosen stands there already.
     pub fn explain(&self, motion: &mut Trajectory) {
         let AutoRequest { strain, cells } = self.auto;
@@ -35,5 +35,6 @@ impl SceneFile {
             ));
         }
         motion.report.chosen = chosen;
+        motion.report.title.clone_from(&self.title);
     }
 }

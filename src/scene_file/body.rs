@@ -1,5 +1,8 @@
 //! `[body]`, `[[body.region]]` and `[[point]]`.
 
+use toml::de::DeValue;
+
+use super::absent::ONE_BODY;
 use super::contents::AutoRequest;
 use super::keys::{AUTO, Holds, Key, TableKeys};
 use super::material::{MATERIAL, substance};
@@ -116,6 +119,11 @@ pub(super) fn body(
     dimension: Option<&Value>,
     points: Option<&Value>,
 ) -> Result<Body, Error> {
+    if let DeValue::Array(_) = value.value {
+        return Err(
+            value.error(format!("expected [body], once; found a list, [[body]]: {ONE_BODY}"))
+        );
+    }
     let table = value.table(&BODY)?;
     let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension))?;
     let material = table.required("material", |value| substance(value, None))?;

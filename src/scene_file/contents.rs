@@ -58,16 +58,23 @@ pub struct StaticsRequest {
 }
 
 impl SceneFile {
-    /// The equilibrium that the file asks for.
+    /// The equilibrium that the file asks for, with what its sensors read.
     ///
     /// # Errors
-    /// As [`Scene::equilibrium_of`].
+    /// As [`Scene::equilibrium_of`] and [`Equilibrium::read`].
     pub fn equilibrium(&self) -> Result<Equilibrium, Error> {
         let StaticsRequest { phase, options } = &self.statics;
-        match phase {
+        let mut result = match phase {
             None => self.scene.equilibrium(options),
             Some(phase) => self.scene.equilibrium_of(phase, options),
+        };
+        let sensors = self.output.sampling();
+        match &mut result {
+            Ok(found) => found.read(&sensors)?,
+            Err(Error::Statics(failure)) => failure.read(&sensors)?,
+            Err(_) => {}
         }
+        result
     }
 }
 

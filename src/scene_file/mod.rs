@@ -36,6 +36,7 @@
 //!
 #![doc = include_str!("../../docs/reference.md")]
 
+mod absent;
 mod auto;
 mod body;
 mod contents;

@@ -35,8 +35,23 @@ const PARTS: [(&TableKeys, Add); 10] = [
     (&ACTUATE, actuate),
 ];
 
-/// The scene with the phase that `value` describes at its end.
-pub(super) fn add_phase(scene: Scene, value: &Value) -> Result<Scene, Error> {
+/// The scene with the phases that `values` describe at its end.
+pub(super) fn add_phases(scene: Scene, values: &[Value]) -> Result<Scene, Error> {
+    // to check it after each table costs its size each time: that is for the one who looks for a mistake
+    let add = |scene: Scene, check: &Check| {
+        values.iter().try_fold(scene, |scene, value| add_phase(scene, value, check))
+    };
+    match add(scene.clone(), &|_, _| Ok(())) {
+        Ok(complete) if complete.validate().is_ok() => Ok(complete),
+        _ => add(scene, &|scene, phase| scene.clone().phase(phase.clone()).validate()),
+    }
+}
+
+/// Whether a phase may follow those of the scene.
+type Check = dyn Fn(&Scene, &Phase) -> Result<(), InputError>;
+
+/// The scene with the phase that `value` describes at its end, of which each part has passed the `check`.
+fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error> {
     let table = value.table(&PHASE)?;
     let until = table.required("until", |value| {
         let until = value.number()?;
@@ -66,11 +81,6 @@ pub(super) fn add_phase(scene: Scene, value: &Value) -> Result<Scene, Error> {
         phase = phase.project_velocity();
     }
     Ok(scene.phase(phase))
-}
-
-/// Whether `phase` may follow those of the scene.
-fn check(scene: &Scene, phase: &Phase) -> Result<(), InputError> {
-    scene.clone().phase(phase.clone()).validate()
 }
 
 fn hold(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {

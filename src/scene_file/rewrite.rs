@@ -1,4 +1,4 @@
-//! The text of a scene file with other pressures, forces of actuators and loads; all else stays as it was written.
+//! The text of a scene file with other ends of phases, pressures, forces of actuators and loads; all else stays as it was written.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -17,7 +17,7 @@ pub(crate) struct Rewritten {
     pub(crate) number: usize,
     /// What it is now.
     pub(crate) phase: Phase,
-    /// The keys of its lists that are others: `pressure`, `actuate`, `load`.
+    /// The keys that are others: `until`, and of its lists `pressure`, `actuate`, `load`.
     pub(crate) keys: BTreeSet<&'static str>,
 }
 
@@ -48,6 +48,11 @@ pub(crate) fn rewritten(
         let missing = || format!("the file has no phase {}", number + 1);
         let table = table.ok_or_else(missing)?;
         for &key in keys {
+            if key == "until" {
+                let until = table.get(key).ok_or_else(missing)?.span();
+                edits.push((until, format!("{:?}", phase.until)));
+                continue;
+            }
             let list = match key {
                 "pressure" => pressures(phase),
                 "actuate" => actuations(phase),

@@ -48,7 +48,12 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     Kind {
         word: "contact-force",
         about: "the force of an obstacle on the body (N)",
-        keys: &[Key::new("obstacle", Holds::Text, "the name of the obstacle").required()],
+        keys: &[
+            Key::new("obstacle", Holds::Text, "the name of the obstacle").required(),
+            Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all").law(
+                "Those of one finger, say: the forces on both sides of what is gripped cancel each other.",
+            ),
+        ],
     },
     Kind {
         word: "spring-pull",
@@ -82,17 +87,19 @@ pub(super) const SENSOR: TableKeys = TableKeys::new(
     },
     Kind {
         word: "angle",
-        about: "the angle from one line to another (rad), counter-clockwise in the plane, without sign in space",
+        about: "the angle from one line to another, counter-clockwise in the plane, where it goes on over whole turns; \
+                without sign, from 0 to half a turn, in space",
         keys: &[
             Key::new("from", LINE, "the two ends of the one line").required(),
             Key::new("to", LINE, "the two ends of the other").required(),
+            UNIT,
         ],
     },
     Kind { word: "centre-of-mass", about: "where the centre of mass is (m)", keys: &[] },
     Kind {
         word: "rotation",
-        about: "the angle by which a body in the plane has turned as a whole (rad), counter-clockwise",
-        keys: &[],
+        about: "the angle by which a body in the plane has turned as a whole, counter-clockwise; it goes on over whole turns",
+        keys: &[UNIT],
     },
 ]);
 
@@ -104,6 +111,7 @@ const POINT: Key =
         .default("`nodes`");
 const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring").required();
 const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
+const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
 const LINE: Holds = Holds::Array(&Holds::Nodes, 2);
 
 /// A sensor's name, and what it reads in `scene`.
@@ -127,7 +135,13 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
                 None => Reading::constraint_moment(nodes()?, about),
             }
         }
-        "contact-force" => Reading::contact_force(named("obstacle")?),
+        "contact-force" => {
+            let obstacle = named("obstacle")?;
+            match table.optional("nodes", |value| selection(value, mesh))? {
+                Some(nodes) => Reading::contact_force_on(obstacle, nodes),
+                None => Reading::contact_force(obstacle),
+            }
+        }
         "spring-pull" => Reading::spring_pull(named("spring")?),
         "spring-length" => Reading::spring_length(named("spring")?),
         "pressure" => Reading::pressure(named("chamber")?),
@@ -138,9 +152,9 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
             let end = |key: &str| table.required(key, |value| selection(value, mesh));
             Reading::distance(end("from")?, end("to")?)
         }
-        "angle" => Reading::angle(ends("from")?, ends("to")?),
+        "angle" => in_unit(&table, Reading::angle(ends("from")?, ends("to")?))?,
         "centre-of-mass" => Reading::centre_of_mass(),
-        _ => Reading::rotation(),
+        _ => in_unit(&table, Reading::rotation())?,
     };
     let component = table.optional("component", |value| value.word(&Component::WORDS))?;
     let reading = match component {
@@ -150,6 +164,13 @@ pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), 
     let alone = Sampling::phase_ends().read(name, reading.clone());
     alone.check(scene).map_err(|error| table.blame(error))?;
     Ok((name.into(), reading))
+}
+
+/// An angle in the unit of the table.
+fn in_unit(table: &Table, angle: Reading) -> Result<Reading, Error> {
+    let in_degrees =
+        table.optional("unit", |value| value.word(&[("rad", false), ("deg", true)]))?;
+    Ok(if in_degrees == Some(true) { angle.in_degrees() } else { angle })
 }
 
 /// The ends of a line.

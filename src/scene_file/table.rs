@@ -6,6 +6,7 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
+use super::absent::stand_in;
 use super::keys::{Key, Kind, Meaning, TableKeys};
 use super::source::Source;
 use super::value::Value;
@@ -38,8 +39,12 @@ impl<'a> Table<'a> {
     ) -> Result<Self, Error> {
         let mut table = Self { source, key, at, entries, keys, kind: None };
         if let Some(key) = table.first_beside(&table.names(keys.all())) {
+            let name = key.get_ref();
             let known = table.names(keys.all().filter(|key| key.now.is_none()));
-            let message = format!("unknown key; {}", unknown(key.get_ref(), &known));
+            let message = match stand_in(name).filter(|_| table.key.is_empty()) {
+                Some(stand_in) => format!("scene files have no such table: {stand_in}"),
+                None => format!("unknown key; {}", unknown(name, &known)),
+            };
             return Err(source.error(&key.span(), &table.full(key.get_ref()), message));
         }
         if !keys.kinds.is_empty() {

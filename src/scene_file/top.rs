@@ -65,16 +65,18 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         Some(Err(_)) => initial,
         None => None,
     };
-    let parts: [(&str, Add); 4] = [
+    let parts: [(&str, Add); 3] = [
         ("spring", surroundings::add_spring),
         ("chamber", surroundings::add_chamber),
         ("obstacle", surroundings::add_obstacle),
-        ("phase", phase::add_phase),
     ];
     for (key, add) in parts {
         if let Some(values) = top.get(key) {
             scene = values.one_or_more()?.iter().try_fold(scene, add)?;
         }
+    }
+    if let Some(values) = top.get("phase") {
+        scene = phase::add_phases(scene, &values.one_or_more()?)?;
     }
     if scene.phases().is_empty() {
         return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use super::angles::Angles;
 use super::auto::Plan;
 use super::run::Run;
 use crate::constraint::PhaseStart;
@@ -44,6 +45,8 @@ pub(crate) struct Kept {
     pub(crate) balance: f64,
     /// Error, rise and scale of the energy balance (J).
     pub(crate) energies: [f64; 3],
+    /// Where the angles of sensors are, at or after the time.
+    pub(crate) angles: Angles,
 }
 
 /// Short: where it was made.

@@ -1,5 +1,7 @@
 //! How readings of an equilibrium change with displacements and constraint forces, on a richer mesh.
 
+use std::f64::consts::TAU;
+
 use super::gauge::Value;
 use super::reading::{Component, Reading, What};
 use super::view::{Gauges, View, mean};
@@ -65,7 +67,9 @@ impl Reading {
             What::Distance(_) | What::Angle(_) | What::ChamberVolume(_) => true,
             What::ConstraintForce(_) => true,
             What::ConstraintMoment(..) => false,
-            What::Velocity(_) | What::ContactForce(_) | What::Rotation | What::Pressure(_) => false,
+            What::Velocity(_) | What::ContactForce(..) | What::Rotation | What::Pressure(_) => {
+                false
+            }
             What::SpringPull(_) | What::SpringLength(_) | What::Stress(_) | What::Strain(_) => {
                 false
             }
@@ -130,7 +134,9 @@ impl Reading {
                 let normal = if d == 2 { [0.0, 0.0, 1.0] } else { cross(&a, &b) };
                 let normal = normal.map(|x| x / norm(&normal));
                 // each end turns its line about the normal
-                for (sign, line, [from, to]) in [(-1.0, a, &lines[0]), (1.0, b, &lines[1])] {
+                let in_turn = self.full_turn() / TAU;
+                for (sign, line, [from, to]) in [(-in_turn, a, &lines[0]), (in_turn, b, &lines[1])]
+                {
                     let along = cross(&normal, &line).map(|x| sign * x / dot(&line, &line));
                     add_mean(to, along);
                     add_mean(from, along.map(|x| -x));

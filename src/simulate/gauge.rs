@@ -1,5 +1,8 @@
 //! How the quantities of a scene are read: what a [`Reading`] names is looked up once, before the run.
 
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
 use super::reading::{Component, Lever, Place, Reading, What};
 use super::view::{View, mean};
 use crate::body::{NodalField, von_mises};
@@ -20,6 +23,9 @@ pub(super) enum Value {
 
 /// Reads a quantity, or NaN where it has no meaning.
 pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
+
+/// Reads an angle, without whole turns in the plane.
+pub(super) type AngleGauge = Arc<dyn Fn(&View) -> f64 + Send + Sync>;
 
 impl Value {
     /// A component, which the quantity has.
@@ -70,7 +76,9 @@ impl Reading {
                 Box::new(move |view, sample| Value::Vector(sum(view, sample)))
             }
             What::ConstraintMoment(nodes, lever) => moment(scene, select(nodes)?, lever)?,
-            What::ContactForce(obstacle) => contact_force(scene, obstacle.clone())?,
+            What::ContactForce(obstacle, nodes) => {
+                contact_force(scene, obstacle.clone(), nodes.clone())?
+            }
             What::SpringPull(spring) => {
                 scene.spring_number(spring, "spring")?;
                 number(spring, |view, spring| view.spring_pull(spring))
@@ -93,27 +101,39 @@ impl Reading {
                 let (from, to) = (select(from)?, select(to)?);
                 Box::new(move |view, _| Value::Number(norm(&between(view, [&from, &to]))))
             }
-            What::Angle([from, to]) => {
-                let lines = [line(scene, from)?, line(scene, to)?];
-                Box::new(move |view, _| {
-                    let [a, b] = lines.each_ref().map(|[from, to]| between(view, [from, to]));
-                    let normal = cross(&a, &b);
-                    let across = if d == 2 { normal[2] } else { norm(&normal) };
-                    Value::Number(across.atan2(dot(&a, &b)))
-                })
+            What::Angle(_) | What::Rotation => {
+                let angle = self.angle_gauge(scene)?;
+                Box::new(move |view, _| Value::Number(angle(view)))
             }
             What::CentreOfMass => Box::new(move |view, _| {
                 let centre = view.centre_of_mass();
                 Value::Vector(std::array::from_fn(|i| centre.get(i).copied().unwrap_or(0.0)))
             }),
-            What::Rotation if d != 2 => {
-                let mend = "a body turns by one angle in two dimensions only: take the angle between two lines";
-                return Err(InputError::new("rotation in dimension", d, mend));
-            }
-            What::Rotation => {
-                Box::new(|view, _| Value::Number(view.rotation().unwrap_or(f64::NAN)))
-            }
         })
+    }
+
+    /// What reads an angle in `scene`, in its unit.
+    ///
+    /// # Errors
+    /// As [`gauge`](Self::gauge).
+    pub(super) fn angle_gauge(&self, scene: &Scene) -> Result<AngleGauge, InputError> {
+        let d = scene.body().dimension();
+        let in_turn = self.full_turn() / TAU;
+        if let What::Angle([from, to]) = &self.what {
+            let lines = [line(scene, from)?, line(scene, to)?];
+            return Ok(Arc::new(move |view| {
+                let [a, b] = lines.each_ref().map(|[from, to]| between(view, [from, to]));
+                let normal = cross(&a, &b);
+                let across = if d == 2 { normal[2] } else { norm(&normal) };
+                in_turn * across.atan2(dot(&a, &b))
+            }));
+        }
+        if d != 2 {
+            let mend = "a body turns by one angle in two dimensions only: take the angle between two lines";
+            return Err(InputError::new("rotation in dimension", d, mend));
+        }
+        let arms = scene.body().arms();
+        Ok(Arc::new(move |view| in_turn * view.body().turned(&arms, view.displacements())))
     }
 }
 
@@ -170,8 +190,12 @@ fn field(
     }))
 }
 
-/// Force of an obstacle, whose contact is that of the scene unless commands have changed the phase.
-fn contact_force(scene: &Scene, obstacle: String) -> Result<Gauge, InputError> {
+/// Force of an obstacle, on all nodes or some, whose contact is that of the scene unless commands have changed the phase.
+fn contact_force(
+    scene: &Scene,
+    obstacle: String,
+    nodes: Option<Selection>,
+) -> Result<Gauge, InputError> {
     let number = scene.obstacle_number(&obstacle, "obstacle")?;
     let contact = Contact::new(scene.body(), &scene.obstacles()[number])?;
     let acts = |phase: &Phase| {
@@ -180,17 +204,26 @@ fn contact_force(scene: &Scene, obstacle: String) -> Result<Gauge, InputError> {
     };
     let times: Vec<f64> = scene.phases().iter().map(acts).collect::<Result<_, InputError>>()?;
     let d = scene.body().dimension();
+    let mut is_read = None;
+    if let Some(nodes) = &nodes {
+        let is_read = is_read.insert(vec![false; scene.body().mesh().node_count()]);
+        scene.body().mesh().select(nodes)?.into_iter().for_each(|node| is_read[node] = true);
+    }
     Ok(Box::new(move |view, sample| {
         let force = match (&sample.commanded.0, times.get(sample.phase)) {
             (None, Some(0.0)) => Some([0.0; 3]),
             (None, Some(times)) => {
-                let force = contact.force(sample.time, view.displacements(), view.velocities());
+                let (t, u, v) = (sample.time, view.displacements(), view.velocities());
+                let force = contact.force(t, u, v, is_read.as_deref());
                 force.ok().map(|force| force.map(|force| times * force))
             }
-            _ => view
-                .contact_force(&obstacle)
-                .ok()
-                .map(|force| std::array::from_fn(|i| if i < d { force[i] } else { 0.0 })),
+            _ => {
+                let force = match &nodes {
+                    Some(nodes) => view.contact_force_on(&obstacle, nodes.clone()),
+                    None => view.contact_force(&obstacle),
+                };
+                force.ok().map(|force| std::array::from_fn(|i| if i < d { force[i] } else { 0.0 }))
+            }
         };
         Value::Vector(force.unwrap_or([f64::NAN; 3]))
     }))

@@ -1,5 +1,6 @@
 //! Legs: the parts of a phase that are integrated without a new start, and what may end them.
 
+use super::angles::Angles;
 use super::auto::Plan;
 use super::events::Events;
 use super::sampling::Schedule;
@@ -14,6 +15,8 @@ pub(super) struct Good {
     pub(super) samples: usize,
     /// Error, rise and scale of the energy balance (J).
     pub(super) energies: [f64; 3],
+    /// Where the angles of sensors were.
+    pub(super) angles: Angles,
 }
 
 /// How a leg ended.

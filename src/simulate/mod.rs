@@ -2,6 +2,8 @@
 
 #[cfg(feature = "checkpoint")]
 mod adoption;
+mod angles;
+mod at_rest;
 mod auto;
 mod checkpoint;
 mod commands;
@@ -31,6 +33,8 @@ use std::time::Instant;
 
 #[cfg(feature = "checkpoint")]
 pub(crate) use adoption::Choice;
+#[cfg(feature = "checkpoint")]
+pub(crate) use angles::Angles;
 pub use checkpoint::Checkpoint;
 #[cfg(feature = "checkpoint")]
 pub(crate) use checkpoint::Kept;

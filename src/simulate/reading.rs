@@ -1,7 +1,10 @@
 //! What can be read from a motion, by name.
 
+use std::f64::consts::TAU;
+
 use crate::input::{InputError, unknown_among};
 use crate::mesh::Selection;
+use crate::trajectory::DEGREES;
 
 /// A quantity that a sensor reads: see [`Sampling::read`](crate::Sampling::read).
 ///
@@ -10,6 +13,8 @@ use crate::mesh::Selection;
 pub struct Reading {
     pub(super) what: What,
     pub(super) component: Option<Component>,
+    /// Whether angles are in degrees.
+    in_degrees: bool,
 }
 
 /// What is read.
@@ -20,7 +25,8 @@ pub(super) enum What {
     Velocity(Selection),
     ConstraintForce(Selection),
     ConstraintMoment(Selection, Lever),
-    ContactForce(String),
+    /// Of an obstacle, on all nodes or these.
+    ContactForce(String, Option<Selection>),
     SpringPull(String),
     SpringLength(String),
     Pressure(String),
@@ -152,7 +158,13 @@ impl Reading {
 
     /// Force of an obstacle on the body (N).
     pub fn contact_force(obstacle: impl Into<String>) -> Self {
-        What::ContactForce(obstacle.into()).into()
+        What::ContactForce(obstacle.into(), None).into()
+    }
+
+    /// Force of an obstacle on some nodes together (N), as of one finger of a grip whose forces on the body cancel each
+    /// other: see [`View::contact_force_on`](crate::View::contact_force_on).
+    pub fn contact_force_on(obstacle: impl Into<String>, nodes: impl Into<Selection>) -> Self {
+        What::ContactForce(obstacle.into(), Some(nodes.into())).into()
     }
 
     /// Force with which a spring pulls its ends together (N): see [`View::spring_pull`](crate::View::spring_pull).
@@ -201,8 +213,14 @@ impl Reading {
         What::Distance([from.into(), to.into()]).into()
     }
 
-    /// Angle (rad) from one line to another, each from its first node (or middle of a set) to its second:
-    /// counter-clockwise between -pi and pi in the plane, between 0 and pi in space.
+    /// Angle (rad) from one line to another, each from its first node (or middle of a set) to its second: in the plane
+    /// counter-clockwise, in space without sign, between 0 and pi.
+    ///
+    /// In the plane it begins between -pi and pi, and goes on over whole turns from there: the run follows it from step to
+    /// step of the integrator, whenever samples are taken, and checkpoints and forks take it along. What turns by half a
+    /// turn or more within one step, or one load step of statics, is not told from what turns the other way.
+    /// [`Simulation::record`](crate::Simulation::record) in the middle of a run begins anew between -pi and pi, but for
+    /// sensors of the name and kind that were read until then.
     pub fn angle<S: Into<Selection>>(from: [S; 2], to: [S; 2]) -> Self {
         What::Angle([from, to].map(|line| line.map(Into::into))).into()
     }
@@ -212,10 +230,17 @@ impl Reading {
         What::CentreOfMass.into()
     }
 
-    /// Angle (rad, counter-clockwise, between -pi and pi) by which a body in the plane has turned as a whole: see
-    /// [`Trajectory::rotation`](crate::Trajectory::rotation).
+    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole: that of
+    /// [`Trajectory::rotation`](crate::Trajectory::rotation), but that it goes on over whole turns as [`angle`](Self::angle)
+    /// does.
     pub fn rotation() -> Self {
         What::Rotation.into()
+    }
+
+    /// An angle in degrees. Default: rad.
+    pub fn in_degrees(mut self) -> Self {
+        self.in_degrees = true;
+        self
     }
 
     /// One component alone. Default: all of them, each a column.
@@ -230,21 +255,40 @@ impl Reading {
             What::Position(_) | What::Displacement(_) | What::CentreOfMass => "m",
             What::SpringLength(_) | What::Distance(_) => "m",
             What::Velocity(_) => "m/s",
-            What::ConstraintForce(_) | What::ContactForce(_) | What::SpringPull(_) => "N",
+            What::ConstraintForce(_) | What::ContactForce(..) | What::SpringPull(_) => "N",
             What::ConstraintMoment(..) => "N m",
             What::Pressure(_) | What::Stress(_) => "Pa",
             What::ChamberVolume(_) => "m^3",
             What::Strain(_) => "1",
+            What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,
             What::Angle(_) | What::Rotation => "rad",
         }
+    }
+
+    /// What a full turn is in the unit of an angle.
+    pub(super) fn full_turn(&self) -> f64 {
+        if self.in_degrees { 360.0 } else { TAU }
+    }
+
+    /// Whether it can go on over whole turns, of a body in `dimension` dimensions.
+    pub(super) fn turns(&self, dimension: usize) -> bool {
+        dimension == 2 && self.is_angle()
+    }
+
+    fn is_angle(&self) -> bool {
+        matches!(self.what, What::Angle(_) | What::Rotation)
     }
 
     /// The components that are read of a body in `dimension` dimensions; none of a number.
     ///
     /// # Errors
-    /// A component that the quantity does not have.
+    /// A component that the quantity does not have; degrees of what is no angle.
     pub(super) fn components(&self, dimension: usize) -> Result<Vec<Component>, InputError> {
         use Component::*;
+        if self.in_degrees && !self.is_angle() {
+            let mend = format!("angles and rotations alone have it, this is in {}", self.unit());
+            return Err(InputError::new("unit", format!("\"{DEGREES}\""), mend));
+        }
         // those of all columns, and one more that has to be asked for
         let (all, more): (&[Component], _) = match (&self.what, dimension) {
             (What::Stress(_), 1) => (&[XX], Some(VonMises)),
@@ -254,7 +298,7 @@ impl Reading {
             (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
             (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
             (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
-            | (What::ConstraintForce(_) | What::ContactForce(_) | What::CentreOfMass, _) => {
+            | (What::ConstraintForce(_) | What::ContactForce(..) | What::CentreOfMass, _) => {
                 (&[X, Y, Z][..dimension], Some(Norm))
             }
             (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
@@ -269,6 +313,6 @@ impl Reading {
 
 impl From<What> for Reading {
     fn from(what: What) -> Self {
-        Self { what, component: None }
+        Self { what, component: None, in_degrees: false }
     }
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::angles::Angles;
 use super::sensor::Sensors;
 use super::view::{Gauges, View};
 use crate::constraint::Row;
@@ -40,7 +41,7 @@ pub(super) fn sample(
 /// Adds to a sample what `sensors` read, and the phase in force if commands have changed it.
 pub(super) fn complete(
     sample: &mut Sample,
-    sensors: &Sensors,
+    (sensors, angles): (&Sensors, &Angles),
     (scene, gauges): (&Scene, &Gauges),
     phase: &Arc<Phase>,
     is_commanded: bool,
@@ -53,7 +54,7 @@ pub(super) fn complete(
     let Energy { dissipated, supplied, .. } = energy;
     let state = State { u, v, dissipated, supplied, others: &sample.multipliers };
     let view = View { scene, phase, gauges, time, state };
-    let readings = sensors.read(&view, sample);
+    let readings = sensors.read(&view, sample, angles);
     sample.sensors = readings;
 }
 

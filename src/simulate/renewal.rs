@@ -238,6 +238,7 @@ impl Run {
                 commands: self.stage.commands,
                 balance: self.balance,
                 energies: self.trajectory.noted(),
+                angles: self.angles.clone(),
             },
         }
     }
@@ -253,6 +254,7 @@ impl Run {
         let mut system = self.rest()?;
         self.time = time;
         self.state.copy_from_slice(state);
+        self.angles.clone_from(&kept.angles);
         if !Arc::ptr_eq(&self.phase, phase) {
             let forces = self.scene.forces_in(phase)?;
             let same = Arc::ptr_eq(&self.constraints, constraints) && system.change_forces(forces);
@@ -328,6 +330,7 @@ impl Run {
         (self.stage.ended, self.stage.way) = (Some(Ending::Reached), Way::default());
         self.begin_events(&system);
         self.at = At::Rest(system);
+        self.follow_angles();
         self.remember();
     }
 
@@ -361,12 +364,14 @@ impl Run {
     /// Takes samples at other times from the end of the last step on.
     pub(super) fn record(&mut self, sampling: &Sampling, sensors: Sensors) {
         self.trajectory.unread(sensors.quantities.clone());
+        self.angles.keep(|name| sensors.quantities.iter().any(|quantity| quantity.name == name));
         (self.sampling, self.sensors) = (sampling.clone(), sensors);
         if self.trajectory.last().time == self.time {
             let mut now = self.trajectory.last().clone();
             self.complete(&mut now);
             self.trajectory.replace_last(now);
         }
+        self.follow_angles();
         self.sample_from(self.time);
         // what was sampled at other times is not gone back behind
         self.remember();

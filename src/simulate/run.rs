@@ -4,6 +4,7 @@ use std::mem::take;
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::angles::Angles;
 use super::auto::Plan;
 use super::failure::in_mechanics;
 use super::leg::{Ending, Good};
@@ -13,7 +14,7 @@ use super::sampling::Sampling;
 use super::sensor::Sensors;
 use super::stage::{At, Stage, Work};
 use super::stepper::{self, Failed};
-use super::view::Gauges;
+use super::view::{Gauges, View};
 use crate::constraint::{PhaseStart, prescribe};
 use crate::error::Error;
 use crate::force::Forces;
@@ -24,7 +25,7 @@ use crate::ode::Failure;
 use crate::report::{Report, creation};
 use crate::scene::{Phase, Scene};
 use crate::settings::{Method, Scales, Settings};
-use crate::state::ENERGIES;
+use crate::state::{ENERGIES, State};
 use crate::system::System;
 use crate::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
 
@@ -36,6 +37,8 @@ pub(super) struct Run {
     pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
     pub(super) sensors: Sensors,
+    /// Where the angles among them are at the present time.
+    pub(super) angles: Angles,
     scales: Scales,
     /// Absolute tolerance of displacements as it was asked for (m).
     pub(super) atol_position: f64,
@@ -109,7 +112,8 @@ impl Run {
         let plan = Plan::new(settings, &mut system, 0.0, &state);
         let times = sampling.within(0.0, phase.until);
         let (phase, balance) = (Arc::new(phase.clone()), first.energy.balance());
-        records::complete(&mut first, &sensors, (scene, &gauges), &phase, false);
+        let angles = Angles::default();
+        records::complete(&mut first, (&sensors, &angles), (scene, &gauges), &phase, false);
         let mut trajectory = Trajectory::new(scene, report, first);
         trajectory.sensors = sensors.quantities.clone();
         let mut run = Self {
@@ -124,6 +128,7 @@ impl Run {
             gauges: Arc::new(gauges),
             sampling: sampling.clone(),
             sensors,
+            angles,
             scales,
             atol_position,
             clock,
@@ -139,6 +144,7 @@ impl Run {
             pause: None,
             scene: Arc::new(scene.clone()),
         };
+        run.follow_angles();
         run.begin(&system);
         run.at = At::Rest(system);
         Ok(run)
@@ -289,6 +295,7 @@ impl Run {
             gauges: self.gauges.clone(),
             sampling: self.sampling.clone(),
             sensors: self.sensors.clone(),
+            angles: self.angles.clone(),
             scales: self.scales,
             atol_position: self.atol_position,
             clock: Instant::now(),
@@ -347,7 +354,19 @@ impl Run {
     /// Adds to a sample what is not of the equations.
     pub(super) fn complete(&self, sample: &mut Sample) {
         let own = (&*self.scene, &*self.gauges);
-        records::complete(sample, &self.sensors, own, &self.phase, self.is_commanded);
+        let sensors = (&self.sensors, &self.angles);
+        records::complete(sample, sensors, own, &self.phase, self.is_commanded);
+    }
+
+    /// Brings the angles of sensors to the present state.
+    pub(super) fn follow_angles(&mut self) {
+        if !self.sensors.have_angles() {
+            return;
+        }
+        let Self { scene, phase, gauges, time, state, sensors, angles, .. } = self;
+        let state = State::of(state, scene.body().dofs());
+        let view = View { scene, phase, gauges, time: *time, state };
+        sensors.follow(&view, angles);
     }
 
     /// Size (s) and order of the last step of the integrator at work.

@@ -6,7 +6,7 @@ use super::reading::Reading;
 use super::sensor::{Sensor, Sensors, Source};
 use super::view::View;
 use crate::input::{InputError, check_memory, positive};
-use crate::scene::Scene;
+use crate::scene::{Phase, Scene};
 #[cfg(feature = "study")]
 use crate::trajectory::Quantity;
 use crate::trajectory::Sample;
@@ -30,6 +30,17 @@ enum Times {
     At(Vec<f64>),
 }
 
+impl Times {
+    /// Whether this time (s), within a phase, is one of them.
+    fn have(&self, time: f64) -> bool {
+        match self {
+            Self::PhaseEnds => false,
+            Self::Every(step) => (time / step).round() * step == time,
+            Self::At(times) => times.contains(&time),
+        }
+    }
+}
+
 impl Sampling {
     /// At t = 0 and at the ends of the phases only.
     pub fn phase_ends() -> Self {
@@ -46,6 +57,12 @@ impl Sampling {
         Self { times: Times::At(times.into()), ..Self::default() }
     }
 
+    /// Whether a run of `scene` takes a sample at this `time` (s), to the last digit.
+    pub fn takes(&self, scene: &Scene, time: f64) -> bool {
+        let ends = scene.phases().iter().map(Phase::end);
+        time == 0.0 || ends.into_iter().any(|end| end == time) || self.times.have(time)
+    }
+
     /// At these times (s, ascending, within the scene) as well.
     #[cfg(feature = "study")]
     pub(crate) fn also_at(mut self, times: Vec<f64>) -> Self {
@@ -56,12 +73,7 @@ impl Sampling {
     /// Whether a sample within a phase is there for [`also_at`](Self::also_at) alone.
     #[cfg(feature = "study")]
     pub(crate) fn is_extra(&self, time: f64) -> bool {
-        let is_asked = match &self.times {
-            Times::PhaseEnds => false,
-            Times::Every(step) => (time / step).round() * step == time,
-            Times::At(times) => times.contains(&time),
-        };
-        !is_asked && self.also.contains(&time)
+        !self.times.have(time) && self.also.contains(&time)
     }
 
     /// Adds a sensor: a number that `reading` reads with each sample, beside what samples hold by themselves
@@ -111,6 +123,11 @@ impl Sampling {
     pub fn read(mut self, name: impl Into<String>, reading: Reading) -> Self {
         self.sensors.push(Sensor { name: name.into(), source: Source::Named(reading) });
         self
+    }
+
+    /// The sensors.
+    pub(super) fn asked(&self) -> &[Sensor] {
+        &self.sensors
     }
 
     /// The columns that the sensors have.

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use super::gauge::Value;
+use super::angles::Angles;
+use super::gauge::{AngleGauge, Value};
 use super::reading::{Component, Reading};
 use super::view::View;
 use crate::input::InputError;
@@ -37,6 +38,17 @@ type Read = dyn Fn(&View, &Sample, &mut Vec<f64>) + Send + Sync;
 pub(super) struct Sensors {
     pub(super) quantities: Vec<Quantity>,
     reads: Vec<Arc<Read>>,
+    angles: Vec<Angle>,
+}
+
+/// An angle that goes on over whole turns.
+#[derive(Clone)]
+struct Angle {
+    /// Number of its column.
+    column: usize,
+    gauge: AngleGauge,
+    /// What a full turn is in its unit.
+    full_turn: f64,
 }
 
 impl Sensors {
@@ -73,6 +85,10 @@ impl Sensors {
         let components = reading.components(scene.body().dimension())?;
         let gauge = reading.gauge(scene)?;
         let unit = reading.unit();
+        if reading.turns(scene.body().dimension()) {
+            let (gauge, full_turn) = (reading.angle_gauge(scene)?, reading.full_turn());
+            self.angles.push(Angle { column: self.quantities.len(), gauge, full_turn });
+        }
         let named = |name: String| Quantity { name, unit: unit.to_owned() };
         if reading.component.is_some() || components.is_empty() {
             self.quantities.push(named(name.clone()));
@@ -91,11 +107,28 @@ impl Sensors {
         self.reads.is_empty()
     }
 
-    /// What they read.
-    pub(super) fn read(&self, view: &View, sample: &Sample) -> Vec<f64> {
+    /// What they read, with angles near where they were last, at `angles`.
+    pub(super) fn read(&self, view: &View, sample: &Sample, angles: &Angles) -> Vec<f64> {
         let mut numbers = Vec::with_capacity(self.quantities.len());
         self.reads.iter().for_each(|read| read(view, sample, &mut numbers));
+        for &Angle { column, full_turn, .. } in &self.angles {
+            let behind = angles.behind(&self.quantities[column].name, numbers[column] / full_turn);
+            numbers[column] += full_turn * behind;
+        }
         numbers
+    }
+
+    /// Notes where the angles among them are now.
+    pub(super) fn follow(&self, view: &View, angles: &mut Angles) {
+        for Angle { column, gauge, full_turn } in &self.angles {
+            let (name, turns) = (&self.quantities[*column].name, gauge(view) / full_turn);
+            angles.note(name, turns + angles.behind(name, turns));
+        }
+    }
+
+    /// Whether there are angles among them.
+    pub(super) fn have_angles(&self) -> bool {
+        !self.angles.is_empty()
     }
 }
 

@@ -96,12 +96,14 @@ impl Run {
         (good.time, good.taken, good.samples) =
             (self.time, self.stage.leg.taken, self.trajectory.samples().len());
         good.energies = self.trajectory.noted();
+        good.angles.clone_from(&self.angles);
         good.state.clone_from(&self.state);
     }
 
     /// Goes back to the state last kept.
     pub(super) fn go_back(&mut self) {
-        let Good { time, ref state, taken, samples, energies } = self.good;
+        let Good { time, ref state, taken, samples, energies, ref angles } = self.good;
+        self.angles.clone_from(angles);
         (self.time, self.stage.leg.taken, self.standing) = (time, taken, 0);
         self.state.clone_from(state);
         self.trajectory.go_back(samples, energies);
@@ -148,6 +150,7 @@ impl Run {
         let drift = system.drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;
         *worst = worst.max(drift);
+        self.follow_angles();
         Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
     }
 

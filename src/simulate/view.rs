@@ -175,6 +175,29 @@ impl<'a> View<'a> {
     /// # Errors
     /// A name that no obstacle has; a distance function of your own that has no meaning.
     pub fn contact_force(&self, obstacle: &str) -> Result<Vec<f64>, InputError> {
+        let (forces, d) = (self.contact_forces(obstacle)?, self.body().dimension());
+        let along = |axis| forces.iter().skip(axis).step_by(d).sum();
+        Ok((0..d).map(along).collect())
+    }
+
+    /// The part of it on the nodes of `selection` (N). A stiffness per area acts between the nodes: its forces are shared out
+    /// to them.
+    ///
+    /// # Errors
+    /// As [`contact_force`](Self::contact_force) and [`position`](Self::position).
+    pub fn contact_force_on(
+        &self,
+        obstacle: &str,
+        selection: impl Into<Selection>,
+    ) -> Result<Vec<f64>, InputError> {
+        let nodes = self.body().mesh().select(&selection.into())?;
+        let (forces, d) = (self.contact_forces(obstacle)?, self.body().dimension());
+        let along = |axis| nodes.iter().map(|node| forces[node * d + axis]).sum();
+        Ok((0..d).map(along).collect())
+    }
+
+    /// The forces of an obstacle (N) on all nodes, dimension components each.
+    fn contact_forces(&self, obstacle: &str) -> Result<Vec<f64>, InputError> {
         self.scene.obstacle_number(obstacle, "obstacle")?;
         let (body, State { u, v, .. }) = (self.body(), self.state);
         let mut nodal = NodalForces::zeros(body.dofs());
@@ -189,13 +212,12 @@ impl<'a> View<'a> {
         }
         let mut forces = vec![0.0; body.dofs()];
         nodal.add_up(&mut forces);
-        let along = |axis| forces.iter().skip(axis).step_by(body.dimension()).sum();
-        Ok((0..body.dimension()).map(along).collect())
+        Ok(forces)
     }
 
-    /// Angle (rad, counter-clockwise) by which a two-dimensional body has turned as a whole: that of the rotation
+    /// Angle (rad, counter-clockwise, between -pi and pi) by which a two-dimensional body has turned as a whole: that of the rotation
     /// which, in the mean over its mass, brings the undeformed shape nearest to the present one. `None` in other
-    /// dimensions.
+    /// dimensions. The sensor [`Reading::rotation`](crate::simulate::Reading::rotation) goes on over whole turns.
     pub fn rotation(&self) -> Option<f64> {
         self.body().rotation(self.state.u)
     }

@@ -26,6 +26,7 @@ mod free;
 mod newton;
 mod options;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use newton::{Hold, Point, Search, Stuck};
@@ -201,6 +202,7 @@ impl Scene {
         let unloaded = search.rest.energy(0.0, &natural.u);
         let points = std::mem::take(&mut search.curve);
         let is_curve = search.statics.is_curve();
+        let (acting, d) = (&self.phases()[phase], self.body().dimension());
         let sample = |(number, point): (usize, &Point)| {
             let mut energy = search.rest.energy(point.fraction, &point.u);
             energy.supplied = energy.balance() - unloaded.balance();
@@ -213,7 +215,11 @@ impl Scene {
                 energy,
                 constraint_drift: point.drift,
                 sensors: if is_curve { vec![point.fraction] } else { Vec::new() },
-                commanded: Commanded::default(),
+                commanded: Commanded(Some(Arc::new(acting.at_rest(
+                    point.fraction,
+                    self.obstacles(),
+                    d,
+                )))),
             }
         };
         let mut trajectory = Trajectory::new(self, Report::default(), sample((0, &natural)));

@@ -209,15 +209,12 @@ impl Quantity {
         let own = |sample: &Sample| sample.sensors[sample.sensors.len() - count..].to_vec();
         let start = own(&trajectory.samples()[0]);
         let mut times = Vec::new();
-        let mut values: Vec<Vec<f64>> = samples
+        let values: Vec<Vec<f64>> = samples
             .map(|sample| {
                 times.push(sample.time);
                 own(sample)
             })
             .collect();
-        if trajectory.sensors().last().is_some_and(|column| column.unit == "rad") {
-            unwrap(&start, &mut values);
-        }
         let mut seen = Seen { dimension: count, values, scale: 0.0 };
         let largest = seen.size(|_, _, x| x).largest;
         let change = seen.size(|_, k, x| x - start[k]);
@@ -323,17 +320,6 @@ fn mend(scene: &Scene, sensors: &[(String, Reading)]) -> String {
          with :end, :max, :min, :frequency or :damping where one number counts",
         known.join(", ")
     )
-}
-
-/// Takes out the jumps of angles by whole turns.
-fn unwrap(start: &[f64], values: &mut [Vec<f64>]) {
-    let mut last = start.to_vec();
-    for value in values {
-        for (value, last) in value.iter_mut().zip(&mut last) {
-            *value -= 2.0 * PI * ((*value - *last) / (2.0 * PI)).round();
-            *last = *value;
-        }
-    }
 }
 
 /// Frequency (Hz) and damping ratio of a free vibration, from its turning points: their distances are half periods, and
@@ -451,15 +437,5 @@ mod tests {
             assert!((damping - zeta).abs() < 1e-5, "{damping} {zeta}");
         }
         assert!(swings(&[0.0, 1.0, 2.0], [0.0, 1.0, 0.0].into_iter()).is_none());
-    }
-
-    #[test]
-    fn whole_turns_are_no_jumps() {
-        let mut values = vec![vec![3.0], vec![-3.0], vec![-2.0], vec![3.1]];
-        unwrap(&[2.5], &mut values);
-        let expected = [3.0, 2.0 * PI - 3.0, 2.0 * PI - 2.0, 3.1];
-        for (value, expected) in values.iter().zip(expected) {
-            assert!((value[0] - expected).abs() < 1e-15, "{values:?}");
-        }
     }
 }

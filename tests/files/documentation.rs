@@ -29,3 +29,60 @@ fn a_misspelt_key_gets_the_message_of_the_page() {
     let message = SceneFile::parse(&text, Path::new("scene.toml")).unwrap_err().to_string();
     assert!(blocks("text").iter().any(|block| block.contains(&message)), "{message}");
 }
+
+const LIMITS: &str = include_str!("../../docs/limits.md");
+const CABLE: &str = include_str!("../../scenes/cable.toml");
+
+/// A cable under the tension T at the distance e from the axis bends a beam as the moment T e does: to the angle T e L/(E I) at its end,
+/// with T = 0.05 N, e = 1 cm, L = 10 cm, E = 0.1 MPa, I = 1 cm (2 cm)^3/12.
+#[test]
+fn a_cable_bends_a_beam_to_an_arc() {
+    let blocks = LIMITS.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    let mut count = 0;
+    for block in blocks {
+        assert!(CABLE.contains(block), "{block}");
+        count += 1;
+    }
+    assert_eq!(count, 2);
+    let file = SceneFile::parse(CABLE, Path::new("cable.toml")).unwrap();
+    assert_eq!(file.scene.warnings(), Vec::<String>::new());
+    let gentle = CABLE.replace("forces = [0.0, -0.5]", "forces = [0.0, -0.05]");
+    let file = SceneFile::parse(&gentle, Path::new("cable.toml")).unwrap();
+    let found = file.equilibrium().unwrap();
+    let [turned, tension] = found.sample().sensors[..] else { panic!("two sensors") };
+    let expected = (0.05_f64 * 0.01 * 0.1 / (1e5 * 0.01 * 0.02_f64.powi(3) / 12.0)).to_degrees();
+    // 2.5 % of compression at most, and ends that are no beam's, where the cable is fixed to single nodes and the wall holds the width
+    assert!((turned / expected - 1.0).abs() < 0.03, "{turned} {expected}");
+    assert!((tension - 0.05).abs() < 1e-15, "{tension}");
+}
+
+/// Who looks for what is not there is told so, and what stands in for it.
+#[test]
+fn tables_that_are_not_there_say_what_stands_in() {
+    let scene = blocks("toml")[0];
+    for (name, words) in [
+        ("contact", &["does not touch itself", "[[obstacle]]"][..]),
+        ("self_contact", &["does not touch itself"]),
+        ("bodies", &["one body", "[[body.region]]"]),
+        ("rigid", &["no rigid bodies", "[[obstacle]]"]),
+        ("cable", &["no cables with friction", "chain of [[spring]] without stiffness"]),
+        ("joint", &["no joints", "hold_combination"]),
+        ("gas", &["no gas", "[[chamber]]"]),
+        ("friction", &["friction_coefficient in [[obstacle]]"]),
+    ] {
+        let text = format!("{scene}\n[[{name}]]\nname = \"a\"\n");
+        let line = text.lines().count() - 1;
+        let message = SceneFile::parse(&text, Path::new("scene.toml")).unwrap_err().to_string();
+        println!("{message}");
+        assert!(message.starts_with(&format!("scene.toml:{line}: {name}: ")), "{message}");
+        assert!(words.iter().all(|word| message.contains(word)), "{message}");
+    }
+    let two = scene.replace("[body]", "[[body]]");
+    let message = SceneFile::parse(&two, Path::new("scene.toml")).unwrap_err().to_string();
+    println!("{message}");
+    assert!(message.contains("expected [body], once") && message.contains("springs"), "{message}");
+    // a slip of the pen is none of them
+    let text = format!("{scene}\n[[obstacel]]\nname = \"a\"\n");
+    let message = SceneFile::parse(&text, Path::new("scene.toml")).unwrap_err().to_string();
+    assert!(message.contains("did you mean \"obstacle\"?"), "{message}");
+}

@@ -211,6 +211,36 @@ fn snapshots_show_obstacles() -> Outcome {
     Ok(())
 }
 
+/// A ball that comes down from above is drawn as a whole in each row, though the body ends far below.
+#[test]
+fn rows_are_as_high_as_what_moves_in_them() -> Outcome {
+    let mesh = Mesh::rectangle([0.3, 0.1], [4, 2], Cells::Triangles)?;
+    let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    let ball = Obstacle::new(Shape::disc([0.15, 0.25], 0.05)).named("ball").stiffness(1.0);
+    let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+        .obstacle(ball.velocity([0.3, -1.0]))
+        .phase(Phase::until(0.09).hold("bottom"));
+    let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.03))?;
+    let directory = tempfile::tempdir()?;
+    let path = directory.path().join("ball.svg");
+    for columns in [1, 2] {
+        let times = [0.0, 0.03, 0.06, 0.09];
+        Snapshots::at(times).columns(columns).write(&trajectory, &path)?;
+        let (text, obstacles) = picture(&path, "obstacle")?;
+        assert_eq!(obstacles, times.len());
+        let document = roxmltree::Document::parse(&text)?;
+        let groups =
+            document.descendants().filter(|node| node.attribute("class") == Some("obstacle"));
+        for group in groups {
+            let outline = group.children().filter_map(|node| node.attribute("d")).last();
+            // 96 chords, none of them cut away
+            let chords = outline.map(|d| d.matches('M').count());
+            assert_eq!(chords, Some(96), "{columns} columns: {outline:?}");
+        }
+    }
+    Ok(())
+}
+
 #[test]
 fn snapshots_of_a_bar() -> Outcome {
     let directory = tempfile::tempdir()?;

@@ -46,6 +46,10 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
             Reading::constraint_force("left").component(Component::Y),
         ),
         (r#"kind = "contact-force", obstacle = "floor""#, Reading::contact_force("floor")),
+        (
+            r#"kind = "contact-force", obstacle = "floor", nodes = [1, 2]"#,
+            Reading::contact_force_on("floor", [1, 2]),
+        ),
         (r#"kind = "spring-pull", spring = "tendon""#, Reading::spring_pull("tendon")),
         (r#"kind = "spring-length", spring = "tendon""#, Reading::spring_length("tendon")),
         (r#"kind = "pressure", chamber = "inside""#, Reading::pressure("inside")),
@@ -58,6 +62,12 @@ fn every_kind_reads_what_the_api_reads() -> Result<(), Error> {
         (r#"kind = "strain", nodes = "all""#, Reading::strain("all")),
         (r#"kind = "strain", point = [0.01, 0.02]"#, Reading::strain_at([0.01, 0.02])),
         (r#"kind = "distance", from = 1, to = "top""#, Reading::distance([1], "top")),
+        (
+            r#"kind = "angle", from = [1, 2], to = [1, 3], unit = "deg""#,
+            Reading::angle([[1], [2]], [[1], [3]]).in_degrees(),
+        ),
+        (r#"kind = "rotation", unit = "rad""#, Reading::rotation()),
+        (r#"kind = "rotation", unit = "deg""#, Reading::rotation().in_degrees()),
         (
             r#"kind = "angle", from = [1, 3], to = ["left", 5]"#,
             Reading::angle([Selection::from([1]), [3].into()], ["left".into(), [5].into()]),

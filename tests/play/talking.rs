@@ -1,7 +1,9 @@
 //! What a page says, and what is answered.
 
 use std::path::Path;
+use std::thread;
 
+use pliant::play::Player;
 use pliant::{Sampling, Scene, SceneFile, Settings};
 use serde_json::json;
 use tungstenite::Message;
@@ -58,6 +60,44 @@ fn sliders_move_the_scene_and_are_saved() -> Outcome {
     let saved = SceneFile::parse(saved, Path::new(PATH))?;
     let again = filmed(&saved.scene, &saved.settings)?;
     assert!(apart(&by_hand, &again) < CLOSE, "{}", apart(&by_hand, &again));
+    Ok(())
+}
+
+/// A scene that is played for longer than its file says is saved as it was played.
+#[test]
+fn the_end_that_was_played_is_saved() -> Outcome {
+    let file = SceneFile::parse(BEAM, Path::new(PATH))?;
+    let player = Player::new(&file.scene.lasting(0.13), &file.settings, "", 0)?;
+    let player = player.saving(BEAM, PATH);
+    let address = player.address();
+    thread::spawn(move || player.serve());
+    let mut client = Client::at(&address)?;
+    client.order(json!({ "do": "slide", "slider": 1, "value": 0.25 }))?;
+    let by_hand = places(&client.play()?)?;
+    let saved = client.answer(Message::text(json!({ "do": "save" }).to_string()))?;
+    let saved = saved["file"].as_str().ok_or_else(|| saved.to_string())?;
+    assert!(saved.contains("until = 0.05 # s") && saved.contains("until = 0.13"), "{saved}");
+    let saved = SceneFile::parse(saved, Path::new(PATH))?;
+    assert_eq!(saved.scene.end(), 0.13);
+    let again = filmed(&saved.scene, &saved.settings)?;
+    assert!(apart(&by_hand, &again) < CLOSE, "{}", apart(&by_hand, &again));
+    Ok(())
+}
+
+/// A page that vanishes without a word, as a machine that sleeps does, leaves no scene playing: its browser is asked.
+#[test]
+fn a_page_that_vanished_stops_the_scene() -> Outcome {
+    let address = served(|_| {})?;
+    let mut vanished = Client::at(&address)?;
+    // it would take hundreds of seconds
+    vanished.order(json!({ "do": "speed", "value": 2e-4 }))?;
+    vanished.order(json!({ "do": "play" }))?;
+    // its connection stays open, and answers nothing; one page more would keep the scene playing
+    std::thread::sleep(std::time::Duration::from_secs(9));
+    let mut client = Client::at(&address)?;
+    let frame = client.look()?;
+    assert_eq!((&frame["playing"], &frame["atEnd"]), (&json!(false), &json!(false)));
+    assert!(vanished.look().is_err());
     Ok(())
 }
 

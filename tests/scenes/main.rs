@@ -40,4 +40,5 @@ mod turning;
 mod varying;
 mod warnings;
 mod watches;
+mod whole_turns;
 mod yielding;

@@ -3,7 +3,7 @@
 use pliant::simulate::{Component, Reading};
 use pliant::{
     Body, Cells, Chamber, Error, Material, Mesh, Obstacle, Phase, Plane, Sampling, Scene, Settings,
-    SolidCells, Spring, Strain, Trajectory,
+    Shape, SolidCells, Spring, Statics, Strain, Trajectory,
 };
 
 type Outcome = Result<(), Error>;
@@ -315,5 +315,97 @@ fn moments_of_constraints() -> Outcome {
             assert_close(read(&trajectory, name)[last], expected, 2e-6);
         }
     }
+    Ok(())
+}
+
+/// A corridor that is narrower than the square in it, as a grip is: its forces cancel each other, those on each side do not.
+#[test]
+fn both_sides_of_a_grip_are_told_apart() -> Outcome {
+    let (stiffness, depth) = (200.0, 1e-3);
+    let corridor = |x: &[f64], gradient: &mut [f64]| {
+        gradient[1] = -x[1].signum();
+        0.05 - depth - x[1].abs()
+    };
+    let grip = || Obstacle::new(Shape::custom(corridor)).named("grip").stiffness(stiffness);
+    let density = || Obstacle::new(Shape::custom(corridor)).named("grip").stiffness_density(2e5);
+    for (grip, total) in [
+        // three nodes on each side; 0.1 m times 0.02 m
+        (grip as fn() -> Obstacle, 3.0 * stiffness * depth),
+        (density, 2e5 * depth * 0.1 * 0.02),
+    ] {
+        let mesh =
+            Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles)?.translated(&[0.0, -0.05])?;
+        let body = Body::new(mesh, SOFT).thickness(0.02).build()?;
+        let sampling = Sampling::phase_ends()
+            .read("all", Reading::contact_force("grip"))
+            .read("top", Reading::contact_force_on("grip", "top"))
+            .read("bottom", Reading::contact_force_on("grip", "bottom"))
+            .read("corner", Reading::contact_force_on("grip", [9]))
+            .read("middle", Reading::contact_force_on("grip", [5]));
+        let at_rest = |_: &[f64]| vec![0.0; 2];
+        let trajectory = at_start(body, at_rest, sampling, |scene| scene.obstacle(grip()))?;
+        // a corner has half of what a middle node has where the stiffness is that of an area
+        let corner = if total > 0.5 { total / 3.0 } else { total / 4.0 };
+        let expected =
+            [("all.y", 0.0), ("top.y", -total), ("bottom.y", total), ("corner.y", -corner)];
+        for (name, expected) in expected.into_iter().chain([("middle.y", 0.0), ("top.x", 0.0)]) {
+            // round-off of a few sums of such forces
+            assert_close(read(&trajectory, name)[0], expected, 1e-14 * total.max(1.0));
+        }
+        let scene = trajectory.scene().clone();
+        let view = scene.start(&Settings::default())?;
+        let top = view.view().contact_force_on("grip", "top")?;
+        assert_close(top[1], -total, 1e-14 * total.max(1.0));
+    }
+    Ok(())
+}
+
+/// Half of a press's way, and half of a pressure, at half of the load: forces in balance, of what stands still.
+#[test]
+fn equilibria_are_read_by_sensors() -> Outcome {
+    let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles)?;
+    let body = Body::new(mesh, SOFT).thickness(0.02).build()?;
+    let press = Obstacle::half_plane([0.0, 0.1], [0.0, -1.0]).named("press").stiffness(5e3);
+    let press = press.damping(100.0).tangential_damping(50.0).velocity([0.0, -2e-3]);
+    let scene = Scene::new(body)
+        .obstacle(press)
+        .chamber(Chamber::within("air", [1, 3, 9, 7]))
+        .spring(Spring::between([1], [9]).named("tendon").stiffness(10.0))
+        .phase(
+            Phase::until(2.0)
+                .hold("bottom")
+                .pressure_table("air", [0.0, 2.0], [0.0, 40.0])
+                .actuate(["tendon"], -0.1),
+        );
+    let sampling = Sampling::phase_ends()
+        .read("held", Reading::constraint_force("bottom").component(Component::Y))
+        .read("pressed", Reading::contact_force("press").component(Component::Y))
+        .read("pressure", Reading::pressure("air"))
+        .read("pull", Reading::spring_pull("tendon"))
+        .read("length", Reading::spring_length("tendon"))
+        .read("speed", Reading::velocity("top").component(Component::Norm));
+    let statics = Statics { load_steps: 2, ..Statics::default() };
+    let mut found = scene.equilibrium(&statics)?;
+    found.read(&sampling)?;
+    let trajectory = found.trajectory();
+    assert_eq!(trajectory.sensors().len(), 7);
+    let of = |name: &str| read(trajectory, name);
+    let [held, pressed, length] = ["held", "pressed", "length"].map(of);
+    assert_eq!(of("pressure"), [0.0, 20.0, 40.0]);
+    assert_eq!(of("speed"), [0.0; 3]);
+    for k in 0..3 {
+        // to what statics balances forces to, 1e-10 of the largest
+        assert_close(held[k] + pressed[k], 0.0, 1e-9);
+        let pull = 10.0 * (length[k] - length[0]) + 0.05 * k as f64;
+        assert_close(of("pull")[k], pull, 1e-13);
+    }
+    assert!(pressed[2] < pressed[1] && pressed[1] < -1.0 && pressed[0] == 0.0, "{pressed:?}");
+    // what follows from samples agrees
+    for (sample, pressed) in trajectory.samples().iter().zip(&pressed) {
+        let forces = trajectory.contact_forces(sample)?;
+        assert_close(forces.iter().skip(1).step_by(2).sum(), *pressed, 1e-14);
+    }
+    let again = found.read(&sampling).unwrap_err().to_string();
+    assert!(again.contains("\"held\"") && again.contains("otherwise"), "{again}");
     Ok(())
 }

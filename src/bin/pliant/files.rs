@@ -23,7 +23,7 @@ pub struct OutputArguments {
     /// What to write besides trajectory.csv and report.json: svg, html, vtk, plot, png
     #[arg(long, value_delimiter = ',', value_parser = format)]
     formats: Option<Vec<Format>>,
-    /// Show no progress, and print nothing but the results
+    /// Show no progress and no tables: print warnings, what --accuracy has reached, and the equilibrium that `static` has found
     #[arg(long, short)]
     pub quiet: bool,
 }
@@ -151,10 +151,16 @@ impl Directory {
     ) -> Result<GrowingTable, Failure> {
         let (path, track) = (self.path.join(TABLE), output.track.as_ref());
         let table = GrowingTable::new(simulation.trajectory(), path, track)?;
-        Ok(match self.resumes {
-            true => table.going_on(simulation.trajectory(), simulation.time())?,
-            false => table,
-        })
+        if !self.resumes {
+            return Ok(table);
+        }
+        let began = simulation.time();
+        // the last row of a run that was interrupted, where it had come to, is none of the whole run
+        let kept = match output.sampling().takes(simulation.scene(), began) {
+            true => began,
+            false => began.next_down(),
+        };
+        Ok(table.going_on(simulation.trajectory(), kept)?)
     }
 
     /// The path of the checkpoint that an earlier run has left.

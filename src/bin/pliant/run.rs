@@ -187,14 +187,17 @@ fn tell(
     directory: &Directory,
     quiet: bool,
 ) -> Result<(), Failure> {
-    if !quiet && !title.is_empty() {
+    let report = trajectory.report();
+    if quiet {
+        report.achieved.iter().try_for_each(print)?;
+        let mut warnings = report.warnings().into_iter();
+        return warnings.try_for_each(|warning| print(format_args!("WARNING: {warning}")));
+    }
+    if !title.is_empty() {
         print(title)?;
     }
-    print(trajectory.report())?;
-    match quiet {
-        true => Ok(()),
-        false => directory.tell(),
-    }
+    print(report)?;
+    directory.tell()
 }
 
 /// Samples of a motion that is to be accurate, if none were asked for.

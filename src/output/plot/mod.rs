@@ -42,7 +42,7 @@ impl Plot {
         Self::default()
     }
 
-    /// What stands above. Default: nothing.
+    /// What stands above. Default: the title of the scene, if its file has one.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.title = title.into();
         self
@@ -69,7 +69,8 @@ impl Plot {
     /// As [`write`](Self::write).
     pub fn write_table(&self, table: &Table, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
-        let drawing = Page::new(&self.title, table, &table.chosen(self.columns.as_deref())?).draw();
+        let title = if self.title.is_empty() { &table.title } else { &self.title };
+        let drawing = Page::new(title, table, &table.chosen(self.columns.as_deref())?).draw();
         let picture = match path.extension().and_then(|ending| ending.to_str()) {
             Some("svg") => Ok(drawing.into_bytes()),
             #[cfg(feature = "png")]

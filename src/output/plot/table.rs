@@ -10,7 +10,7 @@ use crate::error::Error;
 use crate::input::{InputError, unknown_among};
 use crate::mesh::Selection;
 use crate::output::columns::{Columns, DIFFERENCE, EXCHANGED, OF_SENSOR, STORED, standard_unit};
-use crate::trajectory::{Quantity, Trajectory};
+use crate::trajectory::{DEGREES, Quantity, Trajectory};
 
 /// A motion in numbers: what `trajectory.csv` holds of it.
 #[derive(Debug, Clone)]
@@ -20,6 +20,8 @@ pub struct Table {
     pub(super) columns: Vec<Column>,
     /// Phases that were begun: their names, and when they ended (s).
     pub(super) phases: Vec<(String, f64)>,
+    /// Title of the scene; empty if it is not known.
+    pub(super) title: String,
 }
 
 /// A quantity over time.
@@ -38,6 +40,7 @@ impl Table {
         let columns = Columns::new(trajectory, track)?;
         let phases = trajectory.report().phases.iter();
         let mut table = Self::empty(columns.quantities(trajectory).into_iter().skip(1));
+        table.title.clone_from(&trajectory.report().title);
         table.phases = phases.map(|phase| (phase.name.clone(), phase.end)).collect();
         for sample in trajectory.samples() {
             table.push(&columns.row(trajectory, sample));
@@ -59,22 +62,30 @@ impl Table {
             .map_err(|error| failed(error.into()))?;
         let report = fs::read(directory.as_ref().join("report.json")).unwrap_or_default();
         let report: Value = serde_json::from_slice(&report).unwrap_or_default();
-        let header = reader.headers().map_err(|error| failed(error.into()))?;
-        let names: Vec<String> = header.iter().map(String::from).collect();
-        if names.first().is_none_or(|name| name != "t") {
+        let header = reader.headers().map_err(|error| failed(error.into()))?.clone();
+        let names: Vec<(&str, bool)> = header.iter().map(Quantity::of_heading).collect();
+        if names.first().is_none_or(|(name, _)| *name != "t") {
             return Err(failed(io::Error::other("its first column must be t")));
         }
         let sensors = list(&report, "sensors");
-        let unit = |name: &str| {
+        let unit = |name: &str, in_degrees: bool| {
+            if in_degrees {
+                return DEGREES.to_owned();
+            }
             let sensor = sensors.iter().find(|sensor| sensor["name"] == name);
             let unit = sensor.and_then(|sensor| sensor["unit"].as_str());
             unit.or_else(|| standard_unit(name)).unwrap_or_default().to_owned()
         };
-        let named = |name: &String| Quantity { name: name.clone(), unit: unit(name) };
+        let named = |&(name, in_degrees): &(&str, bool)| Quantity {
+            name: name.into(),
+            unit: unit(name, in_degrees),
+        };
+        let count = names.len();
         let mut table = Self::empty(names.iter().skip(1).map(named));
         let phases = list(&report, "phases").iter();
         let phase = |phase: &Value| Some((phase["name"].as_str()?.into(), phase["end"].as_f64()?));
         table.phases = phases.filter_map(phase).collect();
+        table.title = report["title"].as_str().unwrap_or_default().into();
         // the last row may have been cut off
         let mut bad = None;
         for (number, record) in reader.records().enumerate() {
@@ -83,7 +94,7 @@ impl Table {
             }
             let record = record.map_err(|error| failed(error.into()))?;
             let row: Option<Vec<f64>> = record.iter().map(|text| text.parse().ok()).collect();
-            match row.filter(|row| row.len() == names.len()) {
+            match row.filter(|row| row.len() == count) {
                 Some(row) => table.push(&row),
                 None => bad = Some(number + 2),
             }
@@ -93,7 +104,8 @@ impl Table {
 
     fn empty(quantities: impl Iterator<Item = Quantity>) -> Self {
         let column = |quantity| Column { quantity, values: Vec::new() };
-        Self { times: Vec::new(), columns: quantities.map(column).collect(), phases: Vec::new() }
+        let (times, phases, title) = (Vec::new(), Vec::new(), String::new());
+        Self { times, columns: quantities.map(column).collect(), phases, title }
     }
 
     fn push(&mut self, row: &[f64]) {

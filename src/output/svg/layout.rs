@@ -52,13 +52,16 @@ impl View {
         }
         let size = view.width().hypot(view.height());
         let centre = [0, 1].map(|i| (view.low[i] + view.high[i]) / 2.0);
-        let near: Vec<Point> = view
-            .obstacles
-            .iter()
-            .flatten()
-            .flat_map(|outline| outline.near(centre, size))
-            .collect();
-        near.into_iter().for_each(|point| view.include(point));
+        let near = |outlines: &Vec<Outline>| -> Vec<Point> {
+            outlines.iter().flat_map(|outline| outline.near(centre, size)).collect()
+        };
+        let near: Vec<Vec<Point>> = view.obstacles.iter().map(near).collect();
+        for (number, points) in near.into_iter().enumerate() {
+            for point in points {
+                view.include(point);
+                view.tops[number] = view.tops[number].max(point[1]);
+            }
+        }
         let pad = 0.06 * view.width().max(view.height());
         view.low.iter_mut().for_each(|x| *x -= pad);
         view.high.iter_mut().chain(&mut view.tops).for_each(|x| *x += pad);

@@ -1,0 +1,50 @@
+//! Tables that scene files do not have, and what stands in for them.
+
+/// What is not there, in words, and what stands in for it; by the names that one may try.
+const ABSENT: [(&[&str], &str); 8] = [
+    (
+        &["bodies"],
+        "a scene has one body, [body]: its mesh may be in pieces, of materials of their own ([[body.region]]), which do not feel each \
+         other but by springs; a rigid body that stands or follows a path is an [[obstacle]]",
+    ),
+    (
+        &["contact", "contacts", "self_contact", "collision", "collisions", "touch"],
+        "the body does not touch itself, nor do its pieces touch each other: contact is with rigid shapes, which stand or follow a path, \
+         [[obstacle]], among which a phase chooses by contact = [...]",
+    ),
+    (
+        &["friction"],
+        "friction is a key of what the body slides on: friction_coefficient in [[obstacle]]",
+    ),
+    (
+        &["rigid", "rigid_body", "rigid_bodies", "wall", "floor", "ground", "gripper", "tool"],
+        "there are no rigid bodies that forces move: a rigid shape that stands or follows a path is an [[obstacle]], nodes that move \
+         together are held, moved or turned by a phase (hold, move, path, rotate), and a part with a large young is nearly rigid",
+    ),
+    (
+        &["cable", "cables", "rope", "tendon", "tendons", "string", "wire"],
+        "there are no cables with friction: one of constant tension along nodes is a chain of [[spring]] without stiffness, all under one \
+         actuate = { springs = [...], force = -T } of a phase; an elastic one between two nodes is one [[spring]]",
+    ),
+    (
+        &["joint", "joints", "hinge", "bearing", "constraint", "constraints"],
+        "there are no joints: a phase holds, moves and turns nodes (hold, axes, move, path, rotate, symmetry), ties displacements of nodes by \
+         hold_combination, and two nodes may have a stiff [[spring]] between them; a node that alone is held is a hinge",
+    ),
+    (
+        &["gas", "fluid", "air", "water", "pressure", "pump"],
+        "there is no gas and no fluid: a phase gives the pressure in a [[chamber]] over time (pressure = [...]), and a [[sensor]] reads its volume",
+    ),
+    (
+        &["motor", "muscle", "actuator", "actuators"],
+        "what acts is a force along a [[spring]] (actuate in a phase), a pressure in a [[chamber]], a load, or nodes that follow a path",
+    ),
+];
+
+/// What stands in for the table `name` of the file, if it is one that does not exist for a reason.
+pub(super) fn stand_in(name: &str) -> Option<&'static str> {
+    ABSENT.iter().find(|(names, _)| names.contains(&name)).map(|(_, words)| *words)
+}
+
+/// What stands in for a list of bodies.
+pub(super) const ONE_BODY: &str = ABSENT[0].1;
