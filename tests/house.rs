@@ -293,3 +293,64 @@ fn reach<'a>(arrows: &BTreeMap<&'a str, BTreeSet<&'a str>>, file: &'a str) -> BT
     }
     reached
 }
+
+/// What integrators call of a system and its output: `ode/call.rs` clears that.
+const CALLS: [&str; 14] = [
+    "rhs",
+    "explicit_rhs",
+    "newton_rhs",
+    "jacobian_times",
+    "roots",
+    "quadratures",
+    "sensitivity_rhs",
+    "adjoint_rhs",
+    "adjoint_parameters",
+    "residual",
+    "sensitivity_residual",
+    "forces",
+    "accelerations",
+    "powers",
+];
+
+/// Rooms that call systems of others.
+const CALLERS: [&str; 8] = [
+    "integrate",
+    "sundials",
+    "rk",
+    "rosenbrock",
+    "central_difference",
+    "solve",
+    "study",
+    "ode/check.rs",
+];
+
+/// A method of a system stands behind a dot, or behind the name of its type; an argument tells it from what a solver
+/// gives, such as `quadratures()`.
+#[test]
+fn integrators_call_systems_by_functions_that_clear_the_output() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let (mut around, mut through) = (Vec::new(), 0);
+    for path in rust_files(&root) {
+        let file = path.strip_prefix(&root).unwrap().to_str().unwrap();
+        if !CALLERS.iter().any(|room| file.starts_with(room)) || file.contains("tests") {
+            continue;
+        }
+        let words = words(&code(&fs::read_to_string(&path).unwrap()));
+        for at in 2..words.len().saturating_sub(2) {
+            let [owner, dot, name, open, argument] =
+                [-2, -1, 0, 1, 2].map(|step| words[at.wrapping_add_signed(step)].as_str());
+            if !CALLS.contains(&name) {
+                continue;
+            }
+            let is_method = dot == "." && open == "(" && argument != ")";
+            let is_path =
+                dot == "::" && ["S", "Self", "Ode", "Dae", "SecondOrder"].contains(&owner);
+            through += usize::from(dot == "::" && owner == "call");
+            if is_method || is_path {
+                around.push(format!("src/{file}: {owner}{dot}{name}"));
+            }
+        }
+    }
+    assert!(through > 40, "{through}: does this test still see the calls?");
+    assert!(around.is_empty(), "not by ode/call.rs, so with any output:\n{}", around.join("\n"));
+}

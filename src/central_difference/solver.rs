@@ -8,7 +8,7 @@ use crate::integrate::{
     Callback, Cause, Error, ExplicitOptions, IntegrationError, Integrator, Reached, Statistics,
     check_finite, check_length, check_start, check_start_time, check_stop_time, check_target,
 };
-use crate::ode::{Failure, SecondOrder};
+use crate::ode::{Failure, SecondOrder, call};
 
 /// Order of the method.
 const ORDER: u32 = 2;
@@ -311,9 +311,9 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
         let (u, v) = (&y[..self.n], &y[self.n..2 * self.n]);
         let begun = self.system.start(t, u, v);
         begun
-            .and_then(|()| self.system.forces(t, u, v, &mut self.force))
+            .and_then(|()| call::forces(&mut self.system, t, u, v, &mut self.force))
             .map_err(|failure| stopped(failure, t, 0.0))?;
-        self.system.powers(v, &mut self.powers);
+        call::powers(&mut self.system, v, &mut self.powers);
         (self.t, self.t_before, self.rest, self.step_before) = (t, t, None, None);
         self.y.copy_from_slice(y);
         self.update_weights();

@@ -1,7 +1,7 @@
 //! The inside of a step: the scheme and its local error.
 
 use super::CentralDifference;
-use crate::ode::{Failure, Kick, SecondOrder};
+use crate::ode::{Failure, Kick, SecondOrder, call};
 use crate::tensor::Real;
 use crate::wide::{Formula, each};
 
@@ -20,16 +20,16 @@ impl<S: SecondOrder> CentralDifference<S> {
         let kick = Kick { duration: half, force: &self.force, before: v };
         // else those at the end of the step before
         if self.step_before.is_none() || is_coupled {
-            system.accelerations(&kick, &mut self.first);
+            call::accelerations(system, &kick, &mut self.first);
         }
         each(Drift { h }, [u, v, &self.first], [middle, u_next, extrapolated]);
         system.lead(&kick, middle, work);
 
         system.prescribe(next, u_next, extrapolated)?;
         self.statistics.evaluations += 1;
-        system.forces(next, u_next, extrapolated, &mut self.trial_force)?;
+        call::forces(system, next, u_next, extrapolated, &mut self.trial_force)?;
         let kick = Kick { duration: half, force: &self.trial_force, before: middle };
-        system.accelerations(&kick, &mut self.second);
+        call::accelerations(system, &kick, &mut self.second);
         // differences of steps of different size; without a step before the first one will do
         let (ratio, scale) = match self.step_before {
             Some(before) => (h / before, 2.0 * h / (before + h)),
@@ -43,7 +43,7 @@ impl<S: SecondOrder> CentralDifference<S> {
         );
         system.lead(&kick, v_next, work);
 
-        system.powers(v_next, trial_powers);
+        call::powers(system, v_next, trial_powers);
         for (k, integral) in integrals_next.iter_mut().enumerate() {
             *integral = integrals[k] + 0.5 * h * (self.powers[k] + trial_powers[k]) + work[k];
         }

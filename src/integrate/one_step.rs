@@ -9,7 +9,7 @@ use super::march::{March, StepMethod, not_finite};
 use super::options::{check_finite, check_form, check_length, check_start, check_start_time};
 use super::roots::Roots;
 use super::statistics::Statistics;
-use crate::ode::Ode;
+use crate::ode::{Ode, call};
 
 /// Integrates y' = f(t, y) forward in time by the one-step method M.
 ///
@@ -102,7 +102,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
     fn evaluate_slope(&mut self) -> Result<(), Error> {
         let march = &mut self.march;
         march.statistics.evaluations += 1;
-        let outcome = march.system.rhs(march.t, &march.y, &mut march.slope);
+        let outcome = call::rhs(&mut march.system, march.t, &march.y, &mut march.slope);
         let setback = march.classify(outcome, Callback::Rhs, march.t, 0.0)?;
         if let Some(cause) = setback.or_else(|| not_finite(march.t, &march.slope)) {
             return Err(march.stopped(cause, 0.0).into());
@@ -134,7 +134,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
             *argument = y + h * slope;
         }
         march.statistics.evaluations += 1;
-        let outcome = march.system.rhs(t_trial, &march.argument, &mut march.slope_old);
+        let outcome = call::rhs(&mut march.system, t_trial, &march.argument, &mut march.slope_old);
         if march.classify(outcome, Callback::Rhs, t_trial, h)?.is_some() {
             return Ok(h);
         }

@@ -5,7 +5,7 @@ use std::mem::take;
 use super::error::{Callback, Cause, Error};
 use super::march::{March, StepMethod};
 use super::one_step::OneStep;
-use crate::ode::Ode;
+use crate::ode::{Ode, call};
 
 impl<S: Ode, M: StepMethod> OneStep<S, M> {
     /// Evaluates the root functions at the start; `step` is the size of the first step.
@@ -71,7 +71,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         let march = &mut self.march;
         let step = march.t - march.t_old;
         march.statistics.root_evaluations += 1;
-        if let Err(failure) = march.system.roots(t, &march.argument, g) {
+        if let Err(failure) = call::roots(&mut march.system, t, &march.argument, g) {
             let mut error = march.stopped(Cause::Fatal(Callback::Roots), step);
             error.source = Some(failure.into_error());
             return Err(error.into());

@@ -98,6 +98,13 @@ impl Tolerances {
         size_or_one(y.abs() + self.atol_of(unknown) / self.rtol)
     }
 
+    /// How far to go from the state `y` along `direction` for an unknown to change by its size, or `longest` if none does
+    /// before: the scale of differences along it.
+    pub(crate) fn reach(&self, y: &[f64], direction: &[f64], longest: f64) -> f64 {
+        let distances = direction.iter().enumerate().map(|(i, d)| self.size_of(i, y[i]) / d.abs());
+        distances.fold(longest, f64::min)
+    }
+
     /// The smallest absolute tolerance that is not zero, or `rtol` if all are: for numbers beside the unknowns.
     pub(crate) fn least_atol(&self) -> f64 {
         let least = match &self.atol {

@@ -28,6 +28,7 @@ use thiserror::Error;
 
 use super::{
     band::BandMut,
+    call,
     dae::Dae,
     failure::Failure,
     first_order::Ode,
@@ -57,7 +58,7 @@ pub enum CheckError {
         tolerance: f64,
     },
     /// The equations have no value here.
-    #[error("the equations can not be evaluated: {0:?}")]
+    #[error("the equations can not be evaluated: {0}")]
     Failed(Failure),
     /// The point does not fit the equations.
     #[error(transparent)]
@@ -103,14 +104,15 @@ pub fn jacobian(
 ) -> Result<(), CheckError> {
     let n = y.len();
     let mut ydot = vec![0.0; n];
-    system.rhs(t, y, &mut ydot)?;
+    call::rhs(system, t, y, &mut ydot)?;
     let supplied = entries(n, storage, |form| match form {
         Form::Dense(matrix) => system.dense_jacobian(t, y, &ydot, matrix),
         Form::Band(band) => system.banded_jacobian(t, y, &ydot, band),
         Form::Sparse(values) => system.sparse_jacobian(t, y, &ydot, values),
     })?;
     for j in 0..n {
-        let column = slope(n, size(y, j), |step, out| system.rhs(t, &moved(y, j, step), out))?;
+        let column =
+            slope(n, size(y, j), |step, out| call::rhs(system, t, &moved(y, j, step), out))?;
         compare(storage.method(), j, &supplied[j * n..][..n], &column)?;
     }
     Ok(())
@@ -137,7 +139,7 @@ pub fn dae_jacobian(
     })?;
     for j in 0..n {
         let column = slope(n, size(y, j), |step, out| {
-            system.residual(t, &moved(y, j, step), &moved(yp, j, cj * step), out)
+            call::residual(system, t, &moved(y, j, step), &moved(yp, j, cj * step), out)
         })?;
         compare(storage.method(), j, &supplied[j * n..][..n], &column)?;
     }
@@ -157,12 +159,12 @@ pub fn sensitivity_rhs(
     let n = y.len();
     same_length("length of s", s.len(), n)?;
     let (mut ydot, mut sdot, p) = (vec![0.0; n], vec![0.0; n], system.parameters().to_vec());
-    system.rhs(t, y, &mut ydot)?;
+    call::rhs(system, t, y, &mut ydot)?;
     for parameter in 0..p.len() {
-        system.sensitivity_rhs(t, y, &ydot, parameter, s, &mut sdot)?;
+        call::sensitivity_rhs(system, t, y, &ydot, parameter, s, &mut sdot)?;
         let column = slope(n, along(y, s).min(size(&p, parameter)), |step, out| {
             system.set_parameters(&moved(&p, parameter, step));
-            let outcome = system.rhs(t, &shifted(y, s, step), out);
+            let outcome = call::rhs(system, t, &shifted(y, s, step), out);
             system.set_parameters(&p);
             outcome
         })?;
@@ -187,10 +189,11 @@ pub fn sensitivity_residual(
     }
     let (mut supplied, p) = (vec![0.0; n], system.parameters().to_vec());
     for parameter in 0..p.len() {
-        system.sensitivity_residual(t, y, yp, parameter, s, sp, &mut supplied)?;
+        call::sensitivity_residual(system, t, y, yp, parameter, s, sp, &mut supplied)?;
         let column = slope(n, along(y, s).min(size(&p, parameter)), |step, out| {
             system.set_parameters(&moved(&p, parameter, step));
-            let outcome = system.residual(t, &shifted(y, s, step), &shifted(yp, sp, step), out);
+            let outcome =
+                call::residual(system, t, &shifted(y, s, step), &shifted(yp, sp, step), out);
             system.set_parameters(&p);
             outcome
         })?;
@@ -212,10 +215,10 @@ pub fn adjoint_rhs(
     let n = y.len();
     same_length("length of lambda", lambda.len(), n)?;
     let (mut supplied, mut ydot) = (vec![0.0; n], vec![0.0; n]);
-    system.adjoint_rhs(t, y, lambda, &mut supplied)?;
+    call::adjoint_rhs(system, t, y, lambda, &mut supplied)?;
     for (j, supplied) in supplied.iter().enumerate() {
         let number = slope(1, size(y, j), |step, out| {
-            system.rhs(t, &moved(y, j, step), &mut ydot)?;
+            call::rhs(system, t, &moved(y, j, step), &mut ydot)?;
             out[0] = ydot.iter().zip(lambda).map(|(f, lambda)| f * lambda).sum();
             Ok(())
         })?;
@@ -237,11 +240,11 @@ pub fn adjoint_parameters(
     same_length("length of lambda", lambda.len(), y.len())?;
     let p = system.parameters().to_vec();
     let (mut supplied, mut ydot) = (vec![0.0; p.len()], vec![0.0; y.len()]);
-    system.adjoint_parameters(t, y, lambda, &mut supplied)?;
+    call::adjoint_parameters(system, t, y, lambda, &mut supplied)?;
     for (j, supplied) in supplied.iter().enumerate() {
         let number = slope(1, size(&p, j), |step, out| {
             system.set_parameters(&moved(&p, j, step));
-            let outcome = system.rhs(t, y, &mut ydot);
+            let outcome = call::rhs(system, t, y, &mut ydot);
             system.set_parameters(&p);
             outcome?;
             out[0] = ydot.iter().zip(lambda).map(|(f, lambda)| f * lambda).sum();

@@ -7,9 +7,9 @@ use super::failure::{Failure, missing};
 
 /// F(t, y, y') = 0.
 ///
-/// Only [`residual`](Self::residual) is required, as in [`Ode`](super::Ode).
+/// Only [`residual`](Self::residual) is required, as in [`Ode`](super::Ode). What a method writes into is zero on entry, as there.
 pub trait Dae {
-    /// Writes F(t, y, y') into `residual`.
+    /// Writes F(t, y, y') into `residual` (same length as `y`, zero on entry).
     fn residual(
         &mut self,
         t: f64,
@@ -55,7 +55,7 @@ pub trait Dae {
         Err(missing("sparse_jacobian"))
     }
 
-    /// Writes the product of dF/dy + cj dF/dy' with the vector `v` into `jv`.
+    /// Writes the product of dF/dy + cj dF/dy' with the vector `v` into `jv` (zero on entry).
     fn jacobian_times(
         &mut self,
         _t: f64,
@@ -85,7 +85,7 @@ pub trait Dae {
         0
     }
 
-    /// Writes the root functions g(t, y, y').
+    /// Writes the root functions g(t, y, y') into `g` (zero on entry).
     fn roots(&mut self, _t: f64, _y: &[f64], _yp: &[f64], _g: &mut [f64]) -> Result<(), Failure> {
         Err(missing("roots"))
     }
@@ -95,7 +95,7 @@ pub trait Dae {
         0
     }
 
-    /// Writes the integrands h(t, y, y') of the integrals q' = h, as in [`Ode`](super::Ode).
+    /// Writes the integrands h(t, y, y') of the integrals q' = h into `qdot` (zero on entry), as in [`Ode`](super::Ode).
     fn quadratures(
         &mut self,
         _t: f64,
@@ -107,7 +107,7 @@ pub trait Dae {
     }
 
     /// Writes the residual of the sensitivity s = dy/dp of a parameter p, given by its place among the
-    /// [`parameters`](Self::parameters): (dF/dy) s + (dF/dy') s' + dF/dp. `sp` is s'.
+    /// [`parameters`](Self::parameters), into `residual` (zero on entry): (dF/dy) s + (dF/dy') s' + dF/dp. `sp` is s'.
     #[allow(clippy::too_many_arguments)] // two states, two sensitivities
     fn sensitivity_residual(
         &mut self,

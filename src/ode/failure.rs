@@ -1,10 +1,32 @@
 //! Why a callback of a system failed.
 
 use std::error::Error;
+use std::fmt;
 
 /// Why a callback of a system failed.
 ///
-/// Any `std` error converts into [`Failure::Fatal`], so `?` works inside callbacks.
+/// Any `std` error converts into [`Failure::Fatal`], so `?` works inside callbacks. By the same token it is no
+/// [`Error`] itself, or it would convert into itself in two ways; outside of callbacks `?` makes one of it: a
+/// `Box<dyn Error + Send + Sync>`.
+///
+/// ```
+/// use pliant::ode::Ode;
+///
+/// fn slope(system: &mut impl Ode, t: f64, y: &[f64]) -> Result<Vec<f64>, Box<dyn std::error::Error>> {
+///     let mut ydot = vec![0.0; y.len()];
+///     system.rhs(t, y, &mut ydot)?;
+///     Ok(ydot)
+/// }
+/// let mut square_root = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+///     if y[0] < 0.0 {
+///         return Err(pliant::ode::Failure::Recoverable("no root of a negative number".into()));
+///     }
+///     ydot[0] = y[0].sqrt();
+///     Ok(())
+/// };
+/// let error = slope(&mut square_root, 0.0, &[-1.0]).unwrap_err();
+/// assert_eq!(error.to_string(), "no root of a negative number");
+/// ```
 #[derive(Debug)]
 pub enum Failure {
     /// This trial point is no good (outside the domain, say): retry with a smaller step.
@@ -20,6 +42,27 @@ impl Failure {
             Self::Recoverable(message) => message.into(),
             Self::Fatal(error) => error,
         }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Recoverable(message) => f.write_str(message),
+            Self::Fatal(error) => error.fmt(f),
+        }
+    }
+}
+
+impl From<Failure> for Box<dyn Error + Send + Sync> {
+    fn from(failure: Failure) -> Self {
+        failure.into_error()
+    }
+}
+
+impl From<Failure> for Box<dyn Error> {
+    fn from(failure: Failure) -> Self {
+        failure.into_error()
     }
 }
 

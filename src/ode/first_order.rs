@@ -10,8 +10,11 @@ use super::mass::MassKind;
 ///
 /// Only [`rhs`](Self::rhs) is required. The other methods are called when the integrator was
 /// configured to use them; their defaults fail with [`Failure::Fatal`].
+///
+/// What a method writes into is zero on entry, whatever integrator calls: it may add to it, and need not write zeros. (What
+/// [`newton_solve`](Self::newton_solve) and [`project`](Self::project) are given to change is no such output.)
 pub trait Ode {
-    /// Writes f(t, y) into `ydot` (same length as `y`).
+    /// Writes f(t, y) into `ydot` (same length as `y`, zero on entry).
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
 
     /// Writes df/dy into the dense matrix `jacobian` (zero on entry); `ydot` is f(t, y).
@@ -48,7 +51,7 @@ pub trait Ode {
         Err(missing("sparse_jacobian"))
     }
 
-    /// Writes the product of df/dy with the vector `v` into `jv`; `ydot` is f(t, y).
+    /// Writes the product of df/dy with the vector `v` into `jv` (zero on entry); `ydot` is f(t, y).
     fn jacobian_times(
         &mut self,
         _t: f64,
@@ -124,7 +127,7 @@ pub trait Ode {
         false
     }
 
-    /// Writes the part of f(t, y) that is not stiff into `ydot`, if f is [split](Self::is_split). Jacobians are
+    /// Writes the part of f(t, y) that is not stiff into `ydot` (zero on entry), if f is [split](Self::is_split). Jacobians are
     /// those of the other part.
     fn explicit_rhs(&mut self, _t: f64, _y: &[f64], _ydot: &mut [f64]) -> Result<(), Failure> {
         Err(missing("explicit_rhs"))
@@ -160,7 +163,7 @@ pub trait Ode {
         0
     }
 
-    /// Writes the root functions g(t, y); the integrator stops where one of them changes sign.
+    /// Writes the root functions g(t, y) into `g` (zero on entry); the integrator stops where one of them changes sign.
     fn roots(&mut self, _t: f64, _y: &[f64], _g: &mut [f64]) -> Result<(), Failure> {
         Err(missing("roots"))
     }
@@ -170,14 +173,14 @@ pub trait Ode {
         0
     }
 
-    /// Writes the integrands h(t, y) of the integrals q' = h, which are zero at the start. No equation depends on
+    /// Writes the integrands h(t, y) of the integrals q' = h, which are zero at the start, into `qdot` (zero on entry). No equation depends on
     /// them, so that they cost less than further unknowns.
     fn quadratures(&mut self, _t: f64, _y: &[f64], _qdot: &mut [f64]) -> Result<(), Failure> {
         Err(missing("quadratures"))
     }
 
     /// Writes the right-hand side of the sensitivity s = dy/dp of a parameter p, given by its place among the
-    /// [`parameters`](Self::parameters), into `sdot`: (df/dy) s + df/dp. `ydot` is f(t, y).
+    /// [`parameters`](Self::parameters), into `sdot` (zero on entry): (df/dy) s + df/dp. `ydot` is f(t, y).
     fn sensitivity_rhs(
         &mut self,
         _t: f64,
@@ -190,7 +193,7 @@ pub trait Ode {
         Err(missing("sensitivity_rhs"))
     }
 
-    /// Writes (df/dy)^T lambda into `out`, for adjoint gradients.
+    /// Writes (df/dy)^T lambda into `out` (zero on entry), for adjoint gradients.
     fn adjoint_rhs(
         &mut self,
         _t: f64,
@@ -201,7 +204,7 @@ pub trait Ode {
         Err(missing("adjoint_rhs"))
     }
 
-    /// Writes (df/dp)^T lambda into `out`, a number for each of the [`parameters`](Self::parameters).
+    /// Writes (df/dp)^T lambda into `out` (zero on entry), a number for each of the [`parameters`](Self::parameters).
     fn adjoint_parameters(
         &mut self,
         _t: f64,

@@ -10,6 +10,7 @@
 
 mod band;
 mod borrowed;
+pub(crate) mod call;
 pub mod check;
 mod closures;
 mod dae;

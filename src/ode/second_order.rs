@@ -9,13 +9,13 @@ use super::failure::Failure;
 /// check of the energy. The last four are for constrained systems, where part of the motion is known
 /// beforehand.
 pub trait SecondOrder {
-    /// Writes the forces f(t, u, v), those of constraints left out.
+    /// Writes the forces f(t, u, v) into `f` (zero on entry), those of constraints left out.
     ///
     /// # Errors
     /// [`Failure::Recoverable`] where they have no meaning: the step is repeated with a smaller size.
     fn forces(&mut self, t: f64, u: &[f64], v: &[f64], f: &mut [f64]) -> Result<(), Failure>;
 
-    /// Writes the accelerations M^-1 f under the force of a kick; 0 in components that are
+    /// Writes the accelerations M^-1 f under the force of a kick into `a` (zero on entry); 0 in components that are
     /// [known](Self::prescribe).
     fn accelerations(&mut self, kick: &Kick<'_>, a: &mut [f64]);
 
@@ -27,7 +27,8 @@ pub trait SecondOrder {
         0
     }
 
-    /// Writes the time derivatives of the integrals at the forces last evaluated and the velocities `v`.
+    /// Writes the time derivatives of the integrals at the forces last evaluated and the velocities `v` into `powers`
+    /// (zero on entry).
     fn powers(&self, _v: &[f64], _powers: &mut [f64]) {}
 
     /// The energy balance of a state, to find out steps that create energy; `None` (the default) leaves

@@ -7,7 +7,7 @@ use super::tableau::{
 use crate::integrate::{
     Callback, Cause, Error, ExplicitOptions, March, OneStep, StepMethod, not_finite,
 };
-use crate::ode::Ode;
+use crate::ode::{Ode, call};
 
 /// Integrates y' = f(t, y) forward in time with the Dormand-Prince pair of order 5(4).
 ///
@@ -72,7 +72,7 @@ impl StepMethod for Pair {
             ($k:expr, at $t:expr, $y:ident from $a:ident of $($other:expr),+) => {
                 advance(&mut march.$y, &march.y, h, $a, [$(&*$other),+]);
                 march.statistics.evaluations += 1;
-                let outcome = march.system.rhs($t, &march.$y, $k);
+                let outcome = call::rhs(&mut march.system, $t, &march.$y, $k);
                 if let Some(setback) = march.classify(outcome, Callback::Rhs, $t, h)? {
                     return Ok(Err(setback));
                 }

@@ -8,7 +8,7 @@ use faer::perm::PermRef;
 use faer::{Mat, MatMut, Par, Spec};
 
 use crate::integrate::Tolerances;
-use crate::ode::{Failure, Ode};
+use crate::ode::{Failure, Ode, call};
 
 /// J and the factors of I - gamma h J.
 pub(super) struct Dense {
@@ -65,7 +65,7 @@ impl Dense {
         self.shifted.copy_from_slice(y);
         for (j, &unshifted) in y.iter().enumerate() {
             self.shifted[j] += f64::EPSILON.sqrt() * tolerances.size_of(j, unshifted);
-            system.rhs(t, &self.shifted, &mut self.value)?;
+            call::rhs(system, t, &self.shifted, &mut self.value)?;
             let increment = self.shifted[j] - unshifted;
             let column = self.jacobian.col_as_slice_mut(j);
             for (entry, (value, base)) in column.iter_mut().zip(self.value.iter().zip(slope)) {

@@ -3,7 +3,7 @@
 use super::options::Jacobian;
 use super::solver::{LinearlyImplicit, interpolate};
 use crate::integrate::{Callback, Cause, Error, March, StepMethod, not_finite};
-use crate::ode::Ode;
+use crate::ode::{Ode, call};
 
 impl LinearlyImplicit {
     /// [`StepMethod::try_step`].
@@ -91,7 +91,7 @@ impl LinearlyImplicit {
     ) -> Result<Option<Cause>, Error> {
         let ahead = march.t + (f64::EPSILON.sqrt() * (march.t.abs() + h)).min(h);
         march.statistics.difference_quotient_evaluations += 1;
-        let outcome = march.system.rhs(ahead, &march.y, &mut self.time_slope);
+        let outcome = call::rhs(&mut march.system, ahead, &march.y, &mut self.time_slope);
         let setback = march.classify(outcome, Callback::Rhs, ahead, h)?;
         if let Some(cause) = setback.or_else(|| not_finite(ahead, &self.time_slope)) {
             return Ok(Some(cause));
@@ -124,10 +124,10 @@ impl LinearlyImplicit {
             add(&mut march.argument, tableau.a[i], before);
             march.statistics.evaluations += 1;
             let outcome = if self.dense.is_some() {
-                march.system.rhs(t, &march.argument, u)
+                call::rhs(&mut march.system, t, &march.argument, u)
             } else {
                 share = gamma;
-                march.system.newton_rhs(t, &march.argument, u)
+                call::newton_rhs(&mut march.system, t, &march.argument, u)
             };
             if let Err(failure) = outcome {
                 return march.classify(Err(failure), Callback::Rhs, t, h);
@@ -170,7 +170,7 @@ impl LinearlyImplicit {
             add(bend, weights, &self.stages);
         }
         march.statistics.evaluations += 1;
-        let outcome = march.system.rhs(t_new, &march.y_old, &mut march.slope_old);
+        let outcome = call::rhs(&mut march.system, t_new, &march.y_old, &mut march.slope_old);
         let setback = march.classify(outcome, Callback::Rhs, t_new, h)?;
         let setback = setback.or_else(|| not_finite(t_new, &march.slope_old));
         if setback.is_some() || coupled == march.y.len() {
@@ -180,7 +180,7 @@ impl LinearlyImplicit {
         let middle = march.t + 0.5 * h;
         interpolate([&march.y, &march.y_old], &self.bends, 0.5, &mut march.argument);
         march.statistics.evaluations += 1;
-        let outcome = march.system.rhs(middle, &march.argument, &mut march.output);
+        let outcome = call::rhs(&mut march.system, middle, &march.argument, &mut march.output);
         for i in coupled..march.y.len() {
             let [first, last] = [h * march.slope[i], h * march.slope_old[i]];
             let change = (first + 4.0 * h * march.output[i] + last) / 6.0;

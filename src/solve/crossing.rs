@@ -10,7 +10,7 @@ use super::{
     run::Run,
     sensitivities::{Carried, Crossing},
     solution::{End, Occurrence},
-    watch::Root,
+    watch::{Root, Sight, Turn},
 };
 use crate::{input::InputError, integrate::check_finite};
 
@@ -20,34 +20,34 @@ struct State {
     yp: Vec<f64>,
 }
 
+/// What a step has met.
+pub(super) enum Found {
+    /// Events that stop it, all at one time; or none.
+    Jumps(Vec<(usize, Root)>),
+    /// The event of this number accumulates where the step began.
+    Accumulation(usize, Turn),
+}
+
 impl<'a> Run<'a> {
     /// Finds the events of the step that has just been made, up to `t`, and notes them. Those that stop the step are returned, the last ones noted.
     /// `is_last` tells that the next step does not go on from there, but from a break, if at all.
-    pub(super) fn look_for_events(
-        &mut self,
-        t: f64,
-        is_last: bool,
-    ) -> Result<Vec<(usize, Root)>, Reason> {
+    pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Found, Reason> {
         // as SUNDIALS has it
         let tolerance = 100.0 * f64::EPSILON * (t.abs() + (t - self.t).abs());
-        let Self { engine, events, watches, scratch, parameters, .. } = self;
-        let mut search = |i: usize| {
-            let event = &mut events[i];
-            watches[i].next_root((t, is_last), tolerance, &mut |at| {
-                engine.interpolate(at, 0, scratch)?;
-                event.value(i, at, scratch, parameters)
-            })
-        };
         let count = self.counts.len();
         let mut roots = Vec::with_capacity(count);
         for i in 0..count {
-            roots.push(search(i)?);
+            let sight = self.search(i, (t, is_last), tolerance)?;
+            if let Sight::Passage(turn) = sight {
+                return Ok(Found::Accumulation(i, turn));
+            }
+            roots.push(sight.root());
         }
         loop {
             let times = roots.iter().flatten().map(|root| root.t * self.sign);
             let first = times.fold(f64::INFINITY, f64::min);
             if first == f64::INFINITY {
-                return Ok(Vec::new());
+                return Ok(Found::Jumps(Vec::new()));
             }
             let mut met: Vec<(usize, Root)> = Vec::new();
             for (i, root) in roots.iter().enumerate() {
@@ -72,22 +72,86 @@ impl<'a> Run<'a> {
                 self.occurred.push(occurrence);
             }
             if stops {
-                return Ok(met);
+                return Ok(Found::Jumps(met));
             }
             for (i, _) in met {
-                let event = &mut self.events[i];
-                let (engine, scratch, parameters) =
-                    (&mut self.engine, &mut self.scratch, &self.parameters);
-                roots[i] = self.watches[i].next_root((t, is_last), tolerance, &mut |at| {
-                    engine.interpolate(at, 0, scratch)?;
-                    event.value(i, at, scratch, parameters)
-                })?;
+                roots[i] = self.search(i, (t, is_last), tolerance)?.root();
             }
         }
     }
 
+    /// What the watch of event `i` sees next, up to a time in the step that has just been made.
+    fn search(&mut self, i: usize, up_to: (f64, bool), tolerance: f64) -> Result<Sight, Reason> {
+        let Self { engine, events, watches, scratch, parameters, .. } = self;
+        let event = &mut events[i];
+        watches[i].next_root(up_to, tolerance, &mut |at| {
+            engine.interpolate(at, 0, scratch)?;
+            event.value(i, at, scratch, parameters)
+        })
+    }
+
+    /// Whether the slope at the present time leads the function of event `i` back to the side that it came from, by what it does
+    /// over the shortest time in which that is no noise.
+    fn leads_back(&mut self, i: usize, turn: Turn) -> Result<bool, Reason> {
+        // y' of a DAE is that of the step's polynomial, or good enough for a step as short as the last: from zero, the start is
+        // sought on the scale of the span
+        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
+        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
+        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
+            slope.copy_from_slice(&self.yp);
+        }
+        slope.resize(self.y.len(), 0.0);
+        self.engine.slope(self.t, &self.y, &mut slope).map_err(|failure| {
+            let mend = "it is needed to see whether the action of an event turns the solution back";
+            InputError::new("right-hand side behind a jump", failure.into_error(), mend)
+        })?;
+        let unit = self.sign * self.unit_of_time(&self.y, &slope);
+        let Self { events, scratch, parameters, y, t, .. } = self;
+        let mut value = |time: f64| {
+            let moved = y.iter().zip(&slope).map(|(y, slope)| y + time * slope);
+            scratch.iter_mut().zip(moved).for_each(|(scratch, y)| *scratch = y);
+            (events[i].function)(*t + time, scratch, parameters)
+        };
+        let mut part = f64::EPSILON.cbrt();
+        while part < 1.0 {
+            if let Some(back) = turn.leads_back(value(part * unit) - value(-part * unit)) {
+                return Ok(back);
+            }
+            part *= 8.0;
+        }
+        Ok(false)
+    }
+
+    /// Does what is to be done where event `i` accumulates, at the present time.
+    pub(super) fn accumulate(&mut self, i: usize, turn: Turn) -> Result<(), Reason> {
+        let action = self.events[i].at_accumulation.as_mut();
+        let Some(action) = action.filter(|_| self.carried.is_none() && !turn.at_rest) else {
+            return Err(Reason::Accumulation { event: i, t: self.t, count: self.counts[i] });
+        };
+        let before = State { y: self.y.clone(), yp: self.yp.clone() };
+        let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
+        let mut jump = Jump { t: self.t, y, yp, p, ends: false };
+        action(&mut jump);
+        if jump.ends {
+            self.end = Some(End::Event(i));
+        }
+        self.land(&before, &[])?;
+        self.watches[i].expect_rest(turn);
+        Ok(())
+    }
+
     /// Does what the events at the present time ask for.
     pub(super) fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
+        for (i, root) in met.iter().filter(|(_, root)| root.sign != 0) {
+            // what the function went through is less than the error of the solution, whose slope leads the other way
+            let turn = Turn::at(root);
+            let hurries = self.events[*i].action.is_some() && self.watches[*i].hurries(self.t);
+            if hurries && self.leads_back(*i, turn)? {
+                self.counts[*i] -= 1;
+                self.occurred.retain(|at| at.event != *i || at.t != self.t);
+                return self.accumulate(*i, turn);
+            }
+        }
         let mut acting = Vec::new();
         let before = self.state();
         for (i, root) in met {
@@ -168,8 +232,9 @@ impl<'a> Run<'a> {
                 InputError::new("right-hand side at a jump", failure.into_error(), mend)
             })?;
         }
-        let (t, h, slopes) = (self.t, self.t - self.t_old, [&left[..], &right]);
-        let at = Crossing { t, h, before: &before.y, slopes, of_dae, p: &self.parameters };
+        let (t, slopes, p) = (self.t, [&left[..], &right], &self.parameters);
+        let unit_of_time = self.unit_of_time(&before.y, &left);
+        let at = Crossing { t, unit_of_time, before: &before.y, slopes, of_dae, p };
         cross(&mut carried, &at)?;
         self.correct(Some(&mut carried.s))?;
         self.carried = Some(carried);
@@ -228,6 +293,13 @@ impl<'a> Run<'a> {
             let noise =
                 met.iter().find(|(event, _)| *event == i).map_or(0.0, |(_, root)| root.noise);
             watch.restart(self.t, g, noise);
+        }
+        for (i, root) in met {
+            if self.events[*i].action.is_some() && root.sign != 0 {
+                let turn = Turn::at(root);
+                let turns = self.leads_back(*i, turn)?;
+                self.watches[*i].acted(root.t, turns.then_some(turn));
+            }
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use faer::{MatMut, MatRef};
 
 use crate::{
     integrate::{Error, Integrator, Reached, Statistics},
-    ode::{Borrowed, Dae, Failure, Ode},
+    ode::{Borrowed, Dae, Failure, Ode, call},
     rk::DormandPrince,
     sundials::{Arkode, Cvode, Ida, IdaOptions, InitialCondition},
 };
@@ -161,7 +161,7 @@ macro_rules! ode_engine {
             }
 
             fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure> {
-                self.integrator.system_mut().rhs(t, y, out)
+                call::rhs(self.integrator.system_mut(), t, y, out)
             }
 
             fn restart(&mut self, t: f64, y: &[f64], _: &[f64]) -> Result<(), Error> {

@@ -1,6 +1,7 @@
 //! Many problems on all cores.
 
 use std::{
+    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
     sync::{
         Mutex,
         atomic::{AtomicUsize, Ordering::Relaxed},
@@ -37,7 +38,7 @@ use super::{
 /// ```
 ///
 /// # Panics
-/// A panic of a member passes through, after the others have ended.
+/// A panic of a member passes through, after the others have ended: of several the one of the lowest number.
 pub fn ensemble<'a, F>(
     count: usize,
     problem: F,
@@ -57,7 +58,9 @@ where
                 loop {
                     let k = next.fetch_add(1, Relaxed);
                     let Some(place) = results.get(k) else { break };
-                    let solution = solve(problem(k), method, span, options);
+                    // a thread that panics loses what it said; nothing of the member is used again
+                    let solution =
+                        catch_unwind(AssertUnwindSafe(|| solve(problem(k), method, span, options)));
                     if let Ok(mut place) = place.lock() {
                         *place = Some(solution);
                     }
@@ -65,5 +68,6 @@ where
             });
         }
     });
-    results.into_iter().filter_map(|place| place.into_inner().ok().flatten()).collect()
+    let outcomes = results.into_iter().filter_map(|place| place.into_inner().ok().flatten());
+    outcomes.map(|outcome| outcome.unwrap_or_else(|panic| resume_unwind(panic))).collect()
 }

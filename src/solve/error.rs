@@ -54,6 +54,15 @@ pub enum Reason {
         /// Its value.
         value: f64,
     },
+    /// An event accumulates: its action turns the solution back ever faster.
+    Accumulation {
+        /// Which event, in the order of [`Problem::event`](super::Problem::event).
+        event: usize,
+        /// Time of the last one.
+        t: f64,
+        /// How many there were.
+        count: u32,
+    },
 }
 
 impl fmt::Display for Reason {
@@ -75,6 +84,12 @@ impl fmt::Display for Reason {
                     "the function of event {event} is {value} at t = {t:?}; it has to be a number"
                 )
             }
+            Self::Accumulation { event, t, count } => write!(
+                f,
+                "event {event} accumulates at t = {t:?}: it was met {count} times, ever faster, until errors hide how \
+                 its action turns the solution back; bring the solution to rest there and keep it so, or end \
+                 the run, by Event::at_accumulation"
+            ),
         }
     }
 }

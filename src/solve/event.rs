@@ -33,11 +33,14 @@ pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
 /// * A g that starts at zero is no event. It may become one when g returns to zero after it has left it.
 /// * A g that touches zero without a change of sign is an event only with [`touching`](Self::touching).
 /// * When an action makes g jump across zero, that is no event.
+/// * An action that turns the solution back, as at a floor, may be called ever faster (Zeno's paradox): such events
+///   [accumulate](Self::at_accumulation).
 pub struct Event<'a> {
     pub(super) function: Function<'a>,
     pub(super) direction: Direction,
     pub(super) last: Option<u32>,
     pub(super) action: Option<Action<'a>>,
+    pub(super) at_accumulation: Option<Action<'a>>,
     pub(super) samples: u32,
     pub(super) touching: Option<f64>,
 }
@@ -65,6 +68,7 @@ impl<'a> Event<'a> {
             direction: Direction::Either,
             last: None,
             action: None,
+            at_accumulation: None,
             samples: 4,
             touching: None,
         }
@@ -106,6 +110,46 @@ impl<'a> Event<'a> {
         self
     }
 
+    /// What to do where this event accumulates: where its action turns the solution back ever faster, as a ball bounces that
+    /// loses a part of its speed each time, until what lies between two events is less than the errors of the solution. It brings the solution to rest
+    /// and has it stay there, by a parameter of the equations, say, or [ends](Jump::end) the run. It is called at the time of the last
+    /// event, in the state behind the jump.
+    ///
+    /// Without it, and with sensitivities, which no such time has, the run stops there with
+    /// [`Reason::Accumulation`](super::Reason::Accumulation); and so it does where the solution passes through zero all the same.
+    ///
+    /// ```
+    /// use pliant::{
+    ///     ode::with_parameters,
+    ///     solve::{Event, Method, Options, Problem, solve},
+    /// };
+    ///
+    /// // a ball that falls from 1 m and keeps half of its speed at each impact; p = 0 as long as it flies, 1 on the floor
+    /// let ball = with_parameters(
+    ///     |_t, y, p, ydot| {
+    ///         ydot.copy_from_slice(&[y[1], if p[0] == 0.0 { -8.0 } else { 0.0 }]);
+    ///         Ok(())
+    ///     },
+    ///     [0.0],
+    /// );
+    /// let floor = Event::new(|_t, y| y[0]).falling().action(|jump| jump.y[1] *= -0.5).at_accumulation(|jump| {
+    ///     jump.y.fill(0.0);
+    ///     jump.p[0] = 1.0;
+    /// });
+    /// let problem = Problem::ode(ball, [1.0, 0.0]).event(floor);
+    /// let solution = solve(problem, Method::Bdf, (0.0, 3.0), &Options::new(1e-8, 1e-10))?;
+    /// assert_eq!(solution.last(), [0.0, 0.0]);
+    /// // 0.5 s to the first impact, and then 0.5 + 0.25 + 0.125 + ... s
+    /// let rest = solution.events().last().map_or(0.0, |impact| impact.t);
+    /// assert!((rest - 1.5).abs() < 1e-4);
+    /// # Ok::<(), pliant::solve::Error>(())
+    /// ```
+    #[must_use]
+    pub fn at_accumulation(mut self, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+        self.at_accumulation = Some(Box::new(action));
+        self
+    }
+
     /// Counts it as an event, too, where |g| has a minimum of at most `tolerance` without a change of sign.
     #[must_use]
     pub fn touching(mut self, tolerance: f64) -> Self {
@@ -142,6 +186,10 @@ impl Event<'_> {
         {
             let mend = "it is a small number, not negative";
             return Err(InputError::new(format!("touching of event {i}"), most, mend));
+        }
+        if self.at_accumulation.is_some() && self.action.is_none() {
+            let mend = "it belongs to an action, which turns the solution back";
+            return Err(InputError::new(format!("at_accumulation of event {i}"), "given", mend));
         }
         if self.last == Some(0) {
             let mend = "events are counted from 1";

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     input::InputError,
-    ode::{Borrowed, Failure, Functional, Slopes},
+    ode::{Borrowed, Failure, Functional, Slopes, call},
     sundials::{Adjoint, AdjointOptions, DaeAdjoint, Gradient},
     vector::{dot, size_or_one},
 };
@@ -248,7 +248,7 @@ impl<F: Functional> WayBack<'_, '_, F> {
         if let Equations::Ode(system) = &mut self.problem.equations {
             slope.resize(at.y.len(), 0.0);
             system.set_parameters(&at.p);
-            let outcome = system.rhs(at.t, &at.y, &mut slope);
+            let outcome = call::rhs(system.as_mut(), at.t, &at.y, &mut slope);
             outcome.map_err(|failure| unknown("right-hand side at a jump", failure))?;
         }
         Ok(slope)
@@ -290,11 +290,7 @@ impl<F: Functional> WayBack<'_, '_, F> {
 
     /// The time in which the state changes by its size.
     fn unit_of_time(&self, at: &Place, slope: &[f64]) -> f64 {
-        let times = slope
-            .iter()
-            .enumerate()
-            .map(|(i, slope)| self.options.tolerances.size_of(i, at.y[i]) / slope.abs());
-        times.fold((self.span.1 - self.span.0).abs(), f64::min)
+        self.options.tolerances.reach(&at.y, slope, (self.span.1 - self.span.0).abs())
     }
 }
 

@@ -73,7 +73,7 @@ fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Place)>>) -
         log.borrow_mut().push((act, Place { t: jump.t, y, yp, p }));
     };
     let events = problem.events.iter_mut().enumerate().map(|(i, event)| {
-        let Event { function, direction, last, action, samples, touching } = event;
+        let Event { function, direction, last, action, samples, touching, .. } = event;
         let action = action.as_mut().map(|action| -> Action<'b> {
             Box::new(move |jump| {
                 note(Act::Event(i), jump);
@@ -82,7 +82,9 @@ fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Place)>>) -
         });
         let function = Box::new(|t: f64, y: &[f64], p: &[f64]| function(t, y, p));
         let (direction, last) = (*direction, *last);
-        Event { function, direction, last, action, samples: *samples, touching: *touching }
+        let (samples, touching) = (*samples, *touching);
+        // a gradient has no way back through infinitely many jumps
+        Event { function, direction, last, action, at_accumulation: None, samples, touching }
     });
     let breaks = problem.breaks.iter_mut().enumerate().map(|(i, at)| {
         let Break { t, action } = at;

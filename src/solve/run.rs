@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     input::InputError,
-    integrate::{self, Statistics, check_start_time, check_time},
+    integrate::{self, Statistics, Tolerances, check_start_time, check_time},
 };
 
 /// A problem on its way: [`advance`](Self::advance) by a step, look, go on.
@@ -53,6 +53,7 @@ pub struct Run<'a> {
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
     pub(super) limits: Limits,
+    pub(super) tolerances: Tolerances,
     pub(super) span: (f64, f64),
     /// +1 forward in time, -1 backward.
     pub(super) sign: f64,
@@ -203,6 +204,7 @@ impl<'a> Run<'a> {
             observer,
             cancel,
             limits,
+            tolerances: options.tolerances.clone(),
             span,
             sign,
             t_old: start,
@@ -339,6 +341,11 @@ impl<'a> Run<'a> {
         let reached = self.engine.t();
         let t = if (t - reached) * self.sign > 0.0 { reached } else { t };
         self.engine.interpolate(t, 0, out)
+    }
+
+    /// The time in which the state `y` changes by its size along `slope`.
+    pub(super) fn unit_of_time(&self, y: &[f64], slope: &[f64]) -> f64 {
+        self.tolerances.reach(y, slope, (self.span.1 - self.span.0).abs())
     }
 
     /// +1 forward in time, -1 backward.

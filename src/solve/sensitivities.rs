@@ -22,8 +22,8 @@ pub(super) struct Carried {
 /// Where and how a solution jumps.
 pub(super) struct Crossing<'c> {
     pub(super) t: f64,
-    /// Length of the step that led there, which tells the scale of time.
-    pub(super) h: f64,
+    /// The time in which the state before changes by its size.
+    pub(super) unit_of_time: f64,
     /// The state before.
     pub(super) before: &'c [f64],
     /// Its time derivatives before and after.
@@ -77,7 +77,7 @@ impl Carried {
             });
             (ahead - behind) / (2.0 * distance)
         };
-        let rate = along((1.0, at.slopes[0], None), at.h);
+        let rate = along((1.0, at.slopes[0], None), at.unit_of_time);
         let columns = self.parameters.iter().zip(self.s.chunks(at.before.len()));
         columns.map(|(&k, s)| -along((0.0, s, Some(k)), size_or_one(at.p[k])) / rate).collect()
     }

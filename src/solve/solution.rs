@@ -1,5 +1,7 @@
 //! What a run computed.
 
+use std::fmt;
+
 use faer::MatRef;
 
 use super::saved::Saved;
@@ -40,7 +42,7 @@ pub enum End {
 ///
 /// States are kept one after the other: the one of time `t()[k]` is `y(k)`. Where the solution jumps, a time occurs
 /// twice, with the state before and after.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(remote = "Self"))]
 pub struct Solution {
@@ -59,6 +61,18 @@ pub struct Solution {
     pub(super) statistics: Statistics,
     pub(super) end: End,
     pub(super) saved: Saved,
+}
+
+impl fmt::Debug for Solution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solution")
+            .field("unknowns", &self.n)
+            .field("times", &self.t.len())
+            .field("t", &self.t.last())
+            .field("events", &self.events.len())
+            .field("end", &self.end)
+            .finish_non_exhaustive()
+    }
 }
 
 /// What is kept of one time: state, sensitivities (one column after the other) and integrals.

@@ -6,6 +6,7 @@ use std::{
 };
 
 use super::{
+    crossing::Found,
     error::Reason,
     problem::Progress,
     run::{Run, Step},
@@ -30,7 +31,15 @@ impl Run<'_> {
         self.engine.step(end)?;
         let mut t = self.engine.t();
         let at_break = self.breaks.last().is_some_and(|next| t == self.just_before(next.t));
-        let jumps = self.look_for_events(t, at_break || t == end)?;
+        let jumps = match self.look_for_events(t, at_break || t == end)? {
+            Found::Jumps(jumps) => jumps,
+            // the step leads through what should have held: a jump takes its place
+            Found::Accumulation(event, turn) => {
+                self.accumulate(event, turn)?;
+                self.t_old = self.t;
+                return Ok(Some(self.made_step()));
+            }
+        };
         let stops_at = jumps.first().map(|(_, root)| root.t);
         if let Some(at) = stops_at {
             t = at;
@@ -62,14 +71,19 @@ impl Run<'_> {
         if t == end && self.end.is_none() {
             self.end = Some(End::Span);
         }
+        Ok(Some(self.made_step()))
+    }
+
+    /// Shows the step to the observer, and to the caller.
+    fn made_step(&mut self) -> Step<'_> {
         self.report();
-        Ok(Some(Step {
-            t_old,
+        Step {
+            t_old: self.t_old,
             t: self.t,
             y: &self.y,
             before: self.before.as_deref(),
             events: &self.occurred,
-        }))
+        }
     }
 
     /// Starts the integrator anew where something has changed.

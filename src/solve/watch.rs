@@ -23,16 +23,52 @@ pub(super) struct Watch {
     direction: Direction,
     samples: u32,
     touching: Option<f64>,
+    /// The sign that the function should have next, where an action has turned the solution back from zero, or brought it to
+    /// rest there.
+    turn: Option<Turn>,
+    /// When an action was called last, and the longest time between two calls.
+    acted: Option<f64>,
+    longest: f64,
     t: f64,
     /// The function at `t`; 0 also if it is so near that its sign is noise: then the next sign counts.
     g: f64,
+}
+
+/// What is expected behind an action at a root.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// The sign of the function before the root.
+    near: f64,
+    /// Values up to which its sign is noise.
+    noise: f64,
+    /// Whether the solution is at rest there.
+    pub(super) at_rest: bool,
+}
+
+/// What a watch has seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Sight {
+    Nothing,
+    Root(Root),
+    /// Behind an action the function has left zero on the other side, without a sign of the one that it came from.
+    Passage(Turn),
+}
+
+impl Sight {
+    pub(super) fn root(self) -> Option<Root> {
+        match self {
+            Self::Root(root) => Some(root),
+            Self::Nothing | Self::Passage(_) => None,
+        }
+    }
 }
 
 impl Watch {
     /// Follows `event` from time `t`, where its function is `g`.
     pub(super) fn new(event: &Event<'_>, t: f64, g: f64) -> Self {
         let Event { direction, samples, touching, .. } = *event;
-        Self { direction, samples, touching, t, g }
+        let (turn, acted, longest) = (None, None, 0.0);
+        Self { direction, samples, touching, turn, acted, longest, t, g }
     }
 
     /// The function where it was last looked at.
@@ -43,6 +79,27 @@ impl Watch {
     /// Goes on at time `t`, where the function is `g` by now and values up to `noise` mean nothing.
     pub(super) fn restart(&mut self, t: f64, g: f64, noise: f64) {
         (self.t, self.g) = (t, if g.abs() <= noise { 0.0 } else { g });
+        self.turn = None;
+    }
+
+    /// After a new start: an action was called here, at time `t`, and should have turned the solution back so, or let it pass.
+    pub(super) fn acted(&mut self, t: f64, turn: Option<Turn>) {
+        self.turn = turn.filter(|_| self.g == 0.0);
+        let interval = self.acted.map_or(0.0, |last| (t - last).abs());
+        (self.acted, self.longest) = (Some(t), self.longest.max(interval));
+    }
+
+    /// After a new start: the solution was brought to rest here, where it should have turned.
+    pub(super) fn expect_rest(&mut self, turn: Turn) {
+        if self.g.abs() <= turn.noise {
+            self.g = 0.0;
+            self.turn = Some(Turn { at_rest: true, ..turn });
+        }
+    }
+
+    /// Whether an action at time `t` would come sooner than others have.
+    pub(super) fn hurries(&self, t: f64) -> bool {
+        self.acted.is_some_and(|last| (t - last).abs() < 0.5 * self.longest)
     }
 
     /// The next root up to time `to`, to within `tolerance`. The watch moves there, or to `to`.
@@ -53,9 +110,12 @@ impl Watch {
         (to, is_last): (f64, bool),
         tolerance: f64,
         g: &mut impl FnMut(f64) -> Result<f64, E>,
-    ) -> Result<Option<Root>, E> {
+    ) -> Result<Sight, E> {
         while (to - self.t).abs() > tolerance {
-            let Some(root) = self.any_root((to, is_last), tolerance, g)? else { break };
+            let root = match self.any_root((to, is_last), tolerance, g)? {
+                Sight::Root(root) => root,
+                other => return Ok(other),
+            };
             (self.t, self.g) = (root.behind.t, root.behind.g);
             let counts = match self.direction {
                 Direction::Either => true,
@@ -63,10 +123,10 @@ impl Watch {
                 Direction::Falling => root.sign <= 0,
             };
             if counts {
-                return Ok(Some(root));
+                return Ok(Sight::Root(root));
             }
         }
-        Ok(None)
+        Ok(Sight::Nothing)
     }
 
     /// The next root of either direction; without one the watch moves to `to`.
@@ -75,12 +135,25 @@ impl Watch {
         (to, is_last): (f64, bool),
         tolerance: f64,
         g: &mut impl FnMut(f64) -> Result<f64, E>,
-    ) -> Result<Option<Root>, E> {
+    ) -> Result<Sight, E> {
         let (from, slice) = (self.t, (to - self.t) / f64::from(self.samples));
         let mut at = |t: f64| g(t).map(|g| Point { t, g });
         let mut last = Point { t: from, g: self.g };
         if last.g == 0.0 {
             last = at(from + 1e-3 * slice)?;
+            if let Some(turn) = self.turn
+                && last.g * turn.near <= turn.noise
+            {
+                match turn.leaves_zero(from, to, tolerance, &mut at)? {
+                    Some(point) if point.g * turn.near > 0.0 => last = point,
+                    Some(_) => return Ok(Sight::Passage(turn)),
+                    None => {
+                        self.t = to;
+                        return Ok(Sight::Nothing);
+                    }
+                }
+            }
+            self.turn = None;
         }
         let mut before: Option<Point> = None;
         for k in 1..=self.samples {
@@ -110,19 +183,54 @@ impl Watch {
                 let lowest =
                     minimum(first, next, self.touching.is_some(), &mut |t| at(t).map(|p| p.g))?;
                 if crosses(first.g, lowest.g) {
-                    return Root::between(first, lowest, tolerance, &mut at).map(Some);
+                    return Root::between(first, lowest, tolerance, &mut at).map(Sight::Root);
                 }
                 if self.touching.is_some_and(|most| lowest.g.abs() <= most) {
-                    return Ok(Some(Root { t: lowest.t, sign: 0, noise: 0.0, behind: next }));
+                    let (t, sign, noise) = (lowest.t, 0, 0.0);
+                    return Ok(Sight::Root(Root { t, sign, noise, behind: next }));
                 }
             }
             if crosses(last.g, next.g) {
-                return Root::between(last, next, tolerance, &mut at).map(Some);
+                return Root::between(last, next, tolerance, &mut at).map(Sight::Root);
             }
             (before, last) = (Some(last), next);
         }
         (self.t, self.g) = (last.t, last.g);
-        Ok(None)
+        Ok(Sight::Nothing)
+    }
+}
+
+impl Turn {
+    pub(super) fn at(root: &Root) -> Self {
+        Self { near: -f64::from(root.sign), noise: root.noise, at_rest: false }
+    }
+
+    /// Where the function is more than noise first, on the way from the time `from` to `to`: at distances that grow fourfold, so that
+    /// an arc above zero that begins at `from` is not missed.
+    fn leaves_zero<E>(
+        &self,
+        from: f64,
+        to: f64,
+        tolerance: f64,
+        at: &mut impl FnMut(f64) -> Result<Point, E>,
+    ) -> Result<Option<Point>, E> {
+        let mut distance = 2.0 * tolerance;
+        loop {
+            let is_last = distance >= (to - from).abs();
+            let point = at(if is_last { to } else { from + distance.copysign(to - from) })?;
+            if point.g.abs() > self.noise {
+                return Ok(Some(point));
+            }
+            if is_last {
+                return Ok(None);
+            }
+            distance *= 4.0;
+        }
+    }
+
+    /// Whether a change of the function by `change` is no noise, and leads back to the side that it came from.
+    pub(super) fn leads_back(&self, change: f64) -> Option<bool> {
+        (change.abs() > self.noise).then_some(change * self.near > 0.0)
     }
 }
 
@@ -163,7 +271,7 @@ mod tests {
         let mut watch = Watch::new(&event, 0.0, g(0.0));
         let mut found = Vec::new();
         for step in 1..=steps {
-            while let Some(root) = watch
+            while let Sight::Root(root) = watch
                 .next_root((f64::from(step), step == steps), 1e-13, &mut |t| Ok::<_, ()>(g(t)))
                 .unwrap()
             {

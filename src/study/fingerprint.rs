@@ -5,7 +5,7 @@ use std::hash::{DefaultHasher, Hasher};
 
 use crate::constraint::PhaseStart;
 use crate::error::Error;
-use crate::ode::Ode;
+use crate::ode::call;
 use crate::scene::Scene;
 
 /// A hash of all data of a scene, of what its functions of time do at a few
@@ -52,7 +52,7 @@ fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Er
         let mut change = state.clone();
         for k in 0..=4 {
             let t = time + 0.25 * f64::from(k) * (phase.end() - time);
-            if system.rhs(t, &state, &mut change).is_ok() {
+            if call::rhs(&mut system, t, &state, &mut change).is_ok() {
                 change.iter().for_each(|x| hasher.write_u64(x.to_bits()));
             }
         }

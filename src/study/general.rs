@@ -6,7 +6,7 @@ use super::timing::Budget;
 use super::{Failed, Line, Measured, Point, Problem, fingerprint};
 use crate::error::Error;
 use crate::integrate::Integrator;
-use crate::ode::{Failure, Ode, with_mass};
+use crate::ode::{Failure, Ode, call, with_mass};
 use crate::rk::{self, DormandPrince};
 use crate::sundials::{
     Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, LinearSolver,
@@ -205,7 +205,7 @@ impl General {
         let (system, y0, newton) = (system.clone(), y0.to_vec(), newton.clone());
         self.line(name, family(name), move |goal| {
             let (n, mut system, mut slope) = (y0.len(), system.clone(), vec![0.0; y0.len()]);
-            system.rhs(0.0, &y0, &mut slope).map_err(Failure::into_error)?;
+            call::rhs(&mut system, 0.0, &y0, &mut slope).map_err(Failure::into_error)?;
             let system = MassForm::new(with_mass(system, vec![1.0; n]), n, &newton)?;
             let options = goal.ida().newton(newton.clone());
             goal.reach(Ida::new(system, 0.0, &y0, &slope, &options)?)

@@ -11,7 +11,10 @@ use super::{
     matrix::{self, Entries},
     vector::{slice, slice_mut},
 };
-use crate::{integrate::Callback, ode::Dae};
+use crate::{
+    integrate::Callback,
+    ode::{Dae, call},
+};
 
 /// `IDAResFn`
 pub(super) unsafe extern "C" fn residual<S: Dae>(
@@ -28,7 +31,7 @@ pub(super) unsafe extern "C" fn residual<S: Dae>(
         (host, slice(y, n), slice(yp, n), slice_mut(residual, n))
     };
     host.guard_output(Callback::Residual, t, residual, |system, residual| {
-        system.residual(t, y, yp, residual)
+        call::residual(system, t, y, yp, residual)
     })
 }
 
@@ -46,7 +49,7 @@ pub(super) unsafe extern "C" fn roots<S: Dae>(
         let (n, count) = (host.n, host.root_count);
         (host, slice(y, n), slice(yp, n), std::slice::from_raw_parts_mut(g, count))
     };
-    host.guard_output(Callback::Roots, t, g, |system, g| system.roots(t, y, yp, g))
+    host.guard_output(Callback::Roots, t, g, |system, g| call::dae_roots(system, t, y, yp, g))
 }
 
 /// `IDAQuadRhsFn`
@@ -64,7 +67,7 @@ pub(super) unsafe extern "C" fn quadratures<S: Dae>(
         (host, slice(y, n), slice(yp, n), slice_mut(qdot, count))
     };
     host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| {
-        system.quadratures(t, y, yp, qdot)
+        call::dae_quadratures(system, t, y, yp, qdot)
     })
 }
 
@@ -130,8 +133,9 @@ pub(super) fn sparse_jacobian<S: Dae>(
         return host.guard(Callback::Jacobian, t, call);
     };
     let outcome = differences.of_residual((cj, y, yp), residual, values, |y, yp, residual| {
-        let call = |system: &mut S, r: &mut [f64]| system.residual(t, y, yp, r);
-        host.guard_output(Callback::Residual, t, residual, call)
+        host.guard_output(Callback::Residual, t, residual, |system, r| {
+            call::residual(system, t, y, yp, r)
+        })
     });
     host.differences = Some(differences);
     outcome

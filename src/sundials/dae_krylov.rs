@@ -11,7 +11,10 @@ use super::{
     host::Host,
     vector::{slice, slice_mut},
 };
-use crate::{integrate::Callback, ode::Dae};
+use crate::{
+    integrate::Callback,
+    ode::{Dae, call},
+};
 
 /// `IDALsJacTimesVecFn`
 #[allow(clippy::too_many_arguments)] // as C has it
@@ -34,7 +37,7 @@ pub(super) unsafe extern "C" fn jacobian_times<S: Dae>(
         (host, slice(v, n), slice_mut(jv, n), slice(y, n), slice(yp, n))
     };
     host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
-        system.jacobian_times(t, cj, y, yp, v, jv)
+        call::dae_jacobian_times(system, t, cj, y, yp, v, jv)
     })
 }
 

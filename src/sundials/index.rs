@@ -1,6 +1,6 @@
 //! The index of a DAE: whether its equations determine all unknowns without being differentiated.
 
-use crate::ode::{Dae, Failure};
+use crate::ode::{Dae, Failure, call};
 
 /// What the derivatives E = dF/dy' and A = dF/dy tell at one point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,7 +73,7 @@ impl Pencil {
                     let moved = if half == 0 { &mut yp[j] } else { &mut y[j] };
                     let value = *moved;
                     *moved += sign * step;
-                    let outcome = system.residual(t, &y, &yp, residual);
+                    let outcome = call::residual(system, t, &y, &yp, residual);
                     *(if half == 0 { &mut yp[j] } else { &mut y[j] }) = value;
                     outcome?;
                 }

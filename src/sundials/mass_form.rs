@@ -6,7 +6,7 @@ use super::{linear_solver::LinearSolver, pattern::Pattern};
 use crate::{
     input::InputError,
     integrate::{Error, check_whole},
-    ode::{BandMut, Dae, Failure, MassKind, Ode},
+    ode::{BandMut, Dae, Failure, MassKind, Ode, call},
 };
 
 /// The DAE M y' - f(t, y) = 0 of an [`Ode`] with a mass matrix, for [`Ida`](super::Ida).
@@ -192,7 +192,7 @@ impl<S: Ode> MassForm<S> {
     /// Prepares a Jacobian at (t, y): evaluates the matrix and f there.
     fn prepare(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         self.update(t)?;
-        self.system.rhs(t, y, &mut self.f)
+        call::rhs(&mut self.system, t, y, &mut self.f)
     }
 }
 
@@ -205,7 +205,7 @@ impl<S: Ode> Dae for MassForm<S> {
         residual: &mut [f64],
     ) -> Result<(), Failure> {
         self.update(t)?;
-        self.system.rhs(t, y, residual)?;
+        call::rhs(&mut self.system, t, y, residual)?;
         residual.iter_mut().for_each(|r| *r = -*r);
         self.mass.visit(|i, j, value| residual[i] += value * yp[j]);
         Ok(())
@@ -263,7 +263,7 @@ impl<S: Ode> Dae for MassForm<S> {
     }
 
     fn roots(&mut self, t: f64, y: &[f64], _yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
-        self.system.roots(t, y, g)
+        call::roots(&mut self.system, t, y, g)
     }
 
     fn quadrature_count(&self) -> usize {
@@ -277,7 +277,7 @@ impl<S: Ode> Dae for MassForm<S> {
         _yp: &[f64],
         qdot: &mut [f64],
     ) -> Result<(), Failure> {
-        self.system.quadratures(t, y, qdot)
+        call::quadratures(&mut self.system, t, y, qdot)
     }
 
     fn parameters(&self) -> &[f64] {

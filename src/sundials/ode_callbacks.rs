@@ -13,7 +13,7 @@ use super::{
 };
 use crate::{
     integrate::Callback,
-    ode::{Failure, Ode},
+    ode::{Failure, Ode, call},
 };
 
 /// `CVRhsFn`
@@ -24,7 +24,7 @@ pub(super) unsafe extern "C" fn rhs<S: Ode>(
     data: *mut c_void,
 ) -> i32 {
     // SAFETY: both have the same contract.
-    unsafe { evaluate(t, y, ydot, data, Callback::Rhs, S::rhs) }
+    unsafe { evaluate(t, y, ydot, data, Callback::Rhs, call::rhs::<S>) }
 }
 
 /// `ARKRhsFn` of the explicit part.
@@ -35,7 +35,7 @@ pub(super) unsafe extern "C" fn explicit_rhs<S: Ode>(
     data: *mut c_void,
 ) -> i32 {
     // SAFETY: both have the same contract.
-    unsafe { evaluate(t, y, ydot, data, Callback::ExplicitRhs, S::explicit_rhs) }
+    unsafe { evaluate(t, y, ydot, data, Callback::ExplicitRhs, call::explicit_rhs::<S>) }
 }
 
 /// `CVRhsFn`, within the Newton iteration of a user-supplied solver.
@@ -46,7 +46,7 @@ pub(super) unsafe extern "C" fn newton_rhs<S: Ode>(
     data: *mut c_void,
 ) -> i32 {
     // SAFETY: both have the same contract.
-    unsafe { evaluate(t, y, ydot, data, Callback::Rhs, S::newton_rhs) }
+    unsafe { evaluate(t, y, ydot, data, Callback::Rhs, call::newton_rhs::<S>) }
 }
 
 /// A method of [`Ode`] that writes a right-hand side.
@@ -86,7 +86,7 @@ pub(super) unsafe extern "C" fn roots<S: Ode>(
         let (n, count) = (host.n, host.root_count);
         (host, slice(y, n), std::slice::from_raw_parts_mut(g, count))
     };
-    host.guard_output(Callback::Roots, t, g, |system, g| system.roots(t, y, g))
+    host.guard_output(Callback::Roots, t, g, |system, g| call::roots(system, t, y, g))
 }
 
 /// `CVQuadRhsFn`
@@ -102,7 +102,9 @@ pub(super) unsafe extern "C" fn quadratures<S: Ode>(
         let (n, count) = (host.n, host.quadrature_count);
         (host, slice(y, n), slice_mut(qdot, count))
     };
-    host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| system.quadratures(t, y, qdot))
+    host.guard_output(Callback::Quadratures, t, qdot, |system, qdot| {
+        call::quadratures(system, t, y, qdot)
+    })
 }
 
 /// `CVProjFn`
@@ -183,7 +185,7 @@ pub(super) fn sparse_jacobian<S: Ode>(
         return host.guard(Callback::Jacobian, t, call);
     };
     let outcome = differences.of_rhs(y, ydot, values, |y, ydot| {
-        host.guard_output(Callback::Rhs, t, ydot, |system, ydot| system.rhs(t, y, ydot))
+        host.guard_output(Callback::Rhs, t, ydot, |system, ydot| call::rhs(system, t, y, ydot))
     });
     host.differences = Some(differences);
     outcome

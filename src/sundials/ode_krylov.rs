@@ -11,7 +11,10 @@ use super::{
     ode_callbacks::sparse_jacobian,
     vector::{slice, slice_mut},
 };
-use crate::{integrate::Callback, ode::Ode};
+use crate::{
+    integrate::Callback,
+    ode::{Ode, call},
+};
 
 /// `CVLsJacTimesVecFn`
 pub(super) unsafe extern "C" fn jacobian_times<S: Ode>(
@@ -30,7 +33,7 @@ pub(super) unsafe extern "C" fn jacobian_times<S: Ode>(
         (host, slice(v, n), slice_mut(jv, n), slice(y, n), slice(ydot, n))
     };
     host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
-        system.jacobian_times(t, y, ydot, v, jv)
+        call::jacobian_times(system, t, y, ydot, v, jv)
     })
 }
 

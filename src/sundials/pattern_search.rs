@@ -4,7 +4,7 @@ use super::pattern::Pattern;
 use crate::{
     input::InputError,
     integrate::{check_count, check_finite, check_length},
-    ode::{Dae, Failure, Ode},
+    ode::{Dae, Failure, Ode, call},
 };
 
 /// Where the nonzeros of a Jacobian are, asked of the equations. Both ways know only the branches that are
@@ -23,7 +23,7 @@ impl Pattern {
     where
         S: Ode + ?Sized,
     {
-        Search::new(y, &[], |y, _, f| system.rhs(t, y, f))?.by_nan()
+        Search::new(y, &[], |y, _, f| call::rhs(system, t, y, f))?.by_nan()
     }
 
     /// As [`ode_by_nan`](Self::ode_by_nan), the pattern of dF/dy + cj dF/dy': y_j and y'_j are NaN together.
@@ -35,7 +35,7 @@ impl Pattern {
         S: Dae + ?Sized,
     {
         check_length("length of yp", yp.len(), y.len())?;
-        Search::new(y, yp, |y, yp, f| system.residual(t, y, yp, f))?.by_nan()
+        Search::new(y, yp, |y, yp, f| call::residual(system, t, y, yp, f))?.by_nan()
     }
 
     /// The pattern of df/dy: component i of f depends on y_j if it changes with y_j alone, at one of `points`
@@ -58,7 +58,7 @@ impl Pattern {
     where
         S: Ode + ?Sized,
     {
-        Search::new(y, &[], |y, _, f| system.rhs(t, y, f))?.by_sampling(spread, &[], points)
+        Search::new(y, &[], |y, _, f| call::rhs(system, t, y, f))?.by_sampling(spread, &[], points)
     }
 
     /// As [`ode_by_sampling`](Self::ode_by_sampling), the pattern of dF/dy + cj dF/dy': y_j and y'_j change
@@ -77,7 +77,7 @@ impl Pattern {
         S: Dae + ?Sized,
     {
         check_length("length of yp", yp.len(), y.len())?;
-        Search::new(y, yp, |y, yp, f| system.residual(t, y, yp, f))?
+        Search::new(y, yp, |y, yp, f| call::residual(system, t, y, yp, f))?
             .by_sampling(spread, yp_spread, points)
     }
 }

@@ -100,7 +100,7 @@ impl<K, S> Solver<K, S> {
     }
 
     /// That a DAE failed for its index, if it may have failed for that.
-    fn higher_index(&mut self, cause: &Cause) -> Option<Cause> {
+    pub(super) fn higher_index(&mut self, cause: &Cause) -> Option<Cause> {
         const MOST_UNKNOWNS: usize = 300;
         let suspicious = matches!(
             cause,

@@ -53,6 +53,8 @@ pub struct Solver<K, S> {
     pub(super) context: Context,
     pub(super) t: f64,
     pub(super) max_steps: u32,
+    /// Whether the size of the first step is left to C.
+    pub(super) estimates_first_step: bool,
     pub(super) stop_time: StopTime,
     /// Whether there is a step to interpolate in. C does not ask, and gives NaN or what the run
     /// before has left.
@@ -158,6 +160,7 @@ impl<K, S> Solver<K, S> {
             context,
             t: start.t,
             max_steps: 0,
+            estimates_first_step: true,
             stop_time: StopTime::default(),
             has_step: false,
             failed_within: false,
@@ -197,6 +200,7 @@ impl<K, S> Solver<K, S> {
         limits: &Limits,
     ) -> Result<(), Error> {
         self.max_steps = steps.max_steps;
+        self.estimates_first_step = steps.initial_step.is_none();
         let functions = self.memory.functions;
         let (memory, rtol) = (self.memory.raw, tolerances.rtol);
         let (name, code) = match &tolerances.atol {

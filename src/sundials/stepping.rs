@@ -4,7 +4,7 @@ use std::{ffi::c_void, mem, ptr};
 
 use super::{ffi, signs::check_state, solver::Solver, vector::Vector};
 use crate::integrate::{
-    Error, Integrator, Reached, Statistics, check_finite, check_length, check_start_time,
+    Cause, Error, Integrator, Reached, Statistics, check_finite, check_length, check_start_time,
     check_time,
 };
 
@@ -155,9 +155,7 @@ impl<K, S> Solver<K, S> {
         self.check_target(target, task)?;
         let functions = self.memory.functions;
         if self.history_lost {
-            self.start_c(self.t)?;
-            self.hand_over_quadratures()?;
-            self.hand_over_sensitivities()?;
+            self.start_c_again(self.t)?;
             self.history_lost = false;
         }
         if let Some(time) = self.stop_time.take_update(self.t, target) {
@@ -168,11 +166,22 @@ impl<K, S> Solver<K, S> {
         // C writes beside the present state, which is kept where it fails to give another
         let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
         let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
-        self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
-        self.host.get_mut().troubles.clear();
-        // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
-        // keeps others away while callbacks use the host.
-        let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
+        let mut shortened = false;
+        let code = loop {
+            self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
+            self.host.get_mut().troubles.clear();
+            // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
+            // keeps others away while callbacks use the host.
+            let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
+            if !self.shortens_first_step(code, before, target)? {
+                break code;
+            }
+            shortened = true;
+        };
+        if shortened {
+            // SAFETY: the value is a plain number; it leaves the next start to C.
+            unsafe { self.set(functions.set_initial_step, 0.0)? };
+        }
         self.failed_within = false;
         self.has_step = code >= 0 || self.step_statistics().steps > 0;
         if code < 0 {
@@ -223,6 +232,39 @@ impl<K, S> Solver<K, S> {
             }
             code => Err(self.stopped(code, target)),
         }
+    }
+
+    /// After a first step of IDA that failed, from `before` towards `target`: has C start with a smaller one, if that may help.
+    ///
+    /// The first step is a thousandth of the way to `target` where y' does not tell less, and C gives up after ten failures, six
+    /// decades below. A stiff problem may need less than that.
+    fn shortens_first_step(&mut self, code: i32, before: f64, target: f64) -> Result<bool, Error> {
+        // of the way to the target
+        const LEAST: f64 = 1e-30;
+        let failed = [ffi::CV_ERR_FAILURE, ffi::CV_CONV_FAILURE].contains(&code);
+        let is_dae = self.yp.is_some() && self.host.get().find_index.is_some();
+        if !failed || !is_dae || !self.estimates_first_step {
+            return Ok(false);
+        }
+        let statistics = self.step_statistics();
+        let h = 0.25 * statistics.current_step;
+        let moves = before + h != before && h.abs() > LEAST * (target - before).abs();
+        if statistics.steps > 0 || !moves || self.higher_index(&Cause::ErrorTest).is_some() {
+            return Ok(false);
+        }
+        self.t = before;
+        self.forget_factors();
+        self.start_c_again(before)?;
+        // SAFETY: the value is a plain number.
+        unsafe { self.set(self.memory.functions.set_initial_step, h)? };
+        Ok(true)
+    }
+
+    /// Has C start at time `t` from the present state, integrals and sensitivities.
+    fn start_c_again(&mut self, t: f64) -> Result<(), Error> {
+        self.start_c(t)?;
+        self.hand_over_quadratures()?;
+        self.hand_over_sensitivities()
     }
 
     /// Has C start at time `t` from the present state: `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.

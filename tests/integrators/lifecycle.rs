@@ -8,7 +8,10 @@ use std::{
     panic::{self, AssertUnwindSafe, catch_unwind},
 };
 
-use crate::support::{End, OwnSolver};
+use crate::{
+    outputs,
+    support::{End, OwnSolver},
+};
 use pliant::{
     ode::{Failure, MassMatrix, dae_with_parameters, with_mass, with_parameters},
     samples::Robertson,
@@ -210,6 +213,8 @@ fn solvers_come_and_go() {
         solvers_with_sensitivities();
         adjoint_solvers();
         solvers_that_fail();
+        // what they add to would show here if nobody had written it
+        outputs::every_call();
     }
     drop(panic::take_hook());
 }

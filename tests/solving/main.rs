@@ -1,5 +1,6 @@
 //! Problems solved by one call: events, breaks, interpolation, limits.
 
+mod accumulation;
 mod bounds;
 mod breaks;
 mod ensembles;

@@ -226,3 +226,26 @@ fn the_start_may_depend_on_parameters() {
     assert!(refused(decay().initial_sensitivities([1.0]), &options).contains("there are 2"));
     assert!(refused(problem(), &tight()).contains("Options::sensitivities"));
 }
+
+/// y' = p up to an event at y = 1, where y becomes 3: y = 3 + p t - 1 behind it. A break just before makes the last step short, which
+/// tells nothing of the time in which the solution changes: differences over a part of that step would be rounding alone.
+#[test]
+fn a_short_last_step_costs_no_digits() {
+    for gap in [1e-3, 1e-6, 1e-9, 1e-12] {
+        let line = with_parameters(
+            |_t, _y, p, ydot| {
+                ydot[0] = p[0];
+                Ok(())
+            },
+            [1.0],
+        );
+        let event = Event::new(|_, y| y[0] - 1.0).rising().action(|jump| jump.y[0] = 3.0);
+        let problem = Problem::ode(line, [0.0]).breaks([1.0 - gap]).event(event);
+        let options = tight().sensitivities(Sensitivities::of([0]));
+        let solution = solve(problem, Method::Bdf, (0.0, 2.0), &options).unwrap();
+        let s = solution.sensitivities(solution.t().len() - 1)[(0, 0)];
+        println!("{gap:e}: {:e}", s - 2.0);
+        // differences have 4e-11 of the slope left
+        assert!((s - 2.0).abs() < 1e-9, "{gap:e}: {s}");
+    }
+}

@@ -24,10 +24,18 @@ pub enum InitialCondition {
     State,
 }
 
+/// C looks for a start by implicit steps of five sizes, each a tenth of the one before, from this part of the time to the first
+/// output on.
+const LONGEST_STEP: f64 = 1e-3;
+/// What that time is shortened by where none of them led to a start, and how often.
+const NEXT: f64 = 1e-5;
+const RETRIES: usize = 6;
+
 impl<S: Dae> Ida<S> {
     /// Corrects the initial values so that they satisfy the equations; call it before the first
     /// step. `first_output` is a time at which output will be wanted: it gives the direction and
-    /// scale of time. Sensitivities are corrected, too. [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
+    /// scale of time; where no start is found on that, shorter scales are tried. Sensitivities are corrected, too.
+    /// [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
     ///
     /// The equations have to be of index 1: see [`check_index`](Self::check_index).
     ///
@@ -65,18 +73,53 @@ impl<S: Dae> Ida<S> {
             InitialCondition::Algebraic => ffi::IDA_YA_YDP_INIT,
             InitialCondition::State => ffi::IDA_Y_INIT,
         };
-        self.host.get_mut().troubles.clear();
-        // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
-        // others away while callbacks use the host.
-        let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, first_output) };
-        self.host.get_mut().troubles.resume_panic();
+        let mut towards = first_output;
+        let mut retries = if task == ffi::IDA_YA_YDP_INIT { RETRIES } else { 0 };
+        let code = loop {
+            self.host.get_mut().troubles.clear();
+            // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
+            // others away while callbacks use the host.
+            let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, towards) };
+            self.host.get_mut().troubles.resume_panic();
+            let unfound = [ffi::IDA_CONV_FAIL, ffi::IDA_LINESEARCH_FAIL, ffi::IDA_NO_RECOVERY];
+            // C refuses less than that
+            let scale = NEXT * (towards - self.t);
+            let moves = scale.abs() > 8.0 * f64::EPSILON * self.t.abs();
+            if retries == 0 || !moves || !unfound.contains(&code) {
+                break code;
+            }
+            if retries == RETRIES && self.higher_index(&Cause::InconsistentStart).is_some() {
+                break code;
+            }
+            (towards, retries) = (self.t + scale, retries - 1);
+        };
         if code < 0 {
-            return Err(self.stopped(code, first_output));
+            let longest = LONGEST_STEP * (first_output - self.t).abs();
+            let shortest = 1e-4 * LONGEST_STEP * (towards - self.t).abs();
+            return Err(self.unfound(code, first_output, [longest, shortest]));
         }
         // SAFETY: memory and vectors are alive.
         let code = unsafe { ffi::IDAGetConsistentIC(self.memory.raw, self.y.raw(), self.raw_yp()) };
         self.host.accept("IDAGetConsistentIC", code)?;
         self.read_consistent_sensitivities()
+    }
+
+    /// The error for a start that was not found by steps of these sizes.
+    fn unfound(&mut self, code: i32, first_output: f64, [longest, shortest]: [f64; 2]) -> Error {
+        let mut error = self.stopped(code, first_output);
+        if let Error::Integration(stopped) = &mut error
+            && stopped.cause == Cause::InconsistentStart
+        {
+            let tried = format!(
+                "no start was found by steps from {longest:.0e} to {shortest:.0e}: try one that is closer to the equations"
+            );
+            let said = std::mem::replace(&mut stopped.message, tried);
+            if !said.is_empty() {
+                stopped.message.push_str("; ");
+                stopped.message.push_str(&said);
+            }
+        }
+        error
     }
 
     /// Checks that the equations are of index 1 at most, at the present state: that those without derivatives

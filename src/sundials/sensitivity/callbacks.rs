@@ -8,7 +8,7 @@ use std::ffi::c_void;
 use super::rhs::{Access, Line};
 use crate::{
     integrate::Callback,
-    ode::{Dae, Ode},
+    ode::{Dae, Ode, call},
     sundials::{
         ffi,
         host::{Host, STOP},
@@ -40,12 +40,12 @@ pub(in crate::sundials) unsafe extern "C" fn one_rhs<S: Ode>(
     let index = index as usize;
     let outcome = host.guard_output(Callback::Sensitivities, t, sdot, |system, sdot| {
         if rhs.is_supplied() {
-            return system.sensitivity_rhs(t, y, ydot, rhs.parameter(index), s, sdot);
+            return call::sensitivity_rhs(system, t, y, ydot, rhs.parameter(index), s, sdot);
         }
         let access = Access { get: S::parameters, set: S::set_parameters };
         let line = Line { y: (y, s), yp: (&[], &[]) };
         rhs.differences(system, &access, index, &line, ydot, sdot, |system, y, _, ydot| {
-            system.rhs(t, y, ydot)
+            call::rhs(system, t, y, ydot)
         })
     });
     host.sensitivity = Some(rhs);
@@ -84,12 +84,21 @@ pub(in crate::sundials) unsafe extern "C" fn all_residuals<S: Dae>(
         };
         outcome = host.guard_output(Callback::Sensitivities, t, out, |system, out| {
             if rhs.is_supplied() {
-                return system.sensitivity_residual(t, y, yp, rhs.parameter(index), s, sp, out);
+                return call::sensitivity_residual(
+                    system,
+                    t,
+                    y,
+                    yp,
+                    rhs.parameter(index),
+                    s,
+                    sp,
+                    out,
+                );
             }
             let access = Access { get: S::parameters, set: S::set_parameters };
             let line = Line { y: (y, s), yp: (yp, sp) };
             rhs.differences(system, &access, index, &line, residual, out, |system, y, yp, out| {
-                system.residual(t, y, yp, out)
+                call::residual(system, t, y, yp, out)
             })
         });
         if outcome != 0 {

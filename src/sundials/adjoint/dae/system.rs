@@ -5,7 +5,7 @@ use faer::MatMut;
 use crate::{
     input::InputError,
     integrate::{Error, Tolerances, check_finite},
-    ode::{BandMut, Dae, Failure, Functional},
+    ode::{BandMut, Dae, Failure, Functional, call},
     sundials::{
         LinearSolver,
         adjoint::{
@@ -61,7 +61,8 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         let step = |j: usize| LARGE * self.equations.size(j, y[j]).max(yp[j].abs());
         let steps: Vec<f64> = (0..y.len()).map(step).collect();
         let system = &mut self.equations.system;
-        let evaluate = |yp: &[f64], residual: &mut [f64]| system.residual(t, y, yp, residual);
+        let evaluate =
+            |yp: &[f64], residual: &mut [f64]| call::residual(system, t, y, yp, residual);
         self.mass
             .quotients(yp, |j| steps[j], evaluate)
             .map_err(|failure| refused("IDA", t, failure))?;
@@ -127,7 +128,8 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         lambda: &[f64],
         out: &mut [f64],
     ) -> Result<(), Failure> {
-        let evaluate = |system: &mut S, residual: &mut [f64]| system.residual(t, y, yp, residual);
+        let evaluate =
+            |system: &mut S, residual: &mut [f64]| call::residual(system, t, y, yp, residual);
         self.equations.parameter_differences(lambda, out, evaluate)
     }
 
@@ -154,8 +156,9 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
             Entries::Sparse(values) => system.sparse_jacobian(t, 0.0, y, yp, values),
             Entries::Custom => Ok(()),
         };
-        let evaluate =
-            |system: &mut S, y: &[f64], residual: &mut [f64]| system.residual(t, y, yp, residual);
+        let evaluate = |system: &mut S, y: &[f64], residual: &mut [f64]| {
+            call::residual(system, t, y, yp, residual)
+        };
         if self.equations.update_jacobian(t, y, supplied, evaluate)? {
             let checked = self.check_mass((t, y, yp));
             if checked.is_err() {
@@ -177,8 +180,8 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
             (self.moved[0][j], self.moved[1][j]) = (yp[j] + step, yp[j] - step);
         }
         let [ahead, behind] = &mut self.residuals;
-        self.equations.system.residual(t, y, &self.moved[0], ahead)?;
-        self.equations.system.residual(t, y, &self.moved[1], behind)?;
+        call::residual(&mut self.equations.system, t, y, &self.moved[0], ahead)?;
+        call::residual(&mut self.equations.system, t, y, &self.moved[1], behind)?;
         ahead.iter_mut().zip(behind.iter()).for_each(|(ahead, behind)| *ahead -= behind);
         if ahead.iter().any(|difference| !difference.is_finite()) {
             let message = "F is not finite for large y': it has to be linear in y'";
@@ -215,7 +218,7 @@ impl<S: Dae, F: Functional> Dae for AdjointDae<S, F> {
         yp: &[f64],
         residual: &mut [f64],
     ) -> Result<(), Failure> {
-        self.equations.system.residual(t, y, yp, residual)
+        call::residual(&mut self.equations.system, t, y, yp, residual)
     }
 
     fn dense_jacobian(

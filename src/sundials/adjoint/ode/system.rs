@@ -5,7 +5,7 @@ use faer::MatMut;
 use crate::{
     input::InputError,
     integrate::Tolerances,
-    ode::{BandMut, Failure, Functional, Ode},
+    ode::{BandMut, Failure, Functional, Ode, call},
     sundials::{
         LinearSolver,
         adjoint::{equations::Equations, options::AdjointOptions},
@@ -46,7 +46,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         out: &mut [f64],
     ) -> Result<(), Failure> {
         if self.supplied_rhs {
-            self.equations.system.adjoint_rhs(t, y, lambda, out)?;
+            call::adjoint_rhs(&mut self.equations.system, t, y, lambda, out)?;
         } else {
             self.update_jacobian(t, y)?;
             out.fill(0.0);
@@ -66,9 +66,9 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         out: &mut [f64],
     ) -> Result<(), Failure> {
         if self.supplied_parameters {
-            self.equations.system.adjoint_parameters(t, y, lambda, out)?;
+            call::adjoint_parameters(&mut self.equations.system, t, y, lambda, out)?;
         } else {
-            let evaluate = |system: &mut S, f: &mut [f64]| system.rhs(t, y, f);
+            let evaluate = |system: &mut S, f: &mut [f64]| call::rhs(system, t, y, f);
             self.equations.parameter_differences(lambda, out, evaluate)?;
         }
         self.equations.evaluate_slopes(t, y)?;
@@ -91,7 +91,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
 
     fn update_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
         let supplied = |system: &mut S, entries: Entries<'_>, ydot: &mut [f64]| {
-            system.rhs(t, y, ydot)?;
+            call::rhs(system, t, y, ydot)?;
             match entries {
                 Entries::Dense(matrix) => system.dense_jacobian(t, y, ydot, matrix),
                 Entries::Band(band) => system.banded_jacobian(t, y, ydot, band),
@@ -99,7 +99,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
                 Entries::Custom => Ok(()),
             }
         };
-        let evaluate = |system: &mut S, y: &[f64], f: &mut [f64]| system.rhs(t, y, f);
+        let evaluate = |system: &mut S, y: &[f64], f: &mut [f64]| call::rhs(system, t, y, f);
         self.equations.update_jacobian(t, y, supplied, evaluate)?;
         Ok(())
     }
@@ -107,7 +107,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
 
 impl<S: Ode, F: Functional> Ode for AdjointSystem<S, F> {
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
-        self.equations.system.rhs(t, y, ydot)
+        call::rhs(&mut self.equations.system, t, y, ydot)
     }
 
     fn dense_jacobian(
