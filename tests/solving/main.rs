@@ -2,6 +2,7 @@
 
 mod bounds;
 mod breaks;
+mod difference_quotients;
 mod ensembles;
 mod events;
 mod gradients;
@@ -10,6 +11,9 @@ mod interpolation;
 mod limits;
 mod refusals;
 mod resuming;
+mod rosenbrock;
 mod sensitivities;
+mod standstill;
 mod support;
 mod values;
+mod wrong_jacobians;

@@ -10,6 +10,7 @@ use crate::{
     sundials::{
         ffi,
         index::{Index, index},
+        stepping::apart,
         vector::Vector,
     },
 };
@@ -68,7 +69,7 @@ impl<S: Dae> Ida<S> {
         self.host.get_mut().troubles.clear();
         // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
         // others away while callbacks use the host.
-        let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, first_output) };
+        let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, apart(self.t, first_output)) };
         self.host.get_mut().troubles.resume_panic();
         if code < 0 {
             return Err(self.stopped(code, first_output));
