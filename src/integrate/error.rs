@@ -145,12 +145,30 @@ pub enum Cause {
         /// ([`Integrator::notice`](super::Integrator::notice)).
         notice: Option<String>,
     },
+    /// Time stands still: steps as short as rounding allows do not lead on. Calling again goes on.
+    StandsStill {
+        /// How many of them were taken.
+        steps: u64,
+    },
     /// The tolerances ask for more digits than double precision has.
     TooMuchAccuracy,
     /// The local error stayed too large down to the smallest step.
     ErrorTest,
     /// The nonlinear iteration did not converge down to the smallest step.
     Convergence,
+    /// A Jacobian that the user's system supplies is not that of its equations.
+    WrongJacobian {
+        /// The method that supplied it.
+        method: &'static str,
+        /// The equation in which it is wrong, or the first of several.
+        row: usize,
+        /// The unknown by which its derivative is most wrong; none among very many unknowns.
+        column: Option<usize>,
+        /// What was supplied: this entry, or the product of the row with a direction.
+        supplied: f64,
+        /// The same by differences of the equations.
+        difference: f64,
+    },
     /// The Newton matrix could not be factorized.
     LinearSolver,
     /// The mass matrix could not be factorized.
@@ -190,10 +208,22 @@ impl Cause {
             Self::TooManySteps { steps, target, .. } => {
                 format!("{steps} steps taken, and still short of t = {target:?}")
             }
+            Self::StandsStill { steps } => {
+                format!("time stands still: the last {steps} steps led on by no more than rounding")
+            }
             Self::TooMuchAccuracy => "the tolerances ask for more than double precision".into(),
             Self::ErrorTest => "the local error stays too large at the smallest step".into(),
             Self::Convergence => {
                 "the nonlinear iteration does not converge at the smallest step".into()
+            }
+            Self::WrongJacobian { method, row, column, supplied, difference } => {
+                let what = match column {
+                    Some(column) => format!("entry ({row}, {column})"),
+                    None => format!("row {row} of its product with a direction"),
+                };
+                format!(
+                    "{method} is wrong: {what} is {supplied:e}, but {difference:e} by differences of the equations"
+                )
             }
             Self::LinearSolver => "the Newton matrix cannot be factorized".into(),
             Self::MassMatrix => "the mass matrix cannot be factorized".into(),
@@ -231,6 +261,10 @@ impl Cause {
                 "raise max_steps if the step size is reasonable; if it is tiny, look for a \
                  discontinuity, a fast oscillation or a tolerance that is too tight"
             }
+            Self::StandsStill { .. } => {
+                "look for a singularity of the solution at this time, a discontinuity that it cannot leave, or \
+                 equations of DAEs that determine nothing; raising max_steps does not help"
+            }
             Self::TooMuchAccuracy => "raise rtol or atol",
             Self::ErrorTest => {
                 "look for a discontinuity or singularity near this time; stop and restart there \
@@ -238,6 +272,10 @@ impl Cause {
             }
             Self::Convergence => {
                 "check a supplied Jacobian against difference quotients; look for a discontinuity"
+            }
+            Self::WrongJacobian { .. } => {
+                "mend this derivative (ode::check looks at all of them), or let difference quotients take its place; \
+                 if it is meant to be an approximation, switch this check off by check_jacobian(false)"
             }
             Self::LinearSolver => {
                 "look for a zero row or column of the Jacobian; a DAE has to be of index 1"

@@ -7,6 +7,7 @@
 mod error;
 mod explicit_options;
 mod integrator;
+mod jacobian_check;
 mod march;
 mod one_step;
 mod options;
@@ -19,10 +20,11 @@ pub use error::{Callback, Cause, Error, IntegrationError};
 pub use explicit_options::ExplicitOptions;
 pub(crate) use explicit_options::{check_stop_time, check_target};
 pub use integrator::{Integrator, Reached};
+pub(crate) use jacobian_check::{JacobianCheck, Point};
 pub(crate) use march::{March, StepMethod, not_finite};
 pub use one_step::OneStep;
 pub(crate) use options::{
-    StepOptions, check_count, check_finite, check_form, check_length, check_start,
+    SHORTEST, StepOptions, check_count, check_finite, check_form, check_length, check_start,
     check_start_time, check_step, check_time, check_whole, step_options,
 };
 pub use statistics::Statistics;

@@ -69,7 +69,7 @@ pub(crate) fn check_start(t0: f64, y0: &[f64]) -> Result<(), InputError> {
 /// Step sizes and starts are not larger: integrators compute powers of them, which would overflow.
 const LONGEST: f64 = 1e100;
 /// They are not smaller, for the same reason.
-const SHORTEST: f64 = 1e-100;
+pub(crate) const SHORTEST: f64 = 1e-100;
 
 /// Checks a time to start from. (Times that merely tell a direction may be any that are finite.)
 pub(crate) fn check_start_time(input: &str, t: f64) -> Result<(), InputError> {

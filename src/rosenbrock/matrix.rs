@@ -1,4 +1,4 @@
-//! The matrix I - gamma h J of a step, dense.
+//! The matrix I - gamma h J of a step.
 
 use std::fmt;
 
@@ -7,19 +7,102 @@ use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
 use faer::{Mat, MatMut, Par, Spec};
 
-use crate::integrate::Tolerances;
+use crate::integrate::{Error, Tolerances};
 use crate::ode::{Failure, Ode, call};
+use crate::sundials::{self, Jacobian, LinearSolver, NewtonMatrix};
 
 /// J and the factors of I - gamma h J.
+#[derive(Debug)]
+pub(super) enum Matrix {
+    /// By faer, whose factorization of a large dense matrix is the faster one.
+    Dense(Box<Dense>),
+    /// Sparse, or of band form.
+    Stored(Box<NewtonMatrix>),
+}
+
+impl Matrix {
+    /// That of `solver`, for `n` unknowns; none if the system keeps it to itself.
+    pub(super) fn new(
+        solver: &LinearSolver,
+        n: usize,
+        tolerances: &Tolerances,
+    ) -> Result<Option<Self>, Error> {
+        solver.check(n)?;
+        Ok(match solver {
+            LinearSolver::Custom => None,
+            LinearSolver::Dense(_) => {
+                Some(Self::Dense(Box::new(Dense::new(solver, n, tolerances))))
+            }
+            _ => Some(Self::Stored(Box::new(NewtonMatrix::new(solver, n, tolerances)?))),
+        })
+    }
+
+    /// Makes J that at (t, y), where f is `slope`. Returns how often f was evaluated.
+    pub(super) fn update<S: Ode>(
+        &mut self,
+        system: &mut S,
+        t: f64,
+        at: [&[f64]; 2],
+    ) -> Result<u64, Failure> {
+        match self {
+            Self::Dense(dense) => dense.update(system, t, at),
+            Self::Stored(stored) => stored.update(system, t, at),
+        }
+    }
+
+    /// The first number of J that is not finite, column by column, with its place.
+    pub(super) fn not_finite(&self) -> Option<(usize, f64)> {
+        let values = match self {
+            Self::Dense(dense) => &dense.jacobian,
+            Self::Stored(stored) => stored.values(),
+        };
+        let place = values.iter().position(|value| !value.is_finite())?;
+        Some((place, values[place]))
+    }
+
+    /// Writes the product of J with `v`.
+    pub(super) fn multiply(&self, v: &[f64], out: &mut [f64]) {
+        match self {
+            Self::Dense(dense) => {
+                out.fill(0.0);
+                for (column, v) in dense.jacobian.chunks_exact(v.len()).zip(v) {
+                    out.iter_mut().zip(column).for_each(|(out, entry)| *out += entry * v);
+                }
+            }
+            Self::Stored(stored) => stored.multiply(v, out),
+        }
+    }
+
+    /// Factorizes I - gamma J; `false` if it is singular.
+    pub(super) fn factorize(&mut self, gamma: f64) -> bool {
+        match self {
+            Self::Dense(dense) => dense.factorize(gamma),
+            Self::Stored(stored) => stored.factorize(gamma),
+        }
+    }
+
+    /// Replaces `r` by the solution; whether there is one.
+    pub(super) fn solve(&mut self, r: &mut [f64]) -> bool {
+        match self {
+            Self::Dense(dense) => {
+                dense.solve(r);
+                true
+            }
+            Self::Stored(stored) => stored.solve(r),
+        }
+    }
+}
+
+/// A dense matrix.
 pub(super) struct Dense {
-    jacobian: Mat<f64>,
+    /// Column by column.
+    jacobian: Vec<f64>,
+    /// None if the system supplies it.
+    differences: Option<sundials::Differences>,
     factors: Mat<f64>,
     forward: Vec<usize>,
     inverse: Vec<usize>,
     memory: MemBuffer,
-    /// A shifted state and f there.
-    shifted: Vec<f64>,
-    value: Vec<f64>,
 }
 
 impl fmt::Debug for Dense {
@@ -29,66 +112,47 @@ impl fmt::Debug for Dense {
 }
 
 impl Dense {
-    pub(super) fn new(n: usize) -> Self {
+    fn new(solver: &LinearSolver, n: usize, tolerances: &Tolerances) -> Self {
         let scratch = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, Spec::default())
             .or(solve::solve_in_place_scratch::<usize, f64>(n, 1, Par::Seq));
+        let differences = match solver {
+            LinearSolver::Dense(Jacobian::DifferenceQuotients) => {
+                sundials::Differences::of_ode(solver, n, tolerances, &[])
+            }
+            _ => None,
+        };
         Self {
-            jacobian: Mat::zeros(n, n),
+            jacobian: vec![0.0; n * n],
+            differences,
             factors: Mat::zeros(n, n),
             forward: vec![0; n],
             inverse: vec![0; n],
             memory: MemBuffer::new(scratch),
-            shifted: vec![0.0; n],
-            value: vec![0.0; n],
         }
     }
 
-    /// Asks the system for J at (t, y), where f is `slope`.
-    pub(super) fn ask<S: Ode>(
+    fn update<S: Ode>(
         &mut self,
         system: &mut S,
         t: f64,
         [y, slope]: [&[f64]; 2],
-    ) -> Result<(), Failure> {
-        self.jacobian.fill(0.0);
-        system.dense_jacobian(t, y, slope, self.jacobian.as_mut())
+    ) -> Result<u64, Failure> {
+        let (n, values) = (y.len(), &mut self.jacobian);
+        let Some(differences) = &mut self.differences else {
+            values.fill(0.0);
+            let matrix = MatMut::from_column_major_slice_mut(values, n, n);
+            return system.dense_jacobian(t, y, slope, matrix).map(|()| 0);
+        };
+        let before = differences.evaluations;
+        differences.of_rhs(y, slope, values, |y, ydot| call::rhs(system, t, y, ydot))?;
+        Ok(differences.evaluations - before)
     }
 
-    /// J by differences at (t, y), where f is `slope`.
-    pub(super) fn difference<S: Ode>(
-        &mut self,
-        system: &mut S,
-        t: f64,
-        [y, slope]: [&[f64]; 2],
-        tolerances: &Tolerances,
-    ) -> Result<(), Failure> {
-        self.shifted.copy_from_slice(y);
-        for (j, &unshifted) in y.iter().enumerate() {
-            self.shifted[j] += f64::EPSILON.sqrt() * tolerances.size_of(j, unshifted);
-            call::rhs(system, t, &self.shifted, &mut self.value)?;
-            let increment = self.shifted[j] - unshifted;
-            let column = self.jacobian.col_as_slice_mut(j);
-            for (entry, (value, base)) in column.iter_mut().zip(self.value.iter().zip(slope)) {
-                *entry = (value - base) / increment;
-            }
-            self.shifted[j] = unshifted;
-        }
-        Ok(())
-    }
-
-    /// The first entry, column by column, that is not finite, with its value.
-    pub(super) fn not_finite(&self) -> Option<(usize, f64)> {
-        let n = self.forward.len();
-        let entries = (0..n * n).map(|k| (k, self.jacobian[(k % n, k / n)]));
-        entries.into_iter().find(|(_, value)| !value.is_finite())
-    }
-
-    /// Factorizes I - gamma J; `false` if it is singular.
-    pub(super) fn factorize(&mut self, gamma: f64) -> bool {
+    fn factorize(&mut self, gamma: f64) -> bool {
         let n = self.forward.len();
         for j in 0..n {
             let column = self.factors.col_as_slice_mut(j);
-            for (entry, slope) in column.iter_mut().zip(self.jacobian.col_as_slice(j)) {
+            for (entry, slope) in column.iter_mut().zip(&self.jacobian[j * n..][..n]) {
                 *entry = -gamma * slope;
             }
             column[j] += 1.0;
@@ -104,8 +168,7 @@ impl Dense {
         (0..n).all(|i| self.factors[(i, i)] != 0.0)
     }
 
-    /// Replaces `r` by the solution.
-    pub(super) fn solve(&mut self, r: &mut [f64]) {
+    fn solve(&mut self, r: &mut [f64]) {
         let n = r.len();
         solve::solve_in_place(
             self.factors.as_ref(),

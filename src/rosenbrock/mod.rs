@@ -37,7 +37,7 @@ mod solver;
 mod step;
 mod tableau;
 
-pub use options::{Jacobian, Options};
+pub use options::Options;
 pub use solver::Rosenbrock;
 
 pub use crate::integrate::{Error, Integrator, Reached, Statistics};

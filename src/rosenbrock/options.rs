@@ -3,33 +3,25 @@
 use super::tableau::{RODASP2, ROS34PW2, Tableau};
 use crate::input::InputError;
 use crate::integrate::{AbsoluteTolerance, ExplicitOptions};
-
-/// Where the matrix I - gamma h df/dy comes from, and how it is factorized.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Jacobian {
-    /// A dense matrix of difference quotients: n evaluations of the right-hand side, n^3 work.
-    #[default]
-    Differences,
-    /// The dense matrix of the system's own `dense_jacobian`.
-    Supplied,
-    /// The system's own `newton_setup` and `newton_solve`.
-    Custom,
-}
+use crate::sundials::{Jacobian, LinearSolver};
 
 /// Tolerances, method and limits of a [`Rosenbrock`](super::Rosenbrock).
 ///
 /// ```
-/// use pliant::rosenbrock::{Jacobian, Options};
+/// use pliant::rosenbrock::Options;
+/// use pliant::sundials::{Jacobian, LinearSolver};
 ///
-/// let options = Options::new(1e-6, 1e-9).order(3).jacobian(Jacobian::Supplied).max_step(0.1);
+/// let solver = LinearSolver::Band { lower: 1, upper: 1, jacobian: Jacobian::DifferenceQuotients };
+/// let options = Options::new(1e-6, 1e-9).order(3).newton(solver).max_step(0.1);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 #[must_use]
 pub struct Options {
     /// Tolerances and step sizes.
     pub(super) forward: ExplicitOptions,
     pub(super) order: u32,
-    pub(super) jacobian: Jacobian,
+    pub(super) solver: LinearSolver,
+    pub(super) trusts_jacobian: bool,
     pub(super) linear: bool,
 }
 
@@ -47,7 +39,8 @@ impl Options {
     /// least 1e-14, `atol` positive.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         let forward = ExplicitOptions::new(rtol, atol);
-        Self { forward, order: 4, jacobian: Jacobian::default(), linear: false }
+        let solver = LinearSolver::Dense(Jacobian::DifferenceQuotients);
+        Self { forward, order: 4, solver, trusts_jacobian: false, linear: false }
     }
 
     /// Order of the method: 4 (RODASP2, the default) or 3 (ROS34PW2, which has its order with any matrix).
@@ -56,9 +49,17 @@ impl Options {
         self
     }
 
-    /// Where the matrix comes from.
-    pub fn jacobian(mut self, jacobian: Jacobian) -> Self {
-        self.jacobian = jacobian;
+    /// How the linear systems with the matrix I - gamma h df/dy are solved, and where df/dy comes from: dense (the default, with difference
+    /// quotients), of band form, sparse, or by the system's own `newton_setup` and `newton_solve`. A Krylov method cannot.
+    pub fn newton(mut self, solver: LinearSolver) -> Self {
+        self.solver = solver;
+        self
+    }
+
+    /// As [`CvodeOptions::check_jacobian`](crate::sundials::CvodeOptions::check_jacobian): whether a Jacobian that the system supplies is held
+    /// against differences. Default: yes.
+    pub fn check_jacobian(mut self, on: bool) -> Self {
+        self.trusts_jacobian = !on;
         self
     }
 

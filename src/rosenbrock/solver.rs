@@ -1,10 +1,10 @@
 //! The method: what it keeps beside the state, and what is known within the last step.
 
 use super::control::Controller;
-use super::matrix::Dense;
-use super::options::{Jacobian, Options};
+use super::matrix::Matrix;
+use super::options::Options;
 use super::tableau::{MOST_STAGES, Tableau};
-use crate::integrate::{Cause, Error, March, OneStep, StepMethod};
+use crate::integrate::{Cause, Error, JacobianCheck, March, OneStep, StepMethod};
 use crate::ode::Ode;
 
 /// Integrates y' = f(t, y) forward in time by a Rosenbrock method.
@@ -18,11 +18,12 @@ pub type Rosenbrock<S> = OneStep<S, LinearlyImplicit>;
 #[derive(Debug)]
 pub struct LinearlyImplicit {
     pub(super) tableau: &'static Tableau,
-    pub(super) jacobian: Jacobian,
+    /// Looks at the Jacobian that the system supplies, by this method.
+    pub(super) check: Option<(&'static str, JacobianCheck)>,
     /// Whether the Jacobian never changes.
     pub(super) is_linear: bool,
     /// The matrix, unless the system keeps it to itself.
-    pub(super) dense: Option<Dense>,
+    pub(super) matrix: Option<Matrix>,
     /// Unknowns but for the integrals at the end of the state.
     pub(super) coupled: usize,
     /// df/dt.
@@ -55,11 +56,20 @@ impl<S: Ode> Rosenbrock<S> {
     pub fn new(system: S, t: f64, y: &[f64], options: &Options) -> Result<Self, Error> {
         let (n, tableau) = (y.len(), options.tableau()?);
         let zeros = || vec![0.0; n];
+        options.forward.check(y)?;
+        let matrix = match n {
+            0 => None,
+            n => Matrix::new(&options.solver, n, &options.forward.tolerances)?,
+        };
         let method = LinearlyImplicit {
             tableau,
-            jacobian: options.jacobian,
+            check: options
+                .solver
+                .supplied()
+                .filter(|_| !options.trusts_jacobian)
+                .map(|method| (method, JacobianCheck::new(n, &options.forward.tolerances))),
             is_linear: options.linear,
-            dense: (options.jacobian != Jacobian::Custom).then(|| Dense::new(n)),
+            matrix,
             coupled: n.saturating_sub(system.integrals()),
             time_slope: zeros(),
             stages: std::array::from_fn(|i| if i < tableau.alpha.len() { zeros() } else { vec![] }),

@@ -1,8 +1,8 @@
 //! The inside of a step: matrix, stages, error, the new solution.
 
-use super::options::Jacobian;
+use super::matrix::Matrix;
 use super::solver::{LinearlyImplicit, interpolate};
-use crate::integrate::{Callback, Cause, Error, March, StepMethod, not_finite};
+use crate::integrate::{Callback, Cause, Error, March, Point, StepMethod, not_finite};
 use crate::ode::{Ode, call};
 
 impl LinearlyImplicit {
@@ -49,38 +49,52 @@ impl LinearlyImplicit {
             return Ok(None);
         }
         let (t, reuse) = (march.t, is_kept || self.known.jacobian);
-        let March { system, options, y, slope, statistics, .. } = march;
+        let March { system, y, slope, statistics, .. } = march;
         statistics.linear_setups += 1;
         self.factored = None;
-        let outcome = match &mut self.dense {
+        let outcome = match &mut self.matrix {
             None => system.newton_setup(t, y, slope, gamma, reuse).map(|_| true),
-            Some(dense) => {
-                let at = [&y[..], &slope[..]];
-                let evaluated = match self.jacobian {
-                    _ if reuse => Ok(()),
-                    Jacobian::Supplied => dense.ask(system, t, at),
-                    _ => {
-                        statistics.difference_quotient_evaluations += y.len() as u64;
-                        dense.difference(system, t, at, &options.tolerances)
-                    }
-                };
-                evaluated.map(|()| dense.factorize(gamma))
+            Some(matrix) => {
+                let evaluated = if reuse { Ok(0) } else { matrix.update(system, t, [y, slope]) };
+                evaluated.map(|evaluations| {
+                    statistics.difference_quotient_evaluations += evaluations;
+                    matrix.not_finite().is_some() || matrix.factorize(gamma)
+                })
             }
         };
         march.statistics.jacobian_evaluations += u64::from(!reuse);
         let callback =
-            if self.dense.is_some() { Callback::Jacobian } else { Callback::NewtonSetup };
+            if self.matrix.is_some() { Callback::Jacobian } else { Callback::NewtonSetup };
         let is_regular = match outcome {
             Ok(is_regular) => is_regular,
             Err(failure) => return march.classify(Err(failure), callback, t, h),
         };
-        if let Some((component, value)) = self.dense.as_ref().and_then(|dense| dense.not_finite()) {
+        if let Some((component, value)) = self.matrix.as_ref().and_then(Matrix::not_finite) {
             let cause = Cause::NotFinite { callback, t, component, value };
+            return Err(march.stopped(cause, h).into());
+        }
+        if !reuse && let Some(cause) = self.wrong_jacobian(march) {
             return Err(march.stopped(cause, h).into());
         }
         self.known.jacobian = true;
         self.factored = is_regular.then_some(gamma);
         Ok((!is_regular).then_some(Cause::LinearSolver))
+    }
+
+    /// What is wrong with the Jacobian that the system has just supplied, if it is due to be looked at.
+    fn wrong_jacobian<S: Ode>(&mut self, march: &mut March<S>) -> Option<Cause> {
+        let (matrix, (method, check)) = (self.matrix.as_ref()?, self.check.as_mut()?);
+        if !check.is_due() {
+            return None;
+        }
+        let March { system, t, y, .. } = march;
+        let multiply = |_: &mut S, v: &[f64], out: &mut [f64]| {
+            matrix.multiply(v, out);
+            true
+        };
+        let evaluate =
+            |system: &mut S, [y, _]: [&[f64]; 2], out: &mut [f64]| system.rhs(*t, y, out).is_ok();
+        check.find(system, *method, Point { y, yp: &[], cj: 0.0 }, multiply, evaluate)
     }
 
     /// df/dt at (t, y), as a difference quotient within the step.
@@ -123,7 +137,7 @@ impl LinearlyImplicit {
             march.argument.copy_from_slice(&march.y);
             add(&mut march.argument, tableau.a[i], before);
             march.statistics.evaluations += 1;
-            let outcome = if self.dense.is_some() {
+            let outcome = if self.matrix.is_some() {
                 call::rhs(&mut march.system, t, &march.argument, u)
             } else {
                 share = gamma;
@@ -144,9 +158,11 @@ impl LinearlyImplicit {
             let c = tableau.gamma * c;
             u.iter_mut().zip(earlier).for_each(|(u, earlier)| *u += c * earlier);
         }
-        let outcome = match &mut self.dense {
-            Some(dense) => {
-                dense.solve(u);
+        let outcome = match &mut self.matrix {
+            Some(matrix) => {
+                if !matrix.solve(u) {
+                    return Ok(Some(Cause::LinearSolver));
+                }
                 Ok(())
             }
             None => march.system.newton_solve(share, u),

@@ -58,7 +58,7 @@ pub(super) fn in_mechanics(source: Failed) -> Failed {
         Cause::TooMuchAccuracy => {
             ("rtol asks for more digits than double precision has", "raise it")
         }
-        Cause::ErrorTest => (
+        Cause::ErrorTest | Cause::StandsStill { .. } => (
             "the time step collapsed",
             "a force changes too suddenly there: look for a contact, spring or damper that is far stiffer than the \
              body, or a load that jumps without a break",
@@ -79,6 +79,7 @@ pub(super) fn in_mechanics(source: Failed) -> Failed {
         Cause::TooManySteps { .. }
         | Cause::SignConstraint { .. }
         | Cause::MassMatrix
+        | Cause::WrongJacobian { .. }
         | Cause::HigherIndex { .. }
         | Cause::Other => return source,
     };

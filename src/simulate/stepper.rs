@@ -245,8 +245,7 @@ fn rosenbrock_options(
     tolerances: Vec<f64>,
     is_linear: bool,
 ) -> rosenbrock::Options {
-    let options =
-        rosenbrock::Options::new(settings.rtol, tolerances).jacobian(rosenbrock::Jacobian::Custom);
+    let options = rosenbrock::Options::new(settings.rtol, tolerances).newton(LinearSolver::Custom);
     let options = settings.max_order.into_iter().fold(options, rosenbrock::Options::order);
     if is_linear { options.linear() } else { options }
 }
@@ -268,6 +267,7 @@ fn ida_options(
     };
     let options = IdaOptions::new(settings.rtol, tolerances)
         .newton(linear_solver)
+        .check_jacobian(false)
         .differential(differential)
         .suppress_algebraic(true);
     Ok(match settings.max_order {

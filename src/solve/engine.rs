@@ -6,6 +6,7 @@ use crate::{
     integrate::{Error, Integrator, Reached, Statistics},
     ode::{Borrowed, Dae, Failure, Ode, call},
     rk::DormandPrince,
+    rosenbrock::Rosenbrock,
     sundials::{Arkode, Cvode, Ida, IdaOptions, InitialCondition},
 };
 
@@ -41,6 +42,10 @@ pub(super) trait Engine {
     /// Whether there is nothing to correct, or it is known what may be.
     fn can_be_consistent(&self) -> bool {
         true
+    }
+    /// What keeps the run from getting on, if the equations themselves tell.
+    fn diagnose(&mut self) -> Result<(), Error> {
+        Ok(())
     }
     /// The same correction of a state that the integrator does not start from, or not yet.
     fn correct(&mut self, _: Start<'_>, _towards: f64) -> Result<(), Error> {
@@ -174,6 +179,7 @@ macro_rules! ode_engine {
 ode_engine!(Cvode, with_sensitivities);
 ode_engine!(Arkode, without_sensitivities);
 ode_engine!(DormandPrince, without_sensitivities);
+ode_engine!(Rosenbrock, without_sensitivities);
 
 impl<S: Dae> Engine for DaeEngine<S> {
     forward!();
@@ -200,6 +206,10 @@ impl<S: Dae> Engine for DaeEngine<S> {
             return Ok(());
         }
         self.integrator.consistent_start(InitialCondition::Algebraic, towards)
+    }
+
+    fn diagnose(&mut self) -> Result<(), Error> {
+        self.integrator.diagnose_index()
     }
 
     fn correct(&mut self, start: Start<'_>, towards: f64) -> Result<(), Error> {

@@ -10,6 +10,7 @@ use crate::{
     integrate::{Error, Tolerances},
     ode::{Boxed, MassKind},
     rk,
+    rosenbrock::{self, Rosenbrock},
     sundials::{
         Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
         LinearSolver, MassForm, Multistep,
@@ -42,7 +43,9 @@ macro_rules! sundials {
         if let Some(solver) = &$options.linear_solver {
             built = built.newton(solver.clone());
         }
-        built.sign_constraints($options.sign_constraints.as_slice())
+        built
+            .sign_constraints($options.sign_constraints.as_slice())
+            .check_jacobian($options.check_jacobian)
     }};
 }
 
@@ -73,6 +76,9 @@ pub enum Method {
     RungeKutta(ButcherTable),
     /// The internal explicit method of Dormand and Prince, order 5(4): for ODEs that are not stiff. Forward in time.
     DormandPrince,
+    /// The internal Rosenbrock methods of order 4 and, by `max_order`, 3: for stiff ODEs at moderate tolerances, without an iteration that
+    /// could fail. Forward in time.
+    Rosenbrock,
     /// IDA, backward differentiation formulas of order 1 to 5: for DAEs, and for ODEs whose mass matrix may be singular.
     Ida,
 }
@@ -86,6 +92,7 @@ impl Method {
             Self::Adams => "CVODE's Adams methods".into(),
             Self::RungeKutta(table) => format!("ARKODE's {}", table.name()),
             Self::DormandPrince => "Dormand-Prince".into(),
+            Self::Rosenbrock => "the Rosenbrock method".into(),
             Self::Ida => "IDA".into(),
         }
     }
@@ -109,7 +116,9 @@ impl Method {
             return refused("method", format!("{self:?}"), mend);
         }
         let multistep = matches!(self, Self::Bdf | Self::Adams | Self::Ida);
-        if let (Some(order), false) = (options.max_order, multistep) {
+        // those of Rust
+        let internal = matches!(self, Self::DormandPrince | Self::Rosenbrock);
+        if let (Some(order), false) = (options.max_order, multistep || self == Self::Rosenbrock) {
             return refused("max_order", order.to_string(), "has one order, which its table tells");
         }
         let explicit = match self {
@@ -130,10 +139,10 @@ impl Method {
             let mend = "computes none: make them unknowns, or take Bdf, Adams or Ida";
             return refused("integrals", equations.quadrature_count().to_string(), mend);
         }
-        if let (Some(h), Self::DormandPrince) = (options.min_step, self) {
+        if let (Some(h), true) = (options.min_step, internal) {
             return refused("min_step", h.to_string(), "has no such limit");
         }
-        if !options.sign_constraints.is_empty() && self == Self::DormandPrince {
+        if !options.sign_constraints.is_empty() && internal {
             return refused("sign_constraints", "given".into(), "keeps no signs: take another one");
         }
         if options.project && self != Self::Bdf {
@@ -167,6 +176,17 @@ impl Method {
             Self::DormandPrince => {
                 let built = common!(rk::Options::new(rtol, atol), options, sign);
                 Box::new(OdeEngine { integrator: rk::DormandPrince::new(system, t, y, &built)? })
+            }
+            Self::Rosenbrock => {
+                let mut built = common!(rosenbrock::Options::new(rtol, atol), options, sign)
+                    .check_jacobian(options.check_jacobian);
+                if let Some(solver) = &options.linear_solver {
+                    built = built.newton(solver.clone());
+                }
+                if let Some(order) = options.max_order {
+                    built = built.order(order);
+                }
+                Box::new(OdeEngine { integrator: Rosenbrock::new(system, t, y, &built)? })
             }
             _ => {
                 let built = self.cvode(options, sign);

@@ -40,6 +40,7 @@ pub struct Options {
     pub(super) sensitivities: Option<Sensitivities>,
     pub(super) sign_constraints: Vec<Sign>,
     pub(super) project: bool,
+    pub(super) check_jacobian: bool,
 }
 
 impl Options {
@@ -59,6 +60,7 @@ impl Options {
             sensitivities: None,
             sign_constraints: Vec::new(),
             project: false,
+            check_jacobian: true,
         }
     }
 
@@ -129,7 +131,7 @@ impl Options {
 
     /// Inequality constraints: for each unknown the sign that it keeps, at the ends of steps; see
     /// [`CvodeOptions::sign_constraints`](crate::sundials::CvodeOptions::sign_constraints). By all methods but
-    /// Dormand-Prince. Default: none.
+    /// those of Dormand and Prince and of Rosenbrock. Default: none.
     pub fn sign_constraints(mut self, signs: impl Into<Vec<Sign>>) -> Self {
         self.sign_constraints = signs.into();
         self
@@ -139,6 +141,14 @@ impl Options {
     /// By BDF alone. Default: it does not.
     pub fn project(mut self) -> Self {
         self.project = true;
+        self
+    }
+
+    /// Whether a Jacobian that the equations supply is held against differences of them, at a cost of a few evaluations; see
+    /// [`CvodeOptions::check_jacobian`](crate::sundials::CvodeOptions::check_jacobian). Switch it off for one that is meant to be an
+    /// approximation. Default: yes.
+    pub fn check_jacobian(mut self, on: bool) -> Self {
+        self.check_jacobian = on;
         self
     }
 

@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     input::InputError,
-    integrate::{self, Statistics, Tolerances, check_start_time, check_time},
+    integrate::{self, SHORTEST, Statistics, Tolerances, check_start_time, check_time},
 };
 
 /// A problem on its way: [`advance`](Self::advance) by a step, look, go on.
@@ -122,6 +122,10 @@ impl<'a> Run<'a> {
         check_time("end of the span", end)?;
         if start == end {
             return Err(InputError::new("end of the span", end, "it differs from the start").into());
+        }
+        if (end - start).abs() < SHORTEST {
+            let mend = format!("it lies at least {SHORTEST:e} from the start, {start:?}");
+            return Err(InputError::new("end of the span", format!("{end:e}"), mend).into());
         }
         let sign = (end - start).signum();
         options.check(span)?;
@@ -226,9 +230,15 @@ impl<'a> Run<'a> {
         Ok(run)
     }
 
+    /// Lets the next steps end before the next break, or at the end; there may be no room for one.
     pub(super) fn set_stop_time(&mut self) -> Result<(), integrate::Error> {
         let stop = self.breaks.last().map_or(self.span.1, |next| self.just_before(next.t));
-        self.engine.set_stop_time(stop)
+        if stop == self.t { Ok(()) } else { self.engine.set_stop_time(stop) }
+    }
+
+    /// Whether time `t` is the last number before the next break.
+    pub(super) fn is_before_break(&self, t: f64) -> bool {
+        self.breaks.last().is_some_and(|next| t == self.just_before(next.t))
     }
 
     /// The last number before time `t`.

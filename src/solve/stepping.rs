@@ -28,9 +28,12 @@ impl Run<'_> {
         self.occurred.clear();
         self.before = None;
         let (t_old, end) = (self.t, self.span.1);
-        self.engine.step(end)?;
+        // not from one number to the next, where a break follows upon another one, an event or the start
+        if !self.is_before_break(t_old) {
+            self.engine.step(end)?;
+        }
         let mut t = self.engine.t();
-        let at_break = self.breaks.last().is_some_and(|next| t == self.just_before(next.t));
+        let at_break = self.is_before_break(t);
         let jumps = match self.look_for_events(t, at_break || t == end)? {
             Found::Jumps(jumps) => jumps,
             // the step leads through what should have held: a jump takes its place
@@ -110,6 +113,7 @@ impl Run<'_> {
         let statistics = self.statistics();
         let evaluations = statistics.evaluations + statistics.difference_quotient_evaluations;
         if statistics.steps >= self.limits.steps {
+            self.engine.diagnose()?;
             return Err(Reason::Steps(statistics.steps));
         }
         if self.limits.evaluations.is_some_and(|most| evaluations >= most) {

@@ -54,6 +54,19 @@ impl Colouring {
         Self { columns, ends }
     }
 
+    /// Of `n` columns, each `count`-th has the same colour.
+    pub(super) fn every(n: usize, count: usize) -> Self {
+        let colours = count.min(n);
+        let columns = (0..colours).flat_map(|colour| (colour..n).step_by(count)).collect();
+        let mut ends = vec![0; colours];
+        let mut end = 0;
+        for (colour, place) in ends.iter_mut().enumerate() {
+            end += (n - colour).div_ceil(count);
+            *place = end;
+        }
+        Self { columns, ends }
+    }
+
     /// How many colours there are.
     pub(super) fn count(&self) -> usize {
         self.ends.len()
@@ -94,6 +107,27 @@ mod tests {
         for (lower, upper) in [(0, 0), (1, 1), (0, 2), (3, 1)] {
             let band = Pattern::band(40, lower, upper).unwrap();
             assert_eq!(colours(&band), lower + upper + 1);
+        }
+    }
+
+    #[test]
+    fn even_colours_are_those_of_bands() {
+        for (n, lower, upper) in [(40, 1, 1), (7, 3, 2), (5, 4, 4), (1, 0, 0)] {
+            let (band, count) = (Pattern::band(n, lower, upper).unwrap(), lower + upper + 1);
+            let even = Colouring::every(n, count);
+            assert_eq!(even.count(), count.min(n));
+            let mut all: Vec<usize> = Vec::new();
+            for colour in 0..even.count() {
+                let mut rows = vec![false; n];
+                for &j in even.columns(colour) {
+                    all.push(j);
+                    for &i in band.column(j) {
+                        assert!(!std::mem::replace(&mut rows[i as usize], true), "row {i}");
+                    }
+                }
+            }
+            all.sort_unstable();
+            assert_eq!(all, (0..n).collect::<Vec<_>>());
         }
     }
 

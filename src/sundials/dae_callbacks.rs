@@ -12,8 +12,8 @@ use super::{
     vector::{slice, slice_mut},
 };
 use crate::{
-    integrate::Callback,
-    ode::{Dae, call},
+    integrate::{Callback, Point},
+    ode::{Dae, Failure, call},
 };
 
 /// `IDAResFn`
@@ -115,7 +115,23 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
     let Some(solver) = &host.linear_solver else { return STOP };
     // SAFETY: as above; the user's access has ended.
     let values = unsafe { matrix::stored(jacobian, solver, host.n) };
-    host.check_finite(callback, t, values)
+    match host.check_finite(callback, t, values) {
+        0 => check_jacobian(host, t, (cj, y, yp), values, |_, _, _| Ok(())),
+        failed => failed,
+    }
+}
+
+/// Looks at dF/dy + cj dF/dy' that the system has just supplied: its numbers, or the products that `times` writes.
+pub(super) fn check_jacobian<S: Dae>(
+    host: &mut Host<S>,
+    t: f64,
+    (cj, y, yp): (f64, &[f64], &[f64]),
+    values: &[f64],
+    times: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
+) -> i32 {
+    let evaluate =
+        |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| system.residual(t, y, yp, out);
+    host.check_jacobian(t, Point { y, yp, cj }, values, times, evaluate)
 }
 
 /// The values of dF/dy + cj dF/dy' on the pattern of the linear solver: the system's own, or difference
@@ -128,15 +144,17 @@ pub(super) fn sparse_jacobian<S: Dae>(
     values: &mut [f64],
 ) -> i32 {
     // Out of the host, which calls the system meanwhile.
-    let Some(mut differences) = host.differences.take() else {
+    let (Some(mut differences), Some(mut scales)) = (host.differences.take(), host.scales.take())
+    else {
         let call = |system: &mut S| system.sparse_jacobian(t, cj, y, yp, values);
         return host.guard(Callback::Jacobian, t, call);
     };
-    let outcome = differences.of_residual((cj, y, yp), residual, values, |y, yp, residual| {
+    let (at, scale) = ((cj, y, yp), scales.read());
+    let outcome = differences.of_residual(at, scale, residual, values, |y, yp, residual| {
         host.guard_output(Callback::Residual, t, residual, |system, r| {
             call::residual(system, t, y, yp, r)
         })
     });
-    host.differences = Some(differences);
+    (host.differences, host.scales) = (Some(differences), Some(scales));
     outcome
 }

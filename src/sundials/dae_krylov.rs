@@ -6,7 +6,7 @@
 use std::ffi::c_void;
 
 use super::{
-    dae_callbacks::sparse_jacobian,
+    dae_callbacks::{check_jacobian, sparse_jacobian},
     ffi,
     host::Host,
     vector::{slice, slice_mut},
@@ -36,7 +36,13 @@ pub(super) unsafe extern "C" fn jacobian_times<S: Dae>(
         let n = host.n;
         (host, slice(v, n), slice_mut(jv, n), slice(y, n), slice(yp, n))
     };
-    host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
+    let outcome = host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
+        call::dae_jacobian_times(system, t, cj, y, yp, v, jv)
+    });
+    if outcome != 0 {
+        return outcome;
+    }
+    check_jacobian(host, t, (cj, y, yp), &[], |system, v, jv| {
         call::dae_jacobian_times(system, t, cj, y, yp, v, jv)
     })
 }

@@ -1,25 +1,19 @@
-//! Sparse Jacobians by difference quotients: columns of one colour are shifted at once.
+//! Jacobians by difference quotients: columns that share no row are shifted at once.
 
 use std::ffi::c_void;
 
 use super::{
-    colouring::Colouring,
-    context::Context,
-    functions::{Functions, Get},
-    pattern::Pattern,
-    signs::Sign,
-    vector::Vector,
+    colouring::Colouring, context::Context, functions::Functions, linear_solver::LinearSolver,
+    pattern::Pattern, shape::Shape, signs::Sign, vector::Vector,
 };
-use crate::integrate::Error;
+use crate::integrate::{Error, Tolerances};
 
-/// Difference quotients on a sparsity pattern.
-pub(super) struct Differences {
-    pattern: Pattern,
+/// Difference quotients for the matrix of a linear solver.
+pub(crate) struct Differences {
+    shape: Shape,
     colouring: Colouring,
-    /// The integrator that is asked for error weights and step sizes.
-    memory: *mut c_void,
-    functions: &'static Functions,
-    weights: Vector,
+    /// Of an ODE; those of a DAE are IDA's.
+    increments: Option<Increments>,
     /// Which signs the unknowns keep, if any.
     signs: Vec<Sign>,
     /// The point that the function is evaluated at. An ODE has no `yp`.
@@ -28,104 +22,185 @@ pub(super) struct Differences {
     /// The function there.
     value: Vec<f64>,
     /// How often the function was evaluated.
-    pub(super) evaluations: u64,
+    pub(crate) evaluations: u64,
+}
+
+/// How far the unknowns of an ODE are shifted.
+struct Increments {
+    tolerances: Tolerances,
+    /// The increment of each unknown in parts of its size.
+    parts: Vec<f64>,
+    /// What the last shift of each unknown has changed.
+    changes: Vec<Change>,
+}
+
+/// The largest change of the function along a column, and the size of the function there.
+#[derive(Clone, Copy, Default)]
+struct Change {
+    largest: f64,
+    size: f64,
+}
+
+/// Parts of its size by which an unknown may be shifted. Salane's parts fall below the root of the rounding error, 2^-26, where a shift
+/// changes much; but in stiff equations near equilibrium, the terms of which cancel, any shift does, and shorter ones give noise.
+const LEAST_PART: f64 = 1.490_116_119_384_765_6e-8;
+const LARGEST_PART: f64 = 0.1;
+/// 2^-52 to the powers of 7/8, 3/4 and 1/4. Changes below the first, in parts of the function, are rounding: such a column is shifted once
+/// more, ten times as far. Below the second, its next shift is ten times as far; above the third, a tenth.
+const ROUNDING: f64 = 2.01e-14;
+const SMALL: f64 = 1.82e-12;
+const LARGE: f64 = 1.22e-4;
+
+impl Change {
+    /// Whether it is lost in rounding.
+    fn is_lost(self) -> bool {
+        self.largest < ROUNDING * self.size
+    }
+
+    /// The part for the next shift, after one by `part`.
+    fn next(self, part: f64) -> f64 {
+        let factor = match self {
+            Self { largest, size } if largest < SMALL * size => 10.0,
+            Self { largest, size } if largest > LARGE * size => 0.1,
+            _ => 1.0,
+        };
+        (factor * part).clamp(LEAST_PART, LARGEST_PART)
+    }
 }
 
 impl Differences {
-    /// # Safety
-    /// `memory` belongs to the integrator of `functions`, and is alive whenever quotients are asked for.
-    pub(super) unsafe fn new(
-        pattern: &Pattern,
-        (memory, functions): (*mut c_void, &'static Functions),
-        is_dae: bool,
+    /// df/dy of an ODE, whose unknowns keep these signs, if any; none where there is no matrix to write it in.
+    pub(crate) fn of_ode(
+        solver: &LinearSolver,
+        n: usize,
+        tolerances: &Tolerances,
         signs: &[Sign],
-        context: &Context,
-    ) -> Result<Self, Error> {
-        let n = pattern.dimension();
-        let zeros = vec![0.0; n];
-        Ok(Self {
-            pattern: pattern.clone(),
-            colouring: Colouring::new(pattern),
-            memory,
-            functions,
-            weights: Vector::from_slice(&zeros, context)?,
-            signs: signs.to_vec(),
-            y: zeros.clone(),
-            yp: if is_dae { zeros.clone() } else { Vec::new() },
-            value: zeros,
-            evaluations: 0,
-        })
+    ) -> Option<Self> {
+        let increments = Increments {
+            tolerances: tolerances.clone(),
+            parts: vec![LEAST_PART; n],
+            changes: vec![Change::default(); n],
+        };
+        Some(Self::new(Shape::of(solver)?, n, Some(increments), signs))
     }
 
-    /// Writes df/dy into `values`; `ydot` is f(t, y), and `evaluate` writes it at another y or gives the code
-    /// with which to return to C.
+    /// dF/dy + cj dF/dy' of a DAE on a pattern.
+    pub(super) fn of_dae(pattern: &Pattern, signs: &[Sign]) -> Self {
+        let n = pattern.dimension();
+        let differences = Self::new(Shape::Sparse(pattern.clone()), n, None, signs);
+        Self { yp: vec![0.0; n], ..differences }
+    }
+
+    /// Begins anew.
+    pub(super) fn restart(&mut self) {
+        self.evaluations = 0;
+        if let Some(increments) = &mut self.increments {
+            increments.parts.fill(LEAST_PART);
+        }
+    }
+
+    fn new(shape: Shape, n: usize, increments: Option<Increments>, signs: &[Sign]) -> Self {
+        Self {
+            colouring: shape.colouring(n),
+            shape,
+            increments,
+            signs: signs.to_vec(),
+            y: vec![0.0; n],
+            yp: Vec::new(),
+            value: vec![0.0; n],
+            evaluations: 0,
+        }
+    }
+
+    /// Writes df/dy into `values`, which has the layout of the linear solver's matrix; `ydot` is f(t, y), and `evaluate` writes it
+    /// at another y.
     ///
-    /// The increments are those of the dense quotients (`cvLsDenseDQJac`), with the step parameter gamma for the
-    /// step size, which CVODE does not tell in the first step.
-    pub(super) fn of_rhs(
+    /// Increments are parts of the size of each unknown, in the direction in which it goes, that follow what they change: so far that it is not lost in
+    /// rounding, and no farther than needed (D. E. Salane, "Adaptive routines for forming Jacobians numerically", Sandia
+    /// report SAND86-1319, 1986). A colour with a column that was lost takes a second evaluation.
+    pub(crate) fn of_rhs<E>(
         &mut self,
         y: &[f64],
         ydot: &[f64],
         values: &mut [f64],
-        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> i32,
-    ) -> i32 {
-        self.update_weights();
-        let gamma = self.ask(self.functions.get_step_parameter);
-        let n = y.len() as f64;
-        let weighted = ydot.iter().zip(self.weights.as_slice()).map(|(f, w)| (f * w) * (f * w));
-        let norm = (weighted.sum::<f64>() / n).sqrt();
-        let least = match norm {
-            0.0 => 1.0,
-            norm => 1000.0 * gamma.abs() * f64::EPSILON * n * norm,
+        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Self { shape, colouring, signs, y: shifted, value, evaluations, .. } = self;
+        let Some(Increments { tolerances, parts, changes }) = &mut self.increments else {
+            return Ok(());
         };
-        let root = f64::EPSILON.sqrt();
-        let increment = |j: usize, weight: f64| (root * y[j].abs()).max(least / weight);
-        self.quotients((0.0, y, &[]), ydot, values, increment, |y, _, f| evaluate(y, f))
+        let (n, stored) = (y.len(), values.len());
+        let shift = |j: usize, part: f64| {
+            let forward = if ydot[j] < 0.0 { -1.0 } else { 1.0 };
+            let step = forward * part * tolerances.size_of(j, y[j]);
+            let is_allowed = signs.get(j).is_none_or(|sign| sign.allows(y[j] + step));
+            y[j] + if is_allowed { step } else { -step }
+        };
+        shifted.copy_from_slice(y);
+        for colour in 0..colouring.count() {
+            let columns = colouring.columns(colour);
+            columns.iter().for_each(|&j| shifted[j] = shift(j, parts[j]));
+            *evaluations += 1;
+            evaluate(shifted, value)?;
+            let mut again = false;
+            for &j in columns {
+                let column = &mut values[shape.places(j, n, stored)];
+                let rows = |k: usize| shape.row(j, k);
+                changes[j] = difference(column, rows, [value, ydot], shifted[j] - y[j]);
+                let is_lost = changes[j].is_lost() && parts[j] < LARGEST_PART;
+                again |= is_lost;
+                shifted[j] = if is_lost { shift(j, 10.0 * parts[j]) } else { y[j] };
+            }
+            if again {
+                *evaluations += 1;
+                evaluate(shifted, value)?;
+            }
+            for &j in columns {
+                if shifted[j] != y[j] {
+                    let rows = |k: usize| shape.row(j, k);
+                    let places = shape.places(j, n, stored);
+                    let farther = change(places.len(), rows, [value, ydot]);
+                    if changes[j].largest * farther.size < farther.largest * changes[j].size {
+                        let column = &mut values[places];
+                        changes[j] = difference(column, rows, [value, ydot], shifted[j] - y[j]);
+                        parts[j] *= 10.0;
+                    }
+                    shifted[j] = y[j];
+                }
+                parts[j] = changes[j].next(parts[j]);
+            }
+        }
+        Ok(())
     }
 
     /// Writes dF/dy + cj dF/dy' into `values`; `residual` is F(t, y, y'), and `evaluate` writes it at another y and
     /// y' or gives the code with which to return to C.
     ///
-    /// The increments are those of the dense quotients (`idaLsDenseDQJac`).
+    /// The increments are those of the dense quotients (`idaLsDenseDQJac`), by the step size and the error weights.
     pub(super) fn of_residual(
         &mut self,
         (cj, y, yp): (f64, &[f64], &[f64]),
+        (h, weights): (f64, &[f64]),
         residual: &[f64],
         values: &mut [f64],
-        evaluate: impl FnMut(&[f64], &[f64], &mut [f64]) -> i32,
-    ) -> i32 {
-        self.update_weights();
-        let h = self.ask(self.functions.get_current_step);
-        let root = f64::EPSILON.sqrt();
-        let increment = |j: usize, weight: f64| {
-            let change = h * yp[j];
-            let size = (root * y[j].abs().max(change.abs())).max(1.0 / weight);
-            if change < 0.0 { -size } else { size }
-        };
-        self.quotients((cj, y, yp), residual, values, increment, evaluate)
-    }
-
-    /// Shifts the columns of each colour by their increments.
-    fn quotients(
-        &mut self,
-        (cj, y, yp): (f64, &[f64], &[f64]),
-        base: &[f64],
-        values: &mut [f64],
-        increment: impl Fn(usize, f64) -> f64,
         mut evaluate: impl FnMut(&[f64], &[f64], &mut [f64]) -> i32,
     ) -> i32 {
-        let weights = self.weights.as_slice();
+        let root = f64::EPSILON.sqrt();
+        let increment = |j: usize| {
+            let change = h * yp[j];
+            let size = (root * y[j].abs().max(change.abs())).max(1.0 / weights[j]);
+            if change < 0.0 { -size } else { size }
+        };
         self.y.copy_from_slice(y);
         self.yp.copy_from_slice(yp);
+        let (n, stored) = (y.len(), values.len());
         for colour in 0..self.colouring.count() {
             let columns = self.colouring.columns(colour);
             for &j in columns {
-                let step = increment(j, weights[j]);
+                let step = increment(j);
                 let is_allowed = self.signs.get(j).is_none_or(|sign| sign.allows(y[j] + step));
                 self.y[j] += if is_allowed { step } else { -step };
-                if let Some(yp) = self.yp.get_mut(j) {
-                    *yp += cj * (self.y[j] - y[j]);
-                }
+                self.yp[j] += cj * (self.y[j] - y[j]);
             }
             self.evaluations += 1;
             let outcome = evaluate(&self.y, &self.yp, &mut self.value);
@@ -133,30 +208,69 @@ impl Differences {
                 return outcome;
             }
             for &j in columns {
-                let inverse = 1.0 / (self.y[j] - y[j]);
-                let places = self.pattern.places(j);
-                for (value, &i) in values[places.clone()].iter_mut().zip(self.pattern.column(j)) {
-                    *value = (self.value[i as usize] - base[i as usize]) * inverse;
-                }
-                self.y[j] = y[j];
-                if let Some(slope) = self.yp.get_mut(j) {
-                    *slope = yp[j];
-                }
+                let column = &mut values[self.shape.places(j, n, stored)];
+                let rows = |k: usize| self.shape.row(j, k);
+                difference(column, rows, [&self.value, residual], self.y[j] - y[j]);
+                (self.y[j], self.yp[j]) = (y[j], yp[j]);
             }
         }
         0
     }
+}
 
-    fn update_weights(&mut self) {
-        let (_, get) = self.functions.get_error_weights;
-        // SAFETY: the memory is that of the integrator that is calling; it fills a vector of its length.
-        unsafe { get(self.memory, self.weights.raw()) };
+/// Writes the difference quotients of a column, from the function at both ends of a shift.
+fn difference(
+    column: &mut [f64],
+    rows: impl Fn(usize) -> usize,
+    [ahead, base]: [&[f64]; 2],
+    shift: f64,
+) -> Change {
+    for (k, entry) in column.iter_mut().enumerate() {
+        let i = rows(k);
+        *entry = (ahead[i] - base[i]) / shift;
+    }
+    change(column.len(), rows, [ahead, base])
+}
+
+/// What has changed in the rows of a column.
+fn change(count: usize, rows: impl Fn(usize) -> usize, [ahead, base]: [&[f64]; 2]) -> Change {
+    let mut most = Change::default();
+    for i in (0..count).map(rows) {
+        let largest = (ahead[i] - base[i]).abs();
+        if largest > most.largest || most.size == 0.0 {
+            most = Change { largest, size: ahead[i].abs().max(base[i].abs()) };
+        }
+    }
+    most
+}
+
+/// The step size and the error weights of an integrator, which its callbacks ask for.
+pub(super) struct Scales {
+    memory: *mut c_void,
+    functions: &'static Functions,
+    weights: Vector,
+}
+
+impl Scales {
+    /// # Safety
+    /// `memory` belongs to the integrator of `functions`, of `n` equations, and is alive whenever it is read.
+    pub(super) unsafe fn new(
+        (memory, functions): (*mut c_void, &'static Functions),
+        n: usize,
+        context: &Context,
+    ) -> Result<Self, Error> {
+        Ok(Self { memory, functions, weights: Vector::from_slice(&vec![0.0; n], context)? })
     }
 
-    fn ask(&self, get: Get<f64>) -> f64 {
-        let mut value = f64::NAN;
-        // SAFETY: as above; the result has a place.
-        unsafe { get(self.memory, &raw mut value) };
-        value
+    pub(super) fn read(&mut self) -> (f64, &[f64]) {
+        let (_, get_weights) = self.functions.get_error_weights;
+        let mut h = f64::NAN;
+        // SAFETY: the memory is that of the integrator that is calling; it fills a vector of its length, and the result has a
+        // place.
+        unsafe {
+            get_weights(self.memory, self.weights.raw());
+            (self.functions.get_current_step)(self.memory, &raw mut h);
+        }
+        (h, self.weights.as_slice())
     }
 }

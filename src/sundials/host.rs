@@ -13,11 +13,17 @@ use std::{
 };
 
 use super::{
-    differences::Differences, functions::Get, ilu::IncompleteLu, index::Index,
-    linear_solver::LinearSolver, sensitivity::SensitivityRhs, signs::Violation,
+    differences::{Differences, Scales},
+    functions::Get,
+    ilu::IncompleteLu,
+    index::Index,
+    linear_solver::LinearSolver,
+    sensitivity::SensitivityRhs,
+    shape::Shape,
+    signs::Violation,
 };
 use crate::{
-    integrate::{Callback, Cause, Error},
+    integrate::{Callback, Cause, Error, JacobianCheck, Point},
     ode::Failure,
 };
 
@@ -54,6 +60,10 @@ pub(super) struct Host<S> {
     pub(super) custom_solve: Option<CustomSolve<S>>,
     /// For sparse Jacobians that the system does not supply.
     pub(super) differences: Option<Differences>,
+    /// What the differences of a DAE need to know.
+    pub(super) scales: Option<Scales>,
+    /// Looks at the Jacobian that the system supplies, with its shape if it is a matrix.
+    pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
     /// To find out whether a DAE failed for its index; none if the user knows it.
     pub(super) find_index: Option<FindIndex<S>>,
     /// The preconditioner of a Krylov method, if it is not the system itself.
@@ -70,6 +80,8 @@ pub(super) struct Host<S> {
 pub(super) struct Troubles {
     panic: Option<Box<dyn Any + Send>>,
     fatal: Option<(Callback, Box<dyn error::Error + Send + Sync>)>,
+    /// That a supplied Jacobian is wrong.
+    wrong: Option<Cause>,
     /// Time and reason of the last request for a smaller step.
     retry: Option<(f64, Cause)>,
     /// How many such requests came in a row for the same time, to rounding.
@@ -96,10 +108,22 @@ impl Troubles {
 
     /// Forgets everything, keeping allocations.
     pub(super) fn clear(&mut self) {
-        self.panic = None;
-        self.fatal = None;
         self.retry = None;
         self.stuck = 0;
+        self.begin(0.0);
+    }
+
+    /// Forgets what earlier calls reported, before one that goes on at time `t`: but for a time just ahead that kept them
+    /// from passing.
+    pub(super) fn begin(&mut self, t: f64) {
+        let near = |at: f64| (at - t).abs() <= 1e3 * f64::EPSILON * t.abs();
+        if !self.retry.as_ref().is_some_and(|(at, _)| near(*at)) {
+            self.retry = None;
+            self.stuck = 0;
+        }
+        self.panic = None;
+        self.fatal = None;
+        self.wrong = None;
         self.violation = None;
         self.message.clear();
     }
@@ -122,6 +146,9 @@ impl Troubles {
     ) -> (Cause, Source) {
         if let Some((callback, source)) = self.fatal.take() {
             return (Cause::Fatal(callback), Some(source));
+        }
+        if let Some(wrong) = self.wrong.take() {
+            return (wrong, None);
         }
         match self.retry.take() {
             Some((at, cause)) if blame_retries && (at - t) * h >= 0.0 => (cause, None),
@@ -155,6 +182,8 @@ impl<S> Host<S> {
             linear_solver,
             custom_solve: None,
             differences: None,
+            scales: None,
+            check: None,
             find_index: None,
             ilu: None,
             setup_time: f64::NAN,
@@ -198,6 +227,46 @@ impl<S> Host<S> {
     ) -> i32 {
         let outcome = self.guard(callback, t, |system| call(system, &mut *output));
         if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
+    }
+
+    /// Looks at a Jacobian that the system has just supplied, if it is due: its numbers, or the products that `times` writes.
+    pub(super) fn check_jacobian(
+        &mut self,
+        t: f64,
+        point: Point<'_>,
+        values: &[f64],
+        mut times: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
+        mut evaluate: impl FnMut(&mut S, [&[f64]; 2], &mut [f64]) -> Result<(), Failure>,
+    ) -> i32 {
+        let method = self.linear_solver.as_ref().and_then(LinearSolver::supplied);
+        // Out of the host, which calls the system meanwhile.
+        let (Some(method), Some((mut check, shape))) = (method, self.check.take()) else {
+            return 0;
+        };
+        let mut wrong = None;
+        let mut outcome = 0;
+        if check.is_due() {
+            let multiply = |system: &mut S, v: &[f64], out: &mut [f64]| match &shape {
+                Some(shape) => {
+                    shape.multiply(values, v, out);
+                    true
+                }
+                None => times(system, v, out).is_ok(),
+            };
+            let evaluate = |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| {
+                evaluate(system, [y, yp], out).is_ok()
+            };
+            outcome = self.guard(Callback::Jacobian, t, |system| {
+                wrong = check.find(system, method, point, multiply, evaluate);
+                Ok(())
+            });
+        }
+        self.check = Some((check, shape));
+        if wrong.is_none() {
+            return outcome;
+        }
+        self.troubles.wrong = wrong;
+        STOP
     }
 
     /// Solves with the preconditioner of a Krylov method, in place: the incomplete factorization, or `own` of the system.

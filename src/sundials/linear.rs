@@ -18,6 +18,8 @@ use crate::integrate::{Callback, Error};
 pub(super) struct Linear {
     solver: RawSolver,
     matrix: Option<Matrix>,
+    /// Whether the solver is ready for [`factorize`](Self::factorize); KLU has analysed its pattern then.
+    is_ready: bool,
 }
 
 struct RawSolver(ffi::SUNLinearSolver);
@@ -56,7 +58,7 @@ impl Linear {
         if raw.is_null() {
             return Err(Error::out_of_memory(function));
         }
-        Ok(Self { solver: RawSolver(raw), matrix })
+        Ok(Self { solver: RawSolver(raw), matrix, is_ready: false })
     }
 
     /// Has the next solution begin with a set-up: the matrix may be half written.
@@ -86,7 +88,8 @@ impl Linear {
         unsafe {
             ffi::SUNMatZero(matrix);
             fill(matrix::entries(matrix, kind, n));
-            ffi::SUNLinSolInitialize(solver) == 0 && ffi::SUNLinSolSetup(solver, matrix) == 0
+            self.is_ready = self.is_ready || ffi::SUNLinSolInitialize(solver) == 0;
+            self.is_ready && ffi::SUNLinSolSetup(solver, matrix) == 0
         }
     }
 

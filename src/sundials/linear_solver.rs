@@ -38,7 +38,7 @@ pub enum LinearSolver {
 
 impl LinearSolver {
     /// Stops what C would crash on.
-    pub(super) fn check(&self, n: usize) -> Result<(), InputError> {
+    pub(crate) fn check(&self, n: usize) -> Result<(), InputError> {
         match self {
             Self::Dense(_) if !is_addressable(n, n) => Err(InputError::new(
                 "number of unknowns",
@@ -64,13 +64,35 @@ impl LinearSolver {
         }
     }
 
-    /// Whether the matrix is filled by a callback (and not by SUNDIALS' difference quotients).
+    /// Whether the matrix of a DAE is filled by a callback (and not by SUNDIALS' difference quotients).
     pub(super) fn has_jacobian_callback(&self) -> bool {
         match self {
             Self::Dense(jacobian) | Self::Band { jacobian, .. } => *jacobian == Jacobian::Supplied,
             Self::Klu { .. } | Self::Custom => true,
             Self::Krylov(_) => false,
         }
+    }
+
+    /// The method by which the system supplies a Jacobian that the iteration relies on.
+    pub(crate) fn supplied(&self) -> Option<&'static str> {
+        match self {
+            Self::Dense(Jacobian::Supplied) => Some("dense_jacobian"),
+            Self::Band { jacobian: Jacobian::Supplied, .. } => Some("banded_jacobian"),
+            Self::Klu { jacobian: Jacobian::Supplied, .. } => Some("sparse_jacobian"),
+            Self::Krylov(krylov) if krylov.products == Jacobian::Supplied => Some("jacobian_times"),
+            _ => None,
+        }
+    }
+
+    /// Whether entries, of the matrix or of its preconditioner, are difference quotients.
+    pub(super) fn takes_quotients(&self) -> bool {
+        let entries = match self {
+            Self::Dense(jacobian) | Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } => {
+                Some(*jacobian)
+            }
+            _ => self.ilu().map(|(_, jacobian)| jacobian),
+        };
+        entries == Some(Jacobian::DifferenceQuotients)
     }
 
     /// The pattern on which the layer itself takes difference quotients.

@@ -12,7 +12,7 @@ use super::{
     vector::{slice, slice_mut},
 };
 use crate::{
-    integrate::Callback,
+    integrate::{Callback, Point},
     ode::{Failure, Ode, call},
 };
 
@@ -153,6 +153,11 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode>(
     let entries = unsafe { matrix::entries(jacobian, solver, host.n) };
     let callback = Callback::Jacobian;
     let outcome = match entries {
+        _ if host.differences.is_some() => {
+            // SAFETY: as above; the entries are not used.
+            let values = unsafe { matrix::stored(jacobian, solver, host.n) };
+            sparse_jacobian(host, t, y, ydot, values)
+        }
         Entries::Dense(matrix) => {
             host.guard(callback, t, |system| system.dense_jacobian(t, y, ydot, matrix))
         }
@@ -168,10 +173,25 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode>(
     let Some(solver) = &host.linear_solver else { return STOP };
     // SAFETY: as above; the user's access has ended.
     let values = unsafe { matrix::stored(jacobian, solver, host.n) };
-    host.check_finite(Callback::Jacobian, t, values)
+    match host.check_finite(Callback::Jacobian, t, values) {
+        0 => check_jacobian(host, t, y, values, |_, _, _| Ok(())),
+        failed => failed,
+    }
 }
 
-/// The values of df/dy on the pattern of the linear solver: the system's own, or difference quotients.
+/// Looks at df/dy that the system has just supplied: its numbers, or the products that `times` writes.
+pub(super) fn check_jacobian<S: Ode>(
+    host: &mut Host<S>,
+    t: f64,
+    y: &[f64],
+    values: &[f64],
+    times: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
+) -> i32 {
+    let point = Point { y, yp: &[], cj: 0.0 };
+    host.check_jacobian(t, point, values, times, |system, [y, _], ydot| system.rhs(t, y, ydot))
+}
+
+/// The values of df/dy: difference quotients, or the system's own on the pattern of the linear solver.
 pub(super) fn sparse_jacobian<S: Ode>(
     host: &mut Host<S>,
     t: f64,
@@ -185,10 +205,14 @@ pub(super) fn sparse_jacobian<S: Ode>(
         return host.guard(Callback::Jacobian, t, call);
     };
     let outcome = differences.of_rhs(y, ydot, values, |y, ydot| {
-        host.guard_output(Callback::Rhs, t, ydot, |system, ydot| call::rhs(system, t, y, ydot))
+        let evaluate = |system: &mut S, ydot: &mut [f64]| call::rhs(system, t, y, ydot);
+        match host.guard_output(Callback::Rhs, t, ydot, evaluate) {
+            0 => Ok(()),
+            failed => Err(failed),
+        }
     });
     host.differences = Some(differences);
-    outcome
+    outcome.err().unwrap_or(0)
 }
 
 /// `ARKLsLinSysFn`: as [`newton_setup`], but for the mass matrix, of which there is none.

@@ -8,7 +8,7 @@ use std::ffi::c_void;
 use super::{
     ffi,
     host::Host,
-    ode_callbacks::sparse_jacobian,
+    ode_callbacks::{check_jacobian, sparse_jacobian},
     vector::{slice, slice_mut},
 };
 use crate::{
@@ -32,7 +32,13 @@ pub(super) unsafe extern "C" fn jacobian_times<S: Ode>(
         let n = host.n;
         (host, slice(v, n), slice_mut(jv, n), slice(y, n), slice(ydot, n))
     };
-    host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
+    let outcome = host.guard_output(Callback::JacobianTimes, t, jv, |system, jv| {
+        call::jacobian_times(system, t, y, ydot, v, jv)
+    });
+    if outcome != 0 {
+        return outcome;
+    }
+    check_jacobian(host, t, y, &[], |system, v, jv| {
         call::jacobian_times(system, t, y, ydot, v, jv)
     })
 }

@@ -15,6 +15,8 @@ pub(super) struct Limits {
     pub(super) convergence_coefficient: Option<f64>,
     /// One for each unknown, or none.
     pub(super) signs: Vec<Sign>,
+    /// Whether a supplied Jacobian is not looked at.
+    pub(super) trusts_jacobian: bool,
 }
 
 /// Tolerances of integrals, if they are not those of the unknowns, and whether they take part in the error control.
@@ -90,6 +92,17 @@ macro_rules! builder_methods {
         /// helps where the equations themselves lead across.
         pub fn sign_constraints(mut self, signs: impl Into<Vec<$crate::sundials::Sign>>) -> Self {
             self.limits.signs = signs.into();
+            self
+        }
+
+        /// Whether a Jacobian that the system supplies, its entries or its products, is held against differences of the equations: the first one,
+        /// the second, the fourth, the eighth and so on, along two random directions. That costs three evaluations each time, which the
+        /// statistics leave out. A run with a wrong one ends with
+        /// [`Cause::WrongJacobian`](crate::integrate::Cause::WrongJacobian): Newton's iteration may take what it converges to for a solution.
+        /// Default: yes. Switch it off for a Jacobian that is meant to be an approximation. What
+        /// [`LinearSolver::Custom`](crate::sundials::LinearSolver::Custom) and preconditioners do is not looked at.
+        pub fn check_jacobian(mut self, on: bool) -> Self {
+            self.limits.trusts_jacobian = !on;
             self
         }
     };

@@ -4,7 +4,9 @@ use std::ffi::c_void;
 
 use super::{
     ffi,
+    host::Source,
     index::Index,
+    progress::STRETCH,
     signs::Violation,
     solver::{Memory, Solver},
 };
@@ -108,6 +110,8 @@ impl<K, S> Solver<K, S> {
                 | Cause::Convergence
                 | Cause::LinearSolver
                 | Cause::InconsistentStart
+                | Cause::StandsStill { .. }
+                | Cause::TooManySteps { .. }
                 | Cause::Other
         );
         let host = self.host.get_mut();
@@ -131,6 +135,9 @@ impl<K, S> Solver<K, S> {
         let statistics = self.step_statistics();
         let is_dae = self.yp.is_some();
         let (otherwise, blame_retries) = match code {
+            ffi::CV_TOO_MUCH_WORK if self.progress.stands => {
+                (Cause::StandsStill { steps: STRETCH }, true)
+            }
             ffi::CV_TOO_MUCH_WORK => {
                 let steps = u64::from(self.max_steps);
                 (Cause::TooManySteps { steps, target, notice: None }, true)
@@ -170,6 +177,24 @@ impl<K, S> Solver<K, S> {
         let place = (statistics.current_time, statistics.current_step);
         let (cause, source) = troubles.cause(place, blame_retries, otherwise);
         let cause = self.higher_index(&cause).unwrap_or(cause);
+        self.error(&statistics, cause, message, source)
+    }
+
+    /// That a run which does not get on is of higher index, if it is.
+    pub(crate) fn diagnose_index(&mut self) -> Result<(), Error> {
+        match self.higher_index(&Cause::Other) {
+            Some(cause) => Err(self.error(&self.step_statistics(), cause, String::new(), None)),
+            None => Ok(()),
+        }
+    }
+
+    fn error(
+        &self,
+        statistics: &Statistics,
+        cause: Cause,
+        message: String,
+        source: Source,
+    ) -> Error {
         IntegrationError {
             integrator: self.memory.functions.integrator,
             cause,

@@ -5,7 +5,7 @@ use std::{ffi::c_void, fmt, ptr};
 use super::{
     beside::{Backward, Quadratures, Sensitivity},
     context::Context,
-    differences::Differences,
+    differences::{Differences, Scales},
     ffi,
     functions::{Functions, Set, SetTwo},
     host::{CustomSolve, Host, HostBox, NewtonSolve, keep_message},
@@ -16,11 +16,13 @@ use super::{
     linear_solver::LinearSolver,
     nonlinear::FixedPoint,
     options::Limits,
+    progress::Progress,
+    shape::Shape,
     signs::{self, Sign},
     stop_time::StopTime,
     vector::Vector,
 };
-use crate::integrate::{AbsoluteTolerance, Error, StepOptions, Tolerances};
+use crate::integrate::{AbsoluteTolerance, Error, JacobianCheck, StepOptions, Tolerances};
 
 /// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and ARKODE
 /// end runs at jumps that follow a long smooth stretch (the Oregonator); 20 lead from any step to the smallest there is.
@@ -53,9 +55,10 @@ pub struct Solver<K, S> {
     pub(super) context: Context,
     pub(super) t: f64,
     pub(super) max_steps: u32,
-    /// Whether the size of the first step is left to C.
-    pub(super) estimates_first_step: bool,
     pub(super) stop_time: StopTime,
+    pub(super) progress: Progress,
+    /// Size of the first step, if it is not estimated.
+    pub(super) initial_step: Option<f64>,
     /// Whether there is a step to interpolate in. C does not ask, and gives NaN or what the run
     /// before has left.
     pub(super) has_step: bool,
@@ -160,8 +163,9 @@ impl<K, S> Solver<K, S> {
             context,
             t: start.t,
             max_steps: 0,
-            estimates_first_step: true,
             stop_time: StopTime::default(),
+            progress: Progress::new(start.t),
+            initial_step: None,
             has_step: false,
             failed_within: false,
             history_lost: false,
@@ -200,7 +204,7 @@ impl<K, S> Solver<K, S> {
         limits: &Limits,
     ) -> Result<(), Error> {
         self.max_steps = steps.max_steps;
-        self.estimates_first_step = steps.initial_step.is_none();
+        self.initial_step = steps.initial_step;
         let functions = self.memory.functions;
         let (memory, rtol) = (self.memory.raw, tolerances.rtol);
         let (name, code) = match &tolerances.atol {
@@ -293,17 +297,27 @@ impl<K, S> Solver<K, S> {
         &mut self,
         solver: &LinearSolver,
         solve: NewtonSolve<S>,
+        (tolerances, limits): (&Tolerances, &Limits),
     ) -> Result<(), Error> {
         let Memory { raw: memory, functions } = self.memory;
         let step_parameter = functions.get_step_parameter;
         self.host.get_mut().custom_solve = Some(CustomSolve { solve, step_parameter, memory });
-        if let Some(pattern) = solver.pattern_of_differences() {
-            let is_dae = self.yp.is_some();
-            // SAFETY: the memory belongs to these functions; its callbacks alone ask for differences.
-            let differences = unsafe {
-                Differences::new(pattern, (memory, functions), is_dae, &self.signs, &self.context)?
-            };
-            self.host.get_mut().differences = Some(differences);
+        let n = self.y.as_slice().len();
+        let is_dae = self.yp.is_some();
+        if let (true, Some(pattern)) = (is_dae, solver.pattern_of_differences()) {
+            // SAFETY: the memory belongs to these functions; its callbacks alone read them.
+            let scales = unsafe { Scales::new((memory, functions), n, &self.context)? };
+            self.host.get_mut().scales = Some(scales);
+            self.host.get_mut().differences = Some(Differences::of_dae(pattern, &self.signs));
+        } else if !is_dae && solver.takes_quotients() {
+            let differences = Differences::of_ode(solver, n, tolerances, &self.signs);
+            self.host.get_mut().differences = differences;
+        }
+        if !limits.trusts_jacobian && solver.supplied().is_some() {
+            let check = JacobianCheck::new(n, tolerances);
+            let is_matrix = !matches!(solver, LinearSolver::Krylov(_));
+            let shape = Shape::of(solver).filter(|_| is_matrix);
+            self.host.get_mut().check = Some((check, shape));
         }
         self.host.get_mut().ilu = solver.ilu().map(|(pattern, _)| IncompleteLu::new(pattern));
         let data = self.host.as_ptr();

@@ -2,11 +2,21 @@
 
 use std::{ffi::c_void, mem, ptr};
 
-use super::{ffi, signs::check_state, solver::Solver, vector::Vector};
+use super::{
+    differences::Differences,
+    ffi,
+    progress::{Progress, STRETCH},
+    signs::check_state,
+    solver::Solver,
+    vector::Vector,
+};
 use crate::integrate::{
-    Cause, Error, Integrator, Reached, Statistics, check_finite, check_length, check_start_time,
+    Cause, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length, check_start_time,
     check_time,
 };
+
+/// Code of a call that did what was asked for.
+const DONE: i32 = 0;
 
 impl<K, S> Integrator for Solver<K, S> {
     type System = S;
@@ -91,10 +101,12 @@ impl<K, S> Integrator for Solver<K, S> {
         self.restart_quadratures()?;
         self.restart_sensitivities()?;
         self.t = t;
+        self.progress = Progress::new(t);
         (self.has_step, self.failed_within, self.history_lost) = (false, false, false);
         let host = self.host.get_mut();
+        host.troubles.clear();
         host.step_end = host.step_end.and(Some(t));
-        host.differences.iter_mut().for_each(|differences| differences.evaluations = 0);
+        host.differences.iter_mut().for_each(Differences::restart);
         match self.memory.functions.reinit_forgets_stop_time {
             true => self.stop_time.forget(),
             false => self.stop_time.set(None),
@@ -162,27 +174,61 @@ impl<K, S> Solver<K, S> {
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_stop_time, time)? };
         }
+        let steps = self.step_statistics().steps;
+        let far = if steps == 0 { apart(self.t, target) } else { target };
+        // C would refuse the target: steps that stop there
+        let stops = task == ffi::CV_NORMAL && far != target;
+        let mut stop = self.stop_time.time();
+        if stops {
+            let ends = stop.filter(|stop| (target - stop) * (far - self.t) >= 0.0);
+            stop = ends.or(Some(target));
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_stop_time, ends.unwrap_or(target))? };
+        }
+        // nor does it estimate a step where it has to stop so soon
+        let whole = stop.filter(|stop| steps == 0 && apart(self.t, *stop) != *stop);
+        let whole = whole.filter(|_| self.initial_step.is_none());
+        if let Some(stop) = whole {
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_initial_step, stop - self.t)? };
+        }
         let (name, solve) = functions.solve;
         // C writes beside the present state, which is kept where it fails to give another
         let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
         let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
+        self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
+        self.host.get_mut().troubles.begin(self.t);
+        self.failed_within = false;
+        let (single, mut taken) = (if stops { ffi::CV_ONE_STEP } else { task }, 0);
         let mut shortened = false;
         let code = loop {
-            self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
-            self.host.get_mut().troubles.clear();
+            let most = STRETCH.min(u64::from(self.max_steps) - taken);
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_max_steps, most as i64)? };
             // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
             // keeps others away while callbacks use the host.
-            let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
-            if !self.shortens_first_step(code, before, target)? {
+            let code = unsafe { solve(memory, far, &raw mut self.t, y, yp, single) };
+            let now = self.step_statistics();
+            self.progress.note(now.steps, now.current_time);
+            taken = now.steps.saturating_sub(steps);
+            if self.shortens_first_step(code, before, target)? {
+                shortened = true;
+                self.host.get_mut().troubles.clear();
+                continue;
+            }
+            let goes_on = code == ffi::CV_TOO_MUCH_WORK || stops && code == DONE;
+            if !goes_on || self.progress.stands || taken >= u64::from(self.max_steps) {
                 break code;
             }
-            shortened = true;
         };
-        if shortened {
-            // SAFETY: the value is a plain number; it leaves the next start to C.
+        if shortened || whole.is_some() {
+            // SAFETY: the value is a plain number, which asks for an estimate.
             unsafe { self.set(functions.set_initial_step, 0.0)? };
         }
-        self.failed_within = false;
+        if stops {
+            // C has forgotten that of the caller
+            self.stop_time.set(self.stop_time.time());
+        }
         self.has_step = code >= 0 || self.step_statistics().steps > 0;
         if code < 0 {
             self.forget_factors();
@@ -220,6 +266,10 @@ impl<K, S> Solver<K, S> {
                 unsafe { self.set(functions.get_root_info, roots)? };
                 Ok(Reached::Root)
             }
+            // a step that ends before the target is the last that may be made
+            code if code >= 0 && (self.progress.stands || stops && code == DONE) => {
+                Err(self.stopped(ffi::CV_TOO_MUCH_WORK, target))
+            }
             code if code >= 0 => {
                 let stopped = self.stop_time.time() == Some(self.t);
                 if stopped {
@@ -243,7 +293,7 @@ impl<K, S> Solver<K, S> {
         const LEAST: f64 = 1e-30;
         let failed = [ffi::CV_ERR_FAILURE, ffi::CV_CONV_FAILURE].contains(&code);
         let is_dae = self.yp.is_some() && self.host.get().find_index.is_some();
-        if !failed || !is_dae || !self.estimates_first_step {
+        if !failed || !is_dae || self.initial_step.is_some() {
             return Ok(false);
         }
         let statistics = self.step_statistics();
@@ -312,6 +362,10 @@ impl<K, S> Solver<K, S> {
             ffi::CV_ONE_STEP => self.t,
             _ => statistics.current_time - statistics.last_step,
         };
+        if statistics.steps == 0 && (target - self.t).abs() < SHORTEST {
+            let mend = format!("it lies at least {SHORTEST:e} from the start, {:?}", self.t);
+            return Err(Error::input("target time", target, mend));
+        }
         if (target - earliest) * statistics.last_step < 0.0 {
             let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
             return Err(Error::input("target time", target, mend));
@@ -329,7 +383,7 @@ impl<K, S> Solver<K, S> {
     ) -> Result<(), Error> {
         let order = derivative.min(i32::MAX as u32) as i32;
         let functions = self.memory.functions;
-        self.host.get_mut().troubles.clear();
+        self.host.get_mut().troubles.begin(self.t);
         let code = get_dky(self.memory.raw, t, order);
         self.host.get_mut().troubles.resume_panic();
         if code == functions.bad_time {
@@ -359,4 +413,11 @@ impl<K, S> Solver<K, S> {
         }
         Ok(())
     }
+}
+
+/// `target`, or a time beyond it that C takes for another one than `t`.
+pub(super) fn apart(t: f64, target: f64) -> f64 {
+    let size = t.abs().max(target.abs());
+    let (distance, least) = (target - t, (16.0 * f64::EPSILON * size).max(1e-97));
+    if distance.abs() >= least { target } else { t + (1e6 * least).copysign(distance) }
 }

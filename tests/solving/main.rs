@@ -3,6 +3,7 @@
 mod accumulation;
 mod bounds;
 mod breaks;
+mod difference_quotients;
 mod ensembles;
 mod events;
 mod gradients;
@@ -11,6 +12,9 @@ mod interpolation;
 mod limits;
 mod refusals;
 mod resuming;
+mod rosenbrock;
 mod sensitivities;
+mod standstill;
 mod support;
 mod values;
+mod wrong_jacobians;

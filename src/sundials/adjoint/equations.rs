@@ -2,12 +2,14 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use super::{gradient::Gradient, jacobian::StoredJacobian};
+use super::gradient::Gradient;
 use crate::{
     input::InputError,
     integrate::{Callback, Cause, Error, IntegrationError, Tolerances},
     ode::{Failure, Functional, Slopes},
-    sundials::{LinearSolver, matrix::Entries, sensitivity::Access},
+    sundials::{
+        LinearSolver, matrix::Entries, sensitivity::Access, stored_jacobian::StoredJacobian,
+    },
     vector::size_or_one,
 };
 

@@ -3,7 +3,6 @@
 mod dae;
 mod equations;
 mod gradient;
-mod jacobian;
 mod ode;
 mod options;
 mod way_back;

@@ -272,7 +272,8 @@ fn solve_stages<S: Ode>(arkode: &mut Arkode<S>, options: &ArkodeOptions) -> Resu
     unsafe {
         match &options.nonlinear.solver {
             NonlinearSolver::Newton(solver) => {
-                arkode.set_newton(solver, S::newton_solve)?;
+                let for_jacobian = (&options.tolerances, &options.limits);
+                arkode.set_newton(solver, S::newton_solve, for_jacobian)?;
                 if matches!(solver, LinearSolver::Custom) {
                     let callback = Some(newton_setup_with_mass::<S> as _);
                     arkode.set(("ARKStepSetLinSysFn", ffi::ARKStepSetLinSysFn), callback)?;
@@ -291,7 +292,7 @@ fn solve_stages<S: Ode>(arkode: &mut Arkode<S>, options: &ArkodeOptions) -> Resu
                             Some(precondition_solve::<S>),
                         ),
                     )?;
-                } else if solver.has_jacobian_callback() {
+                } else {
                     let callback = Some(jacobian::<S> as _);
                     arkode.set(("ARKStepSetJacFn", ffi::ARKStepSetJacFn), callback)?;
                 }

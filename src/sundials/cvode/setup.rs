@@ -205,7 +205,8 @@ impl<S: Ode> Cvode<S> {
         unsafe {
             match &options.nonlinear.solver {
                 NonlinearSolver::Newton(solver) => {
-                    cvode.set_newton(solver, S::newton_solve)?;
+                    let for_jacobian = (&options.tolerances, &options.limits);
+                    cvode.set_newton(solver, S::newton_solve, for_jacobian)?;
                     if matches!(solver, LinearSolver::Custom) {
                         let callback = Some(newton_setup::<S> as _);
                         cvode.set(("CVodeSetLinSysFn", ffi::CVodeSetLinSysFn), callback)?;
@@ -224,7 +225,7 @@ impl<S: Ode> Cvode<S> {
                                 Some(precondition_solve::<S>),
                             ),
                         )?;
-                    } else if solver.has_jacobian_callback() {
+                    } else {
                         let callback = Some(jacobian::<S> as _);
                         cvode.set(("CVodeSetJacFn", ffi::CVodeSetJacFn), callback)?;
                     }

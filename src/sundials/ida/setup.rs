@@ -180,7 +180,8 @@ impl<S: Dae> Ida<S> {
             let tolerances = (&options.quadratures, &options.tolerances);
             let integrands = Some(quadratures::<S> as _);
             ida.set_quadratures(count, ("IDAQuadInit", ffi::IDAQuadInit), integrands, tolerances)?;
-            ida.set_newton(solver, |system, _, r| system.newton_solve(r))?;
+            let for_jacobian = (&options.tolerances, &options.limits);
+            ida.set_newton(solver, |system, _, r| system.newton_solve(r), for_jacobian)?;
             if let LinearSolver::Krylov(krylov) = solver {
                 ida.set_krylov(
                     krylov,

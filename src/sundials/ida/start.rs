@@ -10,6 +10,7 @@ use crate::{
     sundials::{
         ffi,
         index::{Index, index},
+        stepping::apart,
         vector::Vector,
     },
 };
@@ -79,7 +80,7 @@ impl<S: Dae> Ida<S> {
             self.host.get_mut().troubles.clear();
             // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
             // others away while callbacks use the host.
-            let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, towards) };
+            let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, apart(self.t, towards)) };
             self.host.get_mut().troubles.resume_panic();
             let unfound = [ffi::IDA_CONV_FAIL, ffi::IDA_LINESEARCH_FAIL, ffi::IDA_NO_RECOVERY];
             // C refuses less than that

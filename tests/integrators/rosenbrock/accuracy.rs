@@ -24,7 +24,7 @@ fn errors_fall_by_the_order() {
             );
         }
         let run = |h| {
-            let options = fixed_step(order, h).jacobian(Jacobian::Custom);
+            let options = fixed_step(order, h).newton(LinearSolver::Custom);
             errors(Logistic::with(1.0), &[0.1], &options, logistic_exact)
         };
         let (coarse, fine) = (run(0.1), run(0.05));
@@ -40,7 +40,7 @@ fn errors_fall_by_the_order() {
 fn a_matrix_that_is_not_the_jacobian() {
     for (order, kept, h) in [(3, 3.0, 0.02), (4, 2.0, 0.004)] {
         let run = |h| {
-            let options = fixed_step(order, h).jacobian(Jacobian::Custom);
+            let options = fixed_step(order, h).newton(LinearSolver::Custom);
             errors(Logistic::with(1.3), &[0.1], &options, logistic_exact)[0]
         };
         let found = measured(run(h), run(0.5 * h));
@@ -86,8 +86,9 @@ fn fast_motions_are_damped_at_once() {
 #[test]
 fn van_der_pol() {
     for order in ORDERS {
-        for jacobian in [Jacobian::Supplied, Jacobian::Differences] {
-            let options = Options::new(1e-7, 1e-10).order(order).jacobian(jacobian);
+        for jacobian in [Jacobian::Supplied, Jacobian::DifferenceQuotients] {
+            let options =
+                Options::new(1e-7, 1e-10).order(order).newton(LinearSolver::Dense(jacobian));
             let problem = VanDerPol::new();
             let mut solver = Rosenbrock::new(problem, 0.0, &VanDerPol::Y0, &options).unwrap();
             solver.solve_to(2000.0).unwrap();

@@ -1,7 +1,8 @@
 //! The Rosenbrock methods against closed forms, trusted digits and their own promises.
 
 use pliant::ode::{Failure, Ode};
-use pliant::rosenbrock::{Integrator, Jacobian, Options, Rosenbrock};
+use pliant::rosenbrock::{Integrator, Options, Rosenbrock};
+use pliant::sundials::{Jacobian, LinearSolver};
 
 mod accuracy;
 mod failures;

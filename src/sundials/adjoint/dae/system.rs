@@ -8,12 +8,10 @@ use crate::{
     ode::{BandMut, Dae, Failure, Functional, call},
     sundials::{
         LinearSolver,
-        adjoint::{
-            equations::{Equations, refused},
-            jacobian::StoredJacobian,
-        },
+        adjoint::equations::{Equations, refused},
         matrix::Entries,
         sensitivity::Access,
+        stored_jacobian::StoredJacobian,
     },
 };
 

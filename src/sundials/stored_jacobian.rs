@@ -1,20 +1,22 @@
-//! Jacobians, evaluated for products with their transposes.
+//! Jacobians of their own, beside the matrix that a linear solver factorizes.
 
 use faer::MatMut;
 
 use crate::{
     input::InputError,
     ode::{BandMut, Failure},
-    sundials::{Jacobian, LinearSolver, Pattern, colouring::Colouring, matrix::Entries},
+    sundials::{
+        Jacobian, LinearSolver, Pattern, colouring::Colouring, matrix::Entries, shape::Shape,
+    },
 };
 
 /// A Jacobian at one point, stored as the linear solver of the run forward has it.
-pub(super) struct StoredJacobian {
+pub(in crate::sundials) struct StoredJacobian {
     forward: LinearSolver,
+    shape: Shape,
     n: usize,
     values: Vec<f64>,
-    /// Of a sparse matrix.
-    colouring: Option<Colouring>,
+    colouring: Colouring,
     /// Unknowns moved for difference quotients, and two results.
     moved: Vec<f64>,
     ahead: Vec<f64>,
@@ -22,7 +24,7 @@ pub(super) struct StoredJacobian {
 }
 
 impl StoredJacobian {
-    pub(super) fn new(forward: &LinearSolver, n: usize) -> Self {
+    pub(in crate::sundials) fn new(forward: &LinearSolver, n: usize) -> Self {
         let count = match forward {
             LinearSolver::Dense(_) => n * n,
             LinearSolver::Band { lower, upper, .. } => n * (lower + upper + 1),
@@ -31,16 +33,14 @@ impl StoredJacobian {
         };
         let vector = || vec![0.0; n];
         let (moved, ahead, behind) = (vector(), vector(), vector());
-        let colouring = match forward {
-            LinearSolver::Klu { pattern, .. } => Some(Colouring::new(pattern)),
-            _ => None,
-        };
+        let shape = Shape::of(forward).unwrap_or(Shape::Dense);
+        let colouring = shape.colouring(n);
         let (forward, values) = (forward.clone(), vec![0.0; count]);
-        Self { forward, n, values, colouring, moved, ahead, behind }
+        Self { forward, shape, n, values, colouring, moved, ahead, behind }
     }
 
     /// The linear solver for transposed matrices.
-    pub(super) fn backward_solver(&self) -> Result<LinearSolver, InputError> {
+    pub(in crate::sundials) fn backward_solver(&self) -> Result<LinearSolver, InputError> {
         match &self.forward {
             LinearSolver::Dense(_) => Ok(LinearSolver::Dense(Jacobian::Supplied)),
             LinearSolver::Band { lower, upper, .. } => Ok(LinearSolver::Band {
@@ -50,9 +50,7 @@ impl StoredJacobian {
             }),
             LinearSolver::Klu { .. } => {
                 let mut entries = Vec::new();
-                for j in 0..self.n {
-                    places(&self.forward, self.n, j, |i, _| entries.push((j, i)));
-                }
+                self.each_place(|i, j, _| entries.push((j, i)));
                 let pattern = Pattern::from_entries(self.n, entries)?;
                 Ok(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
             }
@@ -65,7 +63,7 @@ impl StoredJacobian {
     }
 
     /// Whether the system supplies it.
-    pub(super) fn is_supplied(&self) -> bool {
+    pub(in crate::sundials) fn is_supplied(&self) -> bool {
         match &self.forward {
             LinearSolver::Dense(jacobian)
             | LinearSolver::Band { jacobian, .. }
@@ -75,7 +73,7 @@ impl StoredJacobian {
     }
 
     /// Its entries, to be filled; zeros.
-    pub(super) fn entries(&mut self) -> Entries<'_> {
+    pub(in crate::sundials) fn entries(&mut self) -> Entries<'_> {
         self.values.fill(0.0);
         let values = &mut self.values;
         match &self.forward {
@@ -92,66 +90,90 @@ impl StoredJacobian {
 
     /// Makes it that of `evaluate` at `x` by central differences with these steps, of as many columns at once as do not
     /// meet in any row.
-    pub(super) fn quotients(
+    pub(in crate::sundials) fn quotients(
         &mut self,
         x: &[f64],
         step: impl Fn(usize) -> f64,
         mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), Failure>,
     ) -> Result<(), Failure> {
         self.values.fill(0.0);
-        for colour in 0..self.colours() {
+        let (n, stored) = (self.n, self.values.len());
+        for colour in 0..self.colouring.count() {
+            let columns = self.colouring.columns(colour);
             for (sign, result) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
                 self.moved.copy_from_slice(x);
-                columns(&self.forward, self.colouring.as_ref(), self.n, colour, |j| {
-                    self.moved[j] += sign * step(j);
-                });
+                columns.iter().for_each(|&j| self.moved[j] += sign * step(j));
                 evaluate(&self.moved, result)?;
             }
-            let (values, ahead, behind) = (&mut self.values, &self.ahead, &self.behind);
-            columns(&self.forward, self.colouring.as_ref(), self.n, colour, |j| {
+            for &j in columns {
                 let distance = (x[j] + step(j)) - (x[j] - step(j));
-                places(&self.forward, self.n, j, |i, place| {
-                    values[place] = (ahead[i] - behind[i]) / distance;
-                });
-            });
+                for (k, place) in self.shape.places(j, n, stored).enumerate() {
+                    let i = self.shape.row(j, k);
+                    self.values[place] = (self.ahead[i] - self.behind[i]) / distance;
+                }
+            }
         }
         Ok(())
     }
 
-    /// How many evaluations have all columns.
-    fn colours(&self) -> usize {
-        match (&self.forward, &self.colouring) {
-            (_, Some(colouring)) => colouring.count(),
-            (LinearSolver::Band { lower, upper, .. }, _) => (lower + upper + 1).min(self.n),
-            _ => self.n,
-        }
-    }
-
     /// The numbers that are stored.
-    pub(super) fn values(&self) -> &[f64] {
+    pub(in crate::sundials) fn values(&self) -> &[f64] {
         &self.values
     }
 
+    /// The same, to be written.
+    pub(in crate::sundials) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    /// Writes its product with `v`.
+    pub(in crate::sundials) fn multiply(&self, v: &[f64], out: &mut [f64]) {
+        self.shape.multiply(&self.values, v, out);
+    }
+
+    /// Writes I - gamma J into the matrix of its own linear solver, which is zero.
+    pub(in crate::sundials) fn write_shifted(&self, gamma: f64, entries: Entries<'_>) {
+        let value = |i: usize, j: usize, place: usize| {
+            let unit = if i == j { 1.0 } else { 0.0 };
+            unit - gamma * self.values[place]
+        };
+        match entries {
+            Entries::Dense(mut matrix) => {
+                self.each_place(|i, j, place| matrix[(i, j)] = value(i, j, place));
+            }
+            Entries::Band(mut band) => {
+                self.each_place(|i, j, place| band[(i, j)] = value(i, j, place));
+            }
+            Entries::Sparse(values) => {
+                self.each_place(|i, j, place| values[place] = value(i, j, place));
+            }
+            Entries::Custom => {}
+        }
+    }
+
     /// Calls `visit` with row, column and value of each entry.
-    pub(super) fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
+    pub(in crate::sundials) fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
         self.each_place(|i, j, place| visit(i, j, self.values[place]));
     }
 
     /// Calls `visit` with row, column and place among the values of each entry.
-    pub(super) fn each_place(&self, mut visit: impl FnMut(usize, usize, usize)) {
-        for j in 0..self.n {
-            places(&self.forward, self.n, j, |i, place| visit(i, j, place));
-        }
+    pub(in crate::sundials) fn each_place(&self, visit: impl FnMut(usize, usize, usize)) {
+        self.shape.each(self.n, self.values.len(), visit);
     }
 
     /// Adds `factor` J^T lambda.
-    pub(super) fn add_transposed_times(&self, factor: f64, lambda: &[f64], out: &mut [f64]) {
+    pub(in crate::sundials) fn add_transposed_times(
+        &self,
+        factor: f64,
+        lambda: &[f64],
+        out: &mut [f64],
+    ) {
         self.each(|i, j, value| out[j] += factor * value * lambda[i]);
     }
 
     /// Writes the transpose of another matrix, which has `value` in a row and at a place of this one, into that of
     /// `backward`, which is this solver's.
-    pub(super) fn write_transposed(
+    pub(in crate::sundials) fn write_transposed(
         &self,
         backward: &LinearSolver,
         entries: Entries<'_>,
@@ -173,38 +195,5 @@ impl StoredJacobian {
             }
             _ => {}
         }
-    }
-}
-
-/// Calls `visit` with the row and place of each entry of column `j`.
-fn places(solver: &LinearSolver, n: usize, j: usize, mut visit: impl FnMut(usize, usize)) {
-    match solver {
-        LinearSolver::Klu { pattern, .. } => {
-            let rows = pattern.column(j).iter().zip(pattern.places(j));
-            rows.for_each(|(&i, place)| visit(i as usize, place));
-        }
-        LinearSolver::Band { lower, upper, .. } => {
-            for i in j.saturating_sub(*upper)..=(j + lower).min(n - 1) {
-                visit(i, j * (lower + upper + 1) + upper + i - j);
-            }
-        }
-        _ => (0..n).for_each(|i| visit(i, j * n + i)),
-    }
-}
-
-/// Calls `visit` with each column of a colour: columns that do not meet in any row.
-fn columns(
-    solver: &LinearSolver,
-    colouring: Option<&Colouring>,
-    n: usize,
-    colour: usize,
-    mut visit: impl FnMut(usize),
-) {
-    match (solver, colouring) {
-        (_, Some(colouring)) => colouring.columns(colour).iter().for_each(|&j| visit(j)),
-        (LinearSolver::Band { lower, upper, .. }, _) => {
-            (colour..n).step_by((lower + upper + 1).min(n)).for_each(visit);
-        }
-        _ => visit(colour),
     }
 }

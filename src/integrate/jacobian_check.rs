@@ -1,0 +1,225 @@
+//! Whether a supplied Jacobian is that of the equations, looked at while an integrator uses it.
+
+use super::{error::Cause, tolerances::Tolerances};
+
+/// Holds products of a supplied Jacobian with directions against difference quotients of the equations.
+///
+/// That is done with the first Jacobian, the second, the fourth, the eighth and so on, along two directions that share no unknown: where
+/// unknowns start at zero, the first says little. It costs three evaluations of the equations, more where they do not agree.
+#[derive(Debug)]
+pub(crate) struct JacobianCheck {
+    tolerances: Tolerances,
+    /// How many Jacobians there were, and which is looked at next.
+    seen: u64,
+    next: u64,
+    /// State of a generator of random numbers, the same in every run.
+    random: u64,
+    direction: Vec<f64>,
+    /// The state moved along it, and the time derivative of a DAE.
+    moved: [Vec<f64>; 2],
+    product: Vec<f64>,
+    base: Vec<f64>,
+    ahead: Vec<f64>,
+    behind: Vec<f64>,
+    rows: Vec<Row>,
+}
+
+/// What is known of a row of the product.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Row {
+    /// Nothing yet.
+    Open,
+    /// It is right, as far as differences tell.
+    Right,
+    /// The quotient of the last shift says that it is wrong.
+    Suspicious(f64),
+}
+
+/// Where a Jacobian is looked at: that of the equations F(y), or of F(y, y') by y and, `cj` times, by y'.
+#[derive(Clone, Copy)]
+pub(crate) struct Point<'a> {
+    pub(crate) y: &'a [f64],
+    /// Empty for an ODE.
+    pub(crate) yp: &'a [f64],
+    pub(crate) cj: f64,
+}
+
+/// Shifts in parts of the unknowns' sizes.
+const SHIFTS: [f64; 3] = [1e-3, 1e-5, 1e-7];
+/// By how much of the larger of both product and quotient may differ.
+const TOLERANCE: f64 = 0.01;
+/// Unknowns up to which the entry that is wrong is looked for.
+const MOST_UNKNOWNS: usize = 1000;
+
+impl JacobianCheck {
+    /// For the integration of `n` equations within these tolerances.
+    pub(crate) fn new(n: usize, tolerances: &Tolerances) -> Self {
+        let zeros = || vec![0.0; n];
+        Self {
+            tolerances: tolerances.clone(),
+            seen: 0,
+            next: 1,
+            random: 1,
+            direction: zeros(),
+            moved: [zeros(), Vec::new()],
+            product: zeros(),
+            base: zeros(),
+            ahead: zeros(),
+            behind: zeros(),
+            rows: vec![Row::Open; n],
+        }
+    }
+
+    /// Whether the Jacobian that was just evaluated is to be looked at.
+    pub(crate) fn is_due(&mut self) -> bool {
+        self.seen += 1;
+        let is_due = self.seen == self.next;
+        if is_due {
+            self.next *= 2;
+        }
+        is_due
+    }
+
+    /// What is wrong with the Jacobian that `method` supplied at the point.
+    ///
+    /// `multiply` writes its product with a vector, and `evaluate` the equations at a state and time derivative; both may say that they have no
+    /// number to give. Nothing is wrong where differences cannot tell: beside a jump or a kink, or where they do not converge.
+    pub(crate) fn find<S>(
+        &mut self,
+        system: &mut S,
+        method: &'static str,
+        point: Point<'_>,
+        mut multiply: impl FnMut(&mut S, &[f64], &mut [f64]) -> bool,
+        mut evaluate: impl FnMut(&mut S, [&[f64]; 2], &mut [f64]) -> bool,
+    ) -> Option<Cause> {
+        let Point { y, yp, cj } = point;
+        let [moved, moved_slope] = &mut self.moved;
+        moved.copy_from_slice(y);
+        moved_slope.clear();
+        moved_slope.extend_from_slice(yp);
+        if !evaluate(system, [y, yp], &mut self.base) {
+            return None;
+        }
+        let mut at = |system: &mut S,
+                      [moved, slope]: &mut [Vec<f64>; 2],
+                      v: &[f64],
+                      shift: f64,
+                      out: &mut [f64]| {
+            for (i, (v, y)) in v.iter().zip(y).enumerate() {
+                moved[i] = y + shift * v;
+                if let Some(slope) = slope.get_mut(i) {
+                    *slope = yp[i] + cj * shift * v;
+                }
+            }
+            evaluate(system, [moved, slope], out) && out.iter().all(|x| x.is_finite())
+        };
+        let seed = self.random;
+        for half in [0, 1] {
+            // what is small in a row shows where the largest is left out
+            self.random = seed;
+            self.choose_direction(y, half);
+            if self.direction.iter().all(|v| *v == 0.0) {
+                continue;
+            }
+            if !multiply(system, &self.direction, &mut self.product) {
+                return None;
+            }
+            let Some((row, difference)) = self.wrong_row(system, &mut at) else { continue };
+            let mut cause = (0.0, None, self.product[row], difference);
+            for j in 0..if y.len() <= MOST_UNKNOWNS { y.len() } else { 0 } {
+                let size = self.tolerances.size_of(j, y[j]).copysign(y[j]);
+                self.direction.fill(0.0);
+                self.direction[j] = size;
+                let Self { direction, moved, product, ahead, .. } = self;
+                if !multiply(system, direction, product)
+                    || !at(system, moved, direction, SHIFTS[1], ahead)
+                {
+                    continue;
+                }
+                let quotient = (self.ahead[row] - self.base[row]) / SHIFTS[1];
+                let off = (self.product[row] - quotient).abs();
+                if off > cause.0 {
+                    cause = (off, Some(j), self.product[row] / size, quotient / size);
+                }
+            }
+            // whoever goes on all the same is told again
+            self.next = self.seen + 1;
+            let (_, column, supplied, difference) = cause;
+            return Some(Cause::WrongJacobian { method, row, column, supplied, difference });
+        }
+        None
+    }
+
+    /// A random direction away from zero: some unknowns, each in its size, or the others.
+    fn choose_direction(&mut self, y: &[f64], half: u64) {
+        for (j, (v, y)) in self.direction.iter_mut().zip(y).enumerate() {
+            // Knuth's linear congruences, of which the upper digits are used
+            self.random = self
+                .random
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            let part = 0.5 + 0.5 * ((self.random >> 12) as f64 / (1_u64 << 52) as f64);
+            let size = self.tolerances.size_of(j, *y).copysign(*y);
+            *v = if self.random >> 63 == half { part * size } else { 0.0 };
+        }
+    }
+
+    /// A row of the product that differences along the direction refute, and what they say: two shifts agree with each other, and
+    /// not with it.
+    fn wrong_row<S>(
+        &mut self,
+        system: &mut S,
+        at: &mut impl FnMut(&mut S, &mut [Vec<f64>; 2], &[f64], f64, &mut [f64]) -> bool,
+    ) -> Option<(usize, f64)> {
+        let Self { direction, moved, product, base, ahead, behind, rows, .. } = self;
+        rows.fill(Row::Open);
+        for shift in SHIFTS {
+            if !at(system, moved, direction, shift, ahead) {
+                continue;
+            }
+            for (i, row) in rows.iter_mut().enumerate() {
+                let right = (ahead[i] - base[i]) / shift;
+                if fits(product[i], right, rounding(base[i], ahead[i], shift)) {
+                    *row = Row::Right;
+                }
+            }
+            if rows.iter().all(|row| *row == Row::Right) {
+                return None;
+            }
+            // the other side of a kink may be meant
+            if !at(system, moved, direction, -shift, behind) {
+                continue;
+            }
+            for (i, row) in rows.iter_mut().enumerate().filter(|(_, row)| **row != Row::Right) {
+                let (right, left) = ((ahead[i] - base[i]) / shift, (base[i] - behind[i]) / shift);
+                let mean = 0.5 * (right + left);
+                let rounding = rounding(base[i], ahead[i], shift);
+                let noise = (right - left).abs() + rounding;
+                let before = *row;
+                *row = if fits(product[i], left, rounding) || fits(product[i], mean, rounding) {
+                    Row::Right
+                } else if noise > 0.5 * (product[i] - mean).abs() {
+                    Row::Open
+                } else {
+                    Row::Suspicious(mean)
+                };
+                if let (Row::Suspicious(before), Row::Suspicious(mean)) = (before, *row)
+                    && fits(before, mean, noise)
+                {
+                    return Some((i, mean));
+                }
+            }
+        }
+        None
+    }
+}
+
+/// What rounding may make of a quotient, where the equations are sums of larger terms.
+fn rounding(base: f64, ahead: f64, shift: f64) -> f64 {
+    (1e3 * f64::EPSILON * base.abs().max(ahead.abs()) + f64::MIN_POSITIVE) / shift
+}
+
+/// Whether two numbers are the same, but for rounding.
+fn fits(a: f64, b: f64, rounding: f64) -> bool {
+    (a - b).abs() <= TOLERANCE * a.abs().max(b.abs()) + rounding
+}

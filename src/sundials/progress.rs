@@ -1,0 +1,33 @@
+//! Whether the steps of an integrator lead on in time.
+
+/// After how many steps it is looked at.
+pub(super) const STRETCH: u64 = 100;
+
+/// Where a run stood some steps ago.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Progress {
+    steps: u64,
+    t: f64,
+    /// Whether the last stretch led nowhere.
+    pub(super) stands: bool,
+}
+
+impl Progress {
+    /// Begins at time `t`, without a step.
+    pub(super) fn new(t: f64) -> Self {
+        Self { steps: 0, t, stands: false }
+    }
+
+    /// Notes that `steps` steps have led to time `t`.
+    ///
+    /// Time stands still where the steps of a stretch were, in the mean, no longer than a few times what rounding
+    /// leaves of it.
+    pub(super) fn note(&mut self, steps: u64, t: f64) {
+        self.stands = false;
+        if steps >= self.steps + STRETCH {
+            let least = 4.0 * f64::EPSILON * t.abs() * (steps - self.steps) as f64;
+            self.stands = (t - self.t).abs() <= least;
+            (self.steps, self.t) = (steps, t);
+        }
+    }
+}

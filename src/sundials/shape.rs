@@ -1,0 +1,100 @@
+//! Which entries of a matrix are stored, and in which order.
+
+use std::ops::Range;
+
+use super::{colouring::Colouring, linear_solver::LinearSolver, pattern::Pattern};
+
+/// The entries that a linear solver stores of a matrix, column by column.
+#[derive(Clone)]
+pub(super) enum Shape {
+    Dense,
+    Band { lower: usize, upper: usize },
+    Sparse(Pattern),
+}
+
+impl Shape {
+    /// That of the matrix, or of the preconditioner's; none where there is neither.
+    pub(super) fn of(solver: &LinearSolver) -> Option<Self> {
+        match (solver, solver.ilu()) {
+            (LinearSolver::Dense(_), _) => Some(Self::Dense),
+            (&LinearSolver::Band { lower, upper, .. }, _) => Some(Self::Band { lower, upper }),
+            (LinearSolver::Klu { pattern, .. }, _) | (_, Some((pattern, _))) => {
+                Some(Self::Sparse(pattern.clone()))
+            }
+            _ => None,
+        }
+    }
+
+    /// Columns that can be told apart in one difference of the function, of `n`.
+    pub(super) fn colouring(&self, n: usize) -> Colouring {
+        match self {
+            Self::Dense => Colouring::every(n, n),
+            Self::Band { lower, upper } => Colouring::every(n, lower + upper + 1),
+            Self::Sparse(pattern) => Colouring::new(pattern),
+        }
+    }
+
+    /// Places of the entries of column `j` among the `stored` numbers of a matrix with `n` columns.
+    pub(super) fn places(&self, j: usize, n: usize, stored: usize) -> Range<usize> {
+        match self {
+            Self::Dense => j * n..(j + 1) * n,
+            Self::Band { lower, upper } => {
+                let stride = stored / n;
+                // room for pivots may lie above the band
+                let diagonal = j * stride + stride - lower - 1;
+                diagonal - upper.min(&j)..diagonal + (n - j).min(lower + 1)
+            }
+            Self::Sparse(pattern) => pattern.places(j),
+        }
+    }
+
+    /// Row of the `k`-th entry of column `j`.
+    pub(super) fn row(&self, j: usize, k: usize) -> usize {
+        match self {
+            Self::Dense => k,
+            Self::Band { upper, .. } => j - upper.min(&j) + k,
+            Self::Sparse(pattern) => pattern.column(j)[k] as usize,
+        }
+    }
+
+    /// Calls `visit` with the row, column and place of each entry.
+    pub(super) fn each(&self, n: usize, stored: usize, mut visit: impl FnMut(usize, usize, usize)) {
+        for j in 0..n {
+            for (k, place) in self.places(j, n, stored).enumerate() {
+                visit(self.row(j, k), j, place);
+            }
+        }
+    }
+
+    /// Writes the product of the matrix with `v`.
+    pub(super) fn multiply(&self, values: &[f64], v: &[f64], out: &mut [f64]) {
+        out.fill(0.0);
+        self.each(v.len(), values.len(), |i, j, place| out[i] += values[place] * v[j]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Pattern, Shape};
+
+    /// A band with and without room for pivots, and the same as a sparse matrix.
+    #[test]
+    fn bands_are_sparse_matrices() {
+        for (n, lower, upper) in [(6, 1, 2), (4, 3, 0), (5, 4, 4), (1, 0, 0)] {
+            let pattern = Pattern::band(n, lower, upper).unwrap();
+            let (band, sparse) = (Shape::Band { lower, upper }, Shape::Sparse(pattern.clone()));
+            let entry = |i: usize, j: usize| (1 + i * n + j) as f64;
+            let v: Vec<f64> = (0..n).map(|j| 1.0 + j as f64).collect();
+            let product = |shape: &Shape, stored: usize| {
+                let (mut values, mut out) = (vec![f64::NAN; stored], vec![0.0; n]);
+                shape.each(n, stored, |i, j, place| values[place] = entry(i, j));
+                shape.multiply(&values, &v, &mut out);
+                out
+            };
+            let expected = product(&sparse, pattern.entry_count());
+            for room in [0, lower.min(n - 1 - upper)] {
+                assert_eq!(product(&band, n * (lower + upper + 1 + room)), expected);
+            }
+        }
+    }
+}
