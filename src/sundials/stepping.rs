@@ -166,19 +166,20 @@ impl<K, S> Solver<K, S> {
         // C writes beside the present state, which is kept where it fails to give another
         let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
         let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
-        let mut shortened = false;
+        let mut shortened = 0;
         let code = loop {
             self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
             self.host.get_mut().troubles.clear();
             // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
             // keeps others away while callbacks use the host.
             let code = unsafe { solve(memory, target, &raw mut self.t, y, yp, task) };
-            if !self.shortens_first_step(code, before, target)? {
+            // six decades each; where a lower bound of the step size holds, no more than that
+            if shortened == 5 || !self.shortens_first_step(code, before, target)? {
                 break code;
             }
-            shortened = true;
+            shortened += 1;
         };
-        if shortened {
+        if shortened > 0 {
             // SAFETY: the value is a plain number; it leaves the next start to C.
             unsafe { self.set(functions.set_initial_step, 0.0)? };
         }
