@@ -200,7 +200,7 @@ impl<K, S> Solver<K, S> {
         self.host.get_mut().troubles.begin(self.t);
         self.failed_within = false;
         let (single, mut taken) = (if stops { ffi::CV_ONE_STEP } else { task }, 0);
-        let mut shortened = false;
+        let mut shortened = 0;
         let code = loop {
             let most = STRETCH.min(u64::from(self.max_steps) - taken);
             // SAFETY: the value is a plain number.
@@ -211,8 +211,9 @@ impl<K, S> Solver<K, S> {
             let now = self.step_statistics();
             self.progress.note(now.steps, now.current_time);
             taken = now.steps.saturating_sub(steps);
-            if self.shortens_first_step(code, before, target)? {
-                shortened = true;
+            // six decades each; where a lower bound of the step size holds, no more than that
+            if shortened < 5 && self.shortens_first_step(code, before, target)? {
+                shortened += 1;
                 self.host.get_mut().troubles.clear();
                 continue;
             }
@@ -221,7 +222,7 @@ impl<K, S> Solver<K, S> {
                 break code;
             }
         };
-        if shortened || whole.is_some() {
+        if shortened > 0 || whole.is_some() {
             // SAFETY: the value is a plain number, which asks for an estimate.
             unsafe { self.set(functions.set_initial_step, 0.0)? };
         }
