@@ -294,6 +294,6 @@ fn tables_in_a_phase_are_read_at_the_cost_of_what_they_say() {
     let per_table = |nodes| (bytes(nodes, 800) - bytes(nodes, 400)) / 400.0;
     let [coarse, fine] = [[5, 3], [41, 21]].map(per_table);
     println!("{coarse} bytes per table on 15 nodes, {fine} on 861");
-    // lists that grow by doubling
-    assert!((fine / coarse - 1.0).abs() < 0.05, "{coarse} {fine}");
+    // to look nodes up takes two bytes for each of them; to check the scene takes a hundred times that
+    assert!((fine - coarse) / (861.0 - 15.0) < 4.0, "{coarse} {fine}");
 }

@@ -37,7 +37,7 @@ const LONGEST: usize = 64 * 1024;
 /// How long a browser may take to accept an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
 /// How long a page may say nothing until it is asked whether it is there, and how long it may take to answer that.
-const QUIET: Duration = Duration::from_secs(3);
+const QUIET: Duration = Duration::from_secs(10);
 /// Pause after a connection that failed before it was one.
 const RECOVERY: Duration = Duration::from_millis(50);
 

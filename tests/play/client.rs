@@ -39,7 +39,13 @@ impl Client {
     /// The answer to any message.
     pub fn answer(&mut self, message: Message) -> Result<Value> {
         self.0.send(message)?;
-        Ok(serde_json::from_str(self.0.read()?.to_text()?)?)
+        loop {
+            // whether it is still there, a page is asked by pings
+            let answer = self.0.read()?;
+            if answer.is_text() {
+                return Ok(serde_json::from_str(answer.to_text()?)?);
+            }
+        }
     }
 
     /// Has something done.

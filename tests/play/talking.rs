@@ -93,7 +93,7 @@ fn a_page_that_vanished_stops_the_scene() -> Outcome {
     vanished.order(json!({ "do": "speed", "value": 2e-4 }))?;
     vanished.order(json!({ "do": "play" }))?;
     // its connection stays open, and answers nothing; one page more would keep the scene playing
-    std::thread::sleep(std::time::Duration::from_secs(9));
+    std::thread::sleep(std::time::Duration::from_secs(24));
     let mut client = Client::at(&address)?;
     let frame = client.look()?;
     assert_eq!((&frame["playing"], &frame["atEnd"]), (&json!(false), &json!(false)));

@@ -322,7 +322,7 @@ fn moments_of_constraints() -> Outcome {
 #[test]
 fn both_sides_of_a_grip_are_told_apart() -> Outcome {
     let (stiffness, depth) = (200.0, 1e-3);
-    let corridor = |x: &[f64], gradient: &mut [f64]| {
+    let corridor = move |x: &[f64], gradient: &mut [f64]| {
         gradient[1] = -x[1].signum();
         0.05 - depth - x[1].abs()
     };
@@ -330,8 +330,8 @@ fn both_sides_of_a_grip_are_told_apart() -> Outcome {
     let density = || Obstacle::new(Shape::custom(corridor)).named("grip").stiffness_density(2e5);
     for (grip, total) in [
         // three nodes on each side; 0.1 m times 0.02 m
-        (grip as fn() -> Obstacle, 3.0 * stiffness * depth),
-        (density, 2e5 * depth * 0.1 * 0.02),
+        (&grip as &dyn Fn() -> Obstacle, 3.0 * stiffness * depth),
+        (&density, 2e5 * depth * 0.1 * 0.02),
     ] {
         let mesh =
             Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Rectangles)?.translated(&[0.0, -0.05])?;
