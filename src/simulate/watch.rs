@@ -63,12 +63,12 @@ const ENOUGH: usize = 4;
 const LEFT: f64 = 1e-6;
 
 impl Turns {
-    /// Adds an event at time `t` (s), which gave commands or not.
-    pub(super) fn add(&mut self, t: f64, commanded: bool) {
+    /// Adds an event at time `t` (s), after which the motion goes on by commands or not.
+    pub(super) fn add(&mut self, t: f64, turns: bool) {
         let pause = t - self.last;
         let Self { count, first, last, pauses: [before, _] } = *self;
         *self = match count {
-            _ if !commanded => Self::default(),
+            _ if !turns => Self::default(),
             count if count == 0 || pause <= 0.0 => {
                 Self { count: 1, first: t, last: t, pauses: [f64::INFINITY; 2] }
             }

@@ -148,7 +148,10 @@ impl Simulation {
                 if self.time >= time {
                     self.commanded = false;
                     let flow = guarded(|| (watch.action)(self));
-                    watch.turns.add(time, self.commanded);
+                    // what is held where it is does not turn back
+                    let turns =
+                        self.commanded && self.tendency(Some(number), &mut watch.event)? != 0.0;
+                    watch.turns.add(time, turns);
                     commanded |= self.commanded;
                     self.commanded = commanded;
                     is_stopped |= flow??.is_break();
@@ -169,7 +172,6 @@ impl Simulation {
     /// Lets time go on to `t` (s), but at most to the first of the events, and marks those that are met there; whether
     /// there are any.
     fn meet(&mut self, t: f64, events: &mut [Pending], commanded: bool) -> Result<bool, Error> {
-        let present = self.time;
         while self.time < t {
             if self.run.time <= self.time && !self.advance()? {
                 break;
@@ -179,8 +181,7 @@ impl Simulation {
                 let from = self.time;
                 let share = f64::from(part) / f64::from(LOOKS);
                 let to = if part == LOOKS { end } else { start + share * (end - start) };
-                let turned = commanded && from == present;
-                if to > from && self.first(events, [from, to], turned)? {
+                if to > from && self.first(events, [from, to], commanded)? {
                     return Ok(true);
                 }
             }
@@ -189,18 +190,19 @@ impl Simulation {
     }
 
     /// Looks at time `to` (s), or at the first of the events since time `from`, and marks those that are met there;
-    /// whether there are any. Commands at `from` may have `turned` back what was met there.
+    /// whether there are any. Commands may have turned back what is 0 since it was met.
     fn first(
         &mut self,
         events: &mut [Pending],
         [from, to]: [f64; 2],
-        turned: bool,
+        commanded: bool,
     ) -> Result<bool, Error> {
         self.look(to)?;
         for event in &mut *events {
             let mut start = from;
             event.after = self.value(event.number, event.event)?;
-            if turned && event.value == 0.0 && event.direction.counts(-event.after, event.after) {
+            if commanded && event.value == 0.0 && event.direction.counts(-event.after, event.after)
+            {
                 match (self.turn(event, from)?, event.number) {
                     (Some(t), _) => start = t,
                     (None, Some(number)) if event.tendency * event.after < 0.0 => {
