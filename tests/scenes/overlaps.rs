@@ -84,7 +84,7 @@ fn strips_wound_into_themselves() {
             let warning =
                 warnings.iter().find(|text| text.contains("the body passes through itself"));
             let warning = warning.unwrap_or_else(|| panic!("{kind:?} {pitch}: {warnings:?}"));
-            assert!(warning.contains("at t = 0 s") && warning.contains("obstacle"), "{warning}");
+            assert!(warning.contains("t = 0 s") && warning.contains("obstacle"), "{warning}");
         }
     }
 }
@@ -196,6 +196,8 @@ fn slender_cells_that_cross_between_their_nodes() {
             if x[0] > 0.19 {
                 to[0] -= 0.2 - 0.073;
                 to[1] -= 0.0725;
+                // not in the plane of the faces of the other
+                to.iter_mut().skip(2).for_each(|z| *z += 0.0007);
             }
             to
         };
