@@ -10,7 +10,7 @@ pub(crate) struct SurfacePoint {
     count: usize,
     nodes: [usize; 3],
     shares: [f64; 3],
-    /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge.
+    /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge or the middle of a face.
     pub(super) area: f64,
 }
 
@@ -52,6 +52,19 @@ pub(crate) fn edge_points(edge: &[usize], parts: usize) -> impl Iterator<Item = 
             _ => None,
         }
     })
+}
+
+/// A point in the middle of a face of a body in space; none of others.
+pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint> {
+    let locals: &[usize] = match kind {
+        FaceKind::Point | FaceKind::Segment | FaceKind::Segment3 => return None,
+        FaceKind::Triangle => &[0, 1, 2],
+        FaceKind::Triangle6 => &[3, 4, 5],
+        FaceKind::Quadrilateral => &[0, 2],
+        FaceKind::Quadrilateral8 => &[4, 6],
+    };
+    let nodes: Vec<usize> = locals.iter().map(|&local| face[local]).collect();
+    Some(point(&nodes, &vec![1.0 / nodes.len() as f64; nodes.len()], 0.0))
 }
 
 /// Gauss points of the faces of the boundary, which are cut into segments or triangles for them. A

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::size::block_volumes;
 use crate::body::Body;
-use crate::external::{SurfacePoint, boundary_nodes, edge_points, pieces};
+use crate::external::{SurfacePoint, boundary_nodes, edge_points, face_centre, pieces};
 use crate::mesh::Mesh;
 use crate::vector::{dot, norm};
 
@@ -84,7 +84,8 @@ impl<'a> Skin<'a> {
 }
 
 /// The nodes of the boundary, and points on its edges between them wherever these are longer than their cell is thick, so that nothing
-/// as thick as that slips through between two of them.
+/// as thick as that slips through between two of them. In space also the middles of faces: nodes of a body one cell thick are all
+/// in the planes of its sides, where those of another place of it are, too.
 pub(super) fn points(body: &Body) -> Vec<SurfacePoint> {
     let mesh = body.mesh();
     let mut points = boundary_nodes(body);
@@ -96,6 +97,7 @@ pub(super) fn points(body: &Body) -> Vec<SurfacePoint> {
     let mut edges: BTreeMap<[usize; 2], (Vec<usize>, usize)> = BTreeMap::new();
     let cells: Vec<&[usize]> = mesh.cells().collect();
     for (cell, face) in mesh.boundary_faces_of_cells() {
+        points.extend(face_centre(mesh.face_kind(), &face));
         for edge in mesh.kind().edges() {
             let edge: Vec<usize> = edge.iter().map(|&local| cells[cell][local]).collect();
             if !edge[..2].iter().all(|end| face.contains(end)) {
