@@ -127,7 +127,7 @@ impl fmt::Display for MeshEstimate {
             write!(
                 f,
                 "\nWARNING: the estimate may be far off, as what it leaves out {left}: the mesh is so coarse that the body \
-                 would move far on a better one; take quadratic or finer cells"
+                 would move far on a better one; take finer cells, or quadratic ones in place of linear ones"
             )?;
         }
         Ok(())

@@ -44,6 +44,9 @@ fn meshes() {
         Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()
     };
     let corners = [0.0, 0.0, 1.0, 0.0, 0.0, 1.0];
+    let square = vec![0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 1.0];
+    let twice = Mesh::new(2, square, grid().kind(), vec![0, 1, 2, 0, 2, 3, 1, 2, 0]);
+    says(twice, &["nodes of cell 3 = [2, 3, 1]", "those of cell 1", "count twice"]);
     assert!(triangle(corners, [0, 1, 2]).is_ok());
     says(triangle(corners, [0, 2, 1]), &["cell 1", "[1, 3, 2]", "clockwise", "reverse"]);
     says(triangle([0.0, 0.0, 1.0, 0.0, 2.0, 0.0], [0, 1, 2]), &["cell 1", "flat"]);
@@ -300,6 +303,32 @@ fn springs() {
     );
     let twice = scene().spring(good()).spring(good()).phase(phase());
     says(simulate(&twice), &["spring name = \"A1\"", "taken"]);
+}
+
+/// On the outer wall of a ring or a shell, alone or together with the inner one, pressure would shrink the body.
+#[test]
+fn chambers_around_the_body() {
+    let ring = |cells| Mesh::ring(0.04, 0.05, [16, 3], cells).unwrap();
+    for cells in [Cells::Triangles, Cells::Triangles6, Cells::Rectangles] {
+        let body = Body::new(ring(cells), SQUARE_MATERIAL).thickness(0.01).build().unwrap();
+        let with = |nodes: &str| {
+            let chamber = Chamber::within("c", nodes);
+            Scene::new(body.clone()).chamber(chamber).phase(Phase::until(0.1)).validate()
+        };
+        with("inner").unwrap();
+        says(
+            with("outer"),
+            &["chamber \"c\" nodes = ", "outer", "run around the body", "pressure_on"],
+        );
+        says(with("boundary"), &["chamber \"c\" nodes = ", "boundary", "run around the body"]);
+    }
+    for cells in [SolidCells::Tetrahedra10, SolidCells::Hexahedra] {
+        let mesh = Mesh::cuboid([0.1, 0.1, 0.1], [3, 3, 3], cells).unwrap();
+        let body = Body::new(mesh, SQUARE_MATERIAL).build().unwrap();
+        let around = Scene::new(body).chamber(Chamber::within("c", "boundary"));
+        let around = around.phase(Phase::until(0.1));
+        says(around.validate(), &["chamber \"c\" nodes", "(-1.0e-3 m^3)"]);
+    }
 }
 
 #[test]

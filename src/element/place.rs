@@ -14,13 +14,22 @@ const ROUNDS: usize = 20;
 /// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there; `None` outside
 /// the body.
 pub(crate) fn shares_at(mesh: &Mesh, x: &[f64]) -> Option<Vec<(usize, f64)>> {
-    mesh.cells().find_map(|cell| {
-        let values = with_element!(mesh.kind(), mesh.dimension(), values_at(mesh, cell, x))?;
-        Some(cell.iter().copied().zip(values).collect())
-    })
+    mesh.cells().find_map(|cell| shares_in(mesh, mesh.positions(), cell, x))
 }
 
-/// The shape functions of a cell at the undeformed position `x`; `None` outside it.
+/// The nodes of a cell with their shape functions at the point `x` (m), if nodes are at `positions` (m); `None` outside the
+/// cell.
+pub(crate) fn shares_in(
+    mesh: &Mesh,
+    positions: &[f64],
+    cell: &[usize],
+    x: &[f64],
+) -> Option<Vec<(usize, f64)>> {
+    let values = with_element!(mesh.kind(), mesh.dimension(), values_at(positions, cell, x))?;
+    Some(cell.iter().copied().zip(values).collect())
+}
+
+/// The shape functions of a cell with its nodes at `positions` at the point `x`; `None` outside it.
 fn values_at<
     C: ReferenceCell<N, M>,
     const N: usize,
@@ -28,11 +37,11 @@ fn values_at<
     const D: usize,
     const Q: usize,
 >(
-    mesh: &Mesh,
+    positions: &[f64],
     cell: &[usize],
     x: &[f64],
 ) -> Option<Vec<f64>> {
-    let positions = mesh.positions().as_chunks::<D>().0;
+    let positions = positions.as_chunks::<D>().0;
     let nodes: [[f64; D]; N] = std::array::from_fn(|a| positions[cell[a]]);
     let (x, size) = (SVector::<f64, D>::from_column_slice(x), size(&nodes));
     let away = |node: &[f64; D]| (x - SVector::from(*node)).norm();

@@ -1,6 +1,7 @@
 //! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
 
 mod enclosure;
+mod sides;
 #[cfg(test)]
 mod tests;
 mod walls;
@@ -150,7 +151,32 @@ impl Chamber {
             ChamberForce { name: self.name.clone(), geometry, pressure, has_room: false };
         let natural = force.volume(&vec![0.0; body.dofs()]);
         force.has_room = orientation(natural, body) == Some(1.0);
+        self.check_side(body.mesh(), &force)?;
         Ok(force)
+    }
+
+    /// Closed walls on the boundary of a body that fills its space have the chamber on their other side than the body.
+    fn check_side(&self, mesh: &Mesh, force: &ChamberForce) -> Result<(), InputError> {
+        let Walls::Nodes(nodes @ (Selection::Set(_) | Selection::Box { .. })) = &self.walls else {
+            return Ok(());
+        };
+        let is_closed = !self.is_closed_by_line && !self.is_closed_by_lid;
+        if !is_closed || mesh.kind().dimension() != mesh.dimension() {
+            return Ok(());
+        }
+        match sides::around_the_body(force, mesh) {
+            Some((node, volume)) => Err(InputError::new(
+                self.input("nodes"),
+                format!("{nodes:?}"),
+                format!(
+                    "the walls with node {} run around the body, so that the chamber would be all that is outside of it \
+                     ({volume:.1e} m^3), and pressure in it would shrink the body: name the walls of a room inside; for a \
+                     pressure on the outside, use pressure_on of a phase",
+                    node + 1
+                ),
+            )),
+            None => Ok(()),
+        }
     }
 
     fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {

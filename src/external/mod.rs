@@ -36,3 +36,4 @@ pub(crate) use signal::{Live, TimeTable, VectorSignal};
 pub(crate) use spring::Joint;
 pub use spring::Spring;
 pub(crate) use spring::SpringForce;
+pub(crate) use surface::{SurfacePoint, boundary_nodes, edge_points, face_centre, pieces};

@@ -1,27 +1,27 @@
-//! Points of the boundary of a body at which contact is felt.
+//! Points of the boundary of a body, at which contact is felt.
 
 use crate::body::Body;
 use crate::mesh::FaceKind;
 use crate::vector::{cross, norm};
 
 /// A point that moves with some nodes.
-pub(super) struct SurfacePoint {
+pub(crate) struct SurfacePoint {
     /// How many of the places below are taken.
     count: usize,
     nodes: [usize; 3],
     shares: [f64; 3],
-    /// Area (m^2) of the boundary for which it stands; 1 for a node.
+    /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge or the middle of a face.
     pub(super) area: f64,
 }
 
 impl SurfacePoint {
     /// The nodes that it moves with (counted from 0), and their shares in it, which add up to 1.
-    pub(super) fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
         self.nodes.into_iter().zip(self.shares).take(self.count)
     }
 
     /// Its position or velocity in a field of `dimension` components per node; 0 beyond them.
-    pub(super) fn at(&self, field: &[f64], dimension: usize) -> [f64; 3] {
+    pub(crate) fn at(&self, field: &[f64], dimension: usize) -> [f64; 3] {
         let mut x = [0.0; 3];
         for (node, share) in self.nodes() {
             let of_node = &field[node * dimension..][..dimension];
@@ -32,9 +32,39 @@ impl SurfacePoint {
 }
 
 /// Each boundary node by itself.
-pub(super) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
+pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
     let nodes = body.mesh().boundary_nodes().iter();
     nodes.map(|&node| point(&[node], &[1.0], 1.0)).collect()
+}
+
+/// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They divide it into
+/// `parts` of the same length.
+pub(crate) fn edge_points(edge: &[usize], parts: usize) -> impl Iterator<Item = SurfacePoint> {
+    (1..parts).filter_map(move |part| {
+        let s = part as f64 / parts as f64;
+        match *edge {
+            [a, b] => Some(point(&[a, b], &[1.0 - s, s], 0.0)),
+            [a, b, middle] if 2 * part != parts => {
+                let (from, to) = (1.0 - 2.0 * s, 2.0 * s - 1.0);
+                let shares = [(1.0 - s) * from, s * to, 4.0 * s * (1.0 - s)];
+                Some(point(&[a, b, middle], &shares, 0.0))
+            }
+            _ => None,
+        }
+    })
+}
+
+/// A point in the middle of a face of a body in space; none of others.
+pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint> {
+    let locals: &[usize] = match kind {
+        FaceKind::Point | FaceKind::Segment | FaceKind::Segment3 => return None,
+        FaceKind::Triangle => &[0, 1, 2],
+        FaceKind::Triangle6 => &[3, 4, 5],
+        FaceKind::Quadrilateral => &[0, 2],
+        FaceKind::Quadrilateral8 => &[4, 6],
+    };
+    let nodes: Vec<usize> = locals.iter().map(|&local| face[local]).collect();
+    Some(point(&nodes, &vec![1.0 / nodes.len() as f64; nodes.len()], 0.0))
 }
 
 /// Gauss points of the faces of the boundary, which are cut into segments or triangles for them. A
@@ -90,7 +120,7 @@ fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
 
 /// A face, cut into points, segments or triangles by their local nodes, and the weight of each: a
 /// quadrilateral is cut along both diagonals, and so is the middle of one with mid nodes.
-pub(super) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], f64)> + Clone {
+pub(crate) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], f64)> + Clone {
     let (whole, halves): (&'static [&'static [usize]], &'static [&'static [usize]]) = match face {
         FaceKind::Point => (&[&[0]], &[]),
         FaceKind::Segment => (&[&[0, 1]], &[]),

@@ -17,6 +17,8 @@ const MOST_WRONG: f64 = 0.25;
 const GREEN_LAW: f64 = 2.5;
 const CAUCHY_LAW: f64 = 1.0;
 const NEO_HOOKEAN: f64 = 0.25;
+/// What to take in place of such a law.
+const OF_RUBBER: &str = "take a law of rubber (law = { kind = \"neo-hookean\" })";
 /// How far strains may be wrong under Cauchy strain for that to do.
 const MOST_NONLINEAR: f64 = 0.01;
 /// Strains below this are round-off.
@@ -65,7 +67,11 @@ impl Deformed {
         let slenderness = extent.map(Extent::slenderness);
         let nonlinear =
             slenderness.filter(|_| strain == Strain::Green && self.strain > LEAST_STRAIN);
-        let nonlinear = nonlinear.map(|slenderness| self.nonlinearity(slenderness));
+        // fibres there are with Green's alone
+        let has_fibres = trajectory.body().substances().any(|of| !of.fibres.is_empty());
+        let nonlinear = nonlinear.filter(|_| !has_fibres);
+        let nonlinear =
+            nonlinear.map(|slenderness| self.nonlinearity(trajectory.body(), slenderness));
         let turns = (trajectory.body().mesh().kind().dimension() > 1).then(|| self.turns());
         [self.largest_strain(trajectory.body())].into_iter().chain(turns).chain(nonlinear).collect()
     }
@@ -79,20 +85,27 @@ impl Deformed {
 
     fn largest_strain(&self, body: &Body) -> Indicator {
         let is_plain = |law: Option<Law>| matches!(law, None | Some(Law::StVenantKirchhoff));
-        let (factor, off) = match body.strain() {
-            Strain::Cauchy => (CAUCHY_LAW, "Hooke's law is off by about as much"),
-            Strain::Green if body.substances().any(|substance| is_plain(substance.law)) => {
-                (GREEN_LAW, "St. Venant and Kirchhoff's law is off by some 2.5 times that")
-            }
+        let (factor, off, mend) = match body.strain() {
+            Strain::Cauchy => (
+                CAUCHY_LAW,
+                "Hooke's law is off by about as much",
+                "take strain = \"green\" and a law of rubber (law = { kind = \"neo-hookean\" })",
+            ),
+            Strain::Green if body.substances().any(|substance| is_plain(substance.law)) => (
+                GREEN_LAW,
+                "St. Venant and Kirchhoff's law is off by some 2.5 times that",
+                OF_RUBBER,
+            ),
             Strain::Green
                 if body.substances().any(|substance| substance.law == Some(Law::Corotated)) =>
             {
-                (CAUCHY_LAW, "Hooke's law of the stretches is off by about as much")
+                (CAUCHY_LAW, "Hooke's law of the stretches is off by about as much", OF_RUBBER)
             }
             // constants of others are fitted to what they are for
             Strain::Green => (
                 NEO_HOOKEAN,
                 "rubber stiffens at such strains as only constants that are fitted to it tell",
+                "fit the constants of its law to measurements at such strains",
             ),
         };
         let Self { strain, at: (time, cell), .. } = *self;
@@ -105,7 +118,7 @@ impl Deformed {
         let beyond = || {
             format!(
                 "{said}, cell {} at t = {} s: {off} in its stress, compared with that of rubber; forces there are \
-                 doubtful, shapes less so. Deform it less, take a law of rubber (law = {{ kind = \"neo-hookean\" }}), or measure at such strains",
+                 doubtful, shapes less so. Deform it less, or {mend}",
                 cell + 1,
                 told(time)
             )
@@ -115,7 +128,7 @@ impl Deformed {
 
     /// What Cauchy strain would get wrong, relative to the strain: rotations count as strains, terms of second order are
     /// lost, and so are forces that strains along a slender body exert across it, as its buckling.
-    fn nonlinearity(&self, slenderness: f64) -> Indicator {
+    fn nonlinearity(&self, body: &Body, slenderness: f64) -> Indicator {
         let Self { strain, turn, .. } = *self;
         let wrong =
             ((1.0 - turn.cos()) + 0.5 * strain.powi(2)) / strain + strain * slenderness.powi(2);
@@ -123,7 +136,11 @@ impl Deformed {
         let by =
             if wrong < 1.0 { format!("some {}", percent(wrong)) } else { "more than 100 %".into() };
         let said = format!("Cauchy strain would be wrong by {by} of the strains (limit: {limit})");
-        let enough = || format!("{said}: strain = \"cauchy\" would do, and is faster");
+        let without = match body.substances().any(|substance| substance.law.is_some()) {
+            true => " without a law",
+            false => "",
+        };
+        let enough = || format!("{said}: strain = \"cauchy\"{without} would do, and is faster");
         Indicator::needed("nonlinearity", (wrong, "1"), MOST_NONLINEAR, || said.clone(), enough)
     }
 }

@@ -67,8 +67,9 @@ pub(super) fn depth(
     meetings: &[Meeting],
 ) -> Option<Indicator> {
     let way = travel(trajectory.body(), samples);
-    let deepest = meetings.iter().max_by(|a, b| a.depth().total_cmp(&b.depth()))?;
-    if way == 0.0 || deepest.depth() == 0.0 {
+    let soft = meetings.iter().filter(|meeting| meeting.may_be_soft());
+    let deepest = soft.max_by(|a, b| a.depth().total_cmp(&b.depth()))?;
+    if way == 0.0 {
         return None;
     }
     let part = deepest.depth() / way;

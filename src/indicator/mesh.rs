@@ -1,4 +1,4 @@
-//! What a body tells before it moves: its units, its cells, its pieces.
+//! What a body tells before it moves: its cells, its pieces.
 
 use crate::body::{Body, Dilatation};
 use crate::constraint::PhaseStart;
@@ -8,45 +8,8 @@ use crate::mesh::CellKind;
 use crate::report::Indicator;
 use crate::scene::Scene;
 
-/// Largest size (m) and mass (kg) of a soft body.
-const LARGEST: f64 = 20.0;
-const HEAVIEST: f64 = 1e4;
-/// Slowest and fastest waves sqrt(E/rho) in soft bodies (m/s): jelly has some 1 m/s, steel 5,000.
-const SPEEDS: [f64; 2] = [0.1, 1e4];
 /// Largest Poisson's ratio of cells that lock.
 const MOST_POISSON: f64 = 0.45;
-
-/// A body in other units than metres, kilograms and pascals.
-pub(super) fn units(body: &Body) -> Vec<Indicator> {
-    let (size, mass) = (body.mesh().size(), body.mass());
-    let mend = "is the mesh in mm? Coordinates are metres: divide them by 1000 (in Gmsh: \
-                Mesh.ScalingFactor = 0.001)";
-    let size_told = format!("the body is {size:.3} m across (limit: {LARGEST} m)");
-    let size_beyond = || format!("{size_told}: {mend}");
-    let size =
-        Indicator::trusted("size", (size, "m"), [0.0, LARGEST], || size_told.clone(), size_beyond);
-    let mass_told = format!("the body weighs {mass:.3e} kg (limit: {HEAVIEST} kg)");
-    let mass_beyond = || format!("{mass_told}: {mend}");
-    let mass = Indicator::trusted(
-        "mass",
-        (mass, "kg"),
-        [0.0, HEAVIEST],
-        || mass_told.clone(),
-        mass_beyond,
-    );
-    // one mend for both
-    let mass = Some(mass).filter(|_| !size.is_beyond());
-    let speeds = body.materials().iter().map(|material| {
-        let speed = material.wave_speed();
-        let told = format!(
-            "waves run through the body at {speed:.2e} m/s (limits: {} to {} m/s)",
-            SPEEDS[0], SPEEDS[1]
-        );
-        let beyond = || format!("{told}: young is in Pa, density in kg/m^3");
-        Indicator::trusted("wave-speed", (speed, "m/s"), SPEEDS, || told.clone(), beyond)
-    });
-    [size].into_iter().chain(mass).chain(speeds).collect()
-}
 
 /// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
 /// several times too stiff.

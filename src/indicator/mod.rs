@@ -3,13 +3,16 @@
 //!
 //! | indicator | limit |
 //! | --- | --- |
-//! | [`mesh`]: size and mass of the body, speed of waves in it | 20 m, 10 t, 0.1 to 10,000 m/s |
+//! | [`units`]: size and mass of the body, speed of waves in it | 10 m, 10 t, 0.1 to 10,000 m/s |
+//! | [`units`]: density, modulus (of rubber) | 5 to 25,000 kg/m^3, 2e12 Pa (1e8 Pa) |
+//! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
+//! | [`overlap`]: how deep the body is within itself, as it is drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
 //! | [`coarse`]: how much stiffer linear cells are than the strains that they show | 1.25 times |
-//! | [`touch`]: how deep nodes are inside obstacles | half a cell, 2 % of the body |
+//! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body |
 //! | [`touch`]: obstacles with friction that are met in statics, where it does not act | none |
 //! | [`touch`]: obstacles that act and are never met | none |
 //! | [`chamber`]: the least volume of a chamber | 0 |
@@ -38,15 +41,19 @@ mod chamber;
 mod coarse;
 mod deformed;
 mod felt;
+mod grid;
 mod mesh;
+mod overlap;
 mod pace;
 mod points;
 mod rigid;
 mod shape;
 mod size;
+mod skin;
 mod strain;
 mod symmetry;
 mod touch;
+mod units;
 mod waves;
 
 use deformed::Deformed;
@@ -59,7 +66,7 @@ use crate::trajectory::{Sample, Trajectory};
 impl Scene {
     /// What makes any motion of this scene doubtful, as far as it can be known before a run: a body too large,
     /// too heavy or too fast to be soft (its mesh may be in millimetres), cells that lock, pieces that nothing
-    /// joins. Each warning names what was measured, its limit, and what to change.
+    /// joins, a mesh that overlaps itself, obstacles that it begins inside. Each warning names what was measured, its limit, and what to change.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Scene};
@@ -75,10 +82,16 @@ impl Scene {
     }
 
     /// What can be measured before a run, with limits: the size, mass and speed of waves of the body, its cells, its
-    /// pieces. Those beyond their limits are the [`warnings`](Self::warnings).
+    /// pieces, the obstacles that it begins inside. Those beyond their limits are the [`warnings`](Self::warnings).
     pub fn indicators(&self) -> Vec<Indicator> {
         let body = self.body();
-        mesh::units(body).into_iter().chain(mesh::locking(body)).chain(mesh::pieces(self)).collect()
+        units::units(self)
+            .into_iter()
+            .chain(mesh::locking(body))
+            .chain(mesh::pieces(self))
+            .chain(overlap::drawn(body))
+            .chain(touch::begun_inside(self))
+            .collect()
     }
 }
 
@@ -132,6 +145,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let measured = scene.indicators().into_iter().chain(of_cells(trajectory, &samples));
     let measured = measured.chain(touch::depths(&meetings));
     let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
+    let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(pace::tolerance(trajectory, &samples));
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
@@ -143,6 +157,7 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
     let measured = trajectory.scene().indicators().into_iter();
     let measured = measured.chain(of_cells(trajectory, &samples));
     let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(overlaps(trajectory));
     let measured = measured.chain(touch::slippery(trajectory, &meetings));
     let measured = measured.chain(chamber::volumes(trajectory.scene(), trajectory.samples()));
     measured
@@ -150,10 +165,22 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
         .collect()
 }
 
+/// What of a scene ends its run early, whatever the integrator says: an obstacle that the body begins inside of.
+pub(crate) fn doom(indicators: &[Indicator]) -> Option<&str> {
+    let is_doom = |told: &&Indicator| told.name == touch::START_DEPTH && told.is_doubtful();
+    indicators.iter().find(is_doom).map(|told| told.text.as_str())
+}
+
 /// The largest angle (rad) by which a cell turns.
 #[cfg(feature = "scene-file")]
 pub(crate) fn largest_turn(trajectory: &Trajectory) -> f64 {
     strain::largest_turn(trajectory.body(), &looked_at(trajectory))
+}
+
+/// Whether the body passes through itself.
+fn overlaps(trajectory: &Trajectory) -> Option<Indicator> {
+    let samples = spread(trajectory, MOST_SAMPLES_FOR_OVERLAPS, MOST_CELLS_FOR_OVERLAPS);
+    overlap::overlap(trajectory.body(), &samples)
 }
 
 /// What cells cannot follow.
@@ -170,12 +197,21 @@ fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item 
 const MOST_SAMPLES: usize = 200;
 const MOST_CELLS: usize = 50_000;
 const FEW_SAMPLES: usize = 10;
+/// Overlaps come and go, and are found at less cost.
+const MOST_SAMPLES_FOR_OVERLAPS: usize = 1000;
+const MOST_CELLS_FOR_OVERLAPS: usize = 2_000_000;
 
-/// Samples of a motion, evenly spread over their order, the first and the last among them.
+/// Samples of a motion that most indicators look at.
 fn looked_at(trajectory: &Trajectory) -> Vec<&Sample> {
+    spread(trajectory, MOST_SAMPLES, MOST_CELLS)
+}
+
+/// So many samples of a motion at most, and so many cells in all of them: evenly spread over their order, the first and the last
+/// among them.
+fn spread(trajectory: &Trajectory, most_samples: usize, most_cells: usize) -> Vec<&Sample> {
     let samples = trajectory.samples();
-    let most = MOST_CELLS / trajectory.body().mesh().cell_count();
-    let count = most.clamp(FEW_SAMPLES, MOST_SAMPLES).min(samples.len());
+    let most = most_cells / trajectory.body().mesh().cell_count();
+    let count = most.clamp(FEW_SAMPLES, most_samples).min(samples.len());
     let last = samples.len() - 1; // there is one at least: see `Trajectory::new`
     (0..count).map(|k| &samples[k * last / (count - 1).max(1)]).collect()
 }

@@ -35,7 +35,12 @@ pub(super) fn inertia(samples: &[&Sample]) -> Option<Indicator> {
         percent(part),
         percent(STATIC)
     );
-    let enough = || format!("{said}: inertia hardly acts, equilibria (`pliant static`) would do");
+    let enough = || {
+        format!(
+            "{said}: inertia hardly acts; where friction and viscosity do not matter either, equilibria (`pliant static`) \
+             would do"
+        )
+    };
     Some(Indicator::needed("kinetic-energy", (part, "1"), STATIC, || said.clone(), enough))
 }
 
@@ -109,7 +114,11 @@ pub(super) fn tolerance(trajectory: &Trajectory, samples: &[&Sample]) -> Option<
     );
     let beyond = || {
         let enough = short(0.1 * most * way);
-        format!("{said}, and errors may be as large: set atol_position to {enough} m or below")
+        format!(
+            "{said}, and errors may be as large: set atol_position to {enough} m or below; or, if the body ought to move \
+             further than {} of its size, look at the units of young and of what loads it",
+            percent(way / body.mesh().size())
+        )
     };
     let limits = [0.0, most];
     Some(Indicator::trusted("tolerance", (part, "1"), limits, || said.clone(), beyond))

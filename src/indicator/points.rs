@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::{LN_2, PI};
 
 use super::rigid::travel;
-use super::size::cell_sizes;
+use super::size::least_cell_sizes;
 use crate::input::InputError;
 use crate::report::Indicator;
 use crate::trajectory::{Sample, Trajectory};
@@ -25,7 +25,7 @@ pub(super) fn single(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Ind
     }
     let young =
         body.materials().iter().map(|material| material.young).fold(f64::INFINITY, f64::min);
-    let sizes = cell_sizes(body);
+    let sizes = least_cell_sizes(body);
     let growth = |force: f64, node: usize| match dimension {
         2 => 2.0 * force * LN_2 / (PI * young * body.section()),
         _ => force / (young * sizes[node]),
@@ -56,8 +56,8 @@ pub(super) fn single(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Ind
         let first = found.first().map_or(0, |node| node + 1);
         format!(
             "{} node(s), node {first} among them, are loaded or held with no neighbour (limit: none): the displacement there \
-             grows without bound as cells get finer, by {:.0} % of the motion each time they are halved; share the force \
-             out over the nodes of an edge or a face (`total`, `traction`)",
+             grows without bound as cells get finer, by {:.0} % of the motion each time they are halved; share a load \
+             out over the nodes of an edge or a face (`total`, `traction`), and hold an edge or a face",
             found.len(),
             100.0 * most
         )

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::mesh::quadratic_cells;
 use crate::body::Body;
 use crate::input::short;
 use crate::mesh::{CellKind, Mesh};
@@ -75,8 +76,10 @@ impl Extent {
             return [slender, Indicator::told("cells-through", count as f64, "", told)];
         }
         let told = format!("{told}, which bends (limit: {wanted})");
-        let beyond =
-            || format!("{told}: it may be too stiff; take quadratic cells, or more of them");
+        let beyond = || match quadratic_cells(kind) {
+            Some(mend) => format!("{told}: it may be too stiff; take {mend}, or more of them"),
+            None => format!("{told}: it may be too stiff; take more of them"),
+        };
         let limits = [f64::from(wanted), f64::INFINITY];
         let value = (count as f64, "");
         [slender, Indicator::trusted("cells-through", value, limits, || told.clone(), beyond)]

@@ -2,7 +2,7 @@
 
 use std::ptr;
 
-use super::size::cell_sizes;
+use super::size::least_cell_sizes;
 use crate::body::Body;
 use crate::external::Contact;
 use crate::report::Indicator;
@@ -13,6 +13,8 @@ use crate::vector::norm;
 /// How far a node may be inside an obstacle: this part of its cell, or of the body if that is more.
 const MOST_OF_CELL: f64 = 0.5;
 const MOST_OF_BODY: f64 = 0.02;
+/// The name of the indicator of how deep a body begins inside an obstacle.
+pub(super) const START_DEPTH: &str = "start-depth";
 
 /// How near the body came to an obstacle while that acted.
 pub(super) struct Meeting {
@@ -23,11 +25,18 @@ pub(super) struct Meeting {
     nearest: f64,
     /// The largest depth (m) for its limit (m), and the node there, counted from 0.
     deepest: Deepest,
+    /// Whether nodes were deeper than that at t = 0, which is told [by itself](begun_inside).
+    is_begun_inside: bool,
 }
 
 impl Meeting {
     pub(super) fn obstacle(&self) -> &str {
         &self.obstacle
+    }
+
+    /// Whether the obstacle may be too soft: nodes were inside, and not from the beginning.
+    pub(super) fn may_be_soft(&self) -> bool {
+        self.deepest.depth > 0.0 && !self.is_begun_inside
     }
 
     /// How deep (m) nodes were inside.
@@ -41,6 +50,20 @@ struct Deepest {
     depth: f64,
     limit: f64,
     node: usize,
+}
+
+impl Deepest {
+    const NONE: Self = Self { depth: 0.0, limit: 1.0, node: 0 };
+
+    fn see(&mut self, depth: f64, limit: f64, node: usize) {
+        if depth / limit > self.depth / self.limit {
+            *self = Self { depth, limit, node };
+        }
+    }
+
+    fn is_beyond(&self) -> bool {
+        self.depth > self.limit
+    }
 }
 
 /// How the obstacles that act at `samples` were met there.
@@ -68,7 +91,8 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
                     obstacle: name.to_owned(),
                     speed: 0.0,
                     nearest: f64::INFINITY,
-                    deepest: Deepest { depth: 0.0, limit: 1.0, node: 0 },
+                    deepest: Deepest::NONE,
+                    is_begun_inside: false,
                 });
                 meetings.len() - 1
             });
@@ -77,11 +101,9 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
             meeting.speed = meeting.speed.max(fastest);
             contact.each_distance(sample.time, &sample.u, |distance, node| {
                 meeting.nearest = meeting.nearest.min(distance);
-                let Deepest { depth, limit, .. } = meeting.deepest;
-                if -distance / limits[node] > depth / limit {
-                    meeting.deepest = Deepest { depth: -distance, limit: limits[node], node };
-                }
+                meeting.deepest.see(-distance, limits[node], node);
             });
+            meeting.is_begun_inside |= sample.time <= 0.0 && meeting.deepest.is_beyond();
         }
         last = sample.time;
     }
@@ -91,13 +113,12 @@ pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meet
 /// For each node the depth (m) up to which it may be inside an obstacle, by the smallest of its cells.
 fn depth_limits(body: &Body) -> Vec<f64> {
     let least = MOST_OF_BODY * body.mesh().size();
-    cell_sizes(body).into_iter().map(|size| f64::max(MOST_OF_CELL * size, least)).collect()
+    least_cell_sizes(body).into_iter().map(|size| f64::max(MOST_OF_CELL * size, least)).collect()
 }
 
 /// Nodes inside obstacles.
 pub(super) fn depths(meetings: &[Meeting]) -> impl Iterator<Item = Indicator> {
-    let is_inside = |meeting: &&Meeting| meeting.deepest.depth > 0.0;
-    meetings.iter().filter(is_inside).map(|meeting| {
+    meetings.iter().filter(|meeting| meeting.may_be_soft()).map(|meeting| {
         let Deepest { depth, limit, node } = meeting.deepest;
         let told = format!(
             "node {} is {depth:.2e} m inside obstacle \"{}\" (limit: {limit:.2e} m, half a cell or 2 % of the \
@@ -108,6 +129,40 @@ pub(super) fn depths(meetings: &[Meeting]) -> impl Iterator<Item = Indicator> {
         let beyond = || format!("{told}: raise the stiffness of the obstacle");
         Indicator::trusted("depth", (depth, "m"), [0.0, limit], || told.clone(), beyond)
     })
+}
+
+/// Obstacles of the first phase that the body begins inside of.
+pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
+    let contacts = scene.phases().first().and_then(|phase| scene.contacts(phase).ok());
+    let contacts = contacts.unwrap_or_default();
+    if contacts.is_empty() {
+        return Vec::new();
+    }
+    let limits = depth_limits(scene.body());
+    let of_contact = |contact: &Contact| {
+        let (mut deepest, mut count) = (Deepest::NONE, 0);
+        contact.each_distance(0.0, scene.initial_displacements(), |distance, node| {
+            deepest.see(-distance, limits[node], node);
+            count += usize::from(distance < 0.0);
+        });
+        let Deepest { depth, limit, node } = deepest;
+        let name = contact.obstacle().name();
+        let said = format!(
+            "the body begins with {count} node(s) inside obstacle \"{name}\", node {} the deepest by {depth:.2e} m (limit: \
+             {limit:.2e} m, half a cell or 2 % of the body)",
+            node + 1
+        );
+        let beyond = || {
+            format!(
+                "{said}: it would be thrown out or torn; move the obstacle or the body, or leave the obstacle out of the \
+                 first phase"
+            )
+        };
+        let value = (depth, "m");
+        (depth > 0.0)
+            .then(|| Indicator::trusted(START_DEPTH, value, [0.0, limit], || said.clone(), beyond))
+    };
+    contacts.iter().filter_map(of_contact).collect()
 }
 
 /// Obstacles that touch and would hold the body by friction, in an equilibrium that knows none.

@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use super::mesh::quadratic_cells;
 use super::rigid::without_spin;
 use crate::input::short;
 use crate::report::Indicator;
@@ -63,7 +64,7 @@ pub(super) fn resolution(
         format!("a wavelength of the motion has some {} cells (limit: {limit})", short(cells));
     let beyond = || {
         let finer = short((limit / cells).max(1.1));
-        let or = if quadratic { "" } else { ", or quadratic cells" };
+        let or = quadratic_cells(kind).map_or(String::new(), |cells| format!(", or {cells}"));
         format!(
             "{said}: they make its waves too fast or too slow; take a mesh {finer} times as fine{or}"
         )

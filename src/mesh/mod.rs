@@ -43,7 +43,7 @@ impl Mesh {
     ///
     /// # Errors
     /// Coordinates that are not finite, a dimension below that of the cells or above 3, a cell with
-    /// a node that does not exist. (Inverted and flat cells are found when a body is made of it.)
+    /// a node that does not exist, two cells of the same nodes. (Inverted and flat cells are found when a body is made of it.)
     pub fn new(
         dimension: usize,
         positions: Vec<f64>,
@@ -72,6 +72,18 @@ impl Mesh {
                 format!("node of cell {}", at / kind.nodes() + 1),
                 connectivity[at] + 1,
                 format!("the mesh has the nodes 1 to {nodes}"),
+            ));
+        }
+        if let Some([first, second]) = twice(connectivity.chunks_exact(kind.nodes())) {
+            let nodes = connectivity.chunks_exact(kind.nodes()).nth(second).unwrap_or_default();
+            let nodes: Vec<usize> = nodes.iter().map(|node| node + 1).collect();
+            return Err(InputError::new(
+                format!("nodes of cell {}", second + 1),
+                format!("{nodes:?}"),
+                format!(
+                    "they are those of cell {}, too: it would count twice, leave one of them out",
+                    first + 1
+                ),
             ));
         }
         Ok(Self::named(dimension, positions, kind, connectivity))
@@ -265,6 +277,19 @@ impl Mesh {
         };
         (0..self.dimension).map(|axis| extent(axis).powi(2)).sum::<f64>().sqrt()
     }
+}
+
+/// The first two cells that have the same nodes, in whatever order.
+fn twice<'a>(cells: impl Iterator<Item = &'a [usize]>) -> Option<[usize; 2]> {
+    let sorted = cells.map(|cell| {
+        let mut nodes = cell.to_vec();
+        nodes.sort_unstable();
+        nodes
+    });
+    let mut sorted: Vec<(Vec<usize>, usize)> = sorted.zip(0..).collect();
+    sorted.sort_unstable();
+    let same = sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    same.map(|pair| [pair[0].1, pair[1].1]).min_by_key(|pair| pair[1])
 }
 
 fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {

@@ -56,7 +56,12 @@ pub struct Scene {
     forces: Forces,
     phases: Vec<Phase>,
     start: Start,
+    unusual: Vec<String>,
 }
+
+/// What of a scene may be [unusual](Scene::unusual): the names of the indicators of its units.
+pub(crate) const UNITS: [&str; 7] =
+    ["size", "mass", "density", "young", "wave-speed", "thickness", "weight"];
 
 impl Scene {
     /// A scene with a body alone, at rest in its undeformed shape at t = 0.
@@ -70,6 +75,7 @@ impl Scene {
             obstacles: Vec::new(),
             forces: Forces::new(),
             phases: Vec::new(),
+            unusual: Vec::new(),
         }
     }
 
@@ -110,6 +116,24 @@ impl Scene {
     pub fn phase(mut self, phase: Phase) -> Self {
         let number = self.phases.len() + 1;
         self.phases.push(phase.or_named(format!("phase {number}")));
+        self
+    }
+
+    /// Quantities that are meant as they are, though a soft body in SI units rarely has such: of `size`, `mass`, `density`,
+    /// `young`, `wave-speed`, `thickness` and `weight` (the strain of a column as high as the body under its own weight).
+    /// [Indicators](Self::indicators) with these names keep their numbers and warn of nothing.
+    ///
+    /// ```
+    /// # use pliant::{Body, Cells, Material, Mesh, Phase, Scene};
+    /// let mesh = Mesh::rectangle([15.0, 4.0], [16, 5], Cells::Triangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
+    /// let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?).phase(Phase::until(1.0));
+    /// assert!(scene.warnings()[0].contains("15.524 m across"));
+    /// assert!(scene.unusual(["size"]).warnings().is_empty());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn unusual(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        self.unusual.extend(names.into_iter().map(Into::into));
         self
     }
 
@@ -173,6 +197,11 @@ impl Scene {
     /// Number (from 0) of the obstacle with a name; `input` is where that was given.
     pub(crate) fn obstacle_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
         find(name, self.obstacles.iter().map(Obstacle::name), input, "obstacles")
+    }
+
+    /// The quantities that are [unusual](Self::unusual).
+    pub fn unusual_quantities(&self) -> &[String] {
+        &self.unusual
     }
 
     /// Forces that are none of these.
@@ -254,6 +283,9 @@ impl Scene {
     pub(crate) fn forces(&self) -> Result<Vec<Forces>, InputError> {
         self.first_phase()?;
         self.initial_velocities()?;
+        for name in &self.unusual {
+            find(name, UNITS.into_iter(), "unusual", "quantities")?;
+        }
         let mut start = 0.0;
         for phase in &self.phases {
             let input = format!("end of phase \"{}\"", phase.name);

@@ -25,6 +25,9 @@ pub(super) const TOP: TableKeys = TableKeys::new(
         Key::new("gravity", Holds::Vector, "the acceleration of gravity")
             .in_unit("m/s^2")
             .default("0"),
+        Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
+            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`: they are not [warned of](scene-files.md#warnings).")
+            .default("none"),
         Key::new("body", Holds::Table(&BODY), "what moves").required(),
         Key::new("point", Holds::Tables(&POINT), "point masses"),
         Key::new("initial", Holds::Table(&INITIAL), "how the body moves at first").default("at rest"),
@@ -53,6 +56,11 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
     if let Some(gravity) = top.get("gravity") {
         let gravity = gravity.vector(scene.body().dimension())?;
         scene = scene.gravity(gravity);
+    }
+    if let Some(names) = top.get("unusual") {
+        let names = names.list()?;
+        let names = names.iter().map(|name| name.string().map(str::to_owned));
+        scene = scene.unusual(names.collect::<Result<Vec<String>, Error>>()?);
     }
     // a state to start from is of the mesh as it is given, or of the finer one that the scene moves to
     let initial = top.get("initial");

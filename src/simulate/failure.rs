@@ -3,6 +3,7 @@
 use super::stepper::Failed;
 use crate::integrate::{self, Cause};
 use crate::report::Counts;
+use crate::trajectory::Interrupted;
 
 /// Steps in a row that may be too small to move time ahead in double precision.
 pub(super) const STANDING: usize = 100;
@@ -41,9 +42,15 @@ pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
     format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
 }
 
-/// The error of an integrator in words of mechanics, with the likely cause and what to try; other errors as they are.
-pub(super) fn in_mechanics(source: Failed) -> Failed {
-    let Some(integrate::Error::Integration(error)) = source.downcast_ref() else { return source };
+/// The error of an integrator in words of mechanics, with the likely cause and what to try, which is the `doom` of the
+/// scene if it has one; other errors as they are.
+pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
+    let Some(integrate::Error::Integration(error)) = source.downcast_ref() else {
+        return match doom.filter(|_| !source.is::<Interrupted>()) {
+            Some(doom) => format!("{source}; most likely as {doom}").into(),
+            None => source,
+        };
+    };
     let (what, mend) = match &error.cause {
         // the words of a force, or of a function of the scene
         Cause::Fatal(_) => match &error.source {
@@ -83,5 +90,6 @@ pub(super) fn in_mechanics(source: Failed) -> Failed {
         | Cause::HigherIndex { .. }
         | Cause::Other => return source,
     };
+    let mend = doom.unwrap_or(mend);
     format!("{what}: {mend} ({}, order {})", error.integrator, error.order).into()
 }

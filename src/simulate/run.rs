@@ -391,7 +391,7 @@ impl Run {
             method: self.settings.method,
             time: self.time,
             step,
-            source: in_mechanics(source),
+            source: in_mechanics(source, indicator::doom(&trajectory.report.indicators)),
             trajectory,
         })
         .into()

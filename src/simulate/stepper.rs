@@ -118,8 +118,9 @@ impl<I: Integrator<System: Form> + Send> Stepper for I {
 fn compression(indefinite: usize) -> Option<String> {
     (indefinite > 0).then(|| {
         format!(
-            "{indefinite} Newton matrices were not positive definite: the body is under strong \
-             compression, where it buckles or collapses, or friction falls with the speed"
+            "{indefinite} Newton matrices were not positive definite, which costs time: at states that were tried and given \
+             up, or because friction falls with the speed, or because the body is pressed together until it may buckle \
+             or collapse; if it is, see whether it ought to"
         )
     })
 }

@@ -111,7 +111,8 @@ impl System {
         }
         self.newton.solver.factorize_indefinite().map_err(|_| {
             Failure::Recoverable(
-                "the Newton matrix is singular (a body under strong compression)".into(),
+                "the Newton matrix is singular (a body that is about to buckle or to collapse)"
+                    .into(),
             )
         })
     }

@@ -22,6 +22,7 @@ mod large;
 mod moving_obstacles;
 mod observer;
 mod oscillating;
+mod overlaps;
 mod planes;
 mod readings;
 mod relaxing;

@@ -2,7 +2,7 @@
 
 use pliant::mesh::CellKind;
 use pliant::{
-    Axis, Body, Cells, Material, Mesh, Obstacle, Phase, Plane, Sampling, Scene, Settings,
+    Axis, Body, Cells, Law, Material, Mesh, Obstacle, Phase, Plane, Sampling, Scene, Settings,
     SolidCells, Spring, Statics, Strain, Verdict,
 };
 
@@ -87,12 +87,14 @@ fn indicators_within_their_limits() {
         .phase(Phase::until(1e-7));
     let before = scene.indicators();
     let names: Vec<&str> = before.iter().map(|indicator| indicator.name).collect();
-    assert_eq!(names, ["size", "mass", "wave-speed", "poisson", "pieces"]);
+    let units = ["size", "mass", "density", "young", "wave-speed", "thickness"];
+    assert_eq!(names[..6], units);
+    assert_eq!(names[6..], ["poisson", "pieces", "drawn-overlap"]);
     // E 5e4 over density 1000
-    assert!((before[2].value - 50_f64.sqrt()).abs() < 1e-12);
+    assert!((before[4].value - 50_f64.sqrt()).abs() < 1e-12);
     let motion = scene.simulate(&Settings::default(), &Sampling::phase_ends()).unwrap();
     let measured = &motion.report().indicators;
-    assert_eq!(measured[..5], before);
+    assert_eq!(measured[..9], before);
     let turn = measured.iter().find(|indicator| indicator.name == "turn").unwrap();
     assert!((turn.value - 3.1).abs() < 1e-3, "{turn}");
     assert_eq!((turn.limits, turn.unit, turn.verdict), ([0.0, 10.0], "degrees", Verdict::Fine));
@@ -102,24 +104,97 @@ fn indicators_within_their_limits() {
 
 #[test]
 fn units_of_other_systems() {
-    let large = |size: f64, density: f64, young: f64| {
+    let sheet = |size: f64, material: pliant::Substance, thickness: f64| {
         let mesh = Mesh::rectangle([0.6 * size, 0.8 * size], [2, 2], Cells::Triangles).unwrap();
-        scene(
-            Body::new(mesh, Material { density, young, ..SOFT })
-                .strain(Strain::Cauchy)
-                .thickness(1e-3),
-        )
-        .warnings()
+        scene(Body::new(mesh, material).thickness(thickness))
     };
-    assert_eq!(large(19.9, 1000.0, 1e5), NONE);
-    only(&large(20.1, 1000.0, 1e5), &["20.100 m", "limit: 20 m", "is the mesh in mm?", "0.001"]);
+    let large = |size: f64, density: f64, young: f64| {
+        sheet(size, Material { density, young, ..SOFT }.into(), 1e-3).warnings()
+    };
+    assert_eq!(large(9.9, 1000.0, 1e5), NONE);
+    let parts = ["10.100 m", "limit: 10 m", "is the mesh in mm?", "0.001", "unusual = [\"size\"]"];
+    only(&large(10.1, 1000.0, 1e5), &parts);
     // 0.48 size^2 h rho
-    assert_eq!(large(10.0, 2e5, 1e7), NONE);
-    only(&large(10.0, 2.1e5, 1e7), &["1.008e4 kg", "limit: 10000 kg", "is the mesh in mm?"]);
+    let heavy = |thickness| sheet(9.0, Material { density: 2e4, ..SOFT }.into(), thickness);
+    assert_eq!(heavy(0.0128).warnings(), NONE);
+    only(&heavy(0.0129).warnings(), &["1.003e4 kg", "limit: 10000 kg", "is the mesh in mm?"]);
     assert_eq!(large(1.0, 1000.0, 11.0), NONE);
     only(&large(1.0, 1000.0, 9.0), &["9.49e-2 m/s", "0.1 to 10000 m/s", "young is in Pa"]);
-    assert_eq!(large(1.0, 1.0, 0.99e8), NONE);
-    only(&large(1.0, 1.0, 1.01e8), &["1.00e4 m/s", "density in kg/m^3"]);
+    assert_eq!(large(1.0, 10.0, 0.99e9), NONE);
+    only(&large(1.0, 10.0, 1.01e9), &["1.00e4 m/s", "density in kg/m^3"]);
+    // silicone in g/cm^3, in g/m^3
+    only(&large(0.1, 1.07, 2e5), &["density is 1.07 kg/m^3", "limits: 5 to 25000", "g/cm^3"]);
+    only(&large(0.1, 1.07e6, 2e5), &["density is 1070000"]);
+    // moduli that rubber has not, though plastics and metals have them
+    let silicone = |young| Material { density: 1070.0, young, ..SOFT };
+    let rubber = |young| sheet(0.1, silicone(young).law(Law::NeoHookean), 0.01).warnings();
+    assert_eq!(rubber(0.99e8), NONE);
+    only(
+        &rubber(2e8),
+        &["young is 200000000 Pa", "limit for a law of rubber: 100000000 Pa", "soft silicone"],
+    );
+    assert_eq!(sheet(0.1, silicone(2e8).into(), 0.01).warnings(), NONE);
+    // a thickness in mm, and one that makes results those of a metre
+    only(&sheet(0.1, SOFT.into(), 10.0).warnings(), &["10 m thick, 100 times", "in mm?"]);
+    assert_eq!(sheet(0.1, SOFT.into(), 2.0).warnings(), NONE);
+    assert_eq!(sheet(0.02, SOFT.into(), 1.0).warnings(), NONE);
+}
+
+/// A column of height H is strained by rho g H / E at its foot.
+#[test]
+fn bodies_too_soft_for_their_weight() {
+    let hung = |young: f64| {
+        let body = square(Cells::Triangles, Material { young, ..SOFT });
+        scene(body).gravity([0.0, -9.8])
+    };
+    // 1000 x 9.8 x 0.1 Pa
+    assert_eq!(hung(990.0).warnings(), NONE);
+    only(&hung(970.0).warnings(), &["strained by 100 % under its own weight", "limit: 100 %"]);
+    let strain = hung(5e4).indicators();
+    let strain = strain.iter().find(|indicator| indicator.name == "weight").unwrap();
+    assert!((strain.value - 0.0196).abs() < 1e-12, "{strain}");
+}
+
+/// What a scene says to be meant keeps its number, and warns of nothing.
+#[test]
+fn unusual_quantities() {
+    let mesh = Mesh::rectangle([15.0, 4.0], [4, 2], Cells::Triangles).unwrap();
+    let told = scene(Body::new(mesh, Material { density: 1.07, ..SOFT }).thickness(0.01));
+    assert_eq!(told.warnings().len(), 2, "{:?}", told.warnings());
+    let meant = told.unusual(["size", "density"]);
+    assert_eq!(meant.warnings(), NONE);
+    let size = &meant.indicators()[0];
+    assert!(size.value > 15.0 && size.text.contains("meant"), "{size}");
+    let error = meant.unusual(["sise"]).validate().unwrap_err().to_string();
+    assert!(error.contains("unusual = \"sise\"") && error.contains("\"size\""), "{error}");
+}
+
+/// A floor through the middle of a square is told before the run, by its depth, and the run that it ruins says so.
+#[test]
+fn floors_through_the_body_at_the_start() {
+    let through = |floor: f64, stiffness: f64| {
+        let body = square(Cells::Triangles6, SOFT).strain(Strain::Green);
+        let floor = Obstacle::half_plane([0.0, floor], [0.0, 1.0]);
+        scene(body).obstacle(floor.stiffness(stiffness))
+    };
+    let start = through(0.04, 1e7);
+    let parts =
+        ["begins with 7 node(s)", "obstacle \"floor\"", "by 4.00e-2 m", "leave the obstacle out"];
+    only(&start.warnings(), &parts);
+    // half a cell is 2.5 cm
+    assert_eq!(through(0.024, 1e7).warnings(), NONE);
+    let end = start.simulate(&Settings::default(), &Sampling::every(0.01));
+    let warnings = match end {
+        Ok(motion) => motion.report().warnings(),
+        Err(error) => {
+            let said = error.to_string();
+            parts.iter().for_each(|part| assert!(said.contains(part), "no {part} in: {said}"));
+            let pliant::Error::Integration(failure) = error else { panic!("{said}") };
+            failure.trajectory.report().warnings()
+        }
+    };
+    assert!(warnings.iter().any(|text| text.contains(parts[0])), "{warnings:?}");
+    assert!(!warnings.iter().any(|text| text.contains("raise the stiffness")), "{warnings:?}");
 }
 
 #[test]

@@ -204,3 +204,20 @@ fn a_law_without_a_motion_is_told() -> Outcome {
     assert!(advice.reasons().iter().any(|reason| reason == told), "{advice}");
     Ok(())
 }
+
+/// A bar that is let go under its weight swings; without gravity it stays at rest, and has no frequency to compare.
+#[test]
+fn numbers_that_are_none_are_said_to_be_none() -> Outcome {
+    let material = Material { density: 1000.0, young: 1e5, poisson: 0.0, viscosity: 0.0 };
+    let body = Body::new(Mesh::bar(0.1, 5)?, material).area(1e-4).build()?;
+    let scene = Scene::new(body).gravity([-9.8]).phase(Phase::until(0.2).hold("left"));
+    let quantity = Quantity::named("right.x:frequency", &scene, &[])?;
+    let advice = Adviser::new(&scene, 0.05).quantity(quantity).budget(20.0);
+    let advice = advice.run(&mut |_| ControlFlow::Continue(()))?;
+    let said = advice.to_string();
+    println!("{said}");
+    assert!(advice.terms.iter().any(|(term, error)| *term == Term::Gravity && error.is_nan()));
+    assert!(said.contains("without gravity there is no right.x:frequency to compare"), "{said}");
+    assert!(!said.contains("NaN"), "{said}");
+    Ok(())
+}

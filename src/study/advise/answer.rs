@@ -16,17 +16,15 @@ impl Advice {
         let mut reasons = Vec::new();
         let rich = self.truth.as_ref().map(|truth| &truth.choice);
         for (alpha, change) in &self.alphas {
-            reasons.push(format!(
-                "alpha = {alpha:e} 1/s: ten times as much changes it by {}",
-                percent(*change)
-            ));
+            let change = self.change(*change);
+            reasons.push(format!("alpha = {alpha:e} 1/s: ten times as much {change}"));
         }
         if let (Some(law), Some(rich)) = (self.law, rich) {
             let other = match rich.strain {
                 Strain::Green => "Cauchy strain in place of Green strain",
                 Strain::Cauchy => "Green strain in place of Cauchy strain",
             };
-            reasons.push(format!("{other} changes it by {}", percent(law)));
+            reasons.push(format!("{other} {}", self.change(law)));
         }
         if self.law.is_none() && rich.is_some_and(|rich| rich.strain == Strain::Cauchy) {
             reasons.push("what Green strain changes is not known: it gave no motion".into());
@@ -53,20 +51,24 @@ impl Advice {
                 reasons.push(match error {
                     0.0 => format!("{mesh}: {unknowns} unknowns; what all are compared with"),
                     _ => {
-                        format!("{mesh}: {unknowns} unknowns, {} {differs}, {time}", percent(error))
+                        let off = self.off(error, differs);
+                        format!("{mesh}: {unknowns} unknowns, {off}, {time}")
                     }
                 });
             }
         }
         for (term, error) in &self.terms {
-            reasons.push(format!("without {term} it changes by {}", percent(*error)));
+            reasons.push(match error.is_nan() {
+                true => format!("without {term} there is no {} to compare", self.quantity),
+                false => format!("without {term} it changes by {}", percent(*error)),
+            });
         }
         if let (Some(error), Some(rich)) = (self.inertia, rich) {
             let other = match rich.inertia {
                 Inertia::Consistent => "lumped inertia",
                 Inertia::Lumped => "consistent inertia",
             };
-            reasons.push(format!("{other} changes it by {}", percent(error)));
+            reasons.push(format!("{other} {}", self.change(error)));
         }
         if let Some(estimate) = &self.mesh_estimate {
             let apart =
@@ -80,6 +82,22 @@ impl Advice {
             ));
         }
         reasons
+    }
+
+    /// A relative change in words: not a number where the quantity is none, as a frequency without swings.
+    fn change(&self, change: f64) -> String {
+        match change.is_nan() {
+            true => format!("leaves no {} to compare", self.quantity),
+            false => format!("changes it by {}", percent(change)),
+        }
+    }
+
+    /// A relative error in words, `differs` after it.
+    fn off(&self, error: f64, differs: &str) -> String {
+        match error.is_nan() {
+            true => format!("no {} to compare", self.quantity),
+            false => format!("{} {differs}", percent(error)),
+        }
     }
 }
 
@@ -109,7 +127,7 @@ impl fmt::Display for Advice {
             (Some(error), None) => {
                 let time = time_text(candidate.seconds);
                 let made_of = made_of(candidate);
-                format!("{}: {} off{made_of} in {time}", candidate.choice, percent(error))
+                format!("{}: {}{made_of} in {time}", candidate.choice, self.off(error, "off"))
             }
             (None, None) => format!("{}: {}", candidate.choice, time_text(candidate.seconds)),
         };

@@ -114,7 +114,9 @@ impl Found {
         })?;
         let mesh = self.meshes.iter().find(|mesh| mesh.choice.is_mesh_of(&of.choice))?;
         let apart = |a: &Solved, b: &Solved| a.seen.distance(&b.seen).mean / truth.seen.scale;
-        Some(Parts { time: apart(of, own), model: apart(own, mesh), mesh: apart(mesh, truth) })
+        let parts @ [time, model, mesh] = [apart(of, own), apart(own, mesh), apart(mesh, truth)];
+        // where one run has no such quantity, nothing is known of them
+        parts.iter().all(|part| part.is_finite()).then_some(Parts { time, model, mesh })
     }
 }
 

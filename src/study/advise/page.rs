@@ -123,7 +123,9 @@ impl Advice {
             (None, true) => " class=\"front\"",
             (None, false) => "",
         };
-        let error = error.filter(|_| !self.is_truth(candidate)).map_or_else(String::new, percent);
+        let error = error
+            .filter(|error| error.is_finite() && !self.is_truth(candidate))
+            .map_or_else(String::new, percent);
         let [time, unknowns] = match failure {
             Some(_) => Default::default(),
             None => [time_text(*seconds), unknowns.to_string()],
