@@ -12,7 +12,7 @@ use super::signal::{self, Signal, finite_at};
 use crate::body::Body;
 use crate::force::{Force, NodalForces, Tangents};
 use crate::input::{InputError, positive};
-use crate::mesh::Selection;
+use crate::mesh::{Mesh, Selection};
 use crate::ode::Failure;
 use crate::sparse::BlockMatrix;
 

@@ -93,7 +93,7 @@ impl LinearlyImplicit {
             true
         };
         let evaluate =
-            |system: &mut S, [y, _]: [&[f64]; 2], out: &mut [f64]| system.rhs(*t, y, out).is_ok();
+            |system: &mut S, [y, _]: [&[f64]; 2], out: &mut [f64]| call::rhs(system, *t, y, out).is_ok();
         check.find(system, *method, Point { y, yp: &[], cj: 0.0 }, multiply, evaluate)
     }
 

@@ -130,7 +130,7 @@ pub(super) fn check_jacobian<S: Dae>(
     times: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
 ) -> i32 {
     let evaluate =
-        |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| system.residual(t, y, yp, out);
+        |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| call::residual(system, t, y, yp, out);
     host.check_jacobian(t, Point { y, yp, cj }, values, times, evaluate)
 }
 

@@ -9,7 +9,7 @@ use super::{
 use crate::{
     input::InputError,
     integrate::{Error, Tolerances},
-    ode::{Failure, Ode},
+    ode::{Failure, Ode, call},
 };
 
 /// df/dy and the factors of I - gamma df/dy, by a linear solver of SUNDIALS. A sparse matrix is analysed once, for all factorizations.
@@ -75,7 +75,7 @@ impl NewtonMatrix {
         };
         let before = differences.evaluations;
         let values = self.jacobian.values_mut();
-        differences.of_rhs(y, slope, values, |y, ydot| system.rhs(t, y, ydot))?;
+        differences.of_rhs(y, slope, values, |y, ydot| call::rhs(system, t, y, ydot))?;
         Ok(differences.evaluations - before)
     }
 

@@ -188,7 +188,9 @@ pub(super) fn check_jacobian<S: Ode>(
     times: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
 ) -> i32 {
     let point = Point { y, yp: &[], cj: 0.0 };
-    host.check_jacobian(t, point, values, times, |system, [y, _], ydot| system.rhs(t, y, ydot))
+    host.check_jacobian(t, point, values, times, |system, [y, _], ydot| {
+        call::rhs(system, t, y, ydot)
+    })
 }
 
 /// The values of df/dy: difference quotients, or the system's own on the pattern of the linear solver.
