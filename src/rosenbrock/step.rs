@@ -92,8 +92,9 @@ impl LinearlyImplicit {
             matrix.multiply(v, out);
             true
         };
-        let evaluate =
-            |system: &mut S, [y, _]: [&[f64]; 2], out: &mut [f64]| call::rhs(system, *t, y, out).is_ok();
+        let evaluate = |system: &mut S, [y, _]: [&[f64]; 2], out: &mut [f64]| {
+            call::rhs(system, *t, y, out).is_ok()
+        };
         check.find(system, *method, Point { y, yp: &[], cj: 0.0 }, multiply, evaluate)
     }
 

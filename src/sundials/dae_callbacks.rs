@@ -129,8 +129,9 @@ pub(super) fn check_jacobian<S: Dae>(
     values: &[f64],
     times: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
 ) -> i32 {
-    let evaluate =
-        |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| call::residual(system, t, y, yp, out);
+    let evaluate = |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| {
+        call::residual(system, t, y, yp, out)
+    };
     host.check_jacobian(t, Point { y, yp, cj }, values, times, evaluate)
 }
 

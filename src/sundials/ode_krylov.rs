@@ -38,9 +38,7 @@ pub(super) unsafe extern "C" fn jacobian_times<S: Ode>(
     if outcome != 0 {
         return outcome;
     }
-    check_jacobian(host, t, y, &[], |system, v, jv| {
-        call::jacobian_times(system, t, y, ydot, v, jv)
-    })
+    check_jacobian(host, t, y, &[], |system, v, jv| call::jacobian_times(system, t, y, ydot, v, jv))
 }
 
 /// `CVLsPrecSetupFn`

@@ -11,8 +11,8 @@ use super::{
     vector::Vector,
 };
 use crate::integrate::{
-    Cause, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length, check_start_time,
-    check_time,
+    Cause, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length,
+    check_start_time, check_time,
 };
 
 /// Code of a call that did what was asked for.
