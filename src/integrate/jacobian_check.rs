@@ -126,8 +126,9 @@ impl JacobianCheck {
             }
             let Some((row, difference)) = self.wrong_row(system, &mut at) else { continue };
             let mut cause = (0.0, None, self.product[row], difference);
-            for j in 0..if y.len() <= MOST_UNKNOWNS { y.len() } else { 0 } {
-                let size = self.tolerances.size_of(j, y[j]).copysign(y[j]);
+            let unknowns = if y.len() <= MOST_UNKNOWNS { y } else { &[] };
+            for (j, &own) in unknowns.iter().enumerate() {
+                let size = self.tolerances.size_of(j, own).copysign(own);
                 self.direction.fill(0.0);
                 self.direction[j] = size;
                 let Self { direction, moved, product, ahead, .. } = self;

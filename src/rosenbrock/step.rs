@@ -95,7 +95,7 @@ impl LinearlyImplicit {
         let evaluate = |system: &mut S, [y, _]: [&[f64]; 2], out: &mut [f64]| {
             call::rhs(system, *t, y, out).is_ok()
         };
-        check.find(system, *method, Point { y, yp: &[], cj: 0.0 }, multiply, evaluate)
+        check.find(system, method, Point { y, yp: &[], cj: 0.0 }, multiply, evaluate)
     }
 
     /// df/dt at (t, y), as a difference quotient within the step.
