@@ -232,7 +232,7 @@ fn rows_are_as_high_as_what_moves_in_them() -> Outcome {
         let groups =
             document.descendants().filter(|node| node.attribute("class") == Some("obstacle"));
         for group in groups {
-            let outline = group.children().filter_map(|node| node.attribute("d")).last();
+            let outline = group.children().filter_map(|node| node.attribute("d")).next_back();
             // 96 chords, none of them cut away
             let chords = outline.map(|d| d.matches('M').count());
             assert_eq!(chords, Some(96), "{columns} columns: {outline:?}");
