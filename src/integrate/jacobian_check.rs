@@ -5,7 +5,7 @@ use super::{error::Cause, tolerances::Tolerances};
 /// Holds products of a supplied Jacobian with directions against difference quotients of the equations.
 ///
 /// That is done with the first Jacobian, the second, the fourth, the eighth and so on, along two directions that share no unknown: where
-/// unknowns start at zero, the first says little. It costs three evaluations of the equations, more where they do not agree.
+/// unknowns start at zero, the first says little. It costs three evaluations of the equations, more where they do not agree, and four products.
 #[derive(Debug)]
 pub(crate) struct JacobianCheck {
     tolerances: Tolerances,
@@ -18,6 +18,8 @@ pub(crate) struct JacobianCheck {
     /// The state moved along it, and the time derivative of a DAE.
     moved: [Vec<f64>; 2],
     product: Vec<f64>,
+    /// Sizes of the terms of each equation, which may cancel each other: the sum of the sizes of its products with both directions.
+    terms: Vec<f64>,
     base: Vec<f64>,
     ahead: Vec<f64>,
     behind: Vec<f64>,
@@ -63,6 +65,7 @@ impl JacobianCheck {
             direction: zeros(),
             moved: [zeros(), Vec::new()],
             product: zeros(),
+            terms: zeros(),
             base: zeros(),
             ahead: zeros(),
             behind: zeros(),
@@ -114,6 +117,16 @@ impl JacobianCheck {
             evaluate(system, [moved, slope], out) && out.iter().all(|x| x.is_finite())
         };
         let seed = self.random;
+        self.terms.fill(0.0);
+        for half in [0, 1] {
+            self.random = seed;
+            self.choose_direction(y, half);
+            if !multiply(system, &self.direction, &mut self.product) {
+                return None;
+            }
+            let sizes = self.terms.iter_mut().zip(&self.product);
+            sizes.for_each(|(size, product)| *size += product.abs());
+        }
         for half in [0, 1] {
             // what is small in a row shows where the largest is left out
             self.random = seed;
@@ -172,7 +185,7 @@ impl JacobianCheck {
         system: &mut S,
         at: &mut impl FnMut(&mut S, &mut [Vec<f64>; 2], &[f64], f64, &mut [f64]) -> bool,
     ) -> Option<(usize, f64)> {
-        let Self { direction, moved, product, base, ahead, behind, rows, .. } = self;
+        let Self { direction, moved, product, terms, base, ahead, behind, rows, .. } = self;
         rows.fill(Row::Open);
         for shift in SHIFTS {
             if !at(system, moved, direction, shift, ahead) {
@@ -180,7 +193,7 @@ impl JacobianCheck {
             }
             for (i, row) in rows.iter_mut().enumerate() {
                 let right = (ahead[i] - base[i]) / shift;
-                if fits(product[i], right, rounding(base[i], ahead[i], shift)) {
+                if fits(product[i], right, rounding([base[i], ahead[i], terms[i]], shift)) {
                     *row = Row::Right;
                 }
             }
@@ -194,7 +207,7 @@ impl JacobianCheck {
             for (i, row) in rows.iter_mut().enumerate().filter(|(_, row)| **row != Row::Right) {
                 let (right, left) = ((ahead[i] - base[i]) / shift, (base[i] - behind[i]) / shift);
                 let mean = 0.5 * (right + left);
-                let rounding = rounding(base[i], ahead[i], shift);
+                let rounding = rounding([base[i], ahead[i], terms[i]], shift);
                 let noise = (right - left).abs() + rounding;
                 let before = *row;
                 *row = if fits(product[i], left, rounding) || fits(product[i], mean, rounding) {
@@ -215,9 +228,10 @@ impl JacobianCheck {
     }
 }
 
-/// What rounding may make of a quotient, where the equations are sums of larger terms.
-fn rounding(base: f64, ahead: f64, shift: f64) -> f64 {
-    (1e3 * f64::EPSILON * base.abs().max(ahead.abs()) + f64::MIN_POSITIVE) / shift
+/// What rounding may make of a quotient of an equation with values and terms of these sizes.
+fn rounding(sizes: [f64; 3], shift: f64) -> f64 {
+    let size = sizes.into_iter().fold(0.0, |most: f64, size| most.max(size.abs()));
+    (1e3 * f64::EPSILON * size + f64::MIN_POSITIVE) / shift
 }
 
 /// Whether two numbers are the same, but for rounding.
