@@ -43,8 +43,8 @@ fn concentrations_stay_positive() {
     println!("free {free:?}, kept {kept:?}");
     for ((free, reached), (kept, kept_reached)) in free.into_iter().zip(kept) {
         assert!(free < -0.5 && reached < 10.0);
-        // IDA puts the unknown to its bound but for rounding
-        assert!(kept > -1e-17 && kept_reached >= end);
+        // C puts the unknown to its bound but for rounding: 2.2e-17 by CVODE, 6e-19 by IDA
+        assert!(kept > -2.5e-17 && kept_reached >= end);
     }
 
     // HIRES survives, with negative concentrations.
