@@ -151,12 +151,11 @@ impl Chamber {
             ChamberForce { name: self.name.clone(), geometry, pressure, has_room: false };
         let natural = force.volume(&vec![0.0; body.dofs()]);
         force.has_room = orientation(natural, body) == Some(1.0);
-        self.check_side(body.mesh(), &force)?;
         Ok(force)
     }
 
     /// Closed walls on the boundary of a body that fills its space have the chamber on their other side than the body.
-    fn check_side(&self, mesh: &Mesh, force: &ChamberForce) -> Result<(), InputError> {
+    pub(crate) fn check_side(&self, mesh: &Mesh, force: &ChamberForce) -> Result<(), InputError> {
         let Walls::Nodes(nodes @ (Selection::Set(_) | Selection::Box { .. })) = &self.walls else {
             return Ok(());
         };

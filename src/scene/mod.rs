@@ -300,7 +300,7 @@ impl Scene {
         unique("chamber", self.chambers.iter().map(Chamber::name))?;
         unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
         for chamber in &self.chambers {
-            chamber.force(&self.body, Vec::new())?;
+            chamber.check_side(self.body.mesh(), &chamber.force(&self.body, Vec::new())?)?;
         }
         for obstacle in &self.obstacles {
             Contact::new(&self.body, obstacle)?;
