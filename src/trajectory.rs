@@ -85,6 +85,8 @@ pub struct Trajectory {
     scene: Scene,
     samples: Vec<Sample>,
     pub(crate) sensors: Vec<Quantity>,
+    /// The least and the largest that each sensor has read, between samples, too; empty unless that was asked for.
+    pub(crate) peaks: Vec<[f64; 2]>,
     pub(crate) report: Report,
 }
 
@@ -98,8 +100,13 @@ impl fmt::Debug for Trajectory {
 impl Trajectory {
     /// A trajectory that begins with the sample `first`.
     pub(crate) fn new(scene: &Scene, report: Report, first: Sample) -> Self {
-        let mut trajectory =
-            Self { scene: scene.clone(), samples: Vec::new(), sensors: Vec::new(), report };
+        let mut trajectory = Self {
+            scene: scene.clone(),
+            samples: Vec::new(),
+            sensors: Vec::new(),
+            peaks: Vec::new(),
+            report,
+        };
         trajectory.push(first);
         trajectory
     }
@@ -162,6 +169,14 @@ impl Trajectory {
         self.samples.push(sample);
     }
 
+    /// Takes note of what the sensors read at any time.
+    pub(crate) fn note_peaks(&mut self, read: &[f64]) {
+        self.peaks.resize(read.len(), [f64::INFINITY, f64::NEG_INFINITY]);
+        for ([least, largest], x) in self.peaks.iter_mut().zip(read) {
+            (*least, *largest) = (least.min(*x), largest.max(*x));
+        }
+    }
+
     /// Takes note of the energies of a state.
     pub(crate) fn note_energy(&mut self, energy: &Energy) {
         let start = self.samples.first().map_or(energy.balance(), |s| s.energy.balance());
@@ -204,7 +219,8 @@ impl Trajectory {
         let first = self.samples.partition_point(|sample| sample.time < time);
         let samples = self.samples[first.min(self.samples.len() - 1)..].to_vec();
         let (scene, sensors) = (self.scene.clone(), self.sensors.clone());
-        Self { scene, samples, sensors, report: self.report.clone() }
+        let peaks = self.peaks.clone();
+        Self { scene, samples, sensors, peaks, report: self.report.clone() }
     }
 
     /// The scene that was run.

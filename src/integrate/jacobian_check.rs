@@ -5,7 +5,7 @@ use super::{error::Cause, tolerances::Tolerances};
 /// Holds products of a supplied Jacobian with directions against difference quotients of the equations.
 ///
 /// That is done with the first Jacobian, the second, the fourth, the eighth and so on, along two directions that share no unknown: where
-/// unknowns start at zero, the first says little. It costs three evaluations of the equations, more where they do not agree, and four products.
+/// unknowns start at zero, the first says little. It costs three evaluations of the equations, more where they do not agree, and two products.
 #[derive(Debug)]
 pub(crate) struct JacobianCheck {
     tolerances: Tolerances,
@@ -17,7 +17,8 @@ pub(crate) struct JacobianCheck {
     direction: Vec<f64>,
     /// The state moved along it, and the time derivative of a DAE.
     moved: [Vec<f64>; 2],
-    product: Vec<f64>,
+    /// Products with both directions.
+    products: [Vec<f64>; 2],
     /// Sizes of the terms of each equation, which may cancel each other: the sum of the sizes of its products with both directions.
     terms: Vec<f64>,
     base: Vec<f64>,
@@ -64,7 +65,7 @@ impl JacobianCheck {
             random: 1,
             direction: zeros(),
             moved: [zeros(), Vec::new()],
-            product: zeros(),
+            products: [zeros(), zeros()],
             terms: zeros(),
             base: zeros(),
             ahead: zeros(),
@@ -121,10 +122,11 @@ impl JacobianCheck {
         for half in [0, 1] {
             self.random = seed;
             self.choose_direction(y, half);
-            if !multiply(system, &self.direction, &mut self.product) {
+            let product = &mut self.products[half];
+            if !multiply(system, &self.direction, product) {
                 return None;
             }
-            let sizes = self.terms.iter_mut().zip(&self.product);
+            let sizes = self.terms.iter_mut().zip(product);
             sizes.for_each(|(size, product)| *size += product.abs());
         }
         for half in [0, 1] {
@@ -134,26 +136,25 @@ impl JacobianCheck {
             if self.direction.iter().all(|v| *v == 0.0) {
                 continue;
             }
-            if !multiply(system, &self.direction, &mut self.product) {
-                return None;
-            }
-            let Some((row, difference)) = self.wrong_row(system, &mut at) else { continue };
-            let mut cause = (0.0, None, self.product[row], difference);
+            let Some((row, difference)) = self.wrong_row(system, half, &mut at) else { continue };
+            let mut cause = (0.0, None, self.products[half][row], difference);
             let unknowns = if y.len() <= MOST_UNKNOWNS { y } else { &[] };
             for (j, &own) in unknowns.iter().enumerate() {
                 let size = self.tolerances.size_of(j, own).copysign(own);
                 self.direction.fill(0.0);
                 self.direction[j] = size;
-                let Self { direction, moved, product, ahead, .. } = self;
+                let Self { direction, moved, products, ahead, .. } = self;
+                let product = &mut products[half];
                 if !multiply(system, direction, product)
                     || !at(system, moved, direction, SHIFTS[1], ahead)
                 {
                     continue;
                 }
                 let quotient = (self.ahead[row] - self.base[row]) / SHIFTS[1];
-                let off = (self.product[row] - quotient).abs();
+                let entry = self.products[half][row];
+                let off = (entry - quotient).abs();
                 if off > cause.0 {
-                    cause = (off, Some(j), self.product[row] / size, quotient / size);
+                    cause = (off, Some(j), entry / size, quotient / size);
                 }
             }
             // whoever goes on all the same is told again
@@ -165,7 +166,7 @@ impl JacobianCheck {
     }
 
     /// A random direction away from zero: some unknowns, each in its size, or the others.
-    fn choose_direction(&mut self, y: &[f64], half: u64) {
+    fn choose_direction(&mut self, y: &[f64], half: usize) {
         for (j, (v, y)) in self.direction.iter_mut().zip(y).enumerate() {
             // Knuth's linear congruences, of which the upper digits are used
             self.random = self
@@ -174,7 +175,7 @@ impl JacobianCheck {
                 .wrapping_add(1_442_695_040_888_963_407);
             let part = 0.5 + 0.5 * ((self.random >> 12) as f64 / (1_u64 << 52) as f64);
             let size = self.tolerances.size_of(j, *y).copysign(*y);
-            *v = if self.random >> 63 == half { part * size } else { 0.0 };
+            *v = if self.random >> 63 == half as u64 { part * size } else { 0.0 };
         }
     }
 
@@ -183,9 +184,11 @@ impl JacobianCheck {
     fn wrong_row<S>(
         &mut self,
         system: &mut S,
+        half: usize,
         at: &mut impl FnMut(&mut S, &mut [Vec<f64>; 2], &[f64], f64, &mut [f64]) -> bool,
     ) -> Option<(usize, f64)> {
-        let Self { direction, moved, product, terms, base, ahead, behind, rows, .. } = self;
+        let Self { direction, moved, products, terms, base, ahead, behind, rows, .. } = self;
+        let product = &products[half];
         rows.fill(Row::Open);
         for shift in SHIFTS {
             if !at(system, moved, direction, shift, ahead) {

@@ -16,14 +16,18 @@ const SCALE: f32 = 2.0;
 pub(crate) fn png(svg: &str) -> Result<Vec<u8>, Box<dyn Error + Send + Sync>> {
     let mut fonts = fontdb::Database::new();
     fonts.load_system_fonts();
-    let Some(any) = fonts.faces().next().map(|face| face.families[0].0.clone()) else {
+    // where none of the fonts asked for is known, one that is; the first of all may be one of symbols, without letters
+    let family = |is_right: &dyn Fn(&str) -> bool| {
+        let mut families = fonts.faces().flat_map(|face| &face.families);
+        families.find(|(name, _)| is_right(name)).map(|(name, _)| name.clone())
+    };
+    let sans = ["Arial", "Liberation Sans", "DejaVu Sans"];
+    let found = sans.iter().find_map(|sans| family(&|name| name == *sans));
+    let found = found.or_else(|| family(&|name| name.contains("Sans")));
+    let Some(found) = found.or_else(|| family(&|_| true)) else {
         return Err("this machine has no fonts: install some, or write SVG".into());
     };
-    // where none of the fonts asked for is known, one that is
-    let sans = ["Arial", "Liberation Sans", "DejaVu Sans"].map(String::from);
-    let known = |name: &String| fonts.faces().any(|face| face.families[0].0 == *name);
-    let family = sans.into_iter().find(known).unwrap_or(any);
-    fonts.set_sans_serif_family(family);
+    fonts.set_sans_serif_family(found);
     let options = Options { fontdb: Arc::new(fonts), ..Options::default() };
     let tree = Tree::from_str(svg, &options)?;
     let size = tree.size().to_int_size().scale_by(SCALE).ok_or("the drawing has no size")?;

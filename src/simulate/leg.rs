@@ -17,6 +17,8 @@ pub(super) struct Good {
     pub(super) energies: [f64; 3],
     /// Where the angles of sensors were.
     pub(super) angles: Angles,
+    /// The least and the largest that each sensor had read.
+    pub(super) peaks: Vec<[f64; 2]>,
 }
 
 /// How a leg ended.

@@ -364,6 +364,7 @@ impl Run {
     /// Takes samples at other times from the end of the last step on.
     pub(super) fn record(&mut self, sampling: &Sampling, sensors: Sensors) {
         self.trajectory.unread(sensors.quantities.clone());
+        self.trajectory.peaks.clear();
         self.angles.keep(|name| sensors.quantities.iter().any(|quantity| quantity.name == name));
         (self.sampling, self.sensors) = (sampling.clone(), sensors);
         if self.trajectory.last().time == self.time {

@@ -20,6 +20,8 @@ pub struct Sampling {
     /// More times (s), ascending.
     also: Vec<f64>,
     sensors: Vec<Sensor>,
+    /// Whether sensors are read within each step, too, for the largest and the least that they come to.
+    finds_peaks: bool,
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -68,6 +70,17 @@ impl Sampling {
     pub(crate) fn also_at(mut self, times: Vec<f64>) -> Self {
         self.also = times;
         self
+    }
+
+    /// Finds the largest and the least that the sensors read, between samples, too: [`Trajectory::peaks`].
+    #[cfg(feature = "study")]
+    pub(crate) fn finding_peaks(mut self) -> Self {
+        self.finds_peaks = true;
+        self
+    }
+
+    pub(super) fn finds_peaks(&self) -> bool {
+        self.finds_peaks
     }
 
     /// Whether a sample within a phase is there for [`also_at`](Self::also_at) alone.

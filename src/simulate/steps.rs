@@ -17,6 +17,9 @@ use crate::trajectory::Interrupted;
 /// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
 const WATCH: usize = 32;
 
+/// Times within a step at which peaks of sensors are sought: a period that takes ten steps has 40, which miss its peak by 0.3 % at most.
+const PARTS: usize = 4;
+
 /// Part of the largest energy that methods may have created in a state that others go on from.
 const CLEAN: f64 = 0.001;
 
@@ -97,13 +100,15 @@ impl Run {
             (self.time, self.stage.leg.taken, self.trajectory.samples().len());
         good.energies = self.trajectory.noted();
         good.angles.clone_from(&self.angles);
+        good.peaks.clone_from(&self.trajectory.peaks);
         good.state.clone_from(&self.state);
     }
 
     /// Goes back to the state last kept.
     pub(super) fn go_back(&mut self) {
-        let Good { time, ref state, taken, samples, energies, ref angles } = self.good;
+        let Good { time, ref state, taken, samples, energies, ref angles, ref peaks } = self.good;
         self.angles.clone_from(angles);
+        self.trajectory.peaks.clone_from(peaks);
         (self.time, self.stage.leg.taken, self.standing) = (time, taken, 0);
         self.state.clone_from(state);
         self.trajectory.go_back(samples, energies);
@@ -139,6 +144,9 @@ impl Run {
             self.complete(&mut taken);
             self.trajectory.push(taken);
         }
+        if self.sampling.finds_peaks() {
+            self.find_peaks(stepper, time, sample)?;
+        }
         let (system, arrived) = arrival(stepper, event, sample)?;
         let step = time - self.time;
         self.time = time;
@@ -152,6 +160,27 @@ impl Run {
         *worst = worst.max(drift);
         self.follow_angles();
         Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
+    }
+
+    /// Reads the sensors at a few times within a step up to `time`, for the largest and the least that they come to.
+    fn find_peaks(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        time: f64,
+        state: &mut [f64],
+    ) -> Result<(), Failed> {
+        for k in 1..=PARTS {
+            let t = match k {
+                PARTS => time,
+                _ => self.time + (time - self.time) * k as f64 / PARTS as f64,
+            };
+            stepper.interpolate(t, state)?;
+            let seen = records::sample(self.number, stepper.system_mut(), t, state);
+            let mut seen = seen.map_err(Failure::into_error)?;
+            self.complete(&mut seen);
+            self.trajectory.note_peaks(&seen.sensors);
+        }
+        Ok(())
     }
 
     /// Shows the observer how far the run has come.

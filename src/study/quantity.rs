@@ -173,6 +173,9 @@ impl Quantity {
     /// Has it read beside what `sampling` reads.
     pub(super) fn read_by(&self, sampling: Sampling) -> Sampling {
         match &self.reading {
+            Some(reading) if self.is_peak() => {
+                sampling.read(SENSOR, reading.clone()).finding_peaks()
+            }
             Some(reading) => sampling.read(SENSOR, reading.clone()),
             None => sampling,
         }
@@ -217,7 +220,13 @@ impl Quantity {
             .collect();
         let mut seen = Seen { dimension: count, values, scale: 0.0 };
         let largest = seen.size(|_, _, x| x).largest;
-        let change = seen.size(|_, k, x| x - start[k]);
+        let mut change = seen.size(|_, k, x| x - start[k]);
+        // what was read between samples
+        let between = trajectory.peaks.last().copied().filter(|_| self.is_peak());
+        let [least_read, largest_read] = between.unwrap_or([start[0]; 2]);
+        for read in [least_read, largest_read] {
+            change.largest = change.largest.max((read - start[0]).abs());
+        }
         let least = (LEAST_CHANGE * largest).max(f64::MIN_POSITIVE);
         let one = |value: f64, scale: f64| Seen {
             dimension: 1,
@@ -231,8 +240,10 @@ impl Quantity {
                 seen
             }
             Part::End => one(series().next_back().unwrap_or(f64::NAN), change.largest),
-            Part::Largest => one(series().fold(start[0], f64::max), change.largest),
-            Part::Least => one(series().fold(start[0], f64::min), change.largest),
+            Part::Largest => {
+                one(series().fold(largest_read.max(start[0]), f64::max), change.largest)
+            }
+            Part::Least => one(series().fold(least_read.min(start[0]), f64::min), change.largest),
             Part::Frequency => {
                 let frequency = swings(&times, series()).map_or(f64::NAN, |(f, _)| f);
                 one(frequency, frequency)
@@ -242,6 +253,11 @@ impl Quantity {
                 one(damping, damping)
             }
         }
+    }
+
+    /// Whether its largest or least value counts, which may lie between samples.
+    fn is_peak(&self) -> bool {
+        matches!(self.part, Part::Largest | Part::Least)
     }
 
     /// Whether all times count, and not one number.

@@ -416,9 +416,10 @@ impl<K, S> Solver<K, S> {
     }
 }
 
-/// `target`, or a time beyond it that C takes for another one than `t`.
+/// `target`, or a time beyond it that C takes for another one than `t`. (It takes 100 units of rounding for none when it looks for a
+/// stop time, and some more in its first step.)
 pub(super) fn apart(t: f64, target: f64) -> f64 {
     let size = t.abs().max(target.abs());
-    let (distance, least) = (target - t, (16.0 * f64::EPSILON * size).max(1e-97));
+    let (distance, least) = (target - t, (256.0 * f64::EPSILON * size).max(1e-97));
     if distance.abs() >= least { target } else { t + (1e6 * least).copysign(distance) }
 }

@@ -244,7 +244,7 @@ fn an_event_may_leave_no_room() {
 fn spans_of_an_ulp_are_integrated() {
     let near = |t: f64, ulps: i64| f64::from_bits((t.to_bits() as i64 + ulps) as u64);
     let mut spans = vec![(0.0, 1e-90), (0.3, 0.1 + 0.2)];
-    for ulps in [1, 2, 3, 4, 7] {
+    for ulps in [1, 2, 3, 4, 7, 15, 40, 99, 130, 300] {
         spans.extend([(0.3, near(0.3, ulps)), (1e9, near(1e9, ulps)), (1.0, near(1.0, -ulps))]);
     }
     let rises = |_: f64, _: &[f64], f: &mut [f64]| {
