@@ -5,7 +5,7 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
-use pulp::Simd;
+use pulp::{NullaryFnOnce, Simd, WithSimd};
 
 use crate::tensor::Real;
 
@@ -124,5 +124,20 @@ impl<S: Simd> Real for Lane<S> {
             }
         }
         std::array::from_fn(|o| Self::load(simd, &made[o].0, 0))
+    }
+
+    /// Entered through `vectorize`, or it would be compiled for the oldest machine.
+    #[inline(never)]
+    fn apart<F: NullaryFnOnce>(self, formula: F) -> F::Output {
+        struct Vectorized<F>(F);
+        impl<F: NullaryFnOnce> WithSimd for Vectorized<F> {
+            type Output = F::Output;
+
+            #[inline(always)]
+            fn with_simd<S: Simd>(self, _: S) -> F::Output {
+                self.0.call()
+            }
+        }
+        self.simd.vectorize(Vectorized(formula))
     }
 }

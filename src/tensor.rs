@@ -7,6 +7,8 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
+use pulp::NullaryFnOnce;
+
 /// A real number: `f64`, or one for each of several cells, computed at once.
 pub(crate) trait Real:
     Copy
@@ -32,6 +34,9 @@ pub(crate) trait Real:
         numbers: [Self; I],
         f: impl Fn([f64; I]) -> [f64; O],
     ) -> [Self; O];
+
+    /// What a formula of numbers of this kind makes, in a function of its own: compiled once, however many call it.
+    fn apart<F: NullaryFnOnce>(self, formula: F) -> F::Output;
 }
 
 impl Real for f64 {
@@ -56,6 +61,11 @@ impl Real for f64 {
         f: impl Fn([f64; I]) -> [f64; O],
     ) -> [Self; O] {
         f(numbers)
+    }
+
+    #[inline(never)]
+    fn apart<F: NullaryFnOnce>(self, formula: F) -> F::Output {
+        formula.call()
     }
 }
 

@@ -7,103 +7,134 @@ use pulp::{Arch, Simd, WithSimd};
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, ElasticLaw, with_law};
+use crate::material::{ByPoint, Deformation, Elastic, ElasticLaw};
+use crate::tensor::Real;
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Strain energy (J), added up in the order of cells, whatever the machine computes at once.
     pub(super) fn strain_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
-        let u = u.as_chunks::<D>().0;
         let all = 0..self.nodes.len();
-        regions.runs(&all).fold(0.0, |sum, (cells, laws)| {
-            with_law!(&laws.elastic, law => {
-                let pass = Pass { elements: self, cells, u, law, sum };
-                if const { Self::CAN_LOCK } && self.mean_dilatation {
-                    Arch::new().dispatch(MeanPass(pass))
-                } else {
-                    Arch::new().dispatch(pass)
-                }
-            })
+        regions.runs(&all).fold(0.0, |sum, (cells, laws)| match &laws.elastic {
+            Elastic::Linear(law) => self.add_energy(cells, law, u, sum),
+            Elastic::StVenantKirchhoff(law) => self.add_energy(cells, law, u, sum),
+            Elastic::ByPoint(law) => self.add_energy(cells, law, u, sum),
         })
+    }
+
+    /// The energy of cells of one law, added to a `sum`.
+    pub(super) fn add_energy(
+        &self,
+        cells: Range<usize>,
+        law: &impl Density,
+        u: &[f64],
+        sum: f64,
+    ) -> f64 {
+        Arch::new().dispatch(Pass { elements: self, cells, u: u.as_chunks::<D>().0, law, sum })
+    }
+}
+
+/// Strain energy per natural volume.
+pub(super) trait Density {
+    /// W (J/m^3)
+    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T;
+
+    /// W_shape (J/m^3), and the measure of volume.
+    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> [T; 2];
+
+    /// U (J/m^3) of a mean dilatation.
+    fn of_mean<T: Real>(&self, dilatation: T) -> T;
+}
+
+/// Of laws whose formulas are compiled into the loop.
+impl<L: ElasticLaw> Density for L {
+    #[inline(always)]
+    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        self.energy(&self.point(L::twice_strain(at)))
+    }
+
+    #[inline(always)]
+    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> [T; 2] {
+        let point = self.point(L::twice_strain(at));
+        [self.energy_of_shape(&point), self.dilatation(&point)]
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [energy, ..] = self.of_volume(dilatation);
+        energy
+    }
+}
+
+impl Density for ByPoint {
+    #[inline(always)]
+    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        self.energy(&at.twice_green())
+    }
+
+    #[inline(always)]
+    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> [T; 2] {
+        self.shape_and_volume(&at.twice_green())
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [energy, ..] = self.of_volume(dilatation);
+        energy
     }
 }
 
 /// The energy of a run of cells of one law, compiled for each kind of machine.
-pub(super) struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
-    pub(super) elements: &'a ElementsOf<N, M, D, Q>,
-    pub(super) cells: Range<usize>,
-    pub(super) u: &'a [[f64; D]],
-    pub(super) law: &'a L,
+struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
+    elements: &'a ElementsOf<N, M, D, Q>,
+    cells: Range<usize>,
+    u: &'a [[f64; D]],
+    law: &'a L,
     /// That of the cells before.
-    pub(super) sum: f64,
+    sum: f64,
 }
 
-impl<L: ElasticLaw, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
+impl<L: Density, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
     for Pass<'_, L, N, M, D, Q>
 {
     type Output = f64;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let law = self.law;
-        self.add_up(simd, |points| {
-            let mut energy = Lane::splat(simd, 0.0);
-            for (volume, at) in points {
-                energy += *volume * law.energy(&law.point(L::twice_strain(at)));
-            }
-            energy
-        })
-    }
-}
-
-/// The same with the mean dilatation of each cell.
-struct MeanPass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize>(
-    Pass<'a, L, N, M, D, Q>,
-);
-
-impl<L: ElasticLaw, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
-    for MeanPass<'_, L, N, M, D, Q>
-{
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let law = self.0.law;
-        self.0.add_up(simd, |points| {
-            let zero = Lane::splat(simd, 0.0);
-            let (mut energy, mut swelling, mut whole) = (zero, zero, zero);
-            for (volume, at) in points {
-                let point = law.point(L::twice_strain(at));
-                energy += *volume * law.energy_of_shape(&point);
-                swelling += *volume * law.dilatation(&point);
-                whole += *volume;
-            }
-            let [of_volume, ..] = law.of_volume(swelling / whole);
-            energy + of_volume * whole
-        })
-    }
-}
-
-impl<L, const N: usize, const M: usize, const D: usize, const Q: usize> Pass<'_, L, N, M, D, Q> {
-    /// The sum with what `of_cells` makes of the points of as many cells as a register holds.
-    #[inline(always)]
-    fn add_up<S: Simd>(
-        self,
-        simd: S,
-        of_cells: impl Fn(&[(Lane<S>, Deformation<Lane<S>, M, D>); Q]) -> Lane<S>,
-    ) -> f64 {
-        let Self { elements, cells, u, mut sum, .. } = self;
+        let Self { elements, cells, u, law, mut sum } = self;
+        let is_mean = const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && elements.mean_dilatation;
         let abreast = elements.abreast();
+        let zero = Lane::splat(simd, 0.0);
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
             let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
             let x = elements.gather(simd, start, u);
-            let energies = of_cells(&abreast[block].each_ref().map(|point| {
+            let (mut energy, mut swelling, mut whole) = (zero, zero, zero);
+            for point in &abreast[block] {
                 let point = point.lane(simd, part);
-                let h = gradient(1, &x, &point.gradients);
-                (point.volume, Deformation::new(point.frame, h))
-            }));
+                let at = Deformation::new(point.frame, gradient(1, &x, &point.gradients));
+                if is_mean {
+                    let [of_shape, dilatation] = law.shape_and_volume(&at);
+                    energy += point.volume * of_shape;
+                    swelling += point.volume * dilatation;
+                    whole += point.volume;
+                } else {
+                    energy += point.volume * law.of_point(&at);
+                }
+            }
+            if is_mean {
+                energy += law.of_mean(swelling / whole) * whole;
+            }
             let mut numbers = [0.0; SIDE_BY_SIDE];
-            energies.store(&mut numbers, 0);
+            energy.store(&mut numbers, 0);
             for cell in cells.start.max(start)..cells.end.min(start + S::F64_LANES) {
                 sum += numbers[cell - start];
             }

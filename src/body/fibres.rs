@@ -3,10 +3,7 @@
 //! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the same nodes: its
 //! gradients are those of the shape functions along it, and its frame is its direction.
 
-use pulp::Arch;
-
 use super::elements::ElementsOf;
-use super::energy::Pass;
 use super::forces::ElasticPull;
 use super::tangents::ElasticSlope;
 use crate::element::StrainPoint;
@@ -90,7 +87,7 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure> {
         let u = u.as_chunks::<D>().0;
         self.share_out(forces, |run, first, forces| {
-            self.add(run.clone(), [u], first, forces, ElasticPull::<_, false>(law))
+            self.add(run.clone(), [u], first, forces, ElasticPull { law, is_mean: false })
         })
     }
 
@@ -104,14 +101,13 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
         let u = u.as_chunks::<D>().0;
         self.shares.each(stiffness.rows_mut::<D>(), damping.rows_mut(), &|share, mut rows, _| {
             for run in &self.shares.cells[share] {
-                self.add_to(&mut rows, run.clone(), [u], ElasticSlope::<_, false>(law));
+                self.add_to(&mut rows, run.clone(), [u], ElasticSlope { law, is_mean: false });
             }
         });
     }
 
     fn energy(&self, law: &Fibre, u: &[f64]) -> f64 {
-        let (u, cells) = (u.as_chunks::<D>().0, 0..self.nodes.len());
-        Arch::new().dispatch(Pass { elements: self, cells, u, law, sum: 0.0 })
+        self.add_energy(0..self.nodes.len(), law, u, 0.0)
     }
 }
 

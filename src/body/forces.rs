@@ -22,14 +22,14 @@ use super::regions::{Laws, Regions};
 use super::rows;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, Hooke, Hookean, Linear, with_law};
+use crate::material::{Deformation, Elastic, Hooke, Hookean, Linear};
 use crate::ode::Failure;
 use crate::tensor::{Matrix, Real};
 
 mod pull;
 
 pub(super) use pull::ElasticPull;
-use pull::{Pull, ViscousPull};
+use pull::{CalledPull, Pull, ViscousPull};
 
 /// Which forces are computed element by element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,25 +77,26 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.elastic {
             self.share_out(&mut forces.conservative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    with_law!(laws.elastic, law => {
-                        if const { Self::CAN_LOCK } && self.mean_dilatation {
-                            self.add(cells, [u], first, forces, ElasticPull::<_, true>(&law))
-                        } else {
-                            self.add(cells, [u], first, forces, ElasticPull::<_, false>(&law))
+                    let is_mean = self.mean_dilatation;
+                    match &laws.elastic {
+                        Elastic::Linear(law) => {
+                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
                         }
-                    })
+                        Elastic::StVenantKirchhoff(law) => {
+                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                        }
+                        Elastic::ByPoint(law) => {
+                            self.add(cells, [u], first, forces, CalledPull { law, is_mean })
+                        }
+                    }
                 })
             })?;
         }
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    let law = &laws.viscous;
-                    if const { Self::CAN_LOCK } && self.mean_dilatation {
-                        self.add(cells, [u, v], first, forces, ViscousPull::<true>(law))
-                    } else {
-                        self.add(cells, [u, v], first, forces, ViscousPull::<false>(law))
-                    }
+                    let pull = ViscousPull { law: &laws.viscous, is_mean: self.mean_dilatation };
+                    self.add(cells, [u, v], first, forces, pull)
                 })
             })?;
         }
@@ -115,7 +116,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             self.share_out(forces, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let law: Linear = Hookean(hooke(laws));
-                    self.add(cells, [x], first, forces, ElasticPull::<_, false>(&law))
+                    self.add(cells, [x], first, forces, ElasticPull { law: &law, is_mean: false })
                 })
             })
         };
@@ -219,7 +220,7 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
                 x[k] = elements.gather(simd, start, fields[k]);
             }
             let mut pull_of_mean = None;
-            if P::IS_MEAN {
+            if const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && pull.is_mean() {
                 let (mut sum, mut volume) = (zero, zero);
                 for point in &abreast[block] {
                     let point = point.lane(simd, part);

@@ -12,7 +12,7 @@ use pulp::Arch;
 use super::elements::{ElementsOf, pairs};
 use super::forces::Terms;
 use super::regions::{Laws, Regions};
-use crate::material::{Blocks, Deformation, Elastic, ElasticLaw, with_curved_law, with_law};
+use crate::material::{Blocks, Deformation, Elastic};
 use crate::sparse::{BlockMatrix, Rows};
 use crate::tensor::Matrix;
 
@@ -23,7 +23,7 @@ mod tests;
 
 use pass::Pass;
 pub(super) use slope::ElasticSlope;
-use slope::{OfMean, RateSlope, Slope, ViscousSlope};
+use slope::{CalledSlope, OfMean, RateSlope, Slope, ViscousSlope};
 
 /// Elements as matrices.
 pub(super) trait Tangents {
@@ -58,7 +58,18 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
     ) {
         let mut rows = stiffness.rows_mut::<D>();
         for cell in 0..self.nodes.len() {
-            with_law!(law(regions.of(cell)), law => self.add_at_rest(cell, &law, &mut rows));
+            let is_mean = self.mean_dilatation;
+            match &law(regions.of(cell)) {
+                Elastic::Linear(law) => {
+                    self.add_at_rest(cell, &ElasticSlope { law, is_mean }, &mut rows);
+                }
+                Elastic::StVenantKirchhoff(law) => {
+                    self.add_at_rest(cell, &ElasticSlope { law, is_mean }, &mut rows);
+                }
+                Elastic::ByPoint(law) => {
+                    self.add_at_rest(cell, &CalledSlope { law, is_mean }, &mut rows);
+                }
+            }
         }
     }
 
@@ -74,24 +85,24 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
         let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
         let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
             for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
+                let is_mean = self.mean_dilatation;
                 if terms.elastic {
-                    with_curved_law!(laws.elastic, law => {
-                        if const { Self::CAN_LOCK } && self.mean_dilatation {
-                            self.add_to(&mut stiffness, cells.clone(), [u], ElasticSlope::<_, true>(&law));
-                        } else {
-                            self.add_to(&mut stiffness, cells.clone(), [u], ElasticSlope::<_, false>(&law));
+                    let cells = cells.clone();
+                    match &laws.elastic {
+                        // constant
+                        Elastic::Linear(_) => {}
+                        Elastic::StVenantKirchhoff(law) => {
+                            self.add_to(&mut stiffness, cells, [u], ElasticSlope { law, is_mean });
                         }
-                    });
+                        Elastic::ByPoint(law) => {
+                            self.add_to(&mut stiffness, cells, [u], CalledSlope { law, is_mean });
+                        }
+                    }
                 }
                 if terms.viscous {
                     let law = &laws.viscous;
-                    if const { Self::CAN_LOCK } && self.mean_dilatation {
-                        self.add_to(&mut damping, cells.clone(), [u], RateSlope::<true>(law));
-                        self.add_to(&mut stiffness, cells, [u, v], ViscousSlope::<true>(law));
-                    } else {
-                        self.add_to(&mut damping, cells.clone(), [u], RateSlope::<false>(law));
-                        self.add_to(&mut stiffness, cells, [u, v], ViscousSlope::<false>(law));
-                    }
+                    self.add_to(&mut damping, cells.clone(), [u], RateSlope { law, is_mean });
+                    self.add_to(&mut stiffness, cells, [u, v], ViscousSlope { law, is_mean });
                 }
             }
         };
@@ -101,9 +112,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Adds the tangent at rest of one cell.
-    fn add_at_rest<L: ElasticLaw>(&self, cell: usize, law: &L, rows: &mut Rows<'_, D>) {
+    fn add_at_rest(&self, cell: usize, slope: &impl Slope<1>, rows: &mut Rows<'_, D>) {
         let entries = &self.entries[cell];
-        let slope = ElasticSlope::<_, true>(law);
         let (mut swelling, mut volume) = ([[0.0; D]; N], 0.0);
         let pull = self.mean_dilatation.then_some(0.0);
         for point in self.points(cell) {
@@ -117,7 +127,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             }
         }
         if self.mean_dilatation {
-            let [.., stiff] = law.of_volume(0.0);
+            let [_, stiff] = slope.of_mean(0.0);
             let of_mean = OfMean { force: swelling, motion: swelling, share: stiff / volume };
             add_blocks(entries, rows, &of_mean);
         }

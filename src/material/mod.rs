@@ -18,10 +18,9 @@ pub(crate) use flow::{Components, Step, trace};
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
-pub(crate) use laws::{
-    Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_curved_law, with_law,
-};
+pub(crate) use laws::{ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_law};
 pub use laws::{Law, Strain, Viscosity};
+pub(crate) use response::Tangent;
 pub use substance::Substance;
 
 use crate::input::{InputError, not_negative, positive};

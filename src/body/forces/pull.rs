@@ -1,12 +1,12 @@
 //! What pulls at the points of cells: elastic laws and viscosity, at points or with a mean dilatation.
 
-use crate::material::{Deformation, ElasticLaw, ObjectiveViscosity};
+use crate::material::{ByPoint, Deformation, ElasticLaw, ObjectiveViscosity};
 use crate::tensor::{Matrix, Real, product};
 
 /// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
 pub(in crate::body) trait Pull<const K: usize> {
     /// Whether what resists a change of volume takes the mean of that over the cell.
-    const IS_MEAN: bool;
+    fn is_mean(&self) -> bool;
 
     /// First Piola stress P times the `volume` of the point, with the `pull` of the mean dilatation if that counts, and a number
     /// above 0 where it has meaning.
@@ -32,10 +32,17 @@ pub(in crate::body) trait Pull<const K: usize> {
     fn outside(&self, domain: f64) -> String;
 }
 
-pub(in crate::body) struct ElasticPull<'l, L, const MEAN: bool>(pub(in crate::body) &'l L);
+/// A law whose formulas are compiled into the loop.
+pub(in crate::body) struct ElasticPull<'l, L> {
+    pub(in crate::body) law: &'l L,
+    pub(in crate::body) is_mean: bool,
+}
 
-impl<L: ElasticLaw, const MEAN: bool> Pull<1> for ElasticPull<'_, L, MEAN> {
-    const IS_MEAN: bool = MEAN;
+impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
 
     #[inline(always)]
     fn stress<T: Real, const M: usize, const D: usize>(
@@ -45,9 +52,9 @@ impl<L: ElasticLaw, const MEAN: bool> Pull<1> for ElasticPull<'_, L, MEAN> {
         pull: Option<T>,
         volume: T,
     ) -> (Matrix<T, D, M>, T) {
-        let point = self.0.point(L::twice_strain(at));
-        let stress = product(&L::shape(at), &self.0.stress(&point, pull, volume));
-        (stress, self.0.domain(at.stretch(), &point))
+        let point = self.law.point(L::twice_strain(at));
+        let stress = product(&L::shape(at), &self.law.stress(&point, pull, volume));
+        (stress, self.law.domain(at.stretch(), &point))
     }
 
     #[inline(always)]
@@ -56,24 +63,74 @@ impl<L: ElasticLaw, const MEAN: bool> Pull<1> for ElasticPull<'_, L, MEAN> {
         at: &Deformation<T, M, D>,
         _: &[Matrix<T, D, M>; 1],
     ) -> T {
-        self.0.dilatation(&self.0.point(L::twice_strain(at)))
+        self.law.dilatation(&self.law.point(L::twice_strain(at)))
     }
 
     #[inline(always)]
     fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        let [_, pull, _] = self.0.of_volume(dilatation);
+        let [_, pull, _] = self.law.of_volume(dilatation);
         pull
     }
 
     fn outside(&self, domain: f64) -> String {
-        self.0.outside(domain)
+        self.law.outside(domain)
     }
 }
 
-pub(super) struct ViscousPull<'l, const MEAN: bool>(pub(super) &'l ObjectiveViscosity);
+/// A law that is called.
+pub(super) struct CalledPull<'l> {
+    pub(super) law: &'l ByPoint,
+    pub(super) is_mean: bool,
+}
 
-impl<const MEAN: bool> Pull<2> for ViscousPull<'_, MEAN> {
-    const IS_MEAN: bool = MEAN;
+impl Pull<1> for CalledPull<'_> {
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T) {
+        let (stress, domain) = self.law.stress(&at.twice_green(), at.stretch(), pull, volume);
+        (product(&at.gradient(), &stress), domain)
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+    ) -> T {
+        self.law.dilatation(&at.twice_green())
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [_, pull, _] = self.law.of_volume(dilatation);
+        pull
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        self.law.outside(domain)
+    }
+}
+
+pub(super) struct ViscousPull<'l> {
+    pub(super) law: &'l ObjectiveViscosity,
+    pub(super) is_mean: bool,
+}
+
+impl Pull<2> for ViscousPull<'_> {
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
 
     #[inline(always)]
     fn stress<T: Real, const M: usize, const D: usize>(
@@ -83,7 +140,7 @@ impl<const MEAN: bool> Pull<2> for ViscousPull<'_, MEAN> {
         pull: Option<T>,
         volume: T,
     ) -> (Matrix<T, D, M>, T) {
-        (self.0.stress(at, rate, pull, volume), volume.constant(1.0))
+        (self.law.stress(at, rate, pull, volume), volume.constant(1.0))
     }
 
     #[inline(always)]
@@ -92,12 +149,12 @@ impl<const MEAN: bool> Pull<2> for ViscousPull<'_, MEAN> {
         at: &Deformation<T, M, D>,
         [_, rate]: &[Matrix<T, D, M>; 2],
     ) -> T {
-        self.0.rate_of_dilatation(at, rate)
+        self.law.rate_of_dilatation(at, rate)
     }
 
     #[inline(always)]
     fn of_mean<T: Real>(&self, rate: T) -> T {
-        let [pull, _] = self.0.of_volume(rate);
+        let [pull, _] = self.law.of_volume(rate);
         pull
     }
 

@@ -54,7 +54,8 @@ impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize
             let nothing = [[zero; D]; N];
             let mut of_mean = OfMean { force: nothing, motion: nothing, share: zero };
             let mut pull = None;
-            if P::IS_MEAN {
+            let is_mean = const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && slope.is_mean();
+            if is_mean {
                 let (mut sum, mut volume) = (zero, zero);
                 for point in &abreast[block] {
                     let point = point.lane(simd, part);
@@ -85,7 +86,7 @@ impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize
                     }
                 }
             }
-            if P::IS_MEAN {
+            if is_mean {
                 for a in 1..N {
                     for b in if P::IS_SYMMETRIC { a } else { 1 }..N {
                         sum_up(simd, false, &of_mean.block(a, b), &mut sums[a][b]);

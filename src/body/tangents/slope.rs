@@ -2,7 +2,9 @@
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
-use crate::material::{Block, Blocks, Deformation, ElasticLaw, ObjectiveViscosity};
+use crate::material::{
+    Block, Blocks, ByPoint, Deformation, ElasticLaw, ObjectiveViscosity, Tangent,
+};
 use crate::tensor::{Matrix, Real, product, times};
 
 /// A tangent at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
@@ -11,7 +13,7 @@ pub(in crate::body) trait Slope<const K: usize> {
     const IS_SYMMETRIC: bool;
 
     /// Whether what resists a change of volume takes the mean of that over the cell.
-    const IS_MEAN: bool;
+    fn is_mean(&self) -> bool;
 
     /// The tangent of a point of this `volume`, where a `pull` of a mean dilatation stays as it is.
     fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
@@ -56,11 +58,19 @@ impl<T: Real, const N: usize, const D: usize> Blocks<T, D> for OfMean<T, N, D> {
     }
 }
 
-pub(in crate::body) struct ElasticSlope<'l, L, const MEAN: bool>(pub(in crate::body) &'l L);
+/// Of a law whose formulas are compiled into the loop.
+pub(in crate::body) struct ElasticSlope<'l, L> {
+    pub(in crate::body) law: &'l L,
+    pub(in crate::body) is_mean: bool,
+}
 
-impl<L: ElasticLaw, const MEAN: bool> Slope<1> for ElasticSlope<'_, L, MEAN> {
+impl<L: ElasticLaw> Slope<1> for ElasticSlope<'_, L> {
     const IS_SYMMETRIC: bool = true;
-    const IS_MEAN: bool = MEAN;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
 
     #[inline(always)]
     fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
@@ -71,8 +81,8 @@ impl<L: ElasticLaw, const MEAN: bool> Slope<1> for ElasticSlope<'_, L, MEAN> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> impl Blocks<T, D> {
-        let point = self.0.point(L::twice_strain(at));
-        self.0.tangent(L::shape(at), point, pull, gradients, volume)
+        let point = self.law.point(L::twice_strain(at));
+        self.law.tangent(L::shape(at), point, pull, gradients, volume)
     }
 
     #[inline(always)]
@@ -83,26 +93,81 @@ impl<L: ElasticLaw, const MEAN: bool> Slope<1> for ElasticSlope<'_, L, MEAN> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> (T, [[T; D]; N], [[T; D]; N]) {
-        let point = self.0.point(L::twice_strain(at));
+        let point = self.law.point(L::twice_strain(at));
         // F (dg/dE) g_a
-        let slope = product(&L::shape(at), &self.0.swelling(&point));
+        let slope = product(&L::shape(at), &self.law.swelling(&point));
         let by_nodes = times(product(&slope, gradients), volume);
-        (self.0.dilatation(&point) * volume, by_nodes, by_nodes)
+        (self.law.dilatation(&point) * volume, by_nodes, by_nodes)
     }
 
     #[inline(always)]
     fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
-        let [_, pull, stiff] = self.0.of_volume(dilatation);
+        let [_, pull, stiff] = self.law.of_volume(dilatation);
+        [pull, stiff]
+    }
+}
+
+/// Of a law that is called.
+pub(super) struct CalledSlope<'l> {
+    pub(super) law: &'l ByPoint,
+    pub(super) is_mean: bool,
+}
+
+impl Slope<1> for CalledSlope<'_> {
+    const IS_SYMMETRIC: bool = true;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        pull: Option<T>,
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> impl Blocks<T, D> {
+        let response = self.law.response(&at.twice_green(), pull);
+        Tangent::new(&at.gradient(), &response, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let (dilatation, swelling) = self.law.swelling(&at.twice_green());
+        let slope = product(&at.gradient(), &swelling);
+        let by_nodes = times(product(&slope, gradients), volume);
+        (dilatation * volume, by_nodes, by_nodes)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
+        let [_, pull, stiff] = self.law.of_volume(dilatation);
         [pull, stiff]
     }
 }
 
 /// That of viscous stress by the rate.
-pub(super) struct RateSlope<'l, const MEAN: bool>(pub(super) &'l ObjectiveViscosity);
+pub(super) struct RateSlope<'l> {
+    pub(super) law: &'l ObjectiveViscosity,
+    pub(super) is_mean: bool,
+}
 
-impl<const MEAN: bool> Slope<1> for RateSlope<'_, MEAN> {
+impl Slope<1> for RateSlope<'_> {
     const IS_SYMMETRIC: bool = true;
-    const IS_MEAN: bool = MEAN;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
 
     #[inline(always)]
     fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
@@ -113,7 +178,7 @@ impl<const MEAN: bool> Slope<1> for RateSlope<'_, MEAN> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> impl Blocks<T, D> {
-        self.0.rate_tangent(at, MEAN, gradients, volume)
+        self.law.rate_tangent(at, self.is_mean, gradients, volume)
     }
 
     #[inline(always)]
@@ -130,16 +195,23 @@ impl<const MEAN: bool> Slope<1> for RateSlope<'_, MEAN> {
 
     #[inline(always)]
     fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
-        self.0.of_volume(rate)
+        self.law.of_volume(rate)
     }
 }
 
 /// That of viscous stress by the deformation.
-pub(super) struct ViscousSlope<'l, const MEAN: bool>(pub(super) &'l ObjectiveViscosity);
+pub(super) struct ViscousSlope<'l> {
+    pub(super) law: &'l ObjectiveViscosity,
+    pub(super) is_mean: bool,
+}
 
-impl<const MEAN: bool> Slope<2> for ViscousSlope<'_, MEAN> {
+impl Slope<2> for ViscousSlope<'_> {
     const IS_SYMMETRIC: bool = false;
-    const IS_MEAN: bool = MEAN;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
 
     #[inline(always)]
     fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
@@ -150,7 +222,7 @@ impl<const MEAN: bool> Slope<2> for ViscousSlope<'_, MEAN> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> impl Blocks<T, D> {
-        self.0.tangent(at, rate, pull, gradients, volume)
+        self.law.tangent(at, rate, pull, gradients, volume)
     }
 
     #[inline(always)]
@@ -163,11 +235,11 @@ impl<const MEAN: bool> Slope<2> for ViscousSlope<'_, MEAN> {
     ) -> (T, [[T; D]; N], [[T; D]; N]) {
         let force = times(product(&at.gradient(), gradients), volume);
         let motion = times(product(rate, gradients), volume);
-        (self.0.rate_of_dilatation(at, rate) * volume, force, motion)
+        (self.law.rate_of_dilatation(at, rate) * volume, force, motion)
     }
 
     #[inline(always)]
     fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
-        self.0.of_volume(rate)
+        self.law.of_volume(rate)
     }
 }

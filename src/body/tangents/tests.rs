@@ -44,14 +44,14 @@ fn is_the_same_on_all_machines<
                     rows: &mut by_place.rows_mut(),
                     cells: cells.clone(),
                     fields: [u, v],
-                    slope: ViscousSlope::<false>(&law),
+                    slope: ViscousSlope { law: &law, is_mean: false },
                 },
                 Pass {
                     elements,
                     rows: &mut by_rate.rows_mut(),
                     cells,
                     fields: [u],
-                    slope: RateSlope::<false>(&law),
+                    slope: RateSlope { law: &law, is_mean: false },
                 },
             );
             [by_place.values, by_rate.values]

@@ -1,6 +1,6 @@
-//! The material laws, one file each, and their register: a new law is a file, a variant of [`Elastic`]
-//! that [`Strain`] chooses, and a line in `with_law`.
+//! The material laws, one file each, and their register: a new law is a file and a variant of [`ByPoint`].
 
+mod by_point;
 mod fibre;
 mod hookean;
 mod invariants;
@@ -12,6 +12,7 @@ mod stretches;
 mod tests;
 mod volume;
 
+pub(crate) use by_point::ByPoint;
 pub(crate) use fibre::Fibre;
 pub(crate) use hookean::{Hookean, Linear, StVenantKirchhoff};
 pub(crate) use objective_viscosity::ObjectiveViscosity;
@@ -146,8 +147,7 @@ pub enum Viscosity {
 pub(crate) enum Elastic {
     Linear(Linear),
     StVenantKirchhoff(StVenantKirchhoff),
-    Rivlin(Rivlin),
-    ByStretches(ByStretches),
+    ByPoint(ByPoint),
 }
 
 impl Elastic {
@@ -161,9 +161,11 @@ impl Elastic {
     ) -> Self {
         let hooke = Hooke::new(lame, cell_dimension, plane);
         let (c1, bulk) = (lame.mu / 2.0, lame.lambda + lame.mu * 2.0 / 3.0);
-        let by_stretches = |kind| Self::ByStretches(ByStretches { kind, across: hooke.across });
+        let by_stretches =
+            |kind| Self::ByPoint(ByPoint::Stretches(ByStretches { kind, across: hooke.across }));
         let rivlin = |first: [f64; 3], second: f64| {
-            Self::Rivlin(Rivlin { first, second, bulk, across: hooke.across })
+            let across = hooke.across;
+            Self::ByPoint(ByPoint::Rivlin(Rivlin { first, second, bulk, across }))
         };
         match (law, strain) {
             (None, Strain::Cauchy) => Self::Linear(Hookean(hooke)),
@@ -191,22 +193,13 @@ macro_rules! with_law {
         match $elastic {
             $crate::material::Elastic::Linear($law) => $expression,
             $crate::material::Elastic::StVenantKirchhoff($law) => $expression,
-            $crate::material::Elastic::Rivlin($law) => $expression,
-            $crate::material::Elastic::ByStretches($law) => $expression,
+            $crate::material::Elastic::ByPoint($crate::material::ByPoint::Rivlin($law)) => {
+                $expression
+            }
+            $crate::material::Elastic::ByPoint($crate::material::ByPoint::Stretches($law)) => {
+                $expression
+            }
         }
     };
 }
 pub(crate) use with_law;
-
-/// The same for tangents: those of linear elasticity are constant, and nothing needs to be compiled for them.
-macro_rules! with_curved_law {
-    ($elastic:expr, $law:ident => $expression:expr) => {
-        match $elastic {
-            $crate::material::Elastic::Linear(_) => {}
-            $crate::material::Elastic::StVenantKirchhoff($law) => $expression,
-            $crate::material::Elastic::Rivlin($law) => $expression,
-            $crate::material::Elastic::ByStretches($law) => $expression,
-        }
-    };
-}
-pub(crate) use with_curved_law;

@@ -133,13 +133,14 @@ impl Rivlin {
         w1 * at.shrink * at.first_slope(zero) * 2.0 + second * (2.0 * self.second) + volume
     }
 
-    /// S and dS/dE, with the numbers of `volume` for J U'(J) and J^2 U''(J).
+    /// S and dS/dE
     #[inline(always)]
-    fn response<T: Real, const M: usize>(
+    pub(super) fn response<T: Real, const M: usize>(
         &self,
         at: &Strained<T, M>,
-        [volume, stiffness]: [T; 2],
+        pull: Option<T>,
     ) -> Response<T, M> {
+        let [volume, stiffness] = self.volume(at, pull);
         let zero = at.swelling.constant(0.0);
         let one = at.swelling.constant(1.0);
         let [above, _] = at.above_rest();
@@ -280,7 +281,7 @@ impl ElasticLaw for Rivlin {
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Blocks<T, D> {
-        Tangent::new(&f, &self.response(&at, self.volume(&at, pull)), gradients, weight)
+        Tangent::new(&f, &self.response(&at, pull), gradients, weight)
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use super::principal::{Principal, Slopes};
 use super::volume::{less_exponential, swollen};
 use crate::material::hooke::{Lame, Plane};
 use crate::material::law::{Blocks, ElasticLaw};
-use crate::material::response::Tangent;
+use crate::material::response::{Response, Tangent};
 use crate::tensor::{Matrix, Real};
 
 /// A law of the principal stretches l, those along the cell first; x are their logarithms.
@@ -244,6 +244,25 @@ fn corotated(mu: f64, twice: [f64; 3], stress: [f64; 3], [pull, stiff]: [f64; 2]
     slopes
 }
 
+impl ByStretches {
+    /// S and dS/dE
+    #[inline(always)]
+    pub(super) fn response<T: Real, const M: usize>(
+        &self,
+        at: &Principal<T, M>,
+        pull: Option<T>,
+    ) -> Response<T, M> {
+        let is_free = self.across.is_free::<M>();
+        at.response(at.each_with(pull, |twice, pull| {
+            let mut slopes = self.kind.slopes(twice, pull);
+            if is_free {
+                slopes.free_across::<M>();
+            }
+            slopes.numbers()
+        }))
+    }
+}
+
 impl ElasticLaw for ByStretches {
     type Point<T: Real, const M: usize> = Principal<T, M>;
 
@@ -307,15 +326,7 @@ impl ElasticLaw for ByStretches {
         gradients: &[[T; M]; N],
         weight: T,
     ) -> impl Blocks<T, D> {
-        let is_free = self.across.is_free::<M>();
-        let numbers = at.each_with(pull, |twice, pull| {
-            let mut slopes = self.kind.slopes(twice, pull);
-            if is_free {
-                slopes.free_across::<M>();
-            }
-            slopes.numbers()
-        });
-        Tangent::new(&f, &at.response(numbers), gradients, weight)
+        Tangent::new(&f, &self.response(&at, pull), gradients, weight)
     }
 
     #[inline(always)]
