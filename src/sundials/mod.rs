@@ -75,6 +75,7 @@ mod progress;
 mod quadratures;
 mod report;
 mod sensitivity;
+mod session;
 mod shape;
 mod signs;
 mod solver;
@@ -95,10 +96,9 @@ pub use linear_solver::LinearSolver;
 pub use mass_form::MassForm;
 pub(crate) use newton_matrix::NewtonMatrix;
 pub use pattern::Pattern;
-pub use quadratures::WithSensitivities;
 pub use sensitivity::{Sensitivities, SensitivityMethod, SensitivitySource};
 pub use signs::Sign;
-pub use solver::Solver;
+pub use solver::{Kind, Solver, WithSensitivities};
 pub use version::{suitesparse_version, version};
 
 pub use crate::integrate::{

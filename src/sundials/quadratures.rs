@@ -3,34 +3,31 @@
 use std::ffi::c_void;
 
 use super::{
-    beside::Quadratures, cvode::CvodeKind, ffi, functions::Named, ida::IdaKind,
-    options::QuadratureOptions, solver::Solver, vector::Vector,
+    beside::Quadratures, ffi, functions::Named, options::QuadratureOptions, session::Session,
+    vector::Vector,
 };
 use crate::{
     input::InputError,
-    integrate::{AbsoluteTolerance, Error, Tolerances, check_time},
+    integrate::{AbsoluteTolerance, Error, Integrator, Tolerances, check_time},
 };
 
-/// What makes a [`Solver`] one of CVODE or IDA, which carry integrals and sensitivities along.
-pub trait WithSensitivities {}
+/// What carries integrals along, as described at [`Solver`](super::Solver).
+pub trait CarriesIntegrals: Integrator {
+    fn quadratures(&self) -> &[f64];
+    fn interpolate_quadratures(
+        &mut self,
+        t: f64,
+        derivative: u32,
+        out: &mut [f64],
+    ) -> Result<(), Error>;
+}
 
-impl WithSensitivities for CvodeKind {}
-impl WithSensitivities for IdaKind {}
-
-impl<K: WithSensitivities, S> Solver<K, S> {
-    /// The integrals of [`quadratures`](crate::ode::Ode::quadratures) from the start to time [`t`](crate::integrate::Integrator::t). A new start
-    /// sets them to zero. (`CVodeGetQuad`, `IDAGetQuad`)
-    #[must_use]
-    pub fn quadratures(&self) -> &[f64] {
+impl<K, S> CarriesIntegrals for Session<K, S> {
+    fn quadratures(&self) -> &[f64] {
         self.quadratures.as_ref().map_or(&[], |quadratures| quadratures.values.as_slice())
     }
 
-    /// As [`interpolate`](crate::integrate::Integrator::interpolate), of the integrals: their first derivative is the integrand.
-    /// (`CVodeGetQuadDky`, `IDAGetQuadDky`)
-    ///
-    /// # Errors
-    /// As for [`interpolate`](crate::integrate::Integrator::interpolate).
-    pub fn interpolate_quadratures(
+    fn interpolate_quadratures(
         &mut self,
         t: f64,
         derivative: u32,
@@ -60,7 +57,7 @@ impl<K: WithSensitivities, S> Solver<K, S> {
     }
 }
 
-impl<K, S> Solver<K, S> {
+impl<K, S> Session<K, S> {
     /// Registers `count` integrals by `init`, if there are any.
     ///
     /// # Safety

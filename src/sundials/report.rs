@@ -7,8 +7,8 @@ use super::{
     host::Source,
     index::Index,
     progress::STRETCH,
+    session::{Memory, Session},
     signs::Violation,
-    solver::{Memory, Solver},
 };
 use crate::integrate::{Cause, Error, IntegrationError, Statistics};
 
@@ -17,7 +17,7 @@ const SINGULAR: [u32; 2] = [ffi::SUNLS_LUFACT_FAIL, ffi::SUNLS_PACKAGE_FAIL_REC]
 /// Codes of a Krylov method that did not converge.
 const NOT_CONVERGED: [u32; 2] = [ffi::SUNLS_CONV_FAIL, ffi::SUNLS_RES_REDUCED];
 
-impl<K, S> Solver<K, S> {
+impl<K, S> Session<K, S> {
     pub(super) fn all_statistics(&self) -> Statistics {
         let Memory { raw: memory, functions } = self.memory;
         let mut s = self.step_statistics();
@@ -180,15 +180,7 @@ impl<K, S> Solver<K, S> {
         self.error(&statistics, cause, message, source)
     }
 
-    /// That a run which does not get on is of higher index, if it is.
-    pub(crate) fn diagnose_index(&mut self) -> Result<(), Error> {
-        match self.higher_index(&Cause::Other) {
-            Some(cause) => Err(self.error(&self.step_statistics(), cause, String::new(), None)),
-            None => Ok(()),
-        }
-    }
-
-    fn error(
+    pub(super) fn error(
         &self,
         statistics: &Statistics,
         cause: Cause,

@@ -6,8 +6,8 @@ use super::{
     differences::Differences,
     ffi,
     progress::{Progress, STRETCH},
+    session::Session,
     signs::check_state,
-    solver::Solver,
     vector::Vector,
 };
 use crate::integrate::{
@@ -18,7 +18,7 @@ use crate::integrate::{
 /// Code of a call that did what was asked for.
 const DONE: i32 = 0;
 
-impl<K, S> Integrator for Solver<K, S> {
+impl<K, S> Integrator for Session<K, S> {
     type System = S;
 
     fn t(&self) -> f64 {
@@ -29,12 +29,10 @@ impl<K, S> Integrator for Solver<K, S> {
         self.y.as_slice()
     }
 
-    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_NORMAL`.
     fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
         self.integrate(t, ffi::CV_NORMAL)
     }
 
-    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_ONE_STEP`.
     fn step(&mut self, towards: f64) -> Result<Reached, Error> {
         self.integrate(towards, ffi::CV_ONE_STEP)
     }
@@ -52,7 +50,6 @@ impl<K, S> Integrator for Solver<K, S> {
         self.interpolant_degree.unwrap_or_else(|| self.last_order())
     }
 
-    /// `CVodeGetDky`, `ARKStepGetDky` or `IDAGetDky`.
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
         check_length("length of out", out.len(), self.y().len())?;
         check_time("t", t)?;
@@ -76,7 +73,6 @@ impl<K, S> Integrator for Solver<K, S> {
         Ok(())
     }
 
-    /// `CVodeSetStopTime`, `ARKStepSetStopTime` or `IDASetStopTime`, with the next step.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(t) = t {
             check_time("stop time", t)?;
@@ -90,7 +86,6 @@ impl<K, S> Integrator for Solver<K, S> {
         Ok(())
     }
 
-    /// `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
     fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
         check_length("length of y", y.len(), self.y().len())?;
         check_start_time("t", t)?;
@@ -115,7 +110,6 @@ impl<K, S> Integrator for Solver<K, S> {
         Ok(())
     }
 
-    /// `ARKStepReset` for ARKODE; the others need a new start.
     fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
         check_length("length of y", y.len(), self.y().len())?;
         check_start_time("t", t)?;
@@ -157,7 +151,7 @@ impl<K, S> Integrator for Solver<K, S> {
     }
 }
 
-impl<K, S> Solver<K, S> {
+impl<K, S> Session<K, S> {
     /// Integrates to `target` (`CV_NORMAL`) or by one step (`CV_ONE_STEP`).
     fn integrate(&mut self, target: f64, task: i32) -> Result<Reached, Error> {
         check_time("target time", target)?;

@@ -4,7 +4,7 @@ use super::options::AdjointOptions;
 use crate::{
     integrate::{AbsoluteTolerance, Cause, Error, IntegrationError, Tolerances},
     sundials::{
-        beside::Backward, ffi, functions::BackwardFunctions, linear::Linear, solver::Solver,
+        beside::Backward, ffi, functions::BackwardFunctions, linear::Linear, session::Session,
         vector::Vector,
     },
 };
@@ -21,7 +21,7 @@ pub(super) struct Callbacks<I, J, Q> {
     pub(super) init_quadratures: Q,
 }
 
-impl<K, S> Solver<K, S> {
+impl<K, S> Session<K, S> {
     /// Has the run forward keep checkpoints.
     ///
     /// # Safety

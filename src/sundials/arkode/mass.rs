@@ -11,7 +11,7 @@ use crate::{
         linear::Linear,
         linear_solver::LinearSolver,
         matrix::{self, Entries},
-        solver::Solver,
+        session::Session,
     },
 };
 
@@ -35,7 +35,7 @@ pub(super) fn check(solver: Option<&LinearSolver>) -> Result<LinearSolver, Error
 
 /// Gives ARKODE a mass matrix, in the form of `solver`, and a solver of its own for it.
 pub(super) fn attach<K, S: Ode>(
-    arkode: &mut Solver<K, S>,
+    arkode: &mut Session<K, S>,
     solver: &LinearSolver,
     kind: MassKind,
 ) -> Result<(), Error> {

@@ -4,8 +4,8 @@ use std::{ffi::c_void, ptr};
 
 use super::{mass, options::ArkodeOptions};
 use crate::{
-    integrate::{Error, check_start, check_whole},
-    ode::{MassKind, Ode},
+    integrate::{Error, Integrator, check_start, check_whole},
+    ode::{Borrowed, MassKind, Ode},
     sundials::{
         ffi,
         functions::Functions,
@@ -16,7 +16,8 @@ use crate::{
             rhs, roots,
         },
         ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
-        solver::{InitialState, Solver},
+        session::{InitialState, Session},
+        solver::{Kind, Owner, Solver},
     },
 };
 
@@ -44,10 +45,17 @@ pub type Arkode<S> = Solver<ArkodeKind, S>;
 #[derive(Debug)]
 pub struct ArkodeKind;
 
-impl<S: Ode> Arkode<S> {
+impl Kind for ArkodeKind {
+    type System = dyn Ode;
+    type Session = dyn Integrator<System = Borrowed<'static, dyn Ode>>;
+
+    const NAME: &'static str = "ARKODE";
+}
+
+impl<S: Ode> Session<ArkodeKind, S> {
     /// The functions for implicit methods.
     const IMPLICIT: &'static Functions = &Functions {
-        integrator: "ARKODE",
+        integrator: ArkodeKind::NAME,
         free: ffi::ARKStepFree,
         solve: ("ARKStepEvolve", |memory, target, t, y, _, task| {
             // SAFETY: whoever calls through the table vouches for the arguments.
@@ -182,6 +190,27 @@ impl<S: Ode> Arkode<S> {
     /// # Errors
     /// [`Error::Input`] for options or initial values that cannot be used.
     pub fn new(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
+        let mut system = Owner::new(system);
+        // SAFETY: the solver drops the session first, and asks it for the system.
+        unsafe {
+            let session = start(system.lend_ode(), t0, y0, options)?;
+            Ok(Self::new_within(session, system))
+        }
+    }
+}
+
+/// A session of [`Arkode`].
+fn start(
+    system: Borrowed<'static, dyn Ode>,
+    t0: f64,
+    y0: &[f64],
+    options: &ArkodeOptions,
+) -> Result<Box<<ArkodeKind as Kind>::Session>, Error> {
+    Ok(Box::new(Session::of_arkode(system, t0, y0, options)?))
+}
+
+impl<S: Ode> Session<ArkodeKind, S> {
+    fn of_arkode(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
         if !options.table.is_imex() {
@@ -249,7 +278,10 @@ impl<S: Ode> Arkode<S> {
 }
 
 /// Says how the equations of implicit stages are solved.
-fn solve_stages<S: Ode>(arkode: &mut Arkode<S>, options: &ArkodeOptions) -> Result<(), Error> {
+fn solve_stages<S: Ode>(
+    arkode: &mut Session<ArkodeKind, S>,
+    options: &ArkodeOptions,
+) -> Result<(), Error> {
     // SAFETY: the values are plain numbers.
     unsafe {
         let set = ("ARKStepSetPredictorMethod", ffi::ARKStepSetPredictorMethod as _);

@@ -3,7 +3,7 @@
 use super::options::{CvodeOptions, Multistep};
 use crate::{
     integrate::{Error, check_form, check_start},
-    ode::Ode,
+    ode::{Borrowed, Ode},
     sundials::{
         ffi,
         functions::{BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions},
@@ -11,8 +11,9 @@ use crate::{
         nonlinear::NonlinearSolver,
         ode_callbacks::{jacobian, newton_rhs, newton_setup, project, quadratures, rhs, roots},
         ode_krylov::{jacobian_times, precondition_setup, precondition_solve},
-        sensitivity::{Access, one_rhs},
-        solver::{InitialState, Solver},
+        sensitivity::{Access, CarriesSensitivities, one_rhs},
+        session::{InitialState, Session},
+        solver::{Kind, Owner, Solver, WithSensitivities},
     },
 };
 
@@ -25,6 +26,15 @@ pub type Cvode<S> = Solver<CvodeKind, S>;
 /// Makes a [`Solver`] one of CVODE.
 #[derive(Debug)]
 pub struct CvodeKind;
+
+impl Kind for CvodeKind {
+    type System = dyn Ode;
+    type Session = dyn CarriesSensitivities<System = Borrowed<'static, dyn Ode>>;
+
+    const NAME: &'static str = "CVODE";
+}
+
+impl WithSensitivities for CvodeKind {}
 
 static FUNCTIONS: Functions = TABLE;
 
@@ -65,7 +75,7 @@ static WITH_CHECKPOINTS: Functions = Functions {
 };
 
 const TABLE: Functions = Functions {
-    integrator: "CVODE",
+    integrator: CvodeKind::NAME,
     free: ffi::CVodeFree,
     solve: ("CVode", |memory, target, t, y, _, task| {
         // SAFETY: whoever calls through the table vouches for the arguments.
@@ -145,6 +155,32 @@ impl<S: Ode> Cvode<S> {
     /// # Errors
     /// [`Error::Input`] for options or initial values that cannot be used.
     pub fn new(system: S, t0: f64, y0: &[f64], options: &CvodeOptions) -> Result<Self, Error> {
+        let mut system = Owner::new(system);
+        // SAFETY: the solver drops the session first, and asks it for the system.
+        unsafe {
+            let session = start(system.lend_ode(), t0, y0, options)?;
+            Ok(Self::new_within(session, system))
+        }
+    }
+}
+
+/// A session of [`Cvode`].
+fn start(
+    system: Borrowed<'static, dyn Ode>,
+    t0: f64,
+    y0: &[f64],
+    options: &CvodeOptions,
+) -> Result<Box<<CvodeKind as Kind>::Session>, Error> {
+    Ok(Box::new(Session::of_cvode(system, t0, y0, options)?))
+}
+
+impl<S: Ode> Session<CvodeKind, S> {
+    pub(in crate::sundials) fn of_cvode(
+        system: S,
+        t0: f64,
+        y0: &[f64],
+        options: &CvodeOptions,
+    ) -> Result<Self, Error> {
         check_start(t0, y0)?;
         options.check(y0)?;
         check_form(&system)?;

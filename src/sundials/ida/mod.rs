@@ -2,9 +2,11 @@
 
 mod options;
 mod setup;
+mod solver;
 mod start;
 
 pub use options::IdaOptions;
 pub(super) use setup::BACKWARD;
-pub use setup::{Ida, IdaKind};
-pub use start::InitialCondition;
+pub use setup::IdaKind;
+pub use solver::Ida;
+pub use start::{InitialCondition, StartsDae};

@@ -12,18 +12,12 @@ use crate::{
         index::index,
         linear_solver::LinearSolver,
         sensitivity::{Access, all_residuals},
-        solver::{InitialState, Solver},
+        session::{InitialState, Session},
         vector::Vector,
     },
 };
 
-/// Integrates F(t, y, y') = 0 with variable step size and order; made by `Ida::new`, used by the methods of
-/// [`Integrator`](crate::integrate::Integrator).
-///
-/// User guide: chapter "Using IDA".
-pub type Ida<S> = Solver<IdaKind, S>;
-
-/// Makes a [`Solver`] one of IDA.
+/// Makes a [`Solver`](crate::sundials::Solver) one of IDA.
 #[derive(Debug)]
 pub struct IdaKind {
     pub(super) knows_algebraic: bool,
@@ -142,17 +136,12 @@ const TABLE: Functions = Functions {
     }),
 };
 
-impl<S: Dae> Ida<S> {
-    /// A solver for `system`, starting at time `t0` from the state `y0` and its time derivative
-    /// `yp0`, which have to satisfy the equations (see [`consistent_start`](Self::consistent_start)).
-    ///
-    /// # Errors
-    /// [`Error::Input`] for options or initial values that cannot be used.
-    pub fn new(
+impl<S: Dae> Session<IdaKind, S> {
+    /// A session that starts as [`Ida::new`](super::Ida::new) says.
+    pub(in crate::sundials) fn of_ida(
         system: S,
         t0: f64,
-        y0: &[f64],
-        yp0: &[f64],
+        (y0, yp0): (&[f64], &[f64]),
         options: &IdaOptions,
     ) -> Result<Self, Error> {
         check_start(t0, y0)?;

@@ -1,6 +1,10 @@
 //! Where IDA starts: states and their time derivatives, and how they are made to fit.
 
-use super::setup::Ida;
+use std::ptr;
+
+use faer::MatRef;
+
+use super::setup::IdaKind;
 use crate::{
     integrate::{
         Callback, Cause, Error, IntegrationError, Integrator, check_finite, check_length,
@@ -8,14 +12,17 @@ use crate::{
     },
     ode::{Dae, Failure},
     sundials::{
+        beside::Vectors,
         ffi,
         index::{Index, index},
+        sensitivity::CarriesSensitivities,
+        session::Session,
         stepping::apart,
         vector::Vector,
     },
 };
 
-/// Which initial values [`Ida::consistent_start`] may change.
+/// Which initial values [`Ida::consistent_start`](super::Ida::consistent_start) may change.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InitialCondition {
     /// The algebraic unknowns and the derivatives of the differential ones; differential unknowns
@@ -32,22 +39,27 @@ const LONGEST_STEP: f64 = 1e-3;
 const NEXT: f64 = 1e-5;
 const RETRIES: usize = 6;
 
-impl<S: Dae> Ida<S> {
-    /// Corrects the initial values so that they satisfy the equations; call it before the first
-    /// step. `first_output` is a time at which output will be wanted: it gives the direction and
-    /// scale of time; where no start is found on that, shorter scales are tried. Sensitivities are corrected, too.
-    /// [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
-    ///
-    /// The equations have to be of index 1: see [`check_index`](Self::check_index).
-    ///
-    /// # Errors
-    /// [`Error::Integration`] with [`Cause::InconsistentStart`](crate::integrate::Cause::InconsistentStart) if no such values were found;
-    /// [`Error::Input`] if steps were taken already, or it is not known which unknowns are
-    /// algebraic.
-    ///
-    /// # Panics
-    /// A panic of the system passes through.
-    pub fn consistent_start(
+/// What a session of IDA can do, as described at [`Ida`](super::Ida).
+pub trait StartsDae: CarriesSensitivities {
+    fn consistent_start(
+        &mut self,
+        unknown: InitialCondition,
+        first_output: f64,
+    ) -> Result<(), Error>;
+    fn check_index(&mut self) -> Result<(), Error>;
+    fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error>;
+    fn set_sensitivities_with(
+        &mut self,
+        s: MatRef<'_, f64>,
+        sp: MatRef<'_, f64>,
+    ) -> Result<(), Error>;
+    fn knows_algebraic(&self) -> bool;
+    fn diagnose_index(&mut self) -> Result<(), Error>;
+    fn yp(&self) -> &[f64];
+}
+
+impl<S: Dae> StartsDae for Session<IdaKind, S> {
+    fn consistent_start(
         &mut self,
         unknown: InitialCondition,
         first_output: f64,
@@ -105,35 +117,7 @@ impl<S: Dae> Ida<S> {
         self.read_consistent_sensitivities()
     }
 
-    /// The error for a start that was not found by steps of these sizes.
-    fn unfound(&mut self, code: i32, first_output: f64, [longest, shortest]: [f64; 2]) -> Error {
-        let mut error = self.stopped(code, first_output);
-        if let Error::Integration(stopped) = &mut error
-            && stopped.cause == Cause::InconsistentStart
-        {
-            let tried = format!(
-                "no start was found by steps from {longest:.0e} to {shortest:.0e}: try one that is closer to the equations"
-            );
-            let said = std::mem::replace(&mut stopped.message, tried);
-            if !said.is_empty() {
-                stopped.message.push_str("; ");
-                stopped.message.push_str(&said);
-            }
-        }
-        error
-    }
-
-    /// Checks that the equations are of index 1 at most, at the present state: that those without derivatives
-    /// determine the unknowns without, which IDA relies on.
-    ///
-    /// It takes four residuals for each unknown, and elimination in dense matrices. Where an integration fails,
-    /// IDA checks it by itself, with up to 300 unknowns.
-    ///
-    /// # Errors
-    /// [`Error::Integration`] with [`Cause::HigherIndex`], or [`Cause::LinearSolver`] where the equations determine
-    /// nothing at all, such as one equation twice, or what made the residual fail; [`Error::Input`] for more than
-    /// 1000 unknowns.
-    pub fn check_index(&mut self) -> Result<(), Error> {
+    fn check_index(&mut self) -> Result<(), Error> {
         const MOST_UNKNOWNS: usize = 1000;
         let n = self.y().len();
         if n > MOST_UNKNOWNS {
@@ -163,11 +147,7 @@ impl<S: Dae> Ida<S> {
         .into())
     }
 
-    /// As [`reinit`](Integrator::reinit), from `y` and its time derivative `yp`.
-    ///
-    /// # Errors
-    /// [`Error::Input`] if a number is not finite or a length is wrong.
-    pub fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
+    fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
         check_length("length of yp", yp.len(), self.y().len())?;
         check_finite("yp", yp)?;
         let before = self.yp().to_vec();
@@ -181,15 +161,58 @@ impl<S: Dae> Ida<S> {
         outcome
     }
 
-    /// Whether the option [`differential`](super::IdaOptions::differential) was given, which
-    /// [`InitialCondition::Algebraic`] needs.
-    pub(crate) fn knows_algebraic(&self) -> bool {
+    fn set_sensitivities_with(
+        &mut self,
+        s: MatRef<'_, f64>,
+        sp: MatRef<'_, f64>,
+    ) -> Result<(), Error> {
+        self.check_shape("shape of sp", sp.nrows(), sp.ncols())?;
+        self.start_sensitivities(s, Some(sp))
+    }
+
+    fn knows_algebraic(&self) -> bool {
         self.kind.knows_algebraic
     }
 
-    /// The time derivative of the state at time [`t`](Integrator::t).
-    #[must_use]
-    pub fn yp(&self) -> &[f64] {
+    fn diagnose_index(&mut self) -> Result<(), Error> {
+        match self.higher_index(&Cause::Other) {
+            Some(cause) => Err(self.error(&self.step_statistics(), cause, String::new(), None)),
+            None => Ok(()),
+        }
+    }
+
+    fn yp(&self) -> &[f64] {
         self.yp.as_ref().map_or(&[], Vector::as_slice)
+    }
+}
+
+impl<S> Session<IdaKind, S> {
+    /// The error for a start that was not found by steps of these sizes.
+    fn unfound(&mut self, code: i32, first_output: f64, [longest, shortest]: [f64; 2]) -> Error {
+        let mut error = self.stopped(code, first_output);
+        if let Error::Integration(stopped) = &mut error
+            && stopped.cause == Cause::InconsistentStart
+        {
+            let tried = format!(
+                "no start was found by steps from {longest:.0e} to {shortest:.0e}: try one that is closer to the equations"
+            );
+            let said = std::mem::replace(&mut stopped.message, tried);
+            if !said.is_empty() {
+                stopped.message.push_str("; ");
+                stopped.message.push_str(&said);
+            }
+        }
+        error
+    }
+
+    /// Reads the sensitivities after `IDACalcIC`, which corrects them, too.
+    fn read_consistent_sensitivities(&mut self) -> Result<(), Error> {
+        let Some(sensitivities) = &mut self.sensitivities else { return Ok(()) };
+        let s = sensitivities.s.raw();
+        let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
+        // SAFETY: memory and vectors are alive; null asks for nothing.
+        let code = unsafe { ffi::IDAGetSensConsistentIC(self.memory.raw, s, sp) };
+        sensitivities.s.copy_to(&mut sensitivities.values);
+        self.host.accept("IDAGetSensConsistentIC", code)
     }
 }

@@ -8,3 +8,4 @@ mod solve;
 pub(super) use callbacks::{all_residuals, one_rhs};
 pub use options::{Sensitivities, SensitivityMethod, SensitivitySource};
 pub(super) use rhs::{Access, SensitivityRhs};
+pub use solve::CarriesSensitivities;

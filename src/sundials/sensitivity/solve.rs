@@ -11,29 +11,34 @@ use super::{
 use crate::{
     integrate::{Error, Integrator, Tolerances, check_finite, check_time},
     sundials::{
-        Ida, WithSensitivities,
         beside::{Sensitivity, Vectors},
         ffi,
-        solver::Solver,
+        quadratures::CarriesIntegrals,
+        session::Session,
         vector::Vector,
     },
 };
 
-impl<K: WithSensitivities, S> Solver<K, S> {
-    /// The sensitivities at time [`t`](Integrator::t): entry (i, j) is the derivative of unknown i with respect to the j-th
-    /// parameter of [`Sensitivities::of`]. (`CVodeGetSens`, `IDAGetSens`)
-    #[must_use]
-    pub fn sensitivities(&self) -> MatRef<'_, f64> {
+/// What carries sensitivities along, too, as described at [`Solver`](crate::sundials::Solver).
+pub trait CarriesSensitivities: CarriesIntegrals {
+    fn sensitivities(&self) -> MatRef<'_, f64>;
+    fn interpolate_sensitivities(
+        &mut self,
+        t: f64,
+        derivative: u32,
+        out: MatMut<'_, f64>,
+    ) -> Result<(), Error>;
+    fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
+}
+
+impl<K, S> CarriesSensitivities for Session<K, S> {
+    fn sensitivities(&self) -> MatRef<'_, f64> {
         let values = self.sensitivities.as_ref().map_or(&[][..], |s| &s.values);
         let n = self.y().len();
         MatRef::from_column_major_slice(values, n, values.len() / n)
     }
 
-    /// As [`interpolate`](Integrator::interpolate), of the sensitivities. (`CVodeGetSensDky1`, `IDAGetSensDky1`)
-    ///
-    /// # Errors
-    /// As for [`interpolate`](Integrator::interpolate).
-    pub fn interpolate_sensitivities(
+    fn interpolate_sensitivities(
         &mut self,
         t: f64,
         derivative: u32,
@@ -66,17 +71,13 @@ impl<K: WithSensitivities, S> Solver<K, S> {
         Ok(())
     }
 
-    /// Lets the sensitivities start from `s` (as [`sensitivities`](Self::sensitivities) has them) in place of zero, after the
-    /// solver was made or started again: where initial values depend on parameters, or jump.
-    /// (`CVodeSensReInit`, `IDASensReInit`)
-    ///
-    /// # Errors
-    /// [`Error::Input`] if steps were taken already, the shape is wrong or a number is not finite.
-    pub fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
+    fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
         self.start_sensitivities(s, None)
     }
+}
 
-    fn start_sensitivities(
+impl<K, S> Session<K, S> {
+    pub(in crate::sundials) fn start_sensitivities(
         &mut self,
         s: MatRef<'_, f64>,
         sp: Option<MatRef<'_, f64>>,
@@ -101,7 +102,12 @@ impl<K: WithSensitivities, S> Solver<K, S> {
         self.hand_over_sensitivities()
     }
 
-    fn check_shape(&self, input: &str, rows: usize, columns: usize) -> Result<(), Error> {
+    pub(in crate::sundials) fn check_shape(
+        &self,
+        input: &str,
+        rows: usize,
+        columns: usize,
+    ) -> Result<(), Error> {
         let wanted = (self.y().len(), self.sensitivities().ncols());
         if (rows, columns) == wanted {
             return Ok(());
@@ -111,35 +117,7 @@ impl<K: WithSensitivities, S> Solver<K, S> {
     }
 }
 
-impl<S> Ida<S> {
-    /// As [`set_sensitivities`](Self::set_sensitivities), with the time derivatives `sp` of the sensitivities, which have to fit:
-    /// (dF/dy) s + (dF/dy') s' + dF/dp = 0. [`consistent_start`](Self::consistent_start) finds what is
-    /// missing.
-    ///
-    /// # Errors
-    /// As for [`set_sensitivities`](Self::set_sensitivities).
-    pub fn set_sensitivities_with(
-        &mut self,
-        s: MatRef<'_, f64>,
-        sp: MatRef<'_, f64>,
-    ) -> Result<(), Error> {
-        self.check_shape("shape of sp", sp.nrows(), sp.ncols())?;
-        self.start_sensitivities(s, Some(sp))
-    }
-
-    /// Reads the sensitivities after `IDACalcIC`, which corrects them, too.
-    pub(in crate::sundials) fn read_consistent_sensitivities(&mut self) -> Result<(), Error> {
-        let Some(sensitivities) = &mut self.sensitivities else { return Ok(()) };
-        let s = sensitivities.s.raw();
-        let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
-        // SAFETY: memory and vectors are alive; null asks for nothing.
-        let code = unsafe { ffi::IDAGetSensConsistentIC(self.memory.raw, s, sp) };
-        sensitivities.s.copy_to(&mut sensitivities.values);
-        self.host.accept("IDAGetSensConsistentIC", code)
-    }
-}
-
-impl<K, S> Solver<K, S> {
+impl<K, S> Session<K, S> {
     /// Registers sensitivities by `init`, which gets their number, C's name of the method, and zeros for
     /// s and, of a DAE, s'.
     ///

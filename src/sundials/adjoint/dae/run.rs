@@ -9,11 +9,13 @@ use crate::{
     integrate::{Error, Integrator},
     ode::{Borrowed, Dae, Functional},
     sundials::{
-        Ida, IdaOptions, InitialCondition,
+        IdaOptions, InitialCondition,
         adjoint::{gradient::Gradient, options::AdjointOptions, way_back::Callbacks},
         ffi,
-        ida::BACKWARD,
+        ida::{BACKWARD, IdaKind, StartsDae},
         linear::Linear,
+        quadratures::CarriesIntegrals,
+        session::Session,
     },
 };
 
@@ -22,7 +24,7 @@ pub(super) type Start = (f64, Vec<f64>, Vec<f64>);
 
 /// The solver of one run forward and back, as for an ODE.
 pub(super) struct Run<'a, S, F> {
-    solver: Ida<Borrowed<'a, AdjointDae<S, F>>>,
+    solver: Session<IdaKind, Borrowed<'a, AdjointDae<S, F>>>,
     options: &'a AdjointOptions,
     t0: f64,
 }
@@ -35,7 +37,7 @@ impl<'a, S: Dae, F: Functional> Run<'a, S, F> {
         options: &'a AdjointOptions,
     ) -> Result<Self, Error> {
         system.start((*t0, y0, yp0))?;
-        let solver = Ida::new(Borrowed(system), *t0, y0, yp0, forward)?;
+        let solver = Session::of_ida(Borrowed(system), *t0, (y0, yp0), forward)?;
         Ok(Self { solver, options, t0: *t0 })
     }
 

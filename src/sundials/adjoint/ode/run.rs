@@ -8,11 +8,13 @@ use crate::{
     integrate::{Error, Integrator},
     ode::{Borrowed, Functional, Ode},
     sundials::{
-        Cvode, CvodeOptions,
+        CvodeOptions,
         adjoint::{gradient::Gradient, options::AdjointOptions, way_back::Callbacks},
-        cvode::BACKWARD,
+        cvode::{BACKWARD, CvodeKind},
         ffi,
         linear::Linear,
+        quadratures::CarriesIntegrals,
+        session::Session,
         vector::Vector,
     },
 };
@@ -20,7 +22,7 @@ use crate::{
 /// The solver of one run forward and back. A further one would begin with the first step of this one, whatever
 /// has changed: the way back leaves it in C (6.4.1).
 pub(super) struct Run<'a, S, F> {
-    solver: Cvode<Borrowed<'a, AdjointSystem<S, F>>>,
+    solver: Session<CvodeKind, Borrowed<'a, AdjointSystem<S, F>>>,
     options: &'a AdjointOptions,
     t0: f64,
 }
@@ -33,7 +35,7 @@ impl<'a, S: Ode, F: Functional> Run<'a, S, F> {
         options: &'a AdjointOptions,
     ) -> Result<Self, Error> {
         system.equations.forget();
-        let mut solver = Cvode::new(Borrowed(system), *t0, y0, forward)?;
+        let mut solver = Session::of_cvode(Borrowed(system), *t0, y0, forward)?;
         // SAFETY: the functions are those of CVODE.
         unsafe { solver.keep_checkpoints(&BACKWARD, options)? };
         Ok(Self { solver, options, t0: *t0 })
