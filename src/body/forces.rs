@@ -22,7 +22,7 @@ use super::regions::{Laws, Regions};
 use super::rows;
 use crate::force::NodalForces;
 use crate::lane::{Lane, SIDE_BY_SIDE};
-use crate::material::{Deformation, Elastic, Hooke, Hookean, Linear};
+use crate::material::{ByPoint, Deformation, Elastic, Hooke, Hookean, Linear};
 use crate::ode::Failure;
 use crate::tensor::{Matrix, Real};
 
@@ -83,6 +83,10 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
                             self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
                         }
                         Elastic::StVenantKirchhoff(law) => {
+                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                        }
+                        // a call would cost a seventh of so short a formula
+                        Elastic::ByPoint(ByPoint::Rivlin(law)) => {
                             self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
                         }
                         Elastic::ByPoint(law) => {
