@@ -19,7 +19,7 @@ use pliant::{
 
 #[test]
 fn steps_do_not_allocate() {
-    let scene = square_jump(10).unwrap();
+    let scene = square_jump(4).unwrap();
     for method in Method::ALL {
         let run = |rtol: f64| {
             // an event that is located starts the integration anew

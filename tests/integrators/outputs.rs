@@ -25,13 +25,15 @@ struct Decays {
     /// Whether the second equation is the explicit part.
     is_split: bool,
     roots: usize,
+    /// That of the last `newton_setup`.
+    gamma: f64,
 }
 
 const START: [f64; 2] = [1.0, 0.0];
 const RATES: [f64; 2] = [2.0, 0.5];
 
 fn decays() -> Decays {
-    Decays { p: RATES, is_split: false, roots: 1 }
+    Decays { p: RATES, is_split: false, roots: 1, gamma: 0.0 }
 }
 
 /// Without the root function.
@@ -49,6 +51,11 @@ fn exact(t: f64) -> ([f64; 2], [[f64; 2]; 2], f64) {
     (y, [by_a, by_b], (1.0 - fast) / a)
 }
 
+/// What small numbers of the call before would hide: outputs are zero on entry.
+fn check_cleared(out: &[f64]) {
+    assert!(out.iter().all(|x| *x == 0.0), "{out:?}");
+}
+
 fn add(out: &mut [f64], values: [f64; 2]) -> Result<(), Failure> {
     out.iter_mut().zip(values).for_each(|(out, value)| *out += value);
     Ok(())
@@ -56,6 +63,7 @@ fn add(out: &mut [f64], values: [f64; 2]) -> Result<(), Failure> {
 
 impl Ode for Decays {
     fn rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        check_cleared(ydot);
         let [a, b] = self.p;
         let second = if self.is_split { 0.0 } else { a * y[0] - b * y[1] };
         add(ydot, [-a * y[0], second])
@@ -66,6 +74,7 @@ impl Ode for Decays {
     }
 
     fn explicit_rhs(&mut self, _t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        check_cleared(ydot);
         add(ydot, [0.0, self.p[0] * y[0] - self.p[1] * y[1]])
     }
 
@@ -94,11 +103,31 @@ impl Ode for Decays {
         Ok(())
     }
 
+    fn newton_setup(
+        &mut self,
+        _t: f64,
+        _y: &[f64],
+        _ydot: &[f64],
+        gamma: f64,
+        _reuse: bool,
+    ) -> Result<bool, Failure> {
+        self.gamma = gamma;
+        Ok(true)
+    }
+
+    fn newton_solve(&mut self, _gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
+        let ([a, b], gamma) = (self.p, self.gamma);
+        r[0] /= 1.0 + gamma * a;
+        r[1] = (r[1] + gamma * a * r[0]) / (1.0 + gamma * b);
+        Ok(())
+    }
+
     fn root_count(&self) -> usize {
         self.roots
     }
 
     fn roots(&mut self, _t: f64, y: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        check_cleared(g);
         g[0] += y[0] - 0.5;
         Ok(())
     }
@@ -108,6 +137,7 @@ impl Ode for Decays {
     }
 
     fn quadratures(&mut self, _t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+        check_cleared(qdot);
         qdot[0] += y[0];
         Ok(())
     }
@@ -132,6 +162,7 @@ impl Ode for Decays {
         lambda: &[f64],
         out: &mut [f64],
     ) -> Result<(), Failure> {
+        check_cleared(out);
         let [a, b] = self.p;
         add(out, [a * (lambda[1] - lambda[0]), -b * lambda[1]])
     }
@@ -143,6 +174,7 @@ impl Ode for Decays {
         lambda: &[f64],
         out: &mut [f64],
     ) -> Result<(), Failure> {
+        check_cleared(out);
         add(out, [y[0] * (lambda[1] - lambda[0]), -y[1] * lambda[1]])
     }
 
@@ -289,6 +321,8 @@ fn cvode() {
         run(&what, &mut solver);
         close(&what, solver.quadratures(), &[exact(1.5).2]);
     }
+    let own = options().newton(LinearSolver::Custom);
+    run("CVODE, its own solver", &mut Cvode::new(decays(), 0.0, &START, &own).unwrap());
     let adams = options().method(Multistep::Adams).fixed_point(2);
     run("Adams", &mut Cvode::new(decays(), 0.0, &START, &adams).unwrap());
     for choice in sensitivities() {
@@ -316,6 +350,9 @@ fn arkode() {
         let options = ArkodeOptions::new(1e-8, 1e-10).table(table.unwrap());
         run("ARKODE", &mut Arkode::new(decays(), 0.0, &START, &options).unwrap());
     }
+    let table = ButcherTable::implicit(4).unwrap();
+    let own = ArkodeOptions::new(1e-8, 1e-10).table(table).newton(LinearSolver::Custom);
+    run("ARKODE, its own solver", &mut Arkode::new(decays(), 0.0, &START, &own).unwrap());
     let options = ArkodeOptions::new(1e-8, 1e-10).table(ButcherTable::imex(4).unwrap());
     let split = Decays { is_split: true, ..decays() };
     run("ImEx", &mut Arkode::new(split, 0.0, &START, &options).unwrap());
@@ -359,6 +396,8 @@ fn own_methods() {
     run("Dormand-Prince", &mut DormandPrince::new(decays(), 0.0, &START, &options).unwrap());
     let options = rosenbrock::Options::new(1e-8, 1e-10);
     run("Rosenbrock", &mut Rosenbrock::new(decays(), 0.0, &START, &options).unwrap());
+    let own = options.newton(LinearSolver::Custom);
+    run("Rosenbrock, its own solver", &mut Rosenbrock::new(decays(), 0.0, &START, &own).unwrap());
 
     let options = central_difference::Options::new(1e-6, 1e-9).max_step(1e-3);
     let mut solver = CentralDifference::new(Spring, 0.0, &[1.0, 0.0, 0.0], &options).unwrap();
@@ -373,11 +412,13 @@ struct Spring;
 
 impl SecondOrder for Spring {
     fn forces(&mut self, _t: f64, u: &[f64], _v: &[f64], f: &mut [f64]) -> Result<(), Failure> {
+        check_cleared(f);
         f[0] += -u[0];
         Ok(())
     }
 
     fn accelerations(&mut self, kick: &Kick<'_>, a: &mut [f64]) {
+        check_cleared(a);
         a[0] += kick.force[0];
     }
 
@@ -390,6 +431,7 @@ impl SecondOrder for Spring {
     }
 
     fn powers(&self, v: &[f64], powers: &mut [f64]) {
+        check_cleared(powers);
         powers[0] += v[0] * v[0];
     }
 }

@@ -178,32 +178,35 @@ fn a_choice_that_creates_energy_is_revoked() {
     assert!(apart < 2e-6, "{apart}");
 }
 
-/// Samples that are asked for in mid-run are all taken, though the run goes back behind them to another method.
+/// Samples that are asked for in mid-run are all taken, though the run goes back behind them to another method; and so are those before,
+/// of which some or many were taken by then.
 #[test]
 fn what_is_recorded_before_a_choice_is_revoked_is_complete() {
     let scene = bar_with_undamped_end(1e6);
-    let mut revoked = 0;
-    for asked in 1..20 {
+    let mut revoked = [0; 2];
+    for (asked, (number, before)) in
+        (1..20).flat_map(|asked| [(asked, (0, 0.05)), (asked, (1, 0.001))])
+    {
         let mut bar = scene.start(&auto(1e-2)).unwrap();
-        bar.record(&Sampling::every(0.05)).unwrap();
+        bar.record(&Sampling::every(before)).unwrap();
         let asked = 0.01 * f64::from(asked);
         bar.advance_to(asked).unwrap();
         let before = bar.report().phases[0].reason.clone();
         bar.record(&Sampling::every(0.002)).unwrap();
         bar.advance_to(scene.end()).unwrap();
-        revoked += usize::from(before != bar.report().phases[0].reason);
+        revoked[number] += usize::from(before != bar.report().phases[0].reason);
         let motion = bar.into_trajectory();
         let times: Vec<f64> = motion.samples().iter().map(|sample| sample.time).collect();
         assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{asked}: {times:?}");
         let fine = times.iter().filter(|time| **time > asked + 1e-9).count();
         // the last step of the advance may have led on by some samples, which are not asked for: 14 at most
         let all = ((scene.end() - asked) / 0.002).round() as usize;
-        assert!((all - 15..=all).contains(&fine), "{asked}: {fine} of {all}");
+        assert!((all - 15..=all).contains(&fine) || number == 1, "{asked}: {fine} of {all}");
         let gaps = times.windows(2).map(|pair| pair[1] - pair[0]);
         let widest = gaps.skip_while(|gap| *gap > 0.0021).fold(0.0, f64::max);
         assert!(widest < 0.0021, "{asked}: {widest} s");
     }
-    assert!(revoked > 0);
+    assert!(revoked.iter().all(|count| *count > 0), "{revoked:?}");
 }
 
 /// Where the fastest motions are damped far less than the slowest one, BDF is not even tried.

@@ -127,6 +127,15 @@ fn pieces_that_fly_through_each_other() {
             "{told}"
         );
         assert!(motion.report().warnings().contains(&told.text));
+        // the nearest boundary of what is 8 mm in is the side that it came through, and none that is found earlier node by node
+        let deep = overlap(&run(0.018));
+        assert!((deep.value - 0.008).abs() < 1e-6, "{deep}");
+        // depth is that in the body as it is, here stretched to one and a half times its length
+        let stretched = begun(blocks(0.01, cells), |x| {
+            vec![1.5 * if x[0] > 0.045 { x[0] - 0.015 } else { x[0] }, x[1]]
+        });
+        let stretched = overlap(&stretched);
+        assert!((stretched.value - 0.0075).abs() < 1e-9, "{stretched}");
         // it was not drawn so
         assert!(!scene(0.015).warnings().iter().any(|text| text.contains("overlaps itself")));
     }

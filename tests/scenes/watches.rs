@@ -171,6 +171,34 @@ fn regular_events_do_not_accumulate() {
     assert_eq!(count.load(Ordering::Relaxed), 95);
 }
 
+/// Bounces that leave nearly all of the speed come ever sooner, but by little; with all of it they keep their pace, and with more they come ever
+/// later. All of them go on, as often as the geometric series of their flights has it.
+#[test]
+fn bounces_that_do_not_accumulate_go_on() {
+    for part in [0.999, 1.0, 1.001] {
+        let (mut square, height) = falling(Method::Arkode);
+        let count = Arc::new(AtomicUsize::new(0));
+        let noted = count.clone();
+        // a floor 1 mm below
+        square.when(
+            move |view| height(view) - 0.999,
+            Direction::Falling,
+            move |square| {
+                noted.fetch_add(1, Ordering::Relaxed);
+                bounce(square, part)
+            },
+        );
+        assert!(square.advance_to(1.0).unwrap(), "{part}");
+        let fall = (2e-3 / GRAVITY).sqrt();
+        let (mut t, mut flight, mut expected) = (fall, 2.0 * fall, 0);
+        while t < 1.0 {
+            (expected, flight) = (expected + 1, part * flight);
+            t += flight;
+        }
+        assert_eq!(count.load(Ordering::Relaxed), expected, "{part}");
+    }
+}
+
 /// NaN has no sign: an event without one is none, and that is told.
 #[test]
 fn an_event_that_is_no_number_is_told() {

@@ -15,6 +15,7 @@ fn a_sine_is_followed() {
         let options = Options::new(1e-8, 1e-10).max_order(order).max_step(0.05);
         let solution = solve(sine(), Method::Rosenbrock, (0.0, 10.0), &options).unwrap();
         assert!((solution.last()[0] - 10f64.sin()).abs() < 1e-6, "{order}");
+        assert_eq!(solution.statistics().last_order, order);
         for k in 0..100 {
             let t = 0.0999 * f64::from(k);
             let error = (solution.at(t).unwrap()[0] - t.sin()).abs();

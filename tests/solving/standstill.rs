@@ -169,6 +169,22 @@ fn what_was_overcome_is_not_blamed() {
         Err(Error::Stopped(stopped)) => assert!(matches!(stopped.reason, Reason::Steps(_))),
         Err(error) => panic!("{error}"),
     }
+    // nor by the solver itself, where a later call ends at its limit of steps before that time is passed
+    let met = Cell::new(false);
+    let rhs = |t: f64, y: &[f64], f: &mut [f64]| {
+        f[0] = -y[0];
+        if t > 3.0 && !met.replace(true) {
+            f[0] = f64::NAN;
+        }
+        Ok(())
+    };
+    let options = CvodeOptions::new(1e-3, 1e-3).max_steps(1);
+    let mut solver = Cvode::new(rhs, 0.0, &[1.0], &options).unwrap();
+    while !met.get() {
+        solver.step(1e9).unwrap();
+    }
+    let error = solver.solve_to(1e9).unwrap_err();
+    assert!(matches!(integration_cause(&error), Cause::TooManySteps { steps: 1, .. }), "{error}");
 }
 
 /// Breaks from 0 to 3 ulps apart, next to each other, to the start and to the end: each is met, in order, and y' = -y goes on as without them.
@@ -217,11 +233,15 @@ fn breaks_may_be_neighbours() {
     }
 }
 
-/// An event may lie right before a break or the end.
+/// An event may lie right before a break or the end; up to some hundred numbers before, which is as far as it is known.
 #[test]
 fn an_event_may_leave_no_room() {
     for method in all_methods() {
-        for (t, end) in [(0.5_f64.next_down(), 1.0), (1.0_f64.next_down(), 1.0)] {
+        let before = |t: f64, ulps: u64| f64::from_bits(t.to_bits() - ulps);
+        let ulps = [1, 3, 30, 100, 200, 300, 400, 500, 1000];
+        for (t, end) in
+            ulps.iter().flat_map(|&ulps| [(before(0.5, ulps), 1.0), (before(1.0, ulps), 1.0)])
+        {
             let event =
                 Event::new(move |at: f64, _: &[f64]| at - t).action(|jump| jump.y[0] += 1.0);
             let falls = problem(
@@ -286,6 +306,16 @@ fn spans_of_an_ulp_are_integrated() {
             integrate::Reached::StopTime
         );
         assert!((solver.y()[0] - (later - start)).abs() <= 1e-3 * (later - start).abs());
+        // nor does it forget the one that it had before
+        let mut solver = Cvode::new(rises, start, &[0.0], &options).unwrap();
+        solver.set_stop_time(Some(later)).unwrap();
+        assert_eq!(solver.solve_to(end).unwrap(), integrate::Reached::Time);
+        assert_eq!(
+            solver.solve_to(start + 2e3 * (end - start)).unwrap(),
+            integrate::Reached::StopTime,
+            "{start} {end:e}"
+        );
+        assert_eq!(solver.t(), later);
         if start != 1e9 && (end - start).abs() <= 1e-15 {
             let table = ButcherTable::implicit(3).unwrap();
             let options = ArkodeOptions::new(1e-6, 1e-30).table(table);

@@ -219,5 +219,24 @@ fn numbers_that_are_none_are_said_to_be_none() -> Outcome {
     assert!(advice.terms.iter().any(|(term, error)| *term == Term::Gravity && error.is_nan()));
     assert!(said.contains("without gravity there is no right.x:frequency to compare"), "{said}");
     assert!(!said.contains("NaN"), "{said}");
+    // nor is it printed of any other number that may be none
+    let mut advice = advice;
+    let none =
+        |error: &mut Option<f64>| *error = error.filter(|error| *error == 0.0).or(Some(f64::NAN));
+    advice.alphas.iter_mut().for_each(|(_, change)| *change = f64::NAN);
+    (advice.law, advice.inertia) = (Some(f64::NAN), Some(f64::NAN));
+    advice.candidates.iter_mut().for_each(|candidate| none(&mut candidate.error));
+    advice.enough.iter_mut().chain([&mut advice.written]).for_each(|candidate| {
+        none(&mut candidate.error);
+        candidate.parts = None;
+    });
+    let said = advice.to_string();
+    assert!(!said.contains("NaN"), "{said}");
+    for words in [
+        "ten times as much leaves no right.x:frequency to compare",
+        "unknowns, no right.x:frequency to compare",
+    ] {
+        assert!(said.contains(words), "{said}");
+    }
     Ok(())
 }
