@@ -55,7 +55,7 @@ impl<S: Dae> Ida<S> {
     /// Corrects the initial values so that they satisfy the equations; call it before the first
     /// step. `first_output` is a time at which output will be wanted: it gives the direction and
     /// scale of time; where no start is found on that, shorter scales are tried. Sensitivities are corrected, too.
-    /// [`y`](Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
+    /// [`y`](crate::integrate::Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
     ///
     /// The equations have to be of index 1: see [`check_index`](Self::check_index).
     ///
@@ -81,14 +81,14 @@ impl<S: Dae> Ida<S> {
     /// IDA checks it by itself, with up to 300 unknowns.
     ///
     /// # Errors
-    /// [`Error::Integration`] with [`Cause::HigherIndex`], or [`Cause::LinearSolver`] where the equations determine
+    /// [`Error::Integration`] with [`Cause::HigherIndex`](crate::integrate::Cause::HigherIndex), or [`Cause::LinearSolver`](crate::integrate::Cause::LinearSolver) where the equations determine
     /// nothing at all, such as one equation twice, or what made the residual fail; [`Error::Input`] for more than
     /// 1000 unknowns.
     pub fn check_index(&mut self) -> Result<(), Error> {
         self.session.check_index()
     }
 
-    /// As [`reinit`](Integrator::reinit), from `y` and its time derivative `yp`.
+    /// As [`reinit`](crate::integrate::Integrator::reinit), from `y` and its time derivative `yp`.
     ///
     /// # Errors
     /// [`Error::Input`] if a number is not finite or a length is wrong.
@@ -121,7 +121,7 @@ impl<S: Dae> Ida<S> {
         self.session.knows_algebraic()
     }
 
-    /// The time derivative of the state at time [`t`](Integrator::t).
+    /// The time derivative of the state at time [`t`](crate::integrate::Integrator::t).
     #[must_use]
     pub fn yp(&self) -> &[f64] {
         self.session.yp()
