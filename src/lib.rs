@@ -29,118 +29,75 @@
 // The rooms of bodies use more of the lowest rooms than the integrators do.
 #![cfg_attr(not(feature = "bodies"), allow(dead_code, unused_imports, unused_macros))]
 
-#[cfg(feature = "bodies")]
-pub mod body;
-pub mod central_difference;
-#[cfg(feature = "checkpoint")]
-mod checkpoint_file;
-#[cfg(feature = "bodies")]
-pub mod constraint;
-#[cfg(feature = "bodies")]
-mod element;
-#[cfg(feature = "bodies")]
-pub mod equations;
-#[cfg(feature = "bodies")]
-mod equilibrium;
-#[cfg(feature = "bodies")]
-pub mod error;
-#[cfg(feature = "bodies")]
-mod external;
-#[cfg(any(feature = "checkpoint", feature = "output"))]
-mod file;
-#[cfg(feature = "fit")]
-pub mod fit;
-#[cfg(feature = "bodies")]
-pub mod force;
-#[cfg(feature = "bodies")]
-mod formula;
-#[cfg(feature = "bodies")]
-mod indicator;
-mod input;
-pub mod integrate;
-mod lane;
-#[cfg(feature = "bodies")]
-pub mod material;
-#[cfg(feature = "bodies")]
-pub mod mesh;
-#[cfg(feature = "bodies")]
-mod model;
-pub mod ode;
-#[cfg(feature = "output")]
-pub mod output;
 #[cfg(feature = "play")]
-pub mod play;
+pub mod apps;
+mod base;
 #[cfg(feature = "bodies")]
-mod report;
-pub mod rk;
-pub mod rosenbrock;
-pub mod samples;
+pub mod dynamics;
+#[cfg(feature = "bodies")]
+pub mod elements;
+pub mod integrators;
+#[cfg(feature = "bodies")]
+pub mod io;
 #[cfg(feature = "bodies")]
 pub mod scene;
-#[cfg(feature = "scene-file")]
-pub mod scene_file;
-#[cfg(feature = "bodies")]
-mod settings;
-#[cfg(feature = "bodies")]
-pub mod simulate;
-pub mod solve;
-#[cfg(feature = "bodies")]
-pub mod sparse;
-#[cfg(feature = "bodies")]
-mod state;
-#[cfg(feature = "checkpoint")]
-mod state_file;
-#[cfg(feature = "bodies")]
-pub mod statics;
-#[cfg(feature = "study")]
-pub mod study;
-pub mod sundials;
-#[cfg(feature = "bodies")]
-mod system;
-mod tensor;
-#[cfg(feature = "bodies")]
-pub mod trajectory;
-mod vector;
-mod wide;
+pub mod studies;
 
+// What a first program needs, by its own name.
+pub use base::input::{Fraction, InputError};
 #[cfg(feature = "bodies")]
-pub use body::{
-    Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Strain, Viscosity,
+pub use dynamics::{
+    equations::Equations,
+    equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability},
+    error::{Error, Panicked},
+    report::{Achieved, Counts, Indicator, PhaseReport, Report, SlipEvent, Verdict},
+    simulate::{Checkpoint, Sampling, Simulation, View},
+    statics::Statics,
+    system::{Energy, PhaseSummary, Spectrum},
+    trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory},
 };
 #[cfg(feature = "bodies")]
-pub use constraint::{Axis, Prescribed};
-#[cfg(feature = "bodies")]
-pub use equations::Equations;
-#[cfg(feature = "bodies")]
-pub use equilibrium::{Equilibrium, MeshEstimate, NoEquilibrium, Stability};
-#[cfg(feature = "bodies")]
-pub use error::{Error, Panicked};
-#[cfg(feature = "bodies")]
-pub use external::*;
-pub use input::{Fraction, InputError};
-pub use integrate::Integrator;
-#[cfg(feature = "bodies")]
-pub use material::{Course, Fibres, Lame, Law, Material, MaxwellBranch, Plane, Substance};
-#[cfg(feature = "bodies")]
-pub use mesh::{Cells, Mesh, Selection, SolidCells};
-#[cfg(feature = "bodies")]
-pub use report::{Achieved, Counts, Indicator, PhaseReport, Report, SlipEvent, Verdict};
-#[cfg(feature = "bodies")]
-pub use scene::{BodyState, Phase, Scene, Term};
+pub use elements::{
+    body::{Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Strain, Viscosity},
+    material::{Course, Fibres, Lame, Law, Material, MaxwellBranch, Plane, Substance},
+    mesh::{Cells, Mesh, Selection, SolidCells},
+};
+pub use integrators::common::Integrator;
 #[cfg(feature = "scene-file")]
-pub use scene_file::{OutputRequest, SceneFile};
+pub use io::scene_file::{OutputRequest, SceneFile};
 #[cfg(feature = "bodies")]
-pub use settings::{
-    AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,
+pub use scene::{
+    BodyState, Phase, Scene, Term,
+    constraint::{Axis, Prescribed},
+    forces::*,
+    settings::{
+        AbsoluteTolerances, ContactEvents, Method, Settings, SettingsOption, SettingsValue,
+    },
 };
+
+// Modules by the short paths that programs use.
+#[cfg(feature = "play")]
+pub use apps::play;
 #[cfg(feature = "bodies")]
-pub use simulate::{Checkpoint, Sampling, Simulation, View};
+pub use base::sparse;
 #[cfg(feature = "bodies")]
-pub use statics::Statics;
+pub use dynamics::{equations, error, simulate, statics, trajectory};
 #[cfg(feature = "bodies")]
-pub use system::{Energy, PhaseSummary, Spectrum};
+pub use elements::{body, force, material, mesh};
+pub use integrators::{
+    central_difference, common as integrate, ode, rk, rosenbrock, solve, sundials,
+};
+#[cfg(feature = "output")]
+pub use io::output;
+#[cfg(feature = "scene-file")]
+pub use io::scene_file;
 #[cfg(feature = "bodies")]
-pub use trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
+pub use scene::constraint;
+#[cfg(feature = "fit")]
+pub use studies::fit;
+pub use studies::samples;
+#[cfg(feature = "study")]
+pub use studies::work_precision as study;
 
 /// Compiles the code blocks of the README.
 #[doc = include_str!("../README.md")]

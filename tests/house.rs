@@ -14,7 +14,7 @@ struct Module {
     imports: Vec<Vec<String>>,
 }
 
-/// Modules by their paths, as in `crate::mesh::cell`; those of the command begin with `bin`.
+/// Modules by their paths, as in `crate::mesh::cell`; those of the command begin with `command`.
 type House = BTreeMap<Vec<String>, Module>;
 
 fn house() -> House {
@@ -27,8 +27,8 @@ fn house() -> House {
         if names.iter().any(|name| name == "tests") {
             continue;
         }
-        let krate = match names[0] == "bin" {
-            true => names.drain(..2).next().unwrap(),
+        let krate = match names.starts_with(&["apps".into(), "command".into()]) {
+            true => names.drain(..2).next_back().unwrap(),
             false => "crate".into(),
         };
         if names.last().is_some_and(|name| ["mod", "lib", "main"].contains(&name.as_str())) {
@@ -213,52 +213,48 @@ fn arrows(house: &House) -> BTreeMap<&str, BTreeSet<&str>> {
     house.values().map(|module| (module.file.as_str(), from(module))).collect()
 }
 
-/// Rank of each room, from the table of `docs/architecture.md`: `| rank | room | ...`.
-fn ranks() -> BTreeMap<String, u32> {
+/// Parts of rooms in the table of `docs/architecture.md`, each with the number of its row: "| `room/part`, ... | ...".
+fn rows() -> BTreeMap<String, usize> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/architecture.md");
     let text = fs::read_to_string(path).unwrap();
-    let mut ranks = BTreeMap::new();
-    for line in text.lines() {
-        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let [_, rank, rooms, _, ..] = cells[..] else { continue };
-        let Ok(rank) = rank.parse() else { continue };
-        for room in rooms.split('`').skip(1).step_by(2) {
-            ranks.insert(room.trim_end_matches('/').to_owned(), rank);
-        }
+    let first_cells = text.lines().filter_map(|line| line.strip_prefix("| `")?.split('|').next());
+    let mut rows = BTreeMap::new();
+    for (row, parts) in first_cells.enumerate() {
+        let parts = parts.split(['`', ',', ' ']).filter(|part| part.contains('/'));
+        rows.extend(parts.map(|part| (part.to_owned(), row)));
     }
-    ranks
+    rows
 }
 
-/// The room of a file: the folder or the file within `src`.
-fn room(file: &str) -> &str {
-    file.split(['/', '.']).next().unwrap()
+/// The part of a room that a file belongs to: `mesh` of `elements/mesh/cell.rs`; none for the lists of parts, such
+/// as `elements/mod.rs`.
+fn part(file: &str) -> Option<String> {
+    let mut names = file.trim_end_matches(".rs").split('/');
+    let (room, part) = (names.next()?, names.next()?);
+    (part != "mod").then(|| format!("{room}/{part}"))
 }
 
 #[test]
-fn every_room_has_a_rank_and_knows_none_that_is_not_below_it() {
-    let (house, ranks) = (house(), ranks());
-    let rooms: BTreeSet<&str> = house.values().map(|module| room(&module.file)).collect();
-    let rooms: BTreeSet<&str> = rooms.into_iter().filter(|room| *room != "lib").collect();
-    let listed: BTreeSet<&str> = ranks.keys().map(String::as_str).collect();
-    let without: Vec<_> = rooms.difference(&listed).collect();
-    assert!(without.is_empty(), "no rank in docs/architecture.md for {without:?}");
-    let gone: Vec<_> = listed.difference(&rooms).collect();
+fn each_part_of_a_room_has_a_row_and_knows_rows_above_it_alone() {
+    let (house, rows) = (house(), rows());
+    let parts: BTreeSet<String> = house.values().filter_map(|module| part(&module.file)).collect();
+    let listed: BTreeSet<String> = rows.keys().cloned().collect();
+    let without: Vec<_> = parts.difference(&listed).collect();
+    assert!(without.is_empty(), "no row in docs/architecture.md for {without:?}");
+    let gone: Vec<_> = listed.difference(&parts).collect();
     assert!(gone.is_empty(), "docs/architecture.md lists {gone:?}, which src/ has not");
     let mut wrong = Vec::new();
-    for (from, targets) in arrows(&house).into_iter().filter(|(from, _)| *from != "lib.rs") {
+    for (from, targets) in arrows(&house) {
+        let Some(own) = part(from) else { continue };
         for to in targets {
-            let [own, other] = [from, to].map(room);
-            if own != other && (to == "lib.rs" || ranks[own] <= ranks[other]) {
-                let rank = |room: &str| ranks.get(room).map_or("-".into(), u32::to_string);
-                wrong.push(format!(
-                    "src/{from} (rank {}) imports src/{to} (rank {})",
-                    rank(own),
-                    rank(other)
-                ));
+            let other = part(to);
+            let knows_it = |other: &String| *other == own || rows[other] < rows[&own];
+            if !other.as_ref().is_some_and(knows_it) {
+                wrong.push(format!("src/{from} imports src/{to}"));
             }
         }
     }
-    assert!(wrong.is_empty(), "a room may know those of lower rank alone:\n{}", wrong.join("\n"));
+    assert!(wrong.is_empty(), "a part may know those above it alone:\n{}", wrong.join("\n"));
 }
 
 #[test]
@@ -312,16 +308,16 @@ const CALLS: [&str; 14] = [
     "powers",
 ];
 
-/// Rooms that call systems of others.
+/// Parts of rooms that call systems of others.
 const CALLERS: [&str; 8] = [
-    "integrate",
-    "sundials",
-    "rk",
-    "rosenbrock",
-    "central_difference",
-    "solve",
-    "study",
-    "ode/check.rs",
+    "integrators/common",
+    "integrators/sundials",
+    "integrators/rk",
+    "integrators/rosenbrock",
+    "integrators/central_difference",
+    "integrators/solve",
+    "integrators/ode/check.rs",
+    "studies/work_precision",
 ];
 
 /// A method of a system stands behind a dot, or behind the name of its type; an argument tells it from what a solver
@@ -332,7 +328,7 @@ fn integrators_call_systems_by_functions_that_clear_the_output() {
     let (mut around, mut through) = (Vec::new(), 0);
     for path in rust_files(&root) {
         let file = path.strip_prefix(&root).unwrap().to_str().unwrap();
-        if !CALLERS.iter().any(|room| file.starts_with(room)) || file.contains("tests") {
+        if !CALLERS.iter().any(|part| file.starts_with(part)) || file.contains("tests") {
             continue;
         }
         let words = words(&code(&fs::read_to_string(&path).unwrap()));

@@ -1,4 +1,4 @@
-/* Problems of src/samples/equations.rs: right-hand sides and Jacobians, with the order of operations that they have there. */
+/* Problems of src/studies/samples/equations.rs: right-hand sides and Jacobians, with the order of operations that they have there. */
 
 static int hires(realtype t, N_Vector vector, N_Vector derivative, void *data) {
     const double *y = NV_DATA_S(vector);

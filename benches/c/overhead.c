@@ -1,4 +1,4 @@
-/* The problems of src/samples/equations.rs by CVODES and IDAS without pliant, as their user guides have it.
+/* The problems of src/studies/samples/equations.rs by CVODES and IDAS without pliant, as their user guides have it.
  *
  * Arguments: problem (hires, robertson, vanderpol, pollution, brusselator; amplifier by IDAS), linear solver (dense,
  * band, klu), number of runs. Prints the least time of a run in seconds, from the first object made to the last one

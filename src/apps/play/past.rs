@@ -1,0 +1,53 @@
+//! What has been since the start, for the running chart of the page.
+
+use serde_json::{Value, json};
+
+use crate::dynamics::simulate::Simulation;
+use crate::io::output::Picture;
+
+/// Moments at most; beyond, every other one is left out.
+const MOST: usize = 3000;
+
+/// The energies, and what the sensors read, since the start.
+#[derive(Default)]
+pub(super) struct Past {
+    moments: Vec<Moment>,
+}
+
+/// A time (s), the energies (J), and what the sensors read.
+type Moment = (f64, [f64; 8], Vec<f64>);
+
+impl Past {
+    /// The past of a simulation at its start.
+    pub(super) fn of(simulation: &mut Simulation) -> Self {
+        let mut past = Self::default();
+        past.note(simulation);
+        past
+    }
+
+    /// Takes the present down.
+    pub(super) fn note(&mut self, simulation: &mut Simulation) {
+        let sensors = simulation.trajectory().sensors().len();
+        // a sample costs constraint forces; a state that has none has no readings either
+        let sample = (sensors > 0).then(|| simulation.sample().ok()).flatten();
+        let (energy, read) = match sample {
+            Some(sample) => (sample.energy, sample.sensors),
+            None => (simulation.energy(), vec![f64::NAN; sensors]),
+        };
+        self.moments.push((simulation.time(), Picture::energies(&energy), read));
+        if self.moments.len() > MOST {
+            let mut number = 0;
+            self.moments.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+        }
+    }
+
+    /// The moments after the time `since` (s), or all of them; what is no number is none.
+    pub(super) fn after(&self, since: Option<f64>) -> Value {
+        let is_known = |time: f64| since.is_some_and(|since| time <= since);
+        let from = self.moments.partition_point(|&(time, ..)| is_known(time));
+        self.moments[from..].iter().map(|moment| json!(moment)).collect()
+    }
+}

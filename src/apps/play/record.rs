@@ -1,0 +1,211 @@
+//! What was done by the sliders, phase by phase.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use super::slider::{Target, ascending};
+use crate::dynamics::error::Error;
+use crate::dynamics::simulate::Simulation;
+use crate::elements::mesh::Selection;
+use crate::io::scene_file::{Rewritten, SceneFile, rewritten};
+use crate::scene::forces::{Signal, TimeTable, VectorSignal};
+use crate::scene::timeline::{Load, Phase, Scene};
+
+/// Parts of the scene within which a slider brings its value about: a jump is none for a body.
+const RAMP: f64 = 0.005;
+/// The longest such time (s).
+const LONGEST_RAMP: f64 = 0.02;
+
+/// The moves of the sliders.
+#[derive(Default)]
+pub(super) struct Record {
+    tracks: Vec<Track>,
+}
+
+/// The file that a scene was read from.
+pub(super) struct Original {
+    pub(super) text: String,
+    pub(super) path: PathBuf,
+}
+
+impl Original {
+    /// A name for what is made of it.
+    pub(super) fn new_name(&self) -> String {
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
+        format!("{stem}-by-hand.toml")
+    }
+}
+
+fn file_name(path: &Path) -> String {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    // a line end would end the comment
+    name.chars().map(|c| if c.is_control() { '?' } else { c }).collect()
+}
+
+/// What a slider did in one phase: values at times (s), with straight lines in between.
+struct Track {
+    /// Number of the phase, from 0.
+    phase: usize,
+    target: Target,
+    times: Vec<f64>,
+    values: Vec<f64>,
+}
+
+/// What acts in place of what the scene has: on a chamber, a spring, or some nodes.
+pub(super) enum Course {
+    Pressure(String, Signal),
+    Actuation(String, Signal),
+    Load(Selection, Load),
+}
+
+impl Course {
+    /// Puts it in force.
+    pub(super) fn command(self, simulation: &mut Simulation) -> Result<(), Error> {
+        match self {
+            Self::Pressure(chamber, signal) => simulation.pressure(&chamber, signal),
+            Self::Actuation(spring, signal) => simulation.actuate(&spring, signal),
+            Self::Load(nodes, load) => simulation.set_load(nodes, load),
+        }
+    }
+
+    /// Puts it into the phase of a file. Returns the key of the list in which it stands there.
+    fn write(self, phase: &mut Phase) -> &'static str {
+        match self {
+            Self::Pressure(chamber, signal) => {
+                phase.set_pressure(&chamber, signal);
+                "pressure"
+            }
+            Self::Actuation(spring, signal) => {
+                phase.set_actuation(&spring, signal);
+                "actuate"
+            }
+            Self::Load(nodes, load) => {
+                phase.set_load(nodes, load);
+                "load"
+            }
+        }
+    }
+}
+
+impl Record {
+    /// The scene file `original` of `scene` with these moves.
+    ///
+    /// # Errors
+    /// No moves; a file in which there is no place for them.
+    pub(super) fn saved(&self, scene: &Scene, original: &Original) -> Result<String, String> {
+        if self.tracks.is_empty() {
+            return Err("no slider was moved since the start: there is nothing to be saved".into());
+        }
+        let Original { text, path } = original;
+        let cannot = |reason: String| format!("{} cannot be changed: {reason}", path.display());
+        let written = SceneFile::parse(text, path).map_err(|error| cannot(error.to_string()))?;
+        let mut changes: Vec<Rewritten> = Vec::new();
+        for (number, phase) in scene.phases().iter().enumerate() {
+            let mut change = Rewritten { number, phase: phase.clone(), keys: BTreeSet::new() };
+            for track in self.tracks.iter().filter(|track| track.phase == number) {
+                // a file has no functions of time, of which one moment would be taken
+                let key = self.course(scene, track, 0.0).write(&mut change.phase);
+                change.keys.insert(key);
+            }
+            // it was played for longer
+            if written.scene.phases().get(number).is_some_and(|own| own.end() < phase.end()) {
+                change.keys.insert("until");
+            }
+            if !change.keys.is_empty() {
+                changes.push(change);
+            }
+        }
+        let text = rewritten(text, scene.body().dimension(), &changes).map_err(cannot)?;
+        SceneFile::parse(&text, path).map_err(|error| cannot(error.to_string()))?;
+        let name = file_name(path);
+        Ok(format!(
+            "# {name} with the sliders moved by hand. Files that it names are sought beside it.\n{text}"
+        ))
+    }
+
+    /// `target` is moved to `value` at time `t` (s): what it brings about from then on, with all before.
+    pub(super) fn moved(&mut self, scene: &Scene, target: &Target, t: f64, value: f64) -> Course {
+        let phases = scene.phases();
+        let last = phases.len().saturating_sub(1);
+        let number = phases.iter().position(|phase| t < phase.end()).unwrap_or(last);
+        let known = |track: &Track| (track.phase, &track.target) == (number, target);
+        let at = self.tracks.iter().position(known).unwrap_or_else(|| {
+            self.tracks.push(Track::of(scene, number, target.clone(), t));
+            self.tracks.len() - 1
+        });
+        self.tracks[at].go(t, (RAMP * scene.end()).min(LONGEST_RAMP), value);
+        self.course(scene, &self.tracks[at], t)
+    }
+
+    /// What a track brings about from time `t` (s) on; for a component of a load, with the other ones.
+    fn course(&self, scene: &Scene, track: &Track, t: f64) -> Course {
+        let (nodes, kind) = match &track.target {
+            Target::Pressure(chamber) => return Course::Pressure(chamber.clone(), track.signal()),
+            Target::Actuation(spring) => return Course::Actuation(spring.clone(), track.signal()),
+            Target::Load(nodes, kind, _) => (nodes, *kind),
+        };
+        let component = |axis| {
+            let target = Target::Load(nodes.clone(), kind, axis);
+            let known = |other: &&Track| (other.phase, &other.target) == (track.phase, &target);
+            match self.tracks.iter().find(known) {
+                Some(moved) => moved.signal(),
+                None => Track::of(scene, track.phase, target, t).signal(),
+            }
+        };
+        let components: Vec<Signal> = (0..scene.body().dimension()).map(component).collect();
+        let times = ascending(components.iter().flat_map(Signal::breaks));
+        let force = |t: &f64| components.iter().map(|signal| signal.at(*t)).collect();
+        let forces = times.iter().map(force).collect();
+        let value = VectorSignal::TimeTable(TimeTable::new(times, forces));
+        Course::Load(nodes.clone(), Load { kind, value })
+    }
+}
+
+impl Track {
+    /// What the scene itself says; of a function of time without breaks, its value at time `t` (s).
+    fn of(scene: &Scene, number: usize, target: Target, t: f64) -> Self {
+        let phase = scene.phases().get(number);
+        let mut times = phase.map_or_else(Vec::new, |phase| target.breaks_in(phase));
+        if times.is_empty() {
+            times.push(t);
+        }
+        let value = |t: &f64| phase.map_or(0.0, |phase| target.value_in(scene, phase, *t));
+        let values = times.iter().map(value).collect();
+        Self { phase: number, target, times, values }
+    }
+
+    /// From its value at time `t` on it goes to `value` within a time `ramp` (s).
+    fn go(&mut self, t: f64, ramp: f64, value: f64) {
+        let present = self.signal().at(t);
+        let before = self.times.partition_point(|&time| time < t);
+        self.times.truncate(before);
+        self.values.truncate(before);
+        self.times.extend([t, t + ramp]);
+        self.values.extend([present, value]);
+    }
+
+    fn signal(&self) -> Signal {
+        Signal::table(self.times.clone(), self.values.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moves_begin_where_the_slider_is() {
+        let (times, values) = (vec![0.0, 1.0], vec![0.0, 10.0]);
+        let target = Target::Pressure("air".into());
+        let mut track = Track { phase: 0, target, times, values };
+        track.go(0.5, 0.1, 7.0);
+        assert_eq!((&track.times, &track.values), (&vec![0.0, 0.5, 0.6], &vec![0.0, 5.0, 7.0]));
+        // before it is there it is moved on
+        track.go(0.55, 0.1, 1.0);
+        assert_eq!(track.times, [0.0, 0.5, 0.55, 0.55 + 0.1]);
+        assert!((track.values[2] - 6.0).abs() < 1e-12 && track.values[3] == 1.0);
+        // at the same moment twice
+        track.go(0.55, 0.1, 2.0);
+        assert_eq!(track.times.len(), 4);
+    }
+}

@@ -1,0 +1,199 @@
+//! What a person moves by sliders: pressures of chambers, forces of actuators, loads.
+
+use serde_json::{Value, json};
+
+use crate::dynamics::error::Error;
+use crate::dynamics::simulate::Simulation;
+use crate::elements::mesh::Selection;
+use crate::scene::forces::Signal;
+use crate::scene::timeline::{Load, LoadKind, Phase, Scene};
+
+/// What a slider sets.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Target {
+    /// The pressure of a chamber (Pa).
+    Pressure(String),
+    /// The force of the actuator of a spring (N).
+    Actuation(String),
+    /// A component, counted from 0, of the load of a kind on some nodes (N or N/m^2).
+    Load(Selection, LoadKind, usize),
+}
+
+/// A slider.
+pub(super) struct Slider {
+    pub(super) target: Target,
+    /// It goes from -`most` to `most`.
+    most: f64,
+    /// What it is, for the page.
+    what: String,
+}
+
+/// Pressure (in Young's moduli) and strain by which a slider reaches as far as is useful, where the scene says
+/// nothing itself.
+const USUAL: f64 = 0.05;
+/// Numbers of nodes in the name of a slider at most.
+const FEW: usize = 6;
+
+impl Slider {
+    /// The sliders of a scene.
+    pub(super) fn all(scene: &Scene) -> Vec<Self> {
+        let young = scene.body().material().young;
+        let pressure = USUAL * young;
+        // what a spring of the stiffness of the body needs for half of that strain is a usual force
+        let force = USUAL * young * scene.body().volume() / scene.body().mesh().size();
+        let chambers = scene.chambers().iter().map(|chamber| {
+            let target = Target::Pressure(chamber.name().to_owned());
+            let range = [target.largest_in(scene), pressure];
+            Self::new(target, "pressure".into(), range)
+        });
+        let springs = scene.springs().iter().map(|spring| {
+            let target = Target::Actuation(spring.name().to_owned());
+            let range = [target.largest_in(scene), force];
+            Self::new(target, "actuator".into(), range)
+        });
+        let mut loaded: Vec<&Selection> = Vec::new();
+        for (nodes, _) in scene.phases().iter().flat_map(|phase| &phase.loads) {
+            if !loaded.contains(&nodes) {
+                loaded.push(nodes);
+            }
+        }
+        let loads =
+            loaded.into_iter().flat_map(|nodes| Self::of_load(scene, nodes, [force, pressure]));
+        chambers.chain(springs).chain(loads).collect()
+    }
+
+    /// One slider per component of the loads on a selection: of the kind of which the scene always gives them, or else
+    /// on each of its nodes. Usual are a force and a traction.
+    fn of_load(scene: &Scene, nodes: &Selection, [force, traction]: [f64; 2]) -> Vec<Self> {
+        // loads on no nodes are no part of a scene
+        let count = scene.body().mesh().select(nodes).map_or(1, |nodes| nodes.len());
+        let loads = || scene.phases().iter().flat_map(|phase| loads_in(phase, nodes));
+        let always = |kind: &LoadKind| loads().all(|load| load.kind == *kind);
+        let kind = LoadKind::ALL.into_iter().find(always).unwrap_or(LoadKind::Each);
+        let (name, of_what, usual) = match kind {
+            LoadKind::Traction => ("traction", "", traction),
+            _ if count == 1 => ("load", "", force),
+            LoadKind::Each => ("load", ", each node", force),
+            LoadKind::Total => ("load", ", in total", force),
+        };
+        // a load that the scene turns another way is as strong
+        let axes = 0..scene.body().dimension();
+        let targets = axes.map(|axis| Target::Load(nodes.clone(), kind, axis));
+        let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
+        let slider = |(target, axis)| {
+            let what = format!("{name} {axis}{of_what}");
+            Self::new(target, what, [largest, usual])
+        };
+        targets.zip(["x", "y", "z"]).map(slider).collect()
+    }
+
+    /// A slider that goes twice as far as the scene itself, or as far as is `usual`.
+    fn new(target: Target, what: String, [largest, usual]: [f64; 2]) -> Self {
+        let most = round_up(if largest > 0.0 { 2.0 * largest } else { usual });
+        Self { target, most, what }
+    }
+
+    /// The value in force, as it is shown.
+    pub(super) fn value(&self, simulation: &Simulation) -> Result<f64, Error> {
+        Ok(match &self.target {
+            Target::Pressure(chamber) => simulation.view().pressure(chamber)?,
+            Target::Actuation(spring) => simulation.view().actuation(spring)?,
+            Target::Load(nodes, kind, axis) => simulation.view().load_of(nodes, *kind)?[*axis],
+        })
+    }
+
+    pub(super) fn to_json(&self) -> Value {
+        let (name, unit) = match &self.target {
+            Target::Pressure(chamber) => (chamber.clone(), "Pa"),
+            Target::Actuation(spring) => (spring.clone(), "N"),
+            Target::Load(nodes, LoadKind::Traction, _) => (name_of(nodes), "Pa"),
+            Target::Load(nodes, ..) => (name_of(nodes), "N"),
+        };
+        json!({ "name": name, "what": self.what, "unit": unit, "most": self.most })
+    }
+}
+
+impl Target {
+    /// What `phase` of `scene` itself says of it at time `t` (s).
+    pub(super) fn value_in(&self, scene: &Scene, phase: &Phase, t: f64) -> f64 {
+        match self {
+            Self::Load(nodes, kind, axis) => {
+                scene.load_on(phase, nodes, *kind, t).map_or(0.0, |load| load[*axis])
+            }
+            _ => self.signals_in(phase).map(|signal| signal.at(t)).sum(),
+        }
+    }
+
+    /// Times (s) at which what `phase` says of it changes its law, ascending.
+    pub(super) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
+        match self {
+            Self::Load(nodes, ..) => ascending(loads_in(phase, nodes).flat_map(breaks)),
+            _ => ascending(self.signals_in(phase).flat_map(Signal::breaks)),
+        }
+    }
+
+    /// The signals of a chamber or a spring in `phase`; the sum of them acts.
+    fn signals_in<'a>(&'a self, phase: &'a Phase) -> Box<dyn Iterator<Item = &'a Signal> + 'a> {
+        match self {
+            Self::Pressure(name) => Box::new(
+                phase.pressures.iter().filter(move |(other, _)| other == name).map(|(_, s)| s),
+            ),
+            Self::Actuation(name) => {
+                Box::new(phase.actuations.iter().flat_map(move |(springs, signal)| {
+                    springs.iter().filter(move |other| *other == name).map(move |_| signal)
+                }))
+            }
+            Self::Load(..) => Box::new(std::iter::empty()),
+        }
+    }
+
+    /// The largest value that the scene itself has for it.
+    fn largest_in(&self, scene: &Scene) -> f64 {
+        let phases = scene.phases().iter().flat_map(|phase| {
+            let times = self.breaks_in(phase).into_iter().chain([phase.end()]);
+            times.map(move |t| self.value_in(scene, phase, t).abs())
+        });
+        phases.fold(0.0, f64::max)
+    }
+}
+
+/// The loads that `phase` has for a selection; the sum of them acts.
+fn loads_in<'a>(phase: &'a Phase, nodes: &'a Selection) -> impl Iterator<Item = &'a Load> {
+    phase.loads.iter().filter(move |(other, _)| other == nodes).map(|(_, load)| load)
+}
+
+fn breaks(load: &Load) -> &[f64] {
+    load.value.breaks()
+}
+
+/// Times (s) in their order, each of them once.
+pub(super) fn ascending<'a>(times: impl Iterator<Item = &'a f64>) -> Vec<f64> {
+    let mut times: Vec<f64> = times.copied().collect();
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}
+
+/// How a person calls the nodes.
+fn name_of(nodes: &Selection) -> String {
+    match nodes {
+        Selection::Set(name) => name.clone(),
+        Selection::Numbers(numbers) => {
+            let word = if numbers.len() == 1 { "node" } else { "nodes" };
+            let few: Vec<String> = numbers.iter().take(FEW).map(usize::to_string).collect();
+            let more = if numbers.len() > FEW { ", ..." } else { "" };
+            format!("{word} {}{more}", few.join(", "))
+        }
+        Selection::Box { .. } => nodes.to_string(),
+    }
+}
+
+/// The next number with one digit.
+fn round_up(x: f64) -> f64 {
+    if !x.is_normal() {
+        return 1.0;
+    }
+    let unit = 10_f64.powf(x.abs().log10().floor());
+    // 2.0000001 of them are 2
+    (x.abs() / unit - 1e-6).ceil() * unit
+}

@@ -1,0 +1,12 @@
+//! What all rooms stand on and what says nothing of mechanics: vectors, small tensors, registers of the machine,
+//! matrices over pairs of nodes, formulas of time, the error of an input.
+
+#[cfg(feature = "bodies")]
+pub(crate) mod formula;
+pub(crate) mod input;
+pub(crate) mod lane;
+pub(crate) mod simd;
+#[cfg(feature = "bodies")]
+pub mod sparse;
+pub(crate) mod tensor;
+pub(crate) mod vector;

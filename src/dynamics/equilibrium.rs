@@ -1,0 +1,220 @@
+//! A scene in equilibrium: what statics finds, and what is left if it finds none.
+
+use std::fmt;
+
+use crate::base::input::told;
+use crate::dynamics::trajectory::{Sample, Trajectory};
+
+/// What a small push does to a body in equilibrium.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stability {
+    /// The tangent is positive definite on the motions that the constraints allow: it swings back.
+    Stable {
+        /// Lowest natural frequency of small undamped vibrations about the equilibrium (Hz);
+        /// infinite if nothing can move.
+        frequency: f64,
+    },
+    /// It can move on without force, to the precision of the arithmetic.
+    Neutral,
+    /// The equilibrium is no minimum of the energy: a small push grows.
+    Unstable {
+        /// Rate at which the push grows most, without damping (1/s).
+        growth: f64,
+    },
+}
+
+impl fmt::Display for Stability {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stable { frequency } => {
+                write!(f, "stable, lowest natural frequency {frequency:.4} Hz")
+            }
+            Self::Neutral => f.write_str("neutral: it can move on without force"),
+            Self::Unstable { growth } => write!(f, "UNSTABLE: a push grows at {growth:.4} 1/s"),
+        }
+    }
+}
+
+/// A scene in equilibrium, and how it was found.
+#[derive(Debug, Clone)]
+pub struct Equilibrium {
+    pub(crate) trajectory: Trajectory,
+    /// What a small push does to it.
+    pub stability: Stability,
+    /// Rigid motions, in words, that nothing holds in a body whose loads balance each other, and that were taken out of
+    /// the displacements u: R^T M u = 0 for each motion R, so that the body has neither moved nor turned in the mean over its mass.
+    /// With Green's strain a body turns to where loads of constant direction balance each other, which then hold it: a turn
+    /// is removed only if no force minds it.
+    pub removed: Vec<String>,
+    /// Largest nodal force that is not balanced (N).
+    pub residual: f64,
+    /// Largest nodal force of those that balance each other (N): the scale of `residual`.
+    pub force_scale: f64,
+    /// Newton iterations in all load steps.
+    pub iterations: usize,
+    /// Factorizations of the tangent.
+    pub factorizations: usize,
+    /// Evaluations of forces for their tangents by finite differences: of those that leave out
+    /// [`Force::add_tangents`](crate::elements::force::Force::add_tangents).
+    pub difference_evaluations: usize,
+    /// Load steps that converged.
+    pub load_steps: usize,
+    /// Load steps that did not, and were made smaller.
+    pub failed_steps: usize,
+    /// By how much a quantity is off by the mesh, if that was [estimated](MeshEstimate).
+    pub mesh_estimate: Option<MeshEstimate>,
+}
+
+/// By how much a quantity of an equilibrium is off because the mesh is not finer: made by
+/// [`MeshEstimate::of`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshEstimate {
+    /// What was asked for.
+    pub quantity: String,
+    /// Its unit.
+    pub unit: String,
+    /// What it is on this mesh.
+    pub value: f64,
+    /// How much it has changed from the undeformed shape, without load, to the equilibrium.
+    pub change: f64,
+    /// What the quantity would be on the richer mesh, less the value: the error is minus that.
+    pub correction: f64,
+    /// What the forces that the step to the corrected displacements leaves unbalanced would add to the correction: its leading
+    /// remainder, 0 in linear problems, infinite if forces have no meaning there.
+    pub remainder: f64,
+    /// What the nodes that the richer mesh has more contribute to the correction, by the cells of this mesh that they lie in: where it
+    /// is large, smaller cells help.
+    pub cells: Vec<f64>,
+    /// Displacement components on the richer mesh.
+    pub unknowns: usize,
+    /// Wall-clock time that the estimate took (s).
+    pub seconds: f64,
+}
+
+impl MeshEstimate {
+    /// The value with its correction.
+    pub fn corrected(&self) -> f64 {
+        self.value + self.correction
+    }
+
+    /// Whether the remainder is no larger than the correction, but for round-off: if it is, the correction may be far off.
+    pub fn is_reliable(&self) -> bool {
+        let round_off = 1e-9 * self.value.abs().max(self.change.abs());
+        self.remainder.abs() <= self.correction.abs().max(round_off)
+    }
+
+    /// The size of the correction as a part of the change; infinite if the quantity has not changed.
+    pub fn relative(&self) -> f64 {
+        (self.correction / self.change).abs()
+    }
+}
+
+impl fmt::Display for MeshEstimate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, unit, value, correction, unknowns, .. } = self;
+        let [shown, off, better] = [*value, correction.abs(), self.corrected()].map(told);
+        write!(f, "{quantity} is {shown} {unit}, off by about {off} {unit}")?;
+        if self.change != 0.0 {
+            let part = told(100.0 * self.relative());
+            write!(f, " ({part} % of its change) because of the mesh")?;
+        }
+        write!(f, ": {better} {unit}, by dual-weighted residuals with {unknowns} unknowns")?;
+        if !self.is_reliable() {
+            let left = match self.remainder.is_finite() {
+                true => format!("is {} {unit}", told(self.remainder.abs())),
+                false => "cannot be told".into(),
+            };
+            write!(
+                f,
+                "\nWARNING: the estimate may be far off, as what it leaves out {left}: the mesh is so coarse that the body \
+                 would move far on a better one; take finer cells, or quadratic ones in place of linear ones"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+impl Equilibrium {
+    /// The state: displacements, constraint forces lambda (on the body) and potential energies;
+    /// what is stored beyond the undeformed shape counts as supplied.
+    pub fn sample(&self) -> &Sample {
+        self.trajectory.last()
+    }
+
+    /// Displacements (m), dimension components per node.
+    pub fn displacements(&self) -> &[f64] {
+        &self.sample().u
+    }
+
+    /// The same as a trajectory, for [`output`](crate::io::output): the undeformed shape at t = 0, and
+    /// the equilibrium at the end of the phase; between them those for parts of the load, if
+    /// [`Statics`](crate::Statics) asks for several steps.
+    pub fn trajectory(&self) -> &Trajectory {
+        &self.trajectory
+    }
+}
+
+impl fmt::Display for Equilibrium {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { stability, residual, force_scale, iterations, load_steps, .. } = self;
+        write!(
+            f,
+            "{stability}; forces balanced to {residual:.1e} of {force_scale:.3e} N, \
+             {iterations} iteration(s), {load_steps} load step(s)"
+        )?;
+        if !self.removed.is_empty() {
+            write!(
+                f,
+                "; nothing holds the body: rigid motions removed ({})",
+                self.removed.join(", ")
+            )?;
+        }
+        let differences = self.difference_evaluations;
+        if differences > 0 {
+            write!(
+                f,
+                "; tangents of forces by finite differences: {differences} evaluations of these forces"
+            )?;
+        }
+        if let Some(estimate) = &self.mesh_estimate {
+            write!(f, "\n{estimate}")?;
+        }
+        let warnings = self.trajectory.report().warnings();
+        warnings.iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
+    }
+}
+
+/// The search for an equilibrium gave up: how far it came and why.
+#[derive(Debug)]
+pub struct NoEquilibrium {
+    /// Name of the phase.
+    pub phase: String,
+    /// Part of constraints and loads for which an equilibrium was found.
+    pub fraction: f64,
+    /// Part for which none was found.
+    pub tried: f64,
+    /// Largest nodal force left unbalanced in the last attempt (N).
+    pub residual: f64,
+    /// Newton iterations in all load steps.
+    pub iterations: usize,
+    /// The likely cause, and what to try.
+    pub cause: String,
+    /// The undeformed shape and, at that part of the end of the phase, the last equilibrium found, if any; those
+    /// before it as in [`Equilibrium::trajectory`].
+    pub trajectory: Trajectory,
+}
+
+impl fmt::Display for NoEquilibrium {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { phase, fraction, tried, residual, iterations, cause, .. } = self;
+        write!(
+            f,
+            "phase \"{phase}\": no equilibrium at {:.2} % of the load ({residual:.2e} N unbalanced, \
+             {iterations} iterations in all), the last one is at {:.2} %: {cause}",
+            100.0 * tried,
+            100.0 * fraction
+        )
+    }
+}
+
+impl std::error::Error for NoEquilibrium {}

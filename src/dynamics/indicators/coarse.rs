@@ -1,0 +1,52 @@
+//! Whether the cells are fine enough for the strains that they show.
+
+use super::mesh::quadratic_cells;
+use crate::base::input::told;
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::{Sample, Trajectory};
+
+/// How many times too stiff a body may be for its cells.
+const MOST_STIFF: f64 = 1.25;
+/// Samples count that have this part of the largest strain energy among all of them at least, ...
+const LARGE: f64 = 0.5;
+/// ... and this part of the largest energy of any kind, and this strain in the mean: below, strains may be errors of the
+/// integration and round-off.
+const SEEN: f64 = 1e-3;
+const LEAST_STRAIN: f64 = 1e-8;
+
+/// Linear cells of which too few stand where the strain changes, as through the thickness of a beam that bends. The
+/// strain energy of what jumps between cells is stored in the mesh and not in the body, which is that much too stiff.
+pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+    let body = trajectory.body();
+    let mend = quadratic_cells(body.mesh().kind())?;
+    let young = body.materials().iter().map(|material| material.young).fold(0.0, f64::max);
+    let round_off = 0.5 * young * body.volume() * LEAST_STRAIN.powi(2);
+    let energy = |sample: &Sample| sample.energy.strain;
+    let largest = samples.iter().map(|sample| energy(sample)).fold(0.0, f64::max);
+    if largest <= round_off.max(SEEN * trajectory.report.energy_scale) {
+        return None;
+    }
+    let counts = samples.iter().filter(|sample| energy(sample) >= LARGE * largest);
+    let jumps = counts.filter_map(|sample| Some((body.strain_jumps(&sample.u)?, sample.time)));
+    let (jumps, time) = jumps.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
+    // the same displacements, without jumps, would take the rest of the energy
+    let stiff = 1.0 / (1.0 - jumps.min(0.99));
+    let within = || {
+        format!(
+            "cells are fine enough for their strains: the body is some {stiff:.2} times too stiff (limit: {MOST_STIFF} times)"
+        )
+    };
+    let beyond = || {
+        let finer = ((stiff - 1.0) / (MOST_STIFF - 1.0)).sqrt();
+        format!(
+            "cells are too coarse for their strains: at t = {} s {:.0} % of the strain energy is in jumps between \
+             cells, so the body is some {stiff:.1} times too stiff or more (limit: {MOST_STIFF} times); take {mend}, or a \
+             mesh {:.1} times as fine where it bends",
+            told(time),
+            100.0 * jumps,
+            finer.max(1.1)
+        )
+    };
+    let value = (stiff, "1");
+    Some(Indicator::trusted("stiffness-of-cells", value, [1.0, MOST_STIFF], within, beyond))
+}

@@ -1,0 +1,154 @@
+//! How much cells are strained and turned, and what that says of the law.
+
+use nalgebra::Matrix3;
+
+use super::rigid::without_turn;
+use super::shape::Extent;
+use crate::base::input::{percent, told};
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::elements::body::{Body, Strain};
+use crate::elements::material::Law;
+
+/// How far the stress of a law may be from that of rubber (incompressible and neo-Hookean, in one direction).
+const MOST_WRONG: f64 = 0.25;
+/// By how many times the strain the stress differs from rubber's: of St. Venant and Kirchhoff's law, and of Hooke's. Laws of rubber follow it up to
+/// about twice the length, where it begins to stiffen as chains of molecules are stretched out.
+const GREEN_LAW: f64 = 2.5;
+const CAUCHY_LAW: f64 = 1.0;
+const NEO_HOOKEAN: f64 = 0.25;
+/// What to take in place of such a law.
+const OF_RUBBER: &str = "take a law of rubber (law = { kind = \"neo-hookean\" })";
+/// How far strains may be wrong under Cauchy strain for that to do.
+const MOST_NONLINEAR: f64 = 0.01;
+/// Strains below this are round-off.
+const LEAST_STRAIN: f64 = 1e-9;
+
+/// The largest deformations of cells.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Deformed {
+    /// Change of a length over the length, along any axis.
+    pub(super) strain: f64,
+    /// When (s), and the number of the cell, counted from 0.
+    at: (f64, usize),
+    /// Angles (rad): in all, and beside the turn of the body as a whole.
+    turn: f64,
+    pub(super) own_turn: f64,
+}
+
+impl Deformed {
+    /// The largest in any of the `samples`.
+    pub(super) fn of(body: &Body, samples: &[&Sample]) -> Self {
+        let mut most = Self::default();
+        let largest = |angles: Vec<f64>| angles.into_iter().fold(0.0, f64::max);
+        for sample in samples {
+            let own = without_turn(body, &sample.u);
+            for (cell, field) in body.cell_fields(&own).iter().enumerate() {
+                let strains = Matrix3::from(field.strain).symmetric_eigenvalues();
+                let strain = strains.iter().map(|&strain| stretch(body, strain).abs());
+                let strain = strain.fold(0.0, f64::max);
+                if strain > most.strain {
+                    (most.strain, most.at) = (strain, (sample.time, cell));
+                }
+            }
+            most.turn = most.turn.max(largest(body.cell_rotations(&sample.u)));
+            most.own_turn = most.own_turn.max(largest(body.cell_rotations(&own)));
+        }
+        most
+    }
+
+    /// The indicators, of a body of this `extent` if that is known.
+    pub(super) fn indicators(
+        &self,
+        trajectory: &Trajectory,
+        extent: Option<&Extent>,
+    ) -> Vec<Indicator> {
+        let strain = trajectory.body().strain();
+        let slenderness = extent.map(Extent::slenderness);
+        let nonlinear =
+            slenderness.filter(|_| strain == Strain::Green && self.strain > LEAST_STRAIN);
+        // fibres there are with Green's alone
+        let has_fibres = trajectory.body().substances().any(|of| !of.fibres.is_empty());
+        let nonlinear = nonlinear.filter(|_| !has_fibres);
+        let nonlinear =
+            nonlinear.map(|slenderness| self.nonlinearity(trajectory.body(), slenderness));
+        let turns = (trajectory.body().mesh().kind().dimension() > 1).then(|| self.turns());
+        [self.largest_strain(trajectory.body())].into_iter().chain(turns).chain(nonlinear).collect()
+    }
+
+    fn turns(&self) -> Indicator {
+        let [all, own] = [self.turn, self.own_turn].map(f64::to_degrees);
+        let told =
+            format!("cells turn by up to {all:.1} degrees, {own:.1} beside the body as a whole");
+        Indicator::told("own-turn", own, "degrees", told)
+    }
+
+    fn largest_strain(&self, body: &Body) -> Indicator {
+        let is_plain = |law: Option<Law>| matches!(law, None | Some(Law::StVenantKirchhoff));
+        let (factor, off, mend) = match body.strain() {
+            Strain::Cauchy => (
+                CAUCHY_LAW,
+                "Hooke's law is off by about as much",
+                "take strain = \"green\" and a law of rubber (law = { kind = \"neo-hookean\" })",
+            ),
+            Strain::Green if body.substances().any(|substance| is_plain(substance.law)) => (
+                GREEN_LAW,
+                "St. Venant and Kirchhoff's law is off by some 2.5 times that",
+                OF_RUBBER,
+            ),
+            Strain::Green
+                if body.substances().any(|substance| substance.law == Some(Law::Corotated)) =>
+            {
+                (CAUCHY_LAW, "Hooke's law of the stretches is off by about as much", OF_RUBBER)
+            }
+            // constants of others are fitted to what they are for
+            Strain::Green => (
+                NEO_HOOKEAN,
+                "rubber stiffens at such strains as only constants that are fitted to it tell",
+                "fit the constants of its law to measurements at such strains",
+            ),
+        };
+        let Self { strain, at: (time, cell), .. } = *self;
+        let limit = MOST_WRONG / factor;
+        let said = format!(
+            "cells are strained by up to {} % (limit: {})",
+            told(100.0 * strain),
+            percent(limit)
+        );
+        let beyond = || {
+            format!(
+                "{said}, cell {} at t = {} s: {off} in its stress, compared with that of rubber; forces there are \
+                 doubtful, shapes less so. Deform it less, or {mend}",
+                cell + 1,
+                told(time)
+            )
+        };
+        Indicator::trusted("strain", (strain, "1"), [0.0, limit], || said.clone(), beyond)
+    }
+
+    /// What Cauchy strain would get wrong, relative to the strain: rotations count as strains, terms of second order are
+    /// lost, and so are forces that strains along a slender body exert across it, as its buckling.
+    fn nonlinearity(&self, body: &Body, slenderness: f64) -> Indicator {
+        let Self { strain, turn, .. } = *self;
+        let wrong =
+            ((1.0 - turn.cos()) + 0.5 * strain.powi(2)) / strain + strain * slenderness.powi(2);
+        let limit = percent(MOST_NONLINEAR);
+        let by =
+            if wrong < 1.0 { format!("some {}", percent(wrong)) } else { "more than 100 %".into() };
+        let said = format!("Cauchy strain would be wrong by {by} of the strains (limit: {limit})");
+        let without = match body.substances().any(|substance| substance.law.is_some()) {
+            true => " without a law",
+            false => "",
+        };
+        let enough = || format!("{said}: strain = \"cauchy\"{without} would do, and is faster");
+        Indicator::needed("nonlinearity", (wrong, "1"), MOST_NONLINEAR, || said.clone(), enough)
+    }
+}
+
+/// Change of length over length of a principal strain of the body's measure.
+fn stretch(body: &Body, strain: f64) -> f64 {
+    match body.strain() {
+        Strain::Cauchy => strain,
+        Strain::Green => (1.0 + 2.0 * strain).max(0.0).sqrt() - 1.0,
+    }
+}

@@ -1,0 +1,115 @@
+//! What a body tells before it moves: its cells, its pieces.
+
+use crate::dynamics::report::Indicator;
+use crate::elements::body::{Body, Dilatation};
+use crate::elements::force::Force;
+use crate::elements::material::Plane;
+use crate::elements::mesh::CellKind;
+use crate::scene::constraint::PhaseStart;
+use crate::scene::timeline::Scene;
+
+/// Largest Poisson's ratio of cells that lock.
+const MOST_POISSON: f64 = 0.45;
+
+/// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
+/// several times too stiff.
+pub(super) fn locking(body: &Body) -> Option<Indicator> {
+    let other = match body.mesh().kind() {
+        CellKind::Triangle if is_crossed(body) => return None,
+        CellKind::Triangle => " or \"crossed\" ones",
+        CellKind::Quadrilateral | CellKind::Hexahedron if body.dilatation() == Dilatation::Mean => {
+            return None;
+        }
+        CellKind::Quadrilateral => ", \"crossed\" triangles or dilatation = \"mean\"",
+        CellKind::Hexahedron => " or dilatation = \"mean\"",
+        _ => "",
+    };
+    let mend = quadratic_cells(body.mesh().kind())?;
+    if body.mesh().kind().dimension() == 2 && body.plane() == Plane::Stress {
+        return None;
+    }
+    let most = body.materials().iter().map(|material| material.poisson).fold(-1.0, f64::max);
+    let cells = body.mesh().kind().name();
+    let told = format!("Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON})");
+    let beyond = || {
+        format!(
+            "{told}: they lock, and may be several times too stiff in bending; take {mend}{other}, or a smaller ratio"
+        )
+    };
+    let limits = [-1.0, MOST_POISSON];
+    Some(Indicator::trusted("poisson", (most, "1"), limits, || told.clone(), beyond))
+}
+
+/// Quadratic cells to take for linear ones that fill a plane or space.
+pub(super) fn quadratic_cells(kind: CellKind) -> Option<&'static str> {
+    match kind {
+        CellKind::Triangle => {
+            Some("quadratic cells (\"triangles6\"; in Gmsh: Mesh.ElementOrder = 2)")
+        }
+        CellKind::Quadrilateral => Some("quadratic cells (\"triangles6\")"),
+        CellKind::Tetrahedron => {
+            Some("quadratic cells (\"tetrahedra10\"; in Gmsh: Mesh.ElementOrder = 2)")
+        }
+        CellKind::Hexahedron => Some(
+            "quadratic cells (\"hexahedra20\" or \"tetrahedra10\"; in Gmsh: Mesh.ElementOrder = 2 and, for hexahedra, \
+             Mesh.SecondOrderIncomplete = 1)",
+        ),
+        CellKind::Segment
+        | CellKind::Triangle6
+        | CellKind::Tetrahedron10
+        | CellKind::Hexahedron20 => None,
+    }
+}
+
+/// Whether each triangle has a corner at which just four meet (on the boundary, two or one), as those within a
+/// quadrilateral do that both its diagonals divide. One of their constraints on the volume follows there from the
+/// others.
+fn is_crossed(body: &Body) -> bool {
+    let mesh = body.mesh();
+    let mut cells_at = vec![0; mesh.node_count()];
+    mesh.cells().flatten().for_each(|&node| cells_at[node] += 1);
+    // as if the mesh went on beyond the boundary
+    mesh.boundary_nodes().iter().for_each(|&node| cells_at[node] = 2 * cells_at[node].max(2));
+    mesh.cells().all(|cell| cell.iter().any(|&node| cells_at[node] == 4))
+}
+
+/// Pieces of the body that neither cells nor springs, other forces or constraints of several nodes join.
+pub(super) fn pieces(scene: &Scene) -> Option<Indicator> {
+    let pattern = scene.body().inertia().pattern();
+    let whole = || "the body is of one piece (limit: 1 piece)".to_owned();
+    if pattern.pieces().iter().all(|&piece| piece == 0) {
+        return Some(Indicator::trusted("pieces", (1.0, ""), [1.0, 1.0], whole, String::new));
+    }
+    let pieces = pattern.with_pairs(&joints(scene)).pieces();
+    let count = pieces.iter().max().map_or(1, |last| last + 1);
+    let mut sizes = vec![0; count];
+    pieces.iter().for_each(|&piece| sizes[piece] += 1);
+    // a point mass comes after all others, so that the smallest piece is told by its first node
+    let (smallest, nodes) = sizes.iter().enumerate().min_by_key(|(_, nodes)| **nodes)?;
+    let first = pieces.iter().position(|&piece| piece == smallest)?;
+    let beyond = || {
+        format!(
+            "the body consists of {count} pieces that nothing joins and that pass through each other (limit: \
+             1 piece); the smallest, with node {}, has {nodes} of {} nodes: merge nodes in the same place (in \
+             Gmsh: Coherence), or join the pieces by springs",
+            first + 1,
+            pieces.len()
+        )
+    };
+    Some(Indicator::trusted("pieces", (count as f64, ""), [1.0, 1.0], whole, beyond))
+}
+
+/// Pairs of nodes that are joined, but not by cells.
+fn joints(scene: &Scene) -> Vec<[usize; 2]> {
+    let body = scene.body();
+    let springs = scene.springs().iter().filter_map(|spring| spring.force(body.mesh()).ok());
+    let mut joints: Vec<[usize; 2]> = springs.flat_map(|spring| spring.couplings()).collect();
+    joints.extend(scene.other_forces().iter().flat_map(|force| force.couplings()));
+    let start = PhaseStart { time: 0.0, u: scene.initial_displacements() };
+    let rows = scene.phases().iter().filter_map(|phase| scene.rows(phase, &start).ok());
+    for row in rows.flatten() {
+        let nodes: Vec<usize> = row.terms.iter().map(|(dof, _)| dof / body.dimension()).collect();
+        joints.extend(nodes.windows(2).map(|pair| [pair[0], pair[1]]));
+    }
+    joints
+}

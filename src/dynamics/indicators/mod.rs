@@ -1,0 +1,217 @@
+//! Indicators: numbers measured on a scene and on its motion, each with the limit beyond which the result is
+//! doubtful, and what to do then. They are looked at before a run or after it, never within.
+//!
+//! | indicator | limit |
+//! | --- | --- |
+//! | [`units`]: size and mass of the body, speed of waves in it | 10 m, 10 t, 0.1 to 10,000 m/s |
+//! | [`units`]: density, modulus (of rubber) | 5 to 25,000 kg/m^3, 2e12 Pa (1e8 Pa) |
+//! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
+//! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
+//! | [`mesh`]: pieces that nothing joins | one piece |
+//! | [`overlap`]: how deep the body is within itself, as it is drawn and as it moves | a twentieth of a cell |
+//! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
+//! | [`strain`]: cells turned inside out under Cauchy strain | none |
+//! | [`coarse`]: how much stiffer linear cells are than the strains that they show | 1.25 times |
+//! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body |
+//! | [`touch`]: obstacles with friction that are met in statics, where it does not act | none |
+//! | [`touch`]: obstacles that act and are never met | none |
+//! | [`chamber`]: the least volume of a chamber | 0 |
+//! | [`pace`]: absolute tolerance of displacements | 1 % of the way that nodes go, or 10 `rtol` |
+//!
+//! Those are measured at the end of each run, and before it as far as they need none. Others take longer, or are no cause
+//! for a warning by themselves: [`Trajectory::indicators`], `pliant check --look`. (+) means that less would do below the limit.
+//!
+//! | indicator | limit |
+//! | --- | --- |
+//! | [`deformed`]: largest strain, by which the stress of a law differs from rubber's | 10 % (Green), 25 % (Cauchy) |
+//! | [`deformed`]: what Cauchy strain would get wrong in a body with Green's (+) | 1 % of the strains |
+//! | [`deformed`]: turn of cells beside that of the body; [`shape`]: slenderness | |
+//! | [`shape`]: layers of cells through a slender body that bends | 4 of simplices, 2 of others, 1 quadratic |
+//! | [`waves`]: cells in a wavelength of the motion | 6 linear, 3 quadratic |
+//! | [`points`]: single nodes that are loaded or held so much that the mesh matters | none |
+//! | [`felt`]: depth in obstacles | 10 % of the way that nodes go |
+//! | [`felt`]: forces of friction (+) | 1 % of what presses |
+//! | [`pace`]: drift of constraints | 0.1 % of the way that nodes go |
+//! | [`pace`]: kinetic energy (+) | 1 % of the stored energy |
+//! | [`pace`]: damping of the lowest vibration, and how much faster the mesh can move | |
+//! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
+//! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
+
+mod chamber;
+mod coarse;
+mod deformed;
+mod felt;
+mod grid;
+mod mesh;
+mod overlap;
+mod pace;
+mod points;
+mod rigid;
+mod shape;
+mod size;
+mod skin;
+mod strain;
+mod symmetry;
+mod touch;
+mod units;
+mod waves;
+
+use deformed::Deformed;
+use shape::Extent;
+
+use crate::dynamics::report::{Indicator, warnings};
+use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::scene::timeline::Scene;
+
+impl Scene {
+    /// What makes any motion of this scene doubtful, as far as it can be known before a run: a body too large,
+    /// too heavy or too fast to be soft (its mesh may be in millimetres), cells that lock, pieces that nothing
+    /// joins, a mesh that overlaps itself, obstacles that it begins inside. Each warning names what was measured, its limit, and what to change.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Scene};
+    ///
+    /// let mesh = Mesh::rectangle([300.0, 300.0], [4, 4], Cells::Triangles)?; // mm?
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
+    /// let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?);
+    /// assert!(scene.warnings()[0].contains("is the mesh in mm?"));
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn warnings(&self) -> Vec<String> {
+        warnings(&self.indicators())
+    }
+
+    /// What can be measured before a run, with limits: the size, mass and speed of waves of the body, its cells, its
+    /// pieces, the obstacles that it begins inside. Those beyond their limits are the [`warnings`](Self::warnings).
+    pub fn indicators(&self) -> Vec<Indicator> {
+        let body = self.body();
+        units::units(self)
+            .into_iter()
+            .chain(mesh::locking(body))
+            .chain(mesh::pieces(self))
+            .chain(overlap::drawn(body))
+            .chain(touch::begun_inside(self))
+            .collect()
+    }
+}
+
+impl Trajectory {
+    /// What tells how far the motion can be trusted, and what of the model it needs: what the end of the run
+    /// [measured](crate::Report::indicators), and what takes longer to measure, on the same samples. Of what has a limit
+    /// the value is kept on either side of it.
+    ///
+    /// ```
+    /// use pliant::{Sampling, Settings, samples};
+    ///
+    /// let motion = samples::square_jump(4)?.simulate(&Settings::default(), &Sampling::every(0.01))?;
+    /// for indicator in motion.indicators() {
+    ///     println!("{indicator}"); // fine, doubtful or more-than-needed, and why
+    /// }
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn indicators(&self) -> Vec<Indicator> {
+        let (body, samples) = (self.body(), looked_at(self));
+        let deformed = Deformed::of(body, &samples);
+        let extent = Extent::of(body);
+        let mut all = self.report().indicators.clone();
+        all.extend(deformed.indicators(self, extent.as_ref()));
+        all.extend(
+            extent
+                .iter()
+                .flat_map(|extent| extent.indicators(body, deformed.own_turn, deformed.strain)),
+        );
+        let inertia = pace::inertia(&samples);
+        let is_static = inertia.as_ref().is_some_and(Indicator::is_beyond);
+        all.extend(waves::resolution(self, &samples, is_static));
+        all.extend(points::single(self, &samples));
+        all.extend(felt::depth(self, &samples, &touch::meetings(self, &samples)));
+        all.extend(felt::friction(self, &samples));
+        all.extend(pace::drift(self, &samples));
+        all.extend(inertia);
+        all.extend(pace::vibrations(self.scene()));
+        all.extend(symmetry::plane(body, &samples));
+        all.extend(symmetry::mirrors(body, &samples));
+        all
+    }
+}
+
+/// What tells how far a motion can be trusted, or the part of it that there is.
+pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
+    let samples = looked_at(trajectory);
+    let scene = trajectory.scene();
+    let is_whole = samples[0].time <= 0.0 && trajectory.last().time >= scene.end();
+    let meetings = touch::meetings(trajectory, &samples);
+    let missed = || touch::missed(&meetings, touch::Reach::between(scene, &samples));
+    let measured = scene.indicators().into_iter().chain(of_cells(trajectory, &samples));
+    let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(chamber::volumes(scene, trajectory.samples()));
+    let measured = measured.chain(overlaps(trajectory));
+    let measured = measured.chain(pace::tolerance(trajectory, &samples));
+    measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
+}
+
+/// What tells how far an equilibrium can be trusted, or the last one on the way to it.
+pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Indicator> {
+    let samples = [trajectory.last()];
+    let meetings = touch::meetings(trajectory, &samples);
+    let measured = trajectory.scene().indicators().into_iter();
+    let measured = measured.chain(of_cells(trajectory, &samples));
+    let measured = measured.chain(touch::depths(&meetings));
+    let measured = measured.chain(overlaps(trajectory));
+    let measured = measured.chain(touch::slippery(trajectory, &meetings));
+    let measured = measured.chain(chamber::volumes(trajectory.scene(), trajectory.samples()));
+    measured
+        .chain(is_found.then(|| touch::missed(&meetings, touch::Reach::NONE)).into_iter().flatten())
+        .collect()
+}
+
+/// What of a scene ends its run early, whatever the integrator says: an obstacle that the body begins inside of.
+pub(crate) fn doom(indicators: &[Indicator]) -> Option<&str> {
+    let is_doom = |told: &&Indicator| told.name == touch::START_DEPTH && told.is_doubtful();
+    indicators.iter().find(is_doom).map(|told| told.text.as_str())
+}
+
+/// The largest angle (rad) by which a cell turns.
+#[cfg(feature = "scene-file")]
+pub(crate) fn largest_turn(trajectory: &Trajectory) -> f64 {
+    strain::largest_turn(trajectory.body(), &looked_at(trajectory))
+}
+
+/// Whether the body passes through itself.
+fn overlaps(trajectory: &Trajectory) -> Option<Indicator> {
+    let samples = spread(trajectory, MOST_SAMPLES_FOR_OVERLAPS, MOST_CELLS_FOR_OVERLAPS);
+    overlap::overlap(trajectory.body(), &samples)
+}
+
+/// What cells cannot follow.
+fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item = Indicator> {
+    let measured = [
+        strain::turning(trajectory, samples),
+        strain::inversion(trajectory, samples),
+        coarse::coarse(trajectory, samples),
+    ];
+    measured.into_iter().flatten()
+}
+
+/// Most samples that are looked at, and most cells in all of them; but so many samples always are.
+const MOST_SAMPLES: usize = 200;
+const MOST_CELLS: usize = 50_000;
+const FEW_SAMPLES: usize = 10;
+/// Overlaps come and go, and are found at less cost.
+const MOST_SAMPLES_FOR_OVERLAPS: usize = 1000;
+const MOST_CELLS_FOR_OVERLAPS: usize = 2_000_000;
+
+/// Samples of a motion that most indicators look at.
+fn looked_at(trajectory: &Trajectory) -> Vec<&Sample> {
+    spread(trajectory, MOST_SAMPLES, MOST_CELLS)
+}
+
+/// So many samples of a motion at most, and so many cells in all of them: evenly spread over their order, the first and the last
+/// among them.
+fn spread(trajectory: &Trajectory, most_samples: usize, most_cells: usize) -> Vec<&Sample> {
+    let samples = trajectory.samples();
+    let most = most_cells / trajectory.body().mesh().cell_count();
+    let count = most.clamp(FEW_SAMPLES, most_samples).min(samples.len());
+    let last = samples.len() - 1; // there is one at least: see `Trajectory::new`
+    (0..count).map(|k| &samples[k * last / (count - 1).max(1)]).collect()
+}

@@ -1,0 +1,230 @@
+//! Whether a body passes through itself, or pieces of it through each other: nothing feels that.
+
+use std::borrow::Cow;
+
+use super::grid::Grid;
+use super::size::cell_sizes;
+use super::skin::{Skin, points};
+use crate::base::input::told;
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::Sample;
+use crate::elements::basis::shares_in;
+use crate::elements::body::Body;
+use crate::scene::forces::SurfacePoint;
+
+/// How deep a point of the boundary may be within a cell of another place, over the size of the cell: faces that slide along each
+/// other, as those of a slit do, are no smoother than that where cells turn by 20 degrees.
+const MOST_OF_CELL: f64 = 0.05;
+
+/// A point of the boundary within a cell that is not its own.
+#[derive(Clone, Copy)]
+struct Entry {
+    /// Its number among the points, and that of the cell.
+    point: usize,
+    cell: usize,
+    depth: f64,
+    limit: f64,
+}
+
+impl Entry {
+    fn part(&self) -> f64 {
+        self.depth / self.limit
+    }
+
+    fn is_beyond(&self) -> bool {
+        self.depth > self.limit
+    }
+}
+
+/// What is needed to look at one shape of a body after the other.
+struct Overlaps<'a> {
+    body: &'a Body,
+    skin: Skin<'a>,
+    points: Vec<SurfacePoint>,
+    cells: Vec<&'a [usize]>,
+    /// The most that a point may be within each cell (m).
+    limits: Vec<f64>,
+}
+
+impl<'a> Overlaps<'a> {
+    /// Of a body that fills its space; others have no inside.
+    fn new(body: &'a Body) -> Option<Self> {
+        let mesh = body.mesh();
+        (mesh.kind().dimension() == mesh.dimension()).then(|| Self {
+            body,
+            skin: Skin::new(body),
+            points: points(body),
+            cells: mesh.cells().collect(),
+            limits: cell_sizes(body).into_iter().map(|size| MOST_OF_CELL * size).collect(),
+        })
+    }
+
+    /// All points within cells that share no node with theirs, under the displacements `u` (m).
+    fn entries(&mut self, u: &[f64]) -> Vec<Entry> {
+        let (mesh, d) = (self.body.mesh(), self.body.dimension());
+        let now: Vec<f64> = mesh.positions().iter().zip(u).map(|(x, u)| x + u).collect();
+        if now.iter().any(|x| !x.is_finite()) {
+            return Vec::new();
+        }
+        let places: Vec<[f64; 3]> = self.points.iter().map(|point| point.at(&now, d)).collect();
+        let grid = Grid::new(&places);
+        let mut met = Vec::new();
+        for (number, cell) in self.cells.iter().enumerate() {
+            let mut corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+            corners.iter_mut().for_each(|corner| corner[d..].fill(0.0));
+            for &node in *cell {
+                for (axis, x) in now[node * d..][..d].iter().enumerate() {
+                    corners[0][axis] = corners[0][axis].min(*x);
+                    corners[1][axis] = corners[1][axis].max(*x);
+                }
+            }
+            grid.each_within(&corners, |point| {
+                if !self.is_near(point, cell)
+                    && let Some(shares) = shares_in(mesh, &now, cell, &places[point][..d])
+                {
+                    met.push((point, number, shares));
+                }
+            });
+        }
+        if met.is_empty() {
+            return Vec::new();
+        }
+        // what is turned inside out overlaps its neighbours, and is told as that
+        let inverted = self.body.inverted_cells(u);
+        let mut is_turned = vec![false; mesh.node_count()];
+        inverted.iter().flat_map(|&cell| self.cells[cell]).for_each(|&node| is_turned[node] = true);
+        met.retain(|(point, cell, _)| {
+            let is_turned = self.points[*point].nodes().any(|(node, _)| is_turned[node]);
+            !is_turned && !inverted.contains(cell)
+        });
+        let entry = |(point, cell, shares): (usize, usize, Vec<(usize, f64)>)| {
+            let depth = self.skin.depth(&shares, &now);
+            Entry { point, cell, depth, limit: self.limits[cell] }
+        };
+        met.into_iter().map(entry).collect()
+    }
+
+    /// Whether a cell has a node of a point, or shares one with a cell that has.
+    fn is_near(&self, point: usize, cell: &[usize]) -> bool {
+        let pattern = self.body.inertia().pattern();
+        let mut nodes = self.points[point].nodes().map(|(node, _)| node);
+        nodes.any(|node| cell.iter().any(|&other| pattern.find(node, other).is_some()))
+    }
+
+    /// The node that a point is nearest to, and the cell that it is in, counted from 1.
+    fn names(&self, entry: &Entry) -> String {
+        let cell: Vec<usize> = self.cells[entry.cell].iter().map(|node| node + 1).collect();
+        let limit = told(entry.limit);
+        format!(
+            "{} m within cell {} (nodes {cell:?}; limit: {limit} m, a twentieth of the cell)",
+            told(entry.depth),
+            entry.cell + 1
+        )
+    }
+
+    fn node(&self, entry: &Entry) -> usize {
+        let shares = self.points[entry.point].nodes();
+        shares.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node)
+    }
+
+    /// The deepest of the entries for its limit.
+    fn deepest(entries: &[Entry]) -> Option<Entry> {
+        entries.iter().max_by(|a, b| a.part().total_cmp(&b.part())).copied()
+    }
+
+    /// Depth and limit of the deepest, or of none.
+    fn numbers(&self, deepest: Option<&Entry>) -> [f64; 2] {
+        let least = || self.limits.iter().copied().fold(f64::INFINITY, f64::min);
+        deepest.map_or_else(|| [0.0, least()], |entry| [entry.depth, entry.limit])
+    }
+}
+
+/// A mesh that overlaps itself in its undeformed shape.
+pub(super) fn drawn(body: &Body) -> Option<Indicator> {
+    let mut overlaps = Overlaps::new(body)?;
+    let entries = overlaps.entries(&vec![0.0; body.dofs()]);
+    let deepest = Overlaps::deepest(&entries);
+    let [depth, limit] = overlaps.numbers(deepest.as_ref());
+    let within = || {
+        format!(
+            "the mesh does not overlap itself (deepest: {} m; limit: {} m)",
+            told(depth),
+            told(limit)
+        )
+    };
+    let beyond = || {
+        let Some(deepest) = &deepest else { return within() };
+        format!(
+            "the mesh overlaps itself as it is drawn: {}, the deepest of them node {} with {}. There is twice the mass and \
+             stiffness there: draw its parts side by side, and merge nodes in the same place where they are to hold together",
+            count(&entries),
+            overlaps.node(deepest) + 1,
+            overlaps.names(deepest)
+        )
+    };
+    Some(Indicator::trusted("drawn-overlap", (depth, "m"), [0.0, limit], within, beyond))
+}
+
+fn count(entries: &[Entry]) -> String {
+    let mut points: Vec<usize> =
+        entries.iter().filter(|entry| entry.is_beyond()).map(|entry| entry.point).collect();
+    points.sort_unstable();
+    points.dedup();
+    format!("{} place(s) of its boundary lie within other cells", points.len())
+}
+
+/// A body that passes through itself, or pieces of it that pass through each other, at any of the `samples`. Points that lie in
+/// other cells already in the undeformed shape do not count.
+pub(super) fn overlap(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
+    let mut overlaps = Overlaps::new(body)?;
+    let mut is_drawn = vec![false; overlaps.points.len()];
+    for entry in overlaps.entries(&vec![0.0; body.dofs()]) {
+        is_drawn[entry.point] |= entry.is_beyond();
+    }
+    let (mut first, mut most) = (None, None::<(Entry, &Sample, Vec<Entry>)>);
+    for sample in samples {
+        let mut entries = overlaps.entries(&sample.u);
+        entries.retain(|entry| !is_drawn[entry.point]);
+        let Some(deepest) = Overlaps::deepest(&entries) else { continue };
+        if deepest.is_beyond() {
+            first.get_or_insert(sample.time);
+        }
+        if most.as_ref().is_none_or(|(most, ..)| most.part() < deepest.part()) {
+            most = Some((deepest, sample, entries));
+        }
+    }
+    let [depth, limit] = overlaps.numbers(most.as_ref().map(|(entry, ..)| entry));
+    let within = || {
+        format!(
+            "the body does not pass through itself (deepest: {} m; limit: {} m)",
+            told(depth),
+            told(limit)
+        )
+    };
+    let beyond = || {
+        let (Some((deepest, sample, entries)), Some(first)) = (&most, first) else {
+            return within();
+        };
+        let (node, at) = (overlaps.node(deepest), told(sample.time));
+        let pieces = body.inertia().pattern().pieces();
+        let what: Cow<str> = match [node, overlaps.cells[deepest.cell][0]].map(|node| pieces[node])
+        {
+            [own, other] if own == other => "the body passes through itself".into(),
+            _ => "pieces of the body pass through each other".into(),
+        };
+        let since = if first == sample.time {
+            String::new()
+        } else {
+            format!(" from t = {} s on", told(first))
+        };
+        format!(
+            "{what}{since}: at t = {at} s {}, the deepest of them node {} with {}. Bodies feel obstacles alone, neither themselves \
+             nor each other, so the motion is wrong from there on: load the body less, end the scene before, or let a rigid \
+             obstacle that stands or moves along a path stand for what is touched",
+            count(entries),
+            node + 1,
+            overlaps.names(deepest)
+        )
+    };
+    Some(Indicator::trusted("overlap", (depth, "m"), [0.0, limit], within, beyond))
+}

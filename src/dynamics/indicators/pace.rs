@@ -1,0 +1,125 @@
+//! How fast and how large a motion is: whether statics would do, what its vibrations say for a method, and whether
+//! tolerances see it.
+
+use super::rigid::travel;
+use crate::base::input::{percent, short, told};
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::scene::timeline::Scene;
+
+/// Kinetic over stored energy below which a motion is a sequence of equilibria.
+const STATIC: f64 = 0.01;
+/// Errors of constraints, over the way that nodes go.
+const MOST_DRIFT: f64 = 1e-3;
+/// Absolute tolerance of displacements over the way that nodes go, and how many times `rtol` that may be in any case.
+const MOST_TOLERANCE: f64 = 0.01;
+const TIMES_ASKED: f64 = 10.0;
+/// What moves less than this part of the body's size is at rest, but for rounding.
+const REST: f64 = 1e-9;
+/// Damping ratios below which vibrations go on and on, and from which on there are none.
+const LASTING: f64 = 0.006;
+const CREEPING: f64 = 1.0;
+
+/// Whether equilibria would do.
+pub(super) fn inertia(samples: &[&Sample]) -> Option<Indicator> {
+    let largest =
+        |energy: fn(&Sample) -> f64| samples.iter().map(|s| energy(s)).fold(0.0, f64::max);
+    let kinetic = largest(|sample| sample.energy.kinetic);
+    let stored = largest(|s| s.energy.strain + s.energy.contact + s.energy.springs);
+    if stored == 0.0 || kinetic == 0.0 {
+        return None;
+    }
+    let part = kinetic / stored;
+    let said = format!(
+        "the largest kinetic energy is {} of the largest stored one (limit: {})",
+        percent(part),
+        percent(STATIC)
+    );
+    let enough = || {
+        format!(
+            "{said}: inertia hardly acts; where friction and viscosity do not matter either, equilibria (`pliant static`) \
+             would do"
+        )
+    };
+    Some(Indicator::needed("kinetic-energy", (part, "1"), STATIC, || said.clone(), enough))
+}
+
+/// How fast and how damped the vibrations of the longest phase are.
+pub(super) fn vibrations(scene: &Scene) -> Vec<Indicator> {
+    let Ok(spectra) = scene.spectrum() else { return Vec::new() };
+    let starts = [0.0].into_iter().chain(scene.phases().iter().map(|phase| phase.end()));
+    let phases = scene.phases().iter().zip(starts).zip(spectra);
+    let longest = phases.max_by(|((a, from_a), _), ((b, from_b), _)| {
+        (a.end() - from_a).total_cmp(&(b.end() - from_b))
+    });
+    let Some(((phase, _), spectrum)) = longest else { return Vec::new() };
+    let Some(period) = spectrum.slowest_period() else { return Vec::new() };
+    let (name, damping) = (phase.name(), spectrum.lowest_damping_ratio);
+    let then = match damping {
+        _ if damping < LASTING => {
+            "it goes on for many periods, and wants a method that does not damp (arkode, rk)"
+        }
+        _ if damping < CREEPING => "it dies out, and a method that damps a little (bdf) does",
+        _ => "nothing vibrates freely, the body creeps",
+    };
+    let lowest = format!(
+        "phase \"{name}\": the lowest vibration has a period of {} s and a damping ratio of {}: {then}",
+        told(period),
+        short(damping)
+    );
+    let fastest = spectrum.stiffest_rate();
+    let ratio = fastest * period / std::f64::consts::TAU;
+    let stiff = format!(
+        "phase \"{name}\": the fastest motion of the mesh is {} times as fast as that: explicit methods need steps below {} s",
+        short(ratio),
+        told(2.0 / fastest)
+    );
+    vec![
+        Indicator::told("damping", damping, "1", lowest),
+        Indicator::told("stiffness", ratio, "1", stiff),
+    ]
+}
+
+/// How far constraints are from what they should be.
+pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+    let (drift, way) = (trajectory.report().constraint_drift, travel(trajectory.body(), samples));
+    if samples.iter().all(|sample| sample.multipliers.is_empty()) || way == 0.0 {
+        return None;
+    }
+    let part = drift / way;
+    let said = format!(
+        "constraints are off by up to {} m, {} of the way that nodes go (limit: {})",
+        short(drift),
+        percent(part),
+        percent(MOST_DRIFT)
+    );
+    let beyond = || format!("{said}: raise alpha, or lower rtol");
+    Some(Indicator::trusted("drift", (part, "1"), [0.0, MOST_DRIFT], || said.clone(), beyond))
+}
+
+/// Whether the tolerance of displacements is small beside them.
+pub(super) fn tolerance(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+    let (tolerance, body) = (trajectory.report().atol_position, trajectory.body());
+    let way = travel(body, samples);
+    if way <= REST * body.mesh().size() {
+        return None;
+    }
+    let (part, most) =
+        (tolerance / way, MOST_TOLERANCE.max(TIMES_ASKED * trajectory.report().rtol));
+    let said = format!(
+        "displacements have the absolute tolerance {} m, {} of the way that nodes go (limit: {})",
+        short(tolerance),
+        percent(part),
+        percent(most)
+    );
+    let beyond = || {
+        let enough = short(0.1 * most * way);
+        format!(
+            "{said}, and errors may be as large: set atol_position to {enough} m or below; or, if the body ought to move \
+             further than {} of its size, look at the units of young and of what loads it",
+            percent(way / body.mesh().size())
+        )
+    };
+    let limits = [0.0, most];
+    Some(Indicator::trusted("tolerance", (part, "1"), limits, || said.clone(), beyond))
+}

@@ -1,0 +1,28 @@
+//! Sizes of cells.
+
+use crate::elements::body::Body;
+
+/// The size (m) of each cell: the edge of a square or cube that is cut into such cells, or that is such a cell.
+pub(super) fn cell_sizes(body: &Body) -> Vec<f64> {
+    let dimension = body.mesh().kind().dimension();
+    let size = |volume: f64| (volume / body.section()).powf(1.0 / dimension as f64);
+    block_volumes(body).map(size).collect()
+}
+
+/// For each cell the volume (m^3) of the block that it is cut from, or is itself.
+pub(super) fn block_volumes(body: &Body) -> impl Iterator<Item = f64> {
+    let kind = body.mesh().kind();
+    // a simplex fills the parallelepiped of its edges to this part
+    let is_simplex = kind.faces().len() == kind.dimension() + 1;
+    let parts = if is_simplex { [1.0, 1.0, 2.0, 6.0][kind.dimension()] } else { 1.0 };
+    body.cell_volumes().into_iter().map(move |volume| parts * volume)
+}
+
+/// For each node the size (m) of the smallest of its cells. Infinite of a node without cells.
+pub(super) fn least_cell_sizes(body: &Body) -> Vec<f64> {
+    let mut sizes = vec![f64::INFINITY; body.mesh().node_count()];
+    for (cell, size) in body.mesh().cells().zip(cell_sizes(body)) {
+        cell.iter().for_each(|&node| sizes[node] = sizes[node].min(size));
+    }
+    sizes
+}

@@ -1,0 +1,61 @@
+//! Whether the strain of the body fits its motion.
+
+use crate::base::input::told;
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::elements::body::{Body, Strain};
+
+/// Degrees by which a cell may turn under Cauchy strain: they count as a strain of 1.5 %.
+const MOST_TURN: f64 = 10.0;
+
+/// Cells that turn further than Cauchy strain allows: it takes a rotation by theta for a compression by
+/// 1 - cos theta.
+pub(super) fn turning(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+    if trajectory.body().strain() != Strain::Cauchy {
+        return None;
+    }
+    let most = largest_turn(trajectory.body(), samples);
+    let false_strain = |angle: f64| 100.0 * (1.0 - angle.cos());
+    let told = format!(
+        "cells turn by up to {:.1} degrees, which Cauchy strain takes for a strain of {:.1} % (limit: \
+         {MOST_TURN} degrees, {:.1} %)",
+        most.to_degrees(),
+        false_strain(most),
+        false_strain(MOST_TURN.to_radians())
+    );
+    let beyond = || format!("{told}: use strain = \"green\"");
+    let value = (most.to_degrees(), "degrees");
+    Some(Indicator::trusted("turn", value, [0.0, MOST_TURN], || told.clone(), beyond))
+}
+
+/// The largest angle (rad) by which a cell turns.
+pub(super) fn largest_turn(body: &Body, samples: &[&Sample]) -> f64 {
+    samples.iter().flat_map(|sample| body.cell_rotations(&sample.u)).fold(0.0, f64::max)
+}
+
+/// Cells that are turned inside out, which linear forces do not resist.
+pub(super) fn inversion(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
+    let body = trajectory.body();
+    if body.strain() != Strain::Cauchy {
+        return None;
+    }
+    let mut inverted = samples.iter().filter_map(|sample| {
+        Some((body.inverted_cells(&sample.u), sample.time)).filter(|(cells, _)| !cells.is_empty())
+    });
+    let first = inverted.next();
+    let count = first.as_ref().map_or(0, |(cells, _)| cells.len());
+    let beyond = || {
+        let (cells, time) = first.unwrap_or_default();
+        let nodes = cells.first().and_then(|&cell| body.mesh().cells().nth(cell));
+        let nodes: Vec<usize> = nodes.into_iter().flatten().map(|node| node + 1).collect();
+        format!(
+            "{} cell(s) are turned inside out at t = {} s, the first of them cell {} (nodes {nodes:?}) (limit: none): Cauchy \
+             strain resists no such thing; use strain = \"green\", push less, or take finer cells there",
+            cells.len(),
+            told(time),
+            cells.first().map_or(0, |cell| cell + 1),
+        )
+    };
+    let within = || "no cell is turned inside out (limit: none)".to_owned();
+    Some(Indicator::trusted("inverted-cells", (count as f64, ""), [0.0, 0.0], within, beyond))
+}

@@ -1,0 +1,185 @@
+//! A scene in other units than metres, kilograms, seconds and pascals.
+
+use crate::base::input::{percent, told};
+use crate::base::vector::{dot, norm};
+use crate::dynamics::report::{Indicator, Verdict};
+use crate::elements::body::Body;
+use crate::elements::material::{Law, Material, Plane};
+use crate::scene::timeline::Scene;
+
+/// Largest size (m) and mass (kg) of a soft body.
+const LARGEST: f64 = 10.0;
+const HEAVIEST: f64 = 1e4;
+/// Densities (kg/m^3): foams have some 10 and more, osmium has 22,600.
+const DENSITIES: [f64; 2] = [5.0, 25_000.0];
+/// Largest moduli (Pa): of what laws of rubber are made for, and of anything (diamond has 1e12).
+const STIFFEST_RUBBER: f64 = 1e8;
+const STIFFEST: f64 = 2e12;
+/// Slowest and fastest waves sqrt(E/rho) in soft bodies (m/s): jelly has some 1 m/s, steel 5,000.
+const SPEEDS: [f64; 2] = [0.1, 1e4];
+/// How thick a body in the plane may be over its size there.
+const THICKEST: f64 = 20.0;
+/// Results in plane strain are given per metre.
+const PER_METRE: f64 = 1.0;
+/// Strain of a column as high as the body under its own weight.
+const HEAVIEST_STRAIN: f64 = 1.0;
+
+/// The indicators, those that the scene takes for [meant](Scene::unusual) all within their limits.
+pub(super) fn units(scene: &Scene) -> Vec<Indicator> {
+    let body = scene.body();
+    let mut all = extent(body);
+    all.extend(materials(body));
+    all.extend(thickness(body));
+    all.extend(weight(scene));
+    for indicator in &mut all {
+        let is_meant = scene.unusual_quantities().iter().any(|name| name == indicator.name);
+        if is_meant && indicator.is_beyond() {
+            indicator.verdict = Verdict::Fine;
+            indicator.text += " (the scene says that it is meant)";
+        } else if indicator.is_beyond() {
+            indicator.text += &format!("; if it is meant, say unusual = [\"{}\"]", indicator.name);
+        }
+    }
+    all
+}
+
+fn extent(body: &Body) -> Vec<Indicator> {
+    let (size, mass) = (body.mesh().size(), body.mass());
+    let mend = "is the mesh in mm? Coordinates are metres: divide them by 1000, or by 100 if they are in cm (in Gmsh: \
+                Mesh.ScalingFactor = 0.001)";
+    let size_told = format!("the body is {size:.3} m across (limit: {LARGEST} m)");
+    let size_beyond = || format!("{size_told}: {mend}");
+    let size =
+        Indicator::trusted("size", (size, "m"), [0.0, LARGEST], || size_told.clone(), size_beyond);
+    let mass_told = format!("the body weighs {mass:.3e} kg (limit: {HEAVIEST} kg)");
+    let mass_beyond = || format!("{mass_told}: {mend}");
+    let mass = Indicator::trusted(
+        "mass",
+        (mass, "kg"),
+        [0.0, HEAVIEST],
+        || mass_told.clone(),
+        mass_beyond,
+    );
+    // one mend for both
+    let mass = Some(mass).filter(|_| !size.is_beyond());
+    [size].into_iter().chain(mass).collect()
+}
+
+fn materials(body: &Body) -> Vec<Indicator> {
+    let mut all = Vec::new();
+    // what no cell is made of does not count
+    let used = body.substances().filter(|used| body.materials().contains(&used.material));
+    for substance in used {
+        let material = &substance.material;
+        let density = material.density;
+        let said = format!(
+            "the density is {} kg/m^3 (limits: {} to {} kg/m^3)",
+            told(density),
+            DENSITIES[0],
+            DENSITIES[1]
+        );
+        let beyond =
+            || format!("{said}: is it in g/cm^3? Water has 1000 kg/m^3, which is 1 g/cm^3");
+        let value = (density, "kg/m^3");
+        let density = Indicator::trusted("density", value, DENSITIES, || said.clone(), beyond);
+        let is_rubber =
+            !matches!(substance.law, None | Some(Law::StVenantKirchhoff | Law::Corotated));
+        let (most, of) = match is_rubber {
+            true => (STIFFEST_RUBBER, "a law of rubber"),
+            false => (STIFFEST, "any material"),
+        };
+        let young = material.young;
+        let said = format!("young is {} Pa (limit for {of}: {} Pa)", told(young), told(most));
+        let beyond = || {
+            format!(
+                "{said}: soft silicone has 1e5 Pa, hard rubber 1e7; is it in other units than Pa?"
+            )
+        };
+        let stiff =
+            Indicator::trusted("young", (young, "Pa"), [0.0, most], || said.clone(), beyond);
+        let speed = material.wave_speed();
+        let said = format!(
+            "waves run through the body at {speed:.2e} m/s (limits: {} to {} m/s)",
+            SPEEDS[0], SPEEDS[1]
+        );
+        let beyond = || format!("{said}: young is in Pa, density in kg/m^3");
+        let waves =
+            Indicator::trusted("wave-speed", (speed, "m/s"), SPEEDS, || said.clone(), beyond);
+        // what is wrong with one of its factors makes the speed wrong, too
+        let is_known = density.is_beyond() || stiff.is_beyond();
+        all.extend([density, stiff]);
+        all.extend((!is_known).then_some(waves));
+    }
+    all
+}
+
+/// How thick a body in the plane is.
+fn thickness(body: &Body) -> Option<Indicator> {
+    let mesh = body.mesh();
+    let (thickness, size) = (body.section(), mesh.size());
+    let is_per_metre = body.plane() == Plane::Strain && thickness == PER_METRE;
+    if mesh.kind().dimension() != 2 || is_per_metre {
+        return None;
+    }
+    let part = thickness / size;
+    let said = format!(
+        "the body is {} m thick, {} times as much as it is across (limit: {THICKEST} times)",
+        told(thickness),
+        told(part)
+    );
+    let beyond = || format!("{said}: is thickness in mm? It is in metres");
+    Some(Indicator::trusted("thickness", (part, "1"), [0.0, THICKEST], || said.clone(), beyond))
+}
+
+/// How far a column of the softest material, as high as the body, is pressed together by its own weight: rho g H / E.
+fn weight(scene: &Scene) -> Option<Indicator> {
+    let body = scene.body();
+    let gravities = scene.phases().iter().filter_map(|phase| scene.gravity_in(phase));
+    let gravity = gravities.max_by(|a, b| norm(a).total_cmp(&norm(b)))?;
+    let strength = norm(gravity);
+    if strength == 0.0 {
+        return None;
+    }
+    let heights =
+        body.mesh().positions().chunks_exact(body.dimension()).map(|x| dot(x, gravity) / strength);
+    let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), height| {
+        (low.min(height), high.max(height))
+    });
+    let strain = |material: &Material| material.density * strength * (high - low) / material.young;
+    let strain = body.materials().iter().map(strain).fold(0.0, f64::max);
+    let said = format!(
+        "a column as high as the body is strained by {} under its own weight (limit: {})",
+        percent(strain),
+        percent(HEAVIEST_STRAIN)
+    );
+    let beyond = || {
+        format!(
+            "{said}: nothing this soft stands; look at the units of young (Pa), density (kg/m^3), gravity (m/s^2) and the mesh (m)"
+        )
+    };
+    Some(Indicator::trusted(
+        "weight",
+        (strain, "1"),
+        [0.0, HEAVIEST_STRAIN],
+        || said.clone(),
+        beyond,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::timeline::{Phase, UNITS};
+    use crate::studies::samples::square_jump;
+
+    /// The names that a scene may call unusual are those of the indicators here.
+    #[test]
+    fn what_may_be_unusual_is_what_is_measured() {
+        let scene = square_jump(4).unwrap().gravity([0.0, -9.8]).phase(Phase::until(9.0));
+        let mut names: Vec<&str> = units(&scene).iter().map(|indicator| indicator.name).collect();
+        names.sort_unstable();
+        let mut known = UNITS.to_vec();
+        known.sort_unstable();
+        assert_eq!(names, known);
+    }
+}

@@ -1,0 +1,74 @@
+//! Whether the mesh can follow the waves of a motion.
+
+use std::f64::consts::TAU;
+
+use super::mesh::quadratic_cells;
+use super::rigid::without_spin;
+use crate::base::input::short;
+use crate::base::vector::dot;
+use crate::dynamics::report::Indicator;
+use crate::dynamics::trajectory::{Sample, Trajectory};
+
+/// Fewest cells in a wavelength: linear cells are some 5 % too stiff or too slow there, quadratic ones 1 %.
+const LINEAR: f64 = 6.0;
+const QUADRATIC: f64 = 3.0;
+/// Squares of velocities below this part of all are a rigid motion's round-off and integration error.
+const SEEN: f64 = 1e-4;
+
+/// Cells in a wavelength of the motion: 2 pi over the root of the mean square of its velocity and of how much that changes
+/// along the edges of a cell. That of a single wave is its own; of several, one between theirs, nearer to the short ones.
+/// Where inertia hardly acts, `is_static`, nothing follows from it.
+pub(super) fn resolution(
+    trajectory: &Trajectory,
+    samples: &[&Sample],
+    is_static: bool,
+) -> Option<Indicator> {
+    let body = trajectory.body();
+    let (mesh, d) = (body.mesh(), body.dimension());
+    let (kind, volumes) = (mesh.kind(), body.cell_volumes());
+    let [mut all, mut squares, mut changes] = [0.0; 3];
+    for sample in samples {
+        // of a body that is held its motion as a whole is none
+        let own = match sample.multipliers.is_empty() {
+            true => without_spin(body, &sample.u, &sample.v),
+            false => sample.v.clone(),
+        };
+        for (cell, volume) in mesh.cells().zip(&volumes) {
+            let square = |v: &[f64], node: usize| {
+                let v = &v[node * d..][..d];
+                dot(v, v)
+            };
+            let mean = |v: &[f64]| {
+                cell.iter().map(|&node| square(v, node)).sum::<f64>() / cell.len() as f64
+            };
+            let change = kind.edges().iter().map(|edge| {
+                let [a, b] = [cell[edge[0]], cell[edge[1]]].map(|node| &own[node * d..][..d]);
+                a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>()
+            });
+            all += volume * mean(&sample.v);
+            squares += volume * mean(&own);
+            changes += volume * change.fold(0.0, f64::max);
+        }
+    }
+    if changes == 0.0 || squares <= SEEN * all {
+        return None;
+    }
+    let cells = TAU * (squares / changes).sqrt();
+    if is_static {
+        let told = format!("a wavelength of the slow motion has some {} cells", short(cells));
+        return Some(Indicator::told("cells-in-a-wave", cells, "", told));
+    }
+    let quadratic = kind.is_quadratic();
+    let limit = if quadratic { QUADRATIC } else { LINEAR };
+    let said =
+        format!("a wavelength of the motion has some {} cells (limit: {limit})", short(cells));
+    let beyond = || {
+        let finer = short((limit / cells).max(1.1));
+        let or = quadratic_cells(kind).map_or(String::new(), |cells| format!(", or {cells}"));
+        format!(
+            "{said}: they make its waves too fast or too slow; take a mesh {finer} times as fine{or}"
+        )
+    };
+    let limits = [limit, f64::INFINITY];
+    Some(Indicator::trusted("cells-in-a-wave", (cells, ""), limits, || said.clone(), beyond))
+}

@@ -1,0 +1,105 @@
+//! The constant numbers of a scene: its matrices on one pattern that fits all forces.
+
+mod dissection;
+
+use std::sync::Arc;
+
+use dissection::nested_dissection;
+
+use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
+use crate::elements::body::{Body, Branches, LinearByCells};
+use crate::elements::force::Force;
+
+/// Inertia and the constant parts of the tangents. What is `None` is nowhere needed.
+pub(crate) struct Model {
+    pub(crate) dimension: usize,
+    /// Undeformed positions of the nodes (m), and the size of the body (m).
+    pub(crate) positions: Vec<f64>,
+    pub(crate) size: f64,
+    /// M = m (x) I.
+    pub(crate) inertia: Arc<NodeMatrix>,
+    /// Constant part of -df/du: K, for Cauchy strain.
+    pub(crate) stiffness: Option<Arc<BlockMatrix>>,
+    /// Constant part of -df/dv: B, for natural viscosity; a M, for mass damping.
+    pub(crate) damping: Option<Arc<BlockMatrix>>,
+    /// What K and B exert, if element by element is less work.
+    pub(crate) linear_by_cells: Option<LinearByCells>,
+    /// a M, the part of `damping` that mass damping is.
+    pub(crate) mass_damping: Option<Arc<NodeMatrix>>,
+    /// Whether what damps is least work with `damping`, and not by cells and by mass.
+    pub(crate) damps_by_matrix: bool,
+    /// The Maxwell branches.
+    pub(crate) branches: Option<Branches>,
+    /// What displacements (m) and velocities (m/s) of small strains, a hundredth, are like.
+    pub(crate) scales: [f64; 2],
+    /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
+    /// that are large enough for that to matter.
+    pub(crate) dissection: Option<Vec<usize>>,
+}
+
+/// Nodes from which a second order of elimination is worth the search.
+const LARGE: usize = 2000;
+
+impl Model {
+    /// The model of `body` under `forces`.
+    pub(crate) fn new<'a>(body: &Body, forces: impl Iterator<Item = &'a dyn Force>) -> Self {
+        let pattern = body.inertia().pattern();
+        let strangers: Vec<[usize; 2]> = forces
+            .flat_map(Force::couplings)
+            .filter(|&[a, b]| pattern.find(a, b).is_none())
+            .collect();
+        let (dimension, positions) = (body.dimension(), body.mesh().positions());
+        let dissection = |pattern: &NodePattern| {
+            let is_large = pattern.nodes() >= LARGE;
+            is_large.then(|| nested_dissection(pattern, positions, dimension))
+        };
+        let size = body.mesh().size();
+        let scales = [size, body.material().wave_speed()].map(|scale| 0.01 * scale);
+        let (inertia, stiffness, damping) =
+            (body.shared_inertia(), body.constant_stiffness(), body.constant_damping());
+        let (linear_by_cells, mass_damping) = (body.linear_by_cells(), body.mass_damping());
+        let (damps_by_matrix, branches) = (body.damps_by_matrix(), body.branches());
+        if strangers.is_empty() {
+            let dissection = dissection(pattern);
+            return Self {
+                dimension,
+                positions: positions.to_vec(),
+                size,
+                inertia,
+                stiffness,
+                damping,
+                linear_by_cells,
+                mass_damping,
+                damps_by_matrix,
+                branches,
+                scales,
+                dissection,
+            };
+        }
+        let pattern = Arc::new(pattern.with_pairs(&strangers));
+        let moved = |matrix: Arc<BlockMatrix>| Arc::new(matrix.moved_to(&pattern));
+        Self {
+            dimension,
+            positions: positions.to_vec(),
+            size,
+            inertia: Arc::new(inertia.moved_to(&pattern)),
+            stiffness: stiffness.map(moved),
+            damping: damping.map(moved),
+            linear_by_cells,
+            mass_damping,
+            damps_by_matrix,
+            branches,
+            scales,
+            dissection: dissection(&pattern),
+        }
+    }
+
+    /// Number of displacement components.
+    pub(crate) fn dofs(&self) -> usize {
+        self.pattern().nodes() * self.dimension
+    }
+
+    pub(crate) fn pattern(&self) -> &Arc<NodePattern> {
+        self.inertia.pattern()
+    }
+}

@@ -1,0 +1,17 @@
+//! The motion of a scene: its equations, phase by phase, and what an integrator makes of them.
+//!
+//! `matrices` has what is constant, `system` the equations of a phase as ODE, DAE and system of second order,
+//! [`simulate`] the run, [`statics`] the equilibrium, [`trajectory`] what a run gives, `report` what it cost and
+//! `indicators` what makes it doubtful.
+
+pub mod equations;
+pub(crate) mod equilibrium;
+pub mod error;
+pub(crate) mod indicators;
+pub(crate) mod matrices;
+pub(crate) mod report;
+pub mod simulate;
+pub(crate) mod state;
+pub mod statics;
+pub(crate) mod system;
+pub mod trajectory;

@@ -1,0 +1,351 @@
+//! How a motion was computed, phase by phase, and at what cost.
+
+mod indicator;
+
+use std::fmt;
+
+pub(crate) use indicator::warnings;
+pub use indicator::{Indicator, Verdict};
+
+use crate::base::input::told;
+use crate::scene::settings::Method;
+
+/// How a trajectory was computed.
+#[derive(Debug, Clone, Default)]
+pub struct Report {
+    /// Title of the scene, of a file that has one; empty otherwise.
+    pub title: String,
+    /// Integration method.
+    pub method: Method,
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerance of displacements (m).
+    pub atol_position: f64,
+    /// Rate of the constraint stabilization (1/s).
+    pub alpha: f64,
+    /// Unknowns of the integrator, in the last phase.
+    pub states: usize,
+    /// Largest |A^T u - b| at the end of a step (m).
+    pub constraint_drift: f64,
+    /// Largest change of the energy balance (J): kinetic + potential + dissipated - supplied.
+    pub energy_error: f64,
+    /// Largest rise of the energy balance (J): energy that the integrator has created.
+    pub energy_created: f64,
+    /// Largest sum of the energies (J), as the scale of `energy_error`.
+    pub energy_scale: f64,
+    /// Wall-clock time of the whole run (s).
+    pub wall_seconds: f64,
+    /// What was measured on the scene and on the motion once the run had ended; what is beyond its limit is among the
+    /// [`warnings`](Self::warnings). [`Trajectory::indicators`](crate::Trajectory::indicators) measures more.
+    pub indicators: Vec<Indicator>,
+    /// What was chosen where a scene file says `auto`, and why.
+    pub chosen: Vec<String>,
+    /// To what the motion is known, if it was [verified](crate::studies::work_precision::Verification).
+    pub achieved: Option<Achieved>,
+    /// Phase by phase.
+    pub phases: Vec<PhaseReport>,
+}
+
+/// To what a motion is known: the difference of two runs, the second by a tenth of the tolerance of the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Achieved {
+    /// What was compared.
+    pub quantity: String,
+    /// The relative difference that was asked for at most.
+    pub asked: f64,
+    /// The relative difference that was found.
+    pub difference: f64,
+    /// What both are relative to, in `unit`: how much the quantity changes.
+    pub scale: f64,
+    /// Unit of the quantity.
+    pub unit: String,
+    /// Time (s) until which the runs agree as was asked; the end of the scene if they do in all.
+    pub known_until: f64,
+    /// End of the scene (s).
+    pub end: f64,
+    /// Runs in all.
+    pub runs: usize,
+    /// Relative tolerances of the two.
+    pub rtol: [f64; 2],
+}
+
+impl Achieved {
+    /// Whether the runs agree as was asked.
+    pub fn is_enough(&self) -> bool {
+        self.difference <= self.asked
+    }
+}
+
+impl fmt::Display for Achieved {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, asked, difference, scale, unit, runs, rtol, .. } = self;
+        let [coarse, fine] = rtol;
+        let (found, asked, scale) = (told(100.0 * difference), told(100.0 * asked), told(*scale));
+        write!(
+            f,
+            "{quantity} is known to {found} % of {scale} {unit} (asked: {asked} %): the difference of the last two of \
+             {runs} runs, by rtol {coarse:.0e} and {fine:.0e}"
+        )
+    }
+}
+
+/// How one phase was computed.
+#[derive(Debug, Clone)]
+pub struct PhaseReport {
+    /// Name of the phase.
+    pub name: String,
+    /// Time reached (s).
+    pub end: f64,
+    /// Unknowns of the integrator.
+    pub states: usize,
+    /// Wall-clock time (s).
+    pub wall_seconds: f64,
+    /// Method at the end of the phase: the one asked for, or the choice of [`Method::Auto`].
+    pub method: Method,
+    /// Why that method, if it was chosen.
+    pub reason: Option<String>,
+    /// Steps, evaluations, factorizations.
+    pub counts: Counts,
+    /// When bodies began to slide, or to stick, under friction, where contact events are located.
+    pub slips: Vec<SlipEvent>,
+}
+
+/// A body begins to slide on an obstacle, or to stick to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SlipEvent {
+    /// When (s).
+    pub time: f64,
+    /// Name of the obstacle.
+    pub obstacle: String,
+    /// Whether all points that press are now faster than the
+    /// [sticking speed](crate::Obstacle::sticking_speed), or all slower.
+    pub slides: bool,
+}
+
+impl Report {
+    /// Steps of all phases.
+    pub fn steps(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.steps).sum()
+    }
+
+    /// Evaluations of the right-hand side or residual in all phases.
+    pub fn evaluations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.evaluations).sum()
+    }
+
+    /// Evaluations of the tangents of the forces in all phases.
+    pub fn jacobian_evaluations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.jacobian_evaluations).sum()
+    }
+
+    /// Evaluations of forces for their tangents by finite differences in all phases.
+    pub fn difference_evaluations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.difference_evaluations).sum()
+    }
+
+    /// Factorizations of the Newton matrix in all phases.
+    pub fn factorizations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.factorizations).sum()
+    }
+
+    /// Iterations of conjugate gradients for Newton matrices in all phases.
+    pub fn linear_iterations(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.linear_iterations).sum()
+    }
+
+    /// Steps of all phases that were repeated because their error was too large.
+    pub fn error_test_failures(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.error_test_failures).sum()
+    }
+
+    /// Newton iterations of all phases that did not converge.
+    pub fn convergence_failures(&self) -> usize {
+        self.phases.iter().map(|phase| phase.counts.convergence_failures).sum()
+    }
+
+    /// What [`indicators`](Self::indicators) are in doubt about, each with what to change.
+    pub fn doubts(&self) -> Vec<String> {
+        warnings(&self.indicators)
+    }
+
+    /// What makes the result doubtful or the run needlessly long: what the integrators noticed, an
+    /// energy balance that is off by more than a hundredth of the largest energy and, once the run has ended, what
+    /// indicators measured beyond their limits on the scene ([`Scene::warnings`](crate::Scene::warnings)), the
+    /// strain of its cells and its contacts.
+    pub fn warnings(&self) -> Vec<String> {
+        let notice = |phase: &PhaseReport| {
+            let notice = phase.counts.notice.as_ref()?;
+            Some(format!("phase \"{}\": {notice}", phase.name))
+        };
+        let mut warnings: Vec<String> = self.phases.iter().filter_map(notice).collect();
+        let doubt = creation(self.energy_created, self.energy_scale).or_else(|| {
+            let part = self.energy_error / self.energy_scale;
+            (part > DOUBTFUL).then(|| {
+                format!("the energy balance is off by {:.1} % of the largest energy", 100.0 * part)
+            })
+        });
+        warnings.extend(doubt.map(|doubt| {
+            format!("{doubt}, so the motion may be wrong: lower rtol, or choose another method")
+        }));
+        warnings.extend(self.achieved.as_ref().filter(|achieved| !achieved.is_enough()).map(|known| {
+            format!(
+                "two runs with rtol {:.0e} and {:.0e} still differ by {} % in {} (asked: {} %), and are further apart than \
+                 that from t = {} s on: small errors grow there, as after impacts. Rely on the motion until then, and \
+                 later on energies and means alone",
+                known.rtol[0],
+                known.rtol[1],
+                told(100.0 * known.difference),
+                known.quantity,
+                told(100.0 * known.asked),
+                told(known.known_until),
+            )
+        }));
+        warnings.extend(self.doubts());
+        warnings
+    }
+}
+
+/// Error of the energy balance, as part of the largest energy, from which a result is doubtful.
+const DOUBTFUL: f64 = 0.01;
+
+/// What the integrator has created, if a rise of the energy balance by `created` (J) is more than a
+/// hundredth of `scale`, the largest energy (J).
+pub(crate) fn creation(created: f64, scale: f64) -> Option<String> {
+    let part = created / scale;
+    (part > DOUBTFUL).then(|| {
+        format!(
+            "the integrator created {created:.1e} J, {:.1} % of the largest energy",
+            100.0 * part
+        )
+    })
+}
+
+impl fmt::Display for Report {
+    /// A table of the phases and the sums over them, then what is conserved and what is not.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { method, rtol, alpha, states, .. } = self;
+        writeln!(f, "{method}, rtol {rtol:.0e}, alpha {alpha:.0e} 1/s, {states} unknowns")?;
+        writeln!(
+            f,
+            "{:12} {:>8} {:>8} {:>12} {:>15} {:>9} {:>9}",
+            "phase", "end (s)", "steps", "evaluations", "factorizations", "rejected", "time (s)"
+        )?;
+        let rejected = |c: &Counts| c.error_test_failures + c.convergence_failures;
+        for PhaseReport { name, end, wall_seconds, counts, .. } in &self.phases {
+            let Counts { steps, evaluations, factorizations, .. } = counts;
+            // of a run that ended early it has all digits
+            let mut end_text = end.to_string();
+            if end_text.len() > 8 {
+                end_text = format!("{end:.3e}");
+            }
+            let rejected = rejected(counts);
+            writeln!(
+                f,
+                "{name:12} {end_text:>8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} \
+                 {wall_seconds:9.4}"
+            )?;
+        }
+        let rejected = self.error_test_failures() + self.convergence_failures();
+        let (steps, seconds) = (self.steps(), self.wall_seconds);
+        let (evaluations, factorizations) = (self.evaluations(), self.factorizations());
+        writeln!(
+            f,
+            "{:12} {:8} {steps:8} {evaluations:12} {factorizations:15} {rejected:9} {seconds:9.4}",
+            "all", ""
+        )?;
+        let Self { constraint_drift, energy_error, energy_scale, .. } = self;
+        write!(
+            f,
+            "largest constraint drift {constraint_drift:.1e} m; energy balance off by at most \
+             {energy_error:.1e} of {energy_scale:.1e} J"
+        )?;
+        let (differences, tangents) = (self.difference_evaluations(), self.jacobian_evaluations());
+        if differences > 0 {
+            write!(
+                f,
+                "\ntangents of forces by finite differences: {differences} evaluations of these forces \
+                 for {tangents} Newton matrices; `Force::add_tangents` saves them"
+            )?;
+        }
+        for PhaseReport { name, reason, counts, slips, .. } in &self.phases {
+            let events = match counts.contact_events {
+                0 => None,
+                1 => Some("1 contact event located".to_owned()),
+                count => Some(format!("{count} contact events located")),
+            };
+            let slips = slips_in_words(slips);
+            let remarks = reason.as_deref().into_iter().chain(events.as_deref());
+            let remarks: Vec<&str> = remarks.chain(slips.as_deref()).collect();
+            if !remarks.is_empty() {
+                write!(f, "\nphase \"{name}\": {}", remarks.join("; "))?;
+            }
+        }
+        self.chosen.iter().try_for_each(|chosen| write!(f, "\nchosen: {chosen}"))?;
+        if let Some(achieved) = &self.achieved {
+            write!(f, "\n{achieved}")?;
+        }
+        self.warnings().iter().try_for_each(|warning| write!(f, "\nWARNING: {warning}"))
+    }
+}
+
+/// How often a body began to slide or to stick, and when it first did.
+fn slips_in_words(slips: &[SlipEvent]) -> Option<String> {
+    let of = |slides: bool| {
+        let mut of_kind = slips.iter().filter(|slip| slip.slides == slides);
+        let first = of_kind.next()?;
+        let (count, what) = (1 + of_kind.count(), if slides { "slips" } else { "sticks" });
+        let times = if count == 1 { "once" } else { &format!("{count} times") };
+        Some(format!("{what} {times}, first at {:.4e} s", first.time))
+    };
+    let kinds: Vec<String> = [true, false].into_iter().filter_map(of).collect();
+    (!kinds.is_empty()).then(|| kinds.join("; "))
+}
+
+/// What the integration of a phase cost.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Counts {
+    /// Steps taken.
+    pub steps: usize,
+    /// Evaluations of the right-hand side or residual.
+    pub evaluations: usize,
+    /// Evaluations of the tangents of the forces, of which the Newton matrix is made; none where
+    /// they are constant.
+    pub jacobian_evaluations: usize,
+    /// Evaluations of forces for their tangents by finite differences: of those that leave out
+    /// [`Force::add_tangents`](crate::elements::force::Force::add_tangents).
+    pub difference_evaluations: usize,
+    /// Factorizations of the Newton matrix.
+    pub factorizations: usize,
+    /// Iterations of conjugate gradients, by which systems with the Newton matrices of large solids are solved where that
+    /// costs less than a factorization.
+    pub linear_iterations: usize,
+    /// Steps repeated because their error was too large.
+    pub error_test_failures: usize,
+    /// Newton iterations that did not converge (`rk`: steps refused by the right-hand side).
+    pub convergence_failures: usize,
+    /// Contact events that were located.
+    pub contact_events: usize,
+    /// Size of the last step (s).
+    pub last_step: f64,
+    /// Order of the last step.
+    pub last_order: u32,
+    /// What the integrator noticed: that stability, not accuracy, bounds its steps.
+    pub notice: Option<String>,
+}
+
+impl Counts {
+    /// Adds what a further part of the phase cost.
+    pub(crate) fn add(&mut self, further: Counts) {
+        self.steps += further.steps;
+        self.evaluations += further.evaluations;
+        self.jacobian_evaluations += further.jacobian_evaluations;
+        self.difference_evaluations += further.difference_evaluations;
+        self.factorizations += further.factorizations;
+        self.linear_iterations += further.linear_iterations;
+        self.error_test_failures += further.error_test_failures;
+        self.convergence_failures += further.convergence_failures;
+        self.contact_events += further.contact_events;
+        (self.last_step, self.last_order) = (further.last_step, further.last_order);
+        self.notice = self.notice.take().or(further.notice);
+    }
+}

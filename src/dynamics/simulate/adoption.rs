@@ -1,0 +1,133 @@
+//! Checkpoints as plain data: taken apart, and adopted by a simulation of the same scene in another process.
+
+use std::sync::Arc;
+
+use super::auto::Plan;
+use super::checkpoint::{Checkpoint, Kept};
+use super::records;
+use super::simulation::Simulation;
+use crate::base::input::{InputError, not_negative, positive};
+use crate::dynamics::error::Error;
+use crate::scene::settings::{Method, Settings};
+use crate::scene::timeline::Scene;
+
+/// What [`Method::Auto`] has chosen for the phase in force.
+pub(crate) struct Choice {
+    pub(crate) method: Method,
+    pub(crate) max_order: Option<u32>,
+    /// Part of the tolerances asked for that the method is given.
+    pub(crate) part: f64,
+    pub(crate) reason: String,
+    /// Longest stable steps of explicit Runge-Kutta and of central differences (s), steps after which the
+    /// implicit method is tried again, and the mean of its last steps (s): see [`Plan`].
+    pub(crate) explicit_step: f64,
+    pub(crate) central_step: f64,
+    pub(crate) patience: usize,
+    pub(crate) implicit_step: f64,
+}
+
+impl Checkpoint {
+    pub(crate) fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    pub(crate) fn kept(&self) -> &Kept {
+        &self.kept
+    }
+
+    /// The method, if it was chosen.
+    pub(crate) fn choice(&self) -> Option<Choice> {
+        let Plan {
+            settings,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+            ..
+        } = &self.plan;
+        Some(Choice {
+            method: settings.method,
+            max_order: settings.max_order,
+            part: *part,
+            reason: reason.clone()?,
+            explicit_step: *explicit_step,
+            central_step: *central_step,
+            patience: *patience,
+            implicit_step: *implicit_step,
+        })
+    }
+}
+
+impl Choice {
+    /// The plan that this was, under the settings `asked`.
+    fn plan(self, asked: &Settings) -> Result<Plan, InputError> {
+        let Self {
+            method,
+            max_order,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+        } = self;
+        if method == Method::Auto {
+            return Err(InputError::new("chosen method", method, "it must be one of the others"));
+        }
+        positive("part of the tolerances", part, "")?;
+        let settings = Settings { method, max_order, ..asked.tightened(part) };
+        // a flag for BDF alone, which may have been chosen before
+        Settings { stability_limit_detection: false, ..settings.clone() }.validate()?;
+        for step in [explicit_step, central_step].into_iter().filter(|step| step.is_finite()) {
+            not_negative("longest stable step", step, "s")?;
+        }
+        not_negative("mean step of the implicit method", implicit_step, "s")?;
+        let reason = Some(reason);
+        let asked = asked.clone();
+        Ok(Plan {
+            settings,
+            asked,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+        })
+    }
+}
+
+impl Simulation {
+    /// A checkpoint of this simulation from what one of another simulation of the same scene holds: the state
+    /// `kept`, and the `choice` of method, which counts if this simulation leaves the method open, too.
+    ///
+    /// # Errors
+    /// Commands and states that the scene cannot take.
+    pub(crate) fn adopt(&self, kept: Kept, choice: Option<Choice>) -> Result<Checkpoint, Error> {
+        let run = &self.run;
+        let Kept { number, time, ref state, .. } = kept;
+        let mut system = kept.equations(run)?;
+        if ![0, system.rows().len()].contains(&kept.origins.len()) {
+            let mend = format!("the phase has {} rows of constraints", system.rows().len());
+            return Err(InputError::new("number of origins", kept.origins.len(), mend).into());
+        }
+        let reason = match records::sample(number, &mut system, time, state) {
+            Ok(sample) if sample.energy.balance().is_finite() => None,
+            Ok(_) => Some("the energies are beyond the range of double precision".into()),
+            Err(failure) => Some(failure.into_error().to_string()),
+        };
+        if let Some(reason) = reason {
+            return Err(InputError::new("state", format!("at {time} s"), reason).into());
+        }
+        let asked = &run.settings;
+        let plan = match choice.filter(|_| asked.method == Method::Auto) {
+            Some(choice) => choice.plan(asked)?,
+            None => Plan::new(asked, &mut system, time, state),
+        };
+        let longest = asked.max_step.unwrap_or(f64::INFINITY);
+        let kept = Kept { first_step: kept.first_step.map(|step| step.min(longest)), ..kept };
+        Ok(Checkpoint { scene: run.scene.clone(), constraints: Arc::new(()), plan, kept })
+    }
+}

@@ -1,0 +1,78 @@
+//! States of a simulation to come back to.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::angles::Angles;
+use super::auto::Plan;
+use super::run::Run;
+use crate::base::input::InputError;
+use crate::dynamics::system::System;
+use crate::scene::constraint::PhaseStart;
+use crate::scene::timeline::{Phase, Scene};
+
+/// A state of a [`Simulation`](super::Simulation) to come back to: see
+/// [`checkpoint`](super::Simulation::checkpoint).
+#[derive(Clone)]
+pub struct Checkpoint {
+    pub(super) scene: Arc<Scene>,
+    /// Identity of the constraints in force.
+    pub(super) constraints: Arc<()>,
+    pub(super) plan: Plan,
+    pub(super) kept: Kept,
+}
+
+/// What another simulation of the same scene can go on with, too.
+#[derive(Clone)]
+pub(crate) struct Kept {
+    pub(crate) time: f64,
+    /// (u, v, energies)
+    pub(crate) state: Vec<f64>,
+    /// The phase in force, as commands have changed it, and its number.
+    pub(crate) phase: Arc<Phase>,
+    pub(crate) number: usize,
+    /// Whether commands have changed it.
+    pub(crate) is_commanded: bool,
+    /// Where each row of the constraints [starts](crate::scene::constraint::Row::origin); none if that is not known.
+    pub(crate) origins: Vec<[f64; 4]>,
+    /// Size of the next step (s), if it is known.
+    pub(crate) first_step: Option<f64>,
+    /// Steps since t = 0: every so many of them, the energy balance is looked at.
+    pub(crate) steps: usize,
+    /// Changes of the forces by commands, in the phase in force.
+    pub(crate) commands: usize,
+    /// Energy balance (J) that methods are judged by.
+    pub(crate) balance: f64,
+    /// Error, rise and scale of the energy balance (J).
+    pub(crate) energies: [f64; 3],
+    /// Where the angles of sensors are, at or after the time.
+    pub(crate) angles: Angles,
+}
+
+/// Short: where it was made.
+impl fmt::Debug for Checkpoint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Checkpoint")
+            .field("time", &self.kept.time)
+            .field("phase", &self.kept.phase.name)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Checkpoint {
+    /// Its time (s).
+    pub fn time(&self) -> f64 {
+        self.kept.time
+    }
+}
+
+impl Kept {
+    /// The equations in force: what is held or moved goes on as it did.
+    pub(super) fn equations(&self, run: &Run) -> Result<System, InputError> {
+        let start = PhaseStart { time: self.time, u: &self.state[..run.scene.body().dofs()] };
+        let mut rows = run.scene.rows(&self.phase, &start)?;
+        rows.iter_mut().zip(&self.origins).for_each(|(row, origin)| row.set_origin(*origin));
+        let forces = run.scene.forces_in(&self.phase)?;
+        System::new(run.model.clone(), forces, rows, run.settings.alpha, &self.phase.name)
+    }
+}

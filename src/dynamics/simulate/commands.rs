@@ -1,0 +1,240 @@
+//! Commands: what a program changes while a scene is in motion.
+
+use super::renewal::Change;
+use super::simulation::Simulation;
+use crate::base::input::{InputError, finite};
+use crate::dynamics::error::Error;
+use crate::elements::mesh::Selection;
+use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion};
+use crate::scene::forces::{Live, Signal, TimeTable, VectorSignal};
+use crate::scene::timeline::{Load, Phase, Scene};
+
+/// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
+/// phase ends: the next phase of the scene begins as the scene has it. At the end of the scene, where nothing is left for
+/// them to act on, all of them are errors.
+///
+/// Commands that change forces alone keep matrices and orderings. `rk` and `arkode` go on with the step size they
+/// had; `cvode-bdf`, `cvode-adams` and the IDA methods begin anew with small steps of order 1. So
+/// [`Method::Auto`](crate::Method::Auto) goes on with `arkode` from the fourth such command of a phase on. (With
+/// the history of BDF kept over 400 commands, a beam was fifty times less accurate at rtol 1e-6.)
+impl Simulation {
+    /// Pressure (Pa) in a chamber, in place of the present one.
+    ///
+    /// # Errors
+    /// A name that no chamber has; numbers that are not finite.
+    pub fn pressure(&mut self, chamber: &str, pressure: impl Into<Signal>) -> Result<(), Error> {
+        let (pressure, input) = (pressure.into(), "pressure of chamber");
+        self.scene().chamber_number(chamber, input)?;
+        let live = |phase: &Phase| phase.live_pressure(chamber).cloned();
+        if self.set_live(live, input, pressure.value().as_slice())? {
+            return Ok(());
+        }
+        self.command(Change::Loads, |phase, _| {
+            phase.set_pressure(chamber, pressure.thawed());
+            Ok(())
+        })
+    }
+
+    /// Force (N) of the actuator of a spring, in place of the present one; a positive one extends it.
+    ///
+    /// # Errors
+    /// A name that no spring has; numbers that are not finite.
+    pub fn actuate(&mut self, spring: &str, force: impl Into<Signal>) -> Result<(), Error> {
+        let (force, input) = (force.into(), "actuation of spring");
+        self.scene().spring_number(spring, input)?;
+        let live = |phase: &Phase| phase.live_actuation(spring).cloned();
+        if self.set_live(live, input, force.value().as_slice())? {
+            return Ok(());
+        }
+        self.command(Change::Loads, |phase, _| {
+            phase.set_actuation(spring, force.thawed());
+            Ok(())
+        })
+    }
+
+    /// A force (N) on each of the nodes, one component per dimension, in place of the load that was given for
+    /// the same selection.
+    ///
+    /// # Errors
+    /// Nodes that do not exist, a wrong number of components, numbers that are not finite.
+    pub fn load(
+        &mut self,
+        nodes: impl Into<Selection>,
+        force: impl Into<Vec<f64>>,
+    ) -> Result<(), Error> {
+        let (nodes, force) = (nodes.into(), force.into());
+        let live = |phase: &Phase| phase.live_load(&nodes).cloned();
+        if force.len() == self.scene().body().dimension() && self.set_live(live, "load", &force)? {
+            return Ok(());
+        }
+        self.set_load(nodes, Load::each(VectorSignal::Live(Live::new(&force))))
+    }
+
+    /// As [`load`](Self::load), with a force (N) that changes with time (s).
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn load_with<const D: usize>(
+        &mut self,
+        nodes: impl Into<Selection>,
+        force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
+    ) -> Result<(), Error> {
+        self.set_load(nodes.into(), Load::each(VectorSignal::function(force)))
+    }
+
+    /// As [`load`](Self::load), with a force (N) that has the values `forces`, one component per dimension, at the
+    /// `times` (s, ascending). In between it is interpolated linearly; before and after it is constant.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load); times that do not ascend, or are not as many as the forces.
+    pub fn load_table(
+        &mut self,
+        nodes: impl Into<Selection>,
+        times: impl Into<Vec<f64>>,
+        forces: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Result<(), Error> {
+        let table = TimeTable::new(times.into(), forces.into_iter().map(Into::into).collect());
+        self.set_load(nodes.into(), Load::each(VectorSignal::TimeTable(table)))
+    }
+
+    /// Holds nodes, in all components, where they are.
+    ///
+    /// # Errors
+    /// Nodes that do not exist.
+    pub fn hold(&mut self, nodes: impl Into<Selection>) -> Result<(), Error> {
+        self.constrain(nodes.into(), Axes::All, Motion::Hold)
+    }
+
+    /// As [`hold`](Self::hold), for some components only; the others are free.
+    ///
+    /// # Errors
+    /// Nodes or axes that do not exist.
+    pub fn hold_axes(
+        &mut self,
+        nodes: impl Into<Selection>,
+        axes: impl IntoIterator<Item = Axis>,
+    ) -> Result<(), Error> {
+        self.constrain(nodes.into(), Axes::These(axes.into_iter().collect()), Motion::Hold)
+    }
+
+    /// Moves nodes on from where they are with a constant `velocity` (m/s), one component per dimension.
+    ///
+    /// # Errors
+    /// Nodes that do not exist, a velocity of the wrong length, numbers that are not finite.
+    pub fn move_nodes(
+        &mut self,
+        nodes: impl Into<Selection>,
+        velocity: impl Into<Vec<f64>>,
+    ) -> Result<(), Error> {
+        self.constrain(nodes.into(), Axes::All, Motion::Velocity(velocity.into()))
+    }
+
+    /// Frees nodes that are held or moved; linear combinations of several nodes stay.
+    ///
+    /// # Errors
+    /// Nodes that do not exist, or none of which is held or moved.
+    pub fn release(&mut self, nodes: impl Into<Selection>) -> Result<(), Error> {
+        let nodes = nodes.into();
+        self.command(Change::Constraints, |phase, scene| {
+            let mesh = scene.body().mesh();
+            if phase.release(mesh, &mesh.select(&nodes)?)? {
+                return Ok(());
+            }
+            let mend = "none of these nodes is held or moved";
+            Err(InputError::new("nodes to release", nodes, mend))
+        })
+    }
+
+    /// Lets an obstacle act, or not.
+    ///
+    /// # Errors
+    /// A name that no obstacle has.
+    pub fn contact(&mut self, obstacle: &str, acts: bool) -> Result<(), Error> {
+        self.command(Change::Contacts, |phase, scene| {
+            scene.obstacle_number(obstacle, "contact with obstacle")?;
+            phase.set_contact(obstacle, acts, scene.obstacles());
+            Ok(())
+        })
+    }
+
+    /// Lets an obstacle move on from where it is with a constant `velocity` (m/s), one component per dimension.
+    ///
+    /// When the phase ends, it goes on from where it is, too, with the velocity that the scene has given it.
+    ///
+    /// # Errors
+    /// A name that no obstacle has, a velocity of the wrong length, numbers that are not finite.
+    pub fn move_obstacle(
+        &mut self,
+        obstacle: &str,
+        velocity: impl Into<Vec<f64>>,
+    ) -> Result<(), Error> {
+        let (velocity, time) = (velocity.into(), self.time);
+        self.command(Change::Contacts, |phase, scene| {
+            let number = scene.obstacle_number(obstacle, "velocity of obstacle")?;
+            let obstacle = &scene.obstacles()[number];
+            phase.turn(obstacle, time, velocity);
+            phase.moving(obstacle).validated(scene.body().dimension()).map(|_| ())
+        })
+    }
+
+    /// As [`load`](Self::load), with a load of any kind.
+    pub(crate) fn set_load(&mut self, nodes: Selection, load: Load) -> Result<(), Error> {
+        self.command(Change::Loads, |phase, _| {
+            phase.set_load(nodes, load);
+            Ok(())
+        })
+    }
+
+    /// Sets the numbers that `find` finds in the phase in force; `false` if there are none that a command can
+    /// set. (The forces read them: nothing is built anew.)
+    fn set_live(
+        &mut self,
+        find: impl Fn(&Phase) -> Option<Live>,
+        input: &str,
+        values: &[f64],
+    ) -> Result<bool, Error> {
+        if values.is_empty() || self.run.is_past_phase(self.time) {
+            return Ok(false);
+        }
+        let Some(live) = find(&self.run.phase) else { return Ok(false) };
+        self.check_goes_on()?;
+        finite(input, values)?;
+        if self.run.time > self.time {
+            self.run.set_state(self.time, &self.now)?;
+        }
+        self.run.set_live(&live, values)?;
+        self.now.copy_from_slice(&self.run.state);
+        self.commanded = true;
+        Ok(true)
+    }
+
+    fn constrain(&mut self, nodes: Selection, axes: Axes, how: Motion) -> Result<(), Error> {
+        self.command(Change::Constraints, |phase, scene| {
+            let mesh = scene.body().mesh();
+            phase.release(mesh, &mesh.select(&nodes)?)?;
+            phase.constraints.push(Constraint { what: Constrained::Nodes(nodes, axes), how });
+            Ok(())
+        })
+    }
+
+    /// Gives a command: an `edit` of the phase in force.
+    fn command(
+        &mut self,
+        change: Change,
+        edit: impl FnOnce(&mut Phase, &Scene) -> Result<(), InputError>,
+    ) -> Result<(), Error> {
+        self.check_goes_on()?;
+        if self.run.time <= self.time {
+            self.run.leave_phase()?;
+        }
+        let mut phase = (*self.run.phase).clone();
+        edit(&mut phase, &self.run.scene)?;
+        if self.run.time > self.time {
+            self.run.set_state(self.time, &self.now)?;
+        }
+        self.run.change(phase, change)?;
+        self.now.copy_from_slice(&self.run.state);
+        self.commanded = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,95 @@
+//! Error messages of runs that do not reach their end.
+
+use super::stepper::Failed;
+use crate::dynamics::report::Counts;
+use crate::dynamics::trajectory::Interrupted;
+use crate::integrators::common::{self, Cause};
+
+/// Steps in a row that may be too small to move time ahead in double precision.
+pub(super) const STANDING: usize = 100;
+
+/// Mean step, in units of round-off of the time, below which a run does not get on.
+const CRAWLING: f64 = 16.0;
+
+pub(super) fn standing_still(refusal: &str) -> Failed {
+    let reason = change_in_no_time(refusal);
+    format!("{STANDING} steps, too small to move time ahead, have not led past this: {reason}")
+        .into()
+}
+
+/// The error of `count` steps up to `time` (s) whose mean size is `step` (s), if that is nothing.
+pub(super) fn crawling(count: usize, step: f64, time: f64, refusal: &str) -> Option<Failed> {
+    let reason = change_in_no_time(refusal);
+    (step < CRAWLING * f64::EPSILON * time.abs()).then(|| {
+        format!("{count} steps of {step:.1e} s in the mean, which is next to round-off, lead nowhere: {reason}")
+            .into()
+    })
+}
+
+fn change_in_no_time(refusal: &str) -> &str {
+    match refusal {
+        "" => {
+            "the motion changes without end in no time: a part of the body has collapsed or is driven without end, or a force \
+             has no meaning there (walls that have passed through each other, a contact, spring or load that is far too stiff or \
+             large); look at the last samples, and at what acts near this time"
+        }
+        reason => reason,
+    }
+}
+
+pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
+    let reason = counts.notice.as_deref().unwrap_or("loosen rtol, or choose another method");
+    format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
+}
+
+/// The error of an integrator in words of mechanics, with the likely cause and what to try, which is the `doom` of the
+/// scene if it has one; other errors as they are.
+pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
+    let Some(common::Error::Integration(error)) = source.downcast_ref() else {
+        return match doom.filter(|_| !source.is::<Interrupted>()) {
+            Some(doom) => format!("{source}; most likely as {doom}").into(),
+            None => source,
+        };
+    };
+    let (what, mend) = match &error.cause {
+        // the words of a force, or of a function of the scene
+        Cause::Fatal(_) => match &error.source {
+            Some(source) => return source.to_string().into(),
+            None => return source,
+        },
+        Cause::Rejected { message, .. } => ("the time step collapsed", message.as_str()),
+        Cause::NotFinite { .. } => (
+            "forces grew beyond the range of double precision",
+            "displacements have blown up: look for a load or a stiffness that is far too large",
+        ),
+        Cause::TooMuchAccuracy => {
+            ("rtol asks for more digits than double precision has", "raise it")
+        }
+        Cause::ErrorTest | Cause::StandsStill { .. } => (
+            "the time step collapsed",
+            "a force changes too suddenly there: look for a contact, spring or damper that is far stiffer than the \
+             body, or a load that jumps without a break",
+        ),
+        Cause::Convergence => (
+            "no balance of forces was found at the end of a step, however short",
+            "the body may buckle or collapse there, or a contact may be far stiffer than the body: lower the load, \
+             soften the contact, or try another method",
+        ),
+        Cause::LinearSolver | Cause::LinearConvergence => (
+            "the equations of a step have no single solution",
+            "look for a part of the body that nothing holds, or a stiffness that is far too large or small",
+        ),
+        Cause::InconsistentStart => (
+            "no start that satisfies the constraints was found",
+            "look for constraints that contradict each other or the velocities at the start",
+        ),
+        Cause::TooManySteps { .. }
+        | Cause::SignConstraint { .. }
+        | Cause::MassMatrix
+        | Cause::WrongJacobian { .. }
+        | Cause::HigherIndex { .. }
+        | Cause::Other => return source,
+    };
+    let mend = doom.unwrap_or(mend);
+    format!("{what}: {mend} ({}, order {})", error.integrator, error.order).into()
+}

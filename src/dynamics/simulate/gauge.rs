@@ -1,0 +1,325 @@
+//! How the quantities of a scene are read: what a [`Reading`] names is looked up once, before the run.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use super::reading::{Component, Lever, Place, Reading, What};
+use super::view::{View, mean};
+use crate::base::input::{InputError, finite};
+use crate::base::vector::{cross, dot, norm};
+use crate::dynamics::trajectory::Sample;
+use crate::elements::body::{NodalField, von_mises};
+use crate::elements::mesh::Selection;
+use crate::scene::constraint::{PhaseStart, Row};
+use crate::scene::forces::Contact;
+use crate::scene::timeline::{Phase, Scene};
+
+/// What a quantity is at one time; components beyond the dimension are 0.
+pub(super) enum Value {
+    Number(f64),
+    Vector([f64; 3]),
+    Tensor([[f64; 3]; 3]),
+}
+
+/// Reads a quantity, or NaN where it has no meaning.
+pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
+
+/// Reads an angle, without whole turns in the plane.
+pub(super) type AngleGauge = Arc<dyn Fn(&View) -> f64 + Send + Sync>;
+
+impl Value {
+    /// A component, which the quantity has.
+    pub(super) fn part(&self, component: Component) -> f64 {
+        match (self, component) {
+            (Self::Number(number), _) => *number,
+            (Self::Vector(x), Component::X) => x[0],
+            (Self::Vector(x), Component::Y) => x[1],
+            (Self::Vector(x), Component::Z) => x[2],
+            (Self::Vector(x), _) => norm(x),
+            (Self::Tensor(a), Component::XX) => a[0][0],
+            (Self::Tensor(a), Component::YY) => a[1][1],
+            (Self::Tensor(a), Component::ZZ) => a[2][2],
+            (Self::Tensor(a), Component::XY) => a[0][1],
+            (Self::Tensor(a), Component::YZ) => a[1][2],
+            (Self::Tensor(a), Component::XZ) => a[0][2],
+            (Self::Tensor(a), _) => von_mises(a),
+        }
+    }
+}
+
+impl Reading {
+    /// What reads it in `scene`.
+    ///
+    /// # Errors
+    /// Nodes, obstacles, springs or chambers that the scene does not have; a point outside the body; lines without
+    /// a length.
+    pub(super) fn gauge(&self, scene: &Scene) -> Result<Gauge, InputError> {
+        let select = |nodes: &Selection| scene.body().mesh().select(nodes);
+        let d = scene.body().dimension();
+        Ok(match &self.what {
+            What::Position(nodes) => {
+                let nodes = select(nodes)?;
+                Box::new(move |view, _| Value::Vector(position(view, &nodes)))
+            }
+            What::Displacement(nodes) => {
+                let nodes = select(nodes)?;
+                Box::new(move |view, _| Value::Vector(mean(&nodes, view.displacements(), d)))
+            }
+            What::Velocity(nodes) => {
+                let nodes = select(nodes)?;
+                Box::new(move |view, _| Value::Vector(mean(&nodes, view.velocities(), d)))
+            }
+            What::ConstraintForce(nodes) => {
+                let sum = constraint_sum(scene, select(nodes)?, move |_, dof| {
+                    std::array::from_fn(|i| f64::from(i == dof % d))
+                })?;
+                Box::new(move |view, sample| Value::Vector(sum(view, sample)))
+            }
+            What::ConstraintMoment(nodes, lever) => moment(scene, select(nodes)?, lever)?,
+            What::ContactForce(obstacle, nodes) => {
+                contact_force(scene, obstacle.clone(), nodes.clone())?
+            }
+            What::SpringPull(spring) => {
+                scene.spring_number(spring, "spring")?;
+                number(spring, |view, spring| view.spring_pull(spring))
+            }
+            What::SpringLength(spring) => {
+                scene.spring_number(spring, "spring")?;
+                number(spring, |view, spring| view.spring_length(spring))
+            }
+            What::Pressure(chamber) => {
+                scene.chamber_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.pressure(chamber))
+            }
+            What::ChamberVolume(chamber) => {
+                scene.chamber_number(chamber, "chamber")?;
+                number(chamber, |view, chamber| view.chamber_volume(chamber))
+            }
+            What::Stress(place) => field(scene, place, |field| field.stress)?,
+            What::Strain(place) => field(scene, place, |field| field.strain)?,
+            What::Distance([from, to]) => {
+                let (from, to) = (select(from)?, select(to)?);
+                Box::new(move |view, _| Value::Number(norm(&between(view, [&from, &to]))))
+            }
+            What::Angle(_) | What::Rotation => {
+                let angle = self.angle_gauge(scene)?;
+                Box::new(move |view, _| Value::Number(angle(view)))
+            }
+            What::CentreOfMass => Box::new(move |view, _| {
+                let centre = view.centre_of_mass();
+                Value::Vector(std::array::from_fn(|i| centre.get(i).copied().unwrap_or(0.0)))
+            }),
+        })
+    }
+
+    /// What reads an angle in `scene`, in its unit.
+    ///
+    /// # Errors
+    /// As [`gauge`](Self::gauge).
+    pub(super) fn angle_gauge(&self, scene: &Scene) -> Result<AngleGauge, InputError> {
+        let d = scene.body().dimension();
+        let in_turn = self.full_turn() / TAU;
+        if let What::Angle([from, to]) = &self.what {
+            let lines = [line(scene, from)?, line(scene, to)?];
+            return Ok(Arc::new(move |view| {
+                let [a, b] = lines.each_ref().map(|[from, to]| between(view, [from, to]));
+                let normal = cross(&a, &b);
+                let across = if d == 2 { normal[2] } else { norm(&normal) };
+                in_turn * across.atan2(dot(&a, &b))
+            }));
+        }
+        if d != 2 {
+            let mend = "a body turns by one angle in two dimensions only: take the angle between two lines";
+            return Err(InputError::new("rotation in dimension", d, mend));
+        }
+        let arms = scene.body().arms();
+        Ok(Arc::new(move |view| in_turn * view.body().turned(&arms, view.displacements())))
+    }
+}
+
+/// A number of the spring or chamber with a `name`.
+fn number(name: &str, read: fn(&View, &str) -> Result<f64, InputError>) -> Gauge {
+    let name = name.to_owned();
+    Box::new(move |view, _| Value::Number(read(view, &name).unwrap_or(f64::NAN)))
+}
+
+fn position(view: &View, nodes: &[usize]) -> [f64; 3] {
+    let d = view.body().dimension();
+    let natural = mean(nodes, view.body().mesh().positions(), d);
+    let moved = mean(nodes, view.displacements(), d);
+    std::array::from_fn(|i| natural[i] + moved[i])
+}
+
+/// From the middle of some nodes to that of others.
+fn between(view: &View, [from, to]: [&[usize]; 2]) -> [f64; 3] {
+    let (from, to) = (position(view, from), position(view, to));
+    std::array::from_fn(|i| to[i] - from[i])
+}
+
+/// The ends of a line that has a direction in the undeformed shape.
+fn line(scene: &Scene, ends: &[Selection; 2]) -> Result<[Vec<usize>; 2], InputError> {
+    let mesh = scene.body().mesh();
+    let [from, to] = [mesh.select(&ends[0])?, mesh.select(&ends[1])?];
+    let [a, b] = [&from, &to].map(|nodes| mean(nodes, mesh.positions(), mesh.dimension()));
+    let along: [f64; 3] = std::array::from_fn(|i| b[i] - a[i]);
+    if norm(&along) <= 1e-9 * mesh.size() {
+        let value = format!("{} to {}", ends[0], ends[1]);
+        let mend = "its ends are in the same place, so that it has no direction";
+        return Err(InputError::new("line of an angle", value, mend));
+    }
+    Ok([from, to])
+}
+
+/// Strain or stress at a place.
+fn field(
+    scene: &Scene,
+    place: &Place,
+    tensor: fn(&NodalField) -> [[f64; 3]; 3],
+) -> Result<Gauge, InputError> {
+    let body = scene.body();
+    let weights = match place {
+        Place::Nodes(nodes) => {
+            let nodes = body.mesh().select(nodes)?;
+            nodes.iter().map(|&node| (node, 1.0 / nodes.len() as f64)).collect()
+        }
+        Place::Point(x) => body.shares_at(x)?,
+    };
+    let probe = body.probe(&weights);
+    Ok(Box::new(move |view, _| {
+        Value::Tensor(tensor(&view.body().probed(&probe, view.displacements())))
+    }))
+}
+
+/// Force of an obstacle, on all nodes or some, whose contact is that of the scene unless commands have changed the phase.
+fn contact_force(
+    scene: &Scene,
+    obstacle: String,
+    nodes: Option<Selection>,
+) -> Result<Gauge, InputError> {
+    let number = scene.obstacle_number(&obstacle, "obstacle")?;
+    let contact = Contact::new(scene.body(), &scene.obstacles()[number])?;
+    let acts = |phase: &Phase| {
+        let acting = phase.contacts(scene.obstacles())?;
+        Ok(acting.iter().filter(|acting| acting.name() == obstacle).count() as f64)
+    };
+    let times: Vec<f64> = scene.phases().iter().map(acts).collect::<Result<_, InputError>>()?;
+    let d = scene.body().dimension();
+    let mut is_read = None;
+    if let Some(nodes) = &nodes {
+        let is_read = is_read.insert(vec![false; scene.body().mesh().node_count()]);
+        scene.body().mesh().select(nodes)?.into_iter().for_each(|node| is_read[node] = true);
+    }
+    Ok(Box::new(move |view, sample| {
+        let force = match (&sample.commanded.0, times.get(sample.phase)) {
+            (None, Some(0.0)) => Some([0.0; 3]),
+            (None, Some(times)) => {
+                let (t, u, v) = (sample.time, view.displacements(), view.velocities());
+                let force = contact.force(t, u, v, is_read.as_deref());
+                force.ok().map(|force| force.map(|force| times * force))
+            }
+            _ => {
+                let force = match &nodes {
+                    Some(nodes) => view.contact_force_on(&obstacle, nodes.clone()),
+                    None => view.contact_force(&obstacle),
+                };
+                force.ok().map(|force| std::array::from_fn(|i| if i < d { force[i] } else { 0.0 }))
+            }
+        };
+        Value::Vector(force.unwrap_or([f64::NAN; 3]))
+    }))
+}
+
+/// Moment of the constraints on `nodes` (counted from 0).
+fn moment(scene: &Scene, nodes: Vec<usize>, lever: &Lever) -> Result<Gauge, InputError> {
+    let d = scene.body().dimension();
+    let Lever { about, axis } = lever.clone();
+    let vector = |input: &str, given: &[f64]| -> Result<[f64; 3], InputError> {
+        finite(input, given)?;
+        if given.len() != d {
+            let mend = format!("it needs {d} component(s)");
+            return Err(InputError::new(input, format!("{given:?}"), mend));
+        }
+        Ok(std::array::from_fn(|i| given.get(i).copied().unwrap_or(0.0)))
+    };
+    if d == 1 {
+        let mend = "nothing turns on a line: read the constraint force";
+        return Err(InputError::new("moment in dimension", d, mend));
+    }
+    let about = vector("point of a moment", &about)?;
+    let axis = match axis {
+        Some(axis) if d == 2 => {
+            let mend = "in the plane it is across: leave it out";
+            return Err(InputError::new("axis of a moment", format!("{axis:?}"), mend));
+        }
+        Some(axis) => {
+            let along = vector("axis of a moment", &axis)?;
+            if norm(&along) == 0.0 {
+                let mend = "it must have a direction";
+                return Err(InputError::new("axis of a moment", format!("{axis:?}"), mend));
+            }
+            Some(along.map(|x| x / norm(&along)))
+        }
+        None if d == 2 => Some([0.0, 0.0, 1.0]),
+        None => None,
+    };
+    let sum = constraint_sum(scene, nodes, move |view, dof| {
+        let x = position(view, &[dof / d]);
+        let arm = std::array::from_fn(|i| x[i] - about[i]);
+        cross(&arm, &std::array::from_fn(|i| f64::from(i == dof % d)))
+    })?;
+    Ok(Box::new(move |view, sample| {
+        let moment = sum(view, sample);
+        axis.map_or(Value::Vector(moment), |axis| Value::Number(dot(&axis, &moment)))
+    }))
+}
+
+/// A constraint's row, the degree of freedom on which it acts, and its coefficient.
+type Term = (usize, usize, f64);
+
+/// Sums up vectors over constraint forces.
+type Sum = Box<dyn Fn(&View, &Sample) -> [f64; 3] + Send + Sync>;
+
+/// Sum of the constraint forces on the degrees of freedom of `nodes` (counted from 0), each times a vector.
+fn constraint_sum(
+    scene: &Scene,
+    nodes: Vec<usize>,
+    vector: impl Fn(&View, usize) -> [f64; 3] + Send + Sync + 'static,
+) -> Result<Sum, InputError> {
+    let d = scene.body().dimension();
+    let mut is_read = vec![false; scene.body().mesh().node_count()];
+    nodes.into_iter().for_each(|node| is_read[node] = true);
+    let terms = move |rows: &[Row]| -> Vec<Term> {
+        let of_row = |(number, row): (usize, &Row)| -> Vec<Term> {
+            let read = row.terms.iter().filter(|(dof, _)| is_read[dof / d]);
+            read.map(|&(dof, coefficient)| (number, dof, coefficient)).collect()
+        };
+        rows.iter().enumerate().flat_map(of_row).collect()
+    };
+    // where rows start from tells what they prescribe, not which components they tie
+    let rest = vec![0.0; scene.body().dofs()];
+    let mut time = 0.0;
+    let mut of_phases = Vec::new();
+    for phase in scene.phases() {
+        of_phases.push(terms(&scene.rows(phase, &PhaseStart { time, u: &rest })?));
+        time = phase.end();
+    }
+    Ok(Box::new(move |view, sample| {
+        let of_commanded;
+        let acting = match &sample.commanded.0 {
+            None => of_phases.get(sample.phase),
+            Some(phase) => {
+                let start = PhaseStart { time: 0.0, u: &rest };
+                of_commanded = view.scene.rows(phase, &start).map(|rows| terms(&rows)).ok();
+                of_commanded.as_ref()
+            }
+        };
+        let Some(acting) = acting else { return [f64::NAN; 3] };
+        let mut sum = [0.0; 3];
+        for &(row, dof, coefficient) in acting {
+            let force = coefficient * sample.multipliers.get(row).copied().unwrap_or(f64::NAN);
+            let along = vector(view, dof);
+            sum.iter_mut().zip(along).for_each(|(sum, along)| *sum += along * force);
+        }
+        sum
+    }))
+}

@@ -1,0 +1,126 @@
+//! Running a scene: phase by phase, with restarts in between and samples along the way.
+
+#[cfg(feature = "checkpoint")]
+mod adoption;
+mod angles;
+mod at_rest;
+mod auto;
+mod checkpoint;
+mod commands;
+#[cfg(feature = "study")]
+mod derivative;
+mod events;
+mod failure;
+mod gauge;
+mod leg;
+mod progress;
+mod reading;
+mod records;
+mod renewal;
+mod run;
+mod sampling;
+mod sensor;
+mod simulation;
+mod stage;
+mod stepper;
+mod steps;
+mod view;
+mod watch;
+mod watching;
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+#[cfg(feature = "checkpoint")]
+pub(crate) use adoption::Choice;
+#[cfg(feature = "checkpoint")]
+pub(crate) use angles::Angles;
+pub use checkpoint::Checkpoint;
+#[cfg(feature = "checkpoint")]
+pub(crate) use checkpoint::Kept;
+#[cfg(feature = "study")]
+pub(crate) use derivative::{Linearized, Moved};
+pub use progress::Progress;
+pub use reading::{Component, Reading};
+use run::Run;
+pub use sampling::Sampling;
+pub use simulation::Simulation;
+use view::Gauges;
+pub use view::View;
+pub use watch::Direction;
+
+use crate::dynamics::error::Error;
+use crate::dynamics::trajectory::Trajectory;
+use crate::scene::settings::Settings;
+use crate::scene::timeline::Scene;
+
+impl Scene {
+    /// Runs the scene, from rest in its undeformed shape unless a start was given.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings};
+    ///
+    /// let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    /// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// let scene = Scene::new(body)
+    ///     .phase(Phase::until(0.1).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
+    /// let trajectory = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
+    /// assert!((trajectory.last().u[2 * 13 + 1] - -0.016).abs() < 1e-6);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Bad input before anything is computed; [`Error::Integration`] with the motion until then
+    /// when the integrator gives up.
+    pub fn simulate(&self, settings: &Settings, sampling: &Sampling) -> Result<Trajectory, Error> {
+        self.simulate_with(settings, sampling, |_| ControlFlow::Continue(()))
+    }
+
+    /// As [`simulate`](Self::simulate), calling `observer` after each step with the progress of the
+    /// run. The observer stops the run by [`ControlFlow::Break`].
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// # use pliant::{Body, Cells, Error, Material, Mesh, Phase, Sampling, Scene, Settings};
+    /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    /// # let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// # let scene = Scene::new(body)
+    /// #     .phase(Phase::until(0.1).hold("bottom").move_nodes([14, 15], [0.0, -0.16]));
+    ///
+    /// let patience = |progress: &pliant::simulate::Progress| match progress.steps {
+    ///     50 => ControlFlow::Break(()),
+    ///     _ => ControlFlow::Continue(()),
+    /// };
+    /// match scene.simulate_with(&Settings::default(), &Sampling::every(0.01), patience) {
+    ///     Err(Error::Integration(end)) if end.is_interruption() => {
+    ///         assert_eq!(end.trajectory.report().steps(), 50);
+    ///         assert_eq!(end.trajectory.last().time, end.time);
+    ///     }
+    ///     other => panic!("{other:?}"),
+    /// }
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`simulate`](Self::simulate); a run that was stopped ends with [`Error::Integration`],
+    /// too, which says so: [`is_interruption`](crate::IntegrationFailure::is_interruption).
+    pub fn simulate_with(
+        &self,
+        settings: &Settings,
+        sampling: &Sampling,
+        mut observer: impl FnMut(&Progress) -> ControlFlow<()>,
+    ) -> Result<Trajectory, Error> {
+        let clock = Instant::now();
+        settings.validate()?;
+        let forces = self.forces_from_start()?;
+        let sensors = sampling.sensors(self)?;
+        let model = self.model(&forces);
+        let first = forces.into_iter().next().unwrap_or_default();
+        let gauges = Gauges::new(self)?;
+        let mut run = Run::new(self, settings, (sampling, sensors), clock, (model, gauges), first)?;
+        while run.advance(&mut observer)? {}
+        Ok(run.into_trajectory())
+    }
+}

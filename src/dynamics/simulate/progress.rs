@@ -1,0 +1,28 @@
+//! Progress of a run, for observers.
+
+use std::ops::ControlFlow;
+
+use crate::dynamics::trajectory::Trajectory;
+
+/// How far a run has come: what the observer gets after each step, see
+/// [`Scene::simulate_with`](crate::Scene::simulate_with).
+#[derive(Debug, Clone, Copy)]
+pub struct Progress<'a> {
+    /// Time reached (s).
+    pub time: f64,
+    /// Number of the phase, counted from 0.
+    pub phase: usize,
+    /// Its name.
+    pub name: &'a str,
+    /// Steps taken since t = 0.
+    pub steps: usize,
+    /// Size of the last step (s).
+    pub step: f64,
+    /// Order of the last step.
+    pub order: u32,
+    /// The samples so far. A method that could not be trusted is gone back from, and its samples are forgotten.
+    pub trajectory: &'a Trajectory,
+}
+
+/// What watches a run, and may stop it.
+pub(super) type Observer<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;

@@ -1,0 +1,318 @@
+//! What can be read from a motion, by name.
+
+use std::f64::consts::TAU;
+
+use crate::base::input::{InputError, unknown_among};
+use crate::dynamics::trajectory::DEGREES;
+use crate::elements::mesh::Selection;
+
+/// A quantity that a sensor reads: see [`Sampling::read`](crate::Sampling::read).
+///
+/// Positions and the like of several nodes are means over them; forces are sums.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    pub(super) what: What,
+    pub(super) component: Option<Component>,
+    /// Whether angles are in degrees.
+    in_degrees: bool,
+}
+
+/// What is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum What {
+    Position(Selection),
+    Displacement(Selection),
+    Velocity(Selection),
+    ConstraintForce(Selection),
+    ConstraintMoment(Selection, Lever),
+    /// Of an obstacle, on all nodes or these.
+    ContactForce(String, Option<Selection>),
+    SpringPull(String),
+    SpringLength(String),
+    Pressure(String),
+    ChamberVolume(String),
+    Stress(Place),
+    Strain(Place),
+    Distance([Selection; 2]),
+    Angle([[Selection; 2]; 2]),
+    CentreOfMass,
+    Rotation,
+}
+
+/// What a moment turns about.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Lever {
+    /// A point (m).
+    pub(super) about: Vec<f64>,
+    /// The direction through it along which the moment counts; all of them if there is none.
+    pub(super) axis: Option<Vec<f64>>,
+}
+
+/// Where a field is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Place {
+    Nodes(Selection),
+    Point(Vec<f64>),
+}
+
+/// A part of a vector or tensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Component {
+    /// Along the first axis.
+    X,
+    /// Along the second axis.
+    Y,
+    /// Along the third axis.
+    Z,
+    /// The length of a vector.
+    Norm,
+    /// First diagonal entry of a tensor.
+    XX,
+    /// Second diagonal entry.
+    YY,
+    /// Third diagonal entry: across the plane, of a body in two dimensions.
+    ZZ,
+    /// Entry of the first and second axis; of strain the tensor's, half the change of the right angle.
+    XY,
+    /// Entry of the second and third axis.
+    YZ,
+    /// Entry of the first and third axis.
+    XZ,
+    /// The stress of von Mises.
+    VonMises,
+}
+
+impl Component {
+    /// All of them with their words.
+    pub(crate) const WORDS: [(&'static str, Self); 11] = [
+        ("x", Self::X),
+        ("y", Self::Y),
+        ("z", Self::Z),
+        ("norm", Self::Norm),
+        ("xx", Self::XX),
+        ("yy", Self::YY),
+        ("zz", Self::ZZ),
+        ("xy", Self::XY),
+        ("yz", Self::YZ),
+        ("xz", Self::XZ),
+        ("von-mises", Self::VonMises),
+    ];
+
+    /// Its word: `x`, `norm`, `xy`, `von-mises`, ...
+    pub fn word(self) -> &'static str {
+        let of_this = Self::WORDS.iter().find(|(_, component)| *component == self);
+        of_this.map_or("", |(word, _)| word)
+    }
+
+    /// # Errors
+    /// If it is none of the `known` ones, which are all that a quantity has.
+    fn check(self, known: &[Self]) -> Result<(), InputError> {
+        if known.contains(&self) {
+            return Ok(());
+        }
+        let known: Vec<&str> = known.iter().map(|component| component.word()).collect();
+        let mend = unknown_among(self.word(), &known, "quantity", "components");
+        Err(InputError::new("component", format!("\"{}\"", self.word()), mend))
+    }
+}
+
+impl Reading {
+    /// Where nodes are (m).
+    pub fn position(nodes: impl Into<Selection>) -> Self {
+        What::Position(nodes.into()).into()
+    }
+
+    /// How far they are from their undeformed positions (m).
+    pub fn displacement(nodes: impl Into<Selection>) -> Self {
+        What::Displacement(nodes.into()).into()
+    }
+
+    /// How fast they move (m/s).
+    pub fn velocity(nodes: impl Into<Selection>) -> Self {
+        What::Velocity(nodes.into()).into()
+    }
+
+    /// Force of the constraints on nodes together (N), their reaction:
+    /// see [`Trajectory::constraint_force`](crate::Trajectory::constraint_force).
+    pub fn constraint_force(nodes: impl Into<Selection>) -> Self {
+        What::ConstraintForce(nodes.into()).into()
+    }
+
+    /// Moment (N m) of the constraints on nodes together about the point `about` (m) of space, which does not move: the sum of
+    /// (x - about) x f over the nodes, x being where they are and f what holds or moves them. In the plane a number,
+    /// counter-clockwise; on a line there is none.
+    pub fn constraint_moment(nodes: impl Into<Selection>, about: impl Into<Vec<f64>>) -> Self {
+        What::ConstraintMoment(nodes.into(), Lever { about: about.into(), axis: None }).into()
+    }
+
+    /// Its part along an `axis` through that point, of any length above 0, of a body in space: a number, the torque that
+    /// [`Phase::rotate`](crate::Phase::rotate) takes about its axis.
+    pub fn constraint_torque(
+        nodes: impl Into<Selection>,
+        about: impl Into<Vec<f64>>,
+        axis: impl Into<Vec<f64>>,
+    ) -> Self {
+        let lever = Lever { about: about.into(), axis: Some(axis.into()) };
+        What::ConstraintMoment(nodes.into(), lever).into()
+    }
+
+    /// Force of an obstacle on the body (N).
+    pub fn contact_force(obstacle: impl Into<String>) -> Self {
+        What::ContactForce(obstacle.into(), None).into()
+    }
+
+    /// Force of an obstacle on some nodes together (N), as of one finger of a grip whose forces on the body cancel each
+    /// other: see [`View::contact_force_on`](crate::View::contact_force_on).
+    pub fn contact_force_on(obstacle: impl Into<String>, nodes: impl Into<Selection>) -> Self {
+        What::ContactForce(obstacle.into(), Some(nodes.into())).into()
+    }
+
+    /// Force with which a spring pulls its ends together (N): see [`View::spring_pull`](crate::View::spring_pull).
+    pub fn spring_pull(spring: impl Into<String>) -> Self {
+        What::SpringPull(spring.into()).into()
+    }
+
+    /// Length of a spring (m).
+    pub fn spring_length(spring: impl Into<String>) -> Self {
+        What::SpringLength(spring.into()).into()
+    }
+
+    /// Pressure in a chamber (Pa).
+    pub fn pressure(chamber: impl Into<String>) -> Self {
+        What::Pressure(chamber.into()).into()
+    }
+
+    /// Volume that the walls of a chamber enclose (m^3).
+    pub fn chamber_volume(chamber: impl Into<String>) -> Self {
+        What::ChamberVolume(chamber.into()).into()
+    }
+
+    /// Stress at nodes (Pa): see [`Body::nodal_fields`](crate::Body::nodal_fields).
+    pub fn stress(nodes: impl Into<Selection>) -> Self {
+        What::Stress(Place::Nodes(nodes.into())).into()
+    }
+
+    /// Stress (Pa) at the point of the body whose undeformed position is `x` (m): that at the nodes around it, by their
+    /// shape functions.
+    pub fn stress_at(x: impl Into<Vec<f64>>) -> Self {
+        What::Stress(Place::Point(x.into())).into()
+    }
+
+    /// Strain at nodes, as [`stress`](Self::stress).
+    pub fn strain(nodes: impl Into<Selection>) -> Self {
+        What::Strain(Place::Nodes(nodes.into())).into()
+    }
+
+    /// Strain at a point, as [`stress_at`](Self::stress_at).
+    pub fn strain_at(x: impl Into<Vec<f64>>) -> Self {
+        What::Strain(Place::Point(x.into())).into()
+    }
+
+    /// Distance (m) between nodes, or the middles of sets.
+    pub fn distance(from: impl Into<Selection>, to: impl Into<Selection>) -> Self {
+        What::Distance([from.into(), to.into()]).into()
+    }
+
+    /// Angle (rad) from one line to another, each from its first node (or middle of a set) to its second: in the plane
+    /// counter-clockwise, in space without sign, between 0 and pi.
+    ///
+    /// In the plane it begins between -pi and pi, and goes on over whole turns from there: the run follows it from step to
+    /// step of the integrator, whenever samples are taken, and checkpoints and forks take it along. What turns by half a
+    /// turn or more within one step, or one load step of statics, is not told from what turns the other way.
+    /// [`Simulation::record`](crate::Simulation::record) in the middle of a run begins anew between -pi and pi, but for
+    /// sensors of the name and kind that were read until then.
+    pub fn angle<S: Into<Selection>>(from: [S; 2], to: [S; 2]) -> Self {
+        What::Angle([from, to].map(|line| line.map(Into::into))).into()
+    }
+
+    /// Where the centre of mass is (m).
+    pub fn centre_of_mass() -> Self {
+        What::CentreOfMass.into()
+    }
+
+    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole: that of
+    /// [`Trajectory::rotation`](crate::Trajectory::rotation), but that it goes on over whole turns as [`angle`](Self::angle)
+    /// does.
+    pub fn rotation() -> Self {
+        What::Rotation.into()
+    }
+
+    /// An angle in degrees. Default: rad.
+    pub fn in_degrees(mut self) -> Self {
+        self.in_degrees = true;
+        self
+    }
+
+    /// One component alone. Default: all of them, each a column.
+    pub fn component(mut self, component: Component) -> Self {
+        self.component = Some(component);
+        self
+    }
+
+    /// Unit of the numbers.
+    pub(crate) fn unit(&self) -> &'static str {
+        match self.what {
+            What::Position(_) | What::Displacement(_) | What::CentreOfMass => "m",
+            What::SpringLength(_) | What::Distance(_) => "m",
+            What::Velocity(_) => "m/s",
+            What::ConstraintForce(_) | What::ContactForce(..) | What::SpringPull(_) => "N",
+            What::ConstraintMoment(..) => "N m",
+            What::Pressure(_) | What::Stress(_) => "Pa",
+            What::ChamberVolume(_) => "m^3",
+            What::Strain(_) => "1",
+            What::Angle(_) | What::Rotation if self.in_degrees => DEGREES,
+            What::Angle(_) | What::Rotation => "rad",
+        }
+    }
+
+    /// What a full turn is in the unit of an angle.
+    pub(super) fn full_turn(&self) -> f64 {
+        if self.in_degrees { 360.0 } else { TAU }
+    }
+
+    /// Whether it can go on over whole turns, of a body in `dimension` dimensions.
+    pub(super) fn turns(&self, dimension: usize) -> bool {
+        dimension == 2 && self.is_angle()
+    }
+
+    fn is_angle(&self) -> bool {
+        matches!(self.what, What::Angle(_) | What::Rotation)
+    }
+
+    /// The components that are read of a body in `dimension` dimensions; none of a number.
+    ///
+    /// # Errors
+    /// A component that the quantity does not have; degrees of what is no angle.
+    pub(super) fn components(&self, dimension: usize) -> Result<Vec<Component>, InputError> {
+        use Component::*;
+        if self.in_degrees && !self.is_angle() {
+            let mend = format!("angles and rotations alone have it, this is in {}", self.unit());
+            return Err(InputError::new("unit", format!("\"{DEGREES}\""), mend));
+        }
+        // those of all columns, and one more that has to be asked for
+        let (all, more): (&[Component], _) = match (&self.what, dimension) {
+            (What::Stress(_), 1) => (&[XX], Some(VonMises)),
+            (What::Stress(_), 2) => (&[XX, YY, ZZ, XY], Some(VonMises)),
+            (What::Stress(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], Some(VonMises)),
+            (What::Strain(_), 1) => (&[XX], None),
+            (What::Strain(_), 2) => (&[XX, YY, ZZ, XY], None),
+            (What::Strain(_), _) => (&[XX, YY, ZZ, XY, YZ, XZ], None),
+            (What::Position(_) | What::Displacement(_) | What::Velocity(_), _)
+            | (What::ConstraintForce(_) | What::ContactForce(..) | What::CentreOfMass, _) => {
+                (&[X, Y, Z][..dimension], Some(Norm))
+            }
+            (What::ConstraintMoment(_, Lever { axis: None, .. }), 3) => (&[X, Y, Z], Some(Norm)),
+            _ => (&[], None),
+        };
+        let Some(one) = self.component else { return Ok(all.to_vec()) };
+        let known: Vec<Component> = all.iter().copied().chain(more).collect();
+        one.check(&known)?;
+        Ok(vec![one])
+    }
+}
+
+impl From<What> for Reading {
+    fn from(what: What) -> Self {
+        Self { what, component: None, in_degrees: false }
+    }
+}

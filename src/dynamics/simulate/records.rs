@@ -1,0 +1,110 @@
+//! What follows from a state (u, v, energies, ...) of the run: energies, samples, projected velocities.
+
+use std::sync::Arc;
+
+use super::angles::Angles;
+use super::sensor::Sensors;
+use super::view::{Gauges, View};
+use crate::base::vector::largest;
+use crate::dynamics::state::{State, StateMut};
+use crate::dynamics::system::{Energy, System};
+use crate::dynamics::trajectory::{Commanded, Sample};
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::Row;
+use crate::scene::settings::{Method, Settings};
+use crate::scene::timeline::{Phase, Scene};
+
+/// The sample of `state` = (u, v, energies, ...) at `time`, without readings of sensors.
+pub(super) fn sample(
+    phase: usize,
+    system: &mut System,
+    time: f64,
+    state: &[f64],
+) -> Result<Sample, Failure> {
+    let State { u, v, others, .. } = State::of(state, system.dofs());
+    let multipliers = system.multipliers(time, u, v, internal(system, others))?.to_vec();
+    let energy = energy(system, time, state);
+    let constraint_drift = system.drift(time, u);
+    Ok(Sample {
+        time,
+        phase,
+        u: u.to_vec(),
+        v: v.to_vec(),
+        multipliers,
+        energy,
+        constraint_drift,
+        sensors: Vec::new(),
+        commanded: Commanded::default(),
+    })
+}
+
+/// Adds to a sample what `sensors` read, and the phase in force if commands have changed it.
+pub(super) fn complete(
+    sample: &mut Sample,
+    (sensors, angles): (&Sensors, &Angles),
+    (scene, gauges): (&Scene, &Gauges),
+    phase: &Arc<Phase>,
+    is_commanded: bool,
+) {
+    sample.commanded = Commanded(is_commanded.then(|| phase.frozen()));
+    if sensors.is_empty() {
+        return;
+    }
+    let Sample { time, ref u, ref v, energy, .. } = *sample;
+    let Energy { dissipated, supplied, .. } = energy;
+    let state = State { u, v, dissipated, supplied, others: &sample.multipliers };
+    let view = View { scene, phase, gauges, time, state };
+    let readings = sensors.read(&view, sample, angles);
+    sample.sensors = readings;
+}
+
+/// Energies of `state` = (u, v, energies, ...) at `time`.
+pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
+    let State { u, v, dissipated, supplied, others } = State::of(state, system.dofs());
+    let energy = system.energy(time, u, v, internal(system, others));
+    Energy { dissipated, supplied, ..energy }
+}
+
+/// The internal strains among what a state ends in, which may be multipliers.
+fn internal<'a>(system: &System, others: &'a [f64]) -> &'a [f64] {
+    if system.relaxation_rate() > 0.0 { others } else { &[] }
+}
+
+/// Projects the velocities of `state` on those that the constraints allow, if the phase asks for that or
+/// the method has an equation for velocities, which allows no others. What that takes from the kinetic
+/// energy, or gives to it, is supplied by the constraints.
+pub(super) fn project(
+    settings: &Settings,
+    phase: &Phase,
+    system: &mut System,
+    time: f64,
+    state: &mut [f64],
+) {
+    if phase.projects_velocity || settings.method == Method::IdaIndexTwo {
+        project_now(system, time, state);
+    }
+}
+
+/// As [`project`] at t = 0, also if velocities were given that the constraints do not allow. (A body at rest
+/// that is suddenly moved is brought to it by the stabilization.)
+pub(super) fn begin_to_move(
+    settings: &Settings,
+    phase: &Phase,
+    system: &mut System,
+    state: &mut [f64],
+) {
+    let v = State::of(state, system.dofs()).v;
+    let violates = |row: &Row| row.apply(v) != row.prescribed(0.0).velocity;
+    if largest(v) > 0.0 && system.rows().iter().any(violates) {
+        project_now(system, 0.0, state);
+    } else {
+        project(settings, phase, system, 0.0, state);
+    }
+}
+
+fn project_now(system: &mut System, time: f64, state: &mut [f64]) {
+    let StateMut { u, v, supplied, .. } = StateMut::of(state, system.dofs());
+    let before = system.energy(time, u, v, &[]).kinetic;
+    system.project(time, v);
+    *supplied += system.energy(time, u, v, &[]).kinetic - before;
+}

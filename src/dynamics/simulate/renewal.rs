@@ -1,0 +1,386 @@
+//! What changes a run between two steps: other forces or constraints, another state, an earlier one.
+
+use std::mem::take;
+use std::sync::Arc;
+
+use super::auto::Plan;
+use super::checkpoint::{Checkpoint, Kept};
+use super::leg::Ending;
+use super::records::{self, energy, project};
+use super::run::Run;
+use super::sampling::Sampling;
+use super::sensor::Sensors;
+use super::stage::{At, Stage, Way};
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::dynamics::system::{Energy, System};
+use crate::dynamics::trajectory::Sample;
+use crate::elements::force::Forces;
+use crate::scene::constraint::Row;
+use crate::scene::forces::Live;
+use crate::scene::timeline::Phase;
+
+/// What a command changes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Change {
+    /// Forces that store no energy.
+    Loads,
+    /// Which obstacles act.
+    Contacts,
+    /// What is held or moved.
+    Constraints,
+}
+
+/// Commands in a phase that a multistep method follows by new starts.
+const NEW_STARTS: usize = 3;
+
+impl Run {
+    fn system(&self) -> Option<&System> {
+        match &self.at {
+            At::Work(work) => Some(work.stepper.system()),
+            At::Rest(system) => Some(system),
+            At::Nothing => None,
+        }
+    }
+
+    /// The equations in force.
+    pub(super) fn system_mut(&mut self) -> Result<&mut System, Error> {
+        if let At::Nothing = self.at {
+            self.at = At::Rest(self.equations(&self.phase, &self.state)?);
+        }
+        match &mut self.at {
+            At::Work(work) => Ok(work.stepper.system_mut()),
+            At::Rest(system) => Ok(system),
+            At::Nothing => {
+                Err(InputError::new("simulation", "without equations", "start it anew").into())
+            }
+        }
+    }
+
+    /// Writes (u, v, energies) at a time (s) within the last step.
+    pub(super) fn look(&mut self, t: f64, state: &mut [f64]) -> Result<(), Error> {
+        match &mut self.at {
+            At::Work(work) if t < self.time => {
+                let seen = work.stepper.interpolate(t, &mut work.sample);
+                state.copy_from_slice(&work.sample[..self.state.len()]);
+                seen.map_err(|source| self.failure(source, 0.0))
+            }
+            _ => {
+                state.copy_from_slice(&self.state);
+                Ok(())
+            }
+        }
+    }
+
+    /// Energies of `state` = (u, v, energies) at time `t` (s).
+    pub(super) fn energy(&self, t: f64, state: &[f64]) -> Energy {
+        match self.system() {
+            Some(system) => energy(system, t, state),
+            // lost in a panic, or with an integrator that could not be made
+            None => self
+                .equations(&self.phase, &self.state)
+                .map_or_else(|_| Energy::default(), |system| energy(&system, t, state)),
+        }
+    }
+
+    /// The sample of `state` = (u, v, energies) at time `t` (s).
+    pub(super) fn sample(&mut self, t: f64, state: &[f64]) -> Result<Sample, Error> {
+        let number = self.number;
+        let sample = records::sample(number, self.system_mut()?, t, state);
+        let mut sample = sample.map_err(|failure| self.failure(failure.into_error(), 0.0))?;
+        self.complete(&mut sample);
+        Ok(sample)
+    }
+
+    /// Whether another phase follows at time `t` (s), at or before the end of the last step.
+    pub(super) fn is_past_phase(&self, t: f64) -> bool {
+        self.time <= t && self.time >= self.phase.until && !self.is_last_phase()
+    }
+
+    /// Enters the next phase if the present one is at its end.
+    pub(super) fn leave_phase(&mut self) -> Result<(), Error> {
+        if !self.is_past_phase(self.time) {
+            return Ok(());
+        }
+        let system = self.rest()?;
+        let next = self.next_phase(system)?;
+        self.resume(next);
+        Ok(())
+    }
+
+    /// Makes `state` = (u, v, energies) at time `t` (s), at or before the present one and in the same phase, the
+    /// present state.
+    pub(super) fn set_state(&mut self, t: f64, state: &[f64]) -> Result<(), Error> {
+        let system = self.rest()?;
+        if t < self.time {
+            let samples = self.trajectory.samples();
+            let late = samples.iter().rev().take_while(|sample| sample.time > t).count();
+            self.trajectory.go_back(samples.len() - late, self.trajectory.noted());
+            self.sample_from(t);
+        }
+        (self.time, self.standing) = (t, 0);
+        self.state.copy_from_slice(state);
+        self.resume(system);
+        Ok(())
+    }
+
+    /// Puts `phase` in force in place of the present one, which differs from it by a `change`.
+    pub(super) fn change(&mut self, phase: Phase, change: Change) -> Result<(), Error> {
+        let mut forces = self.scene.forces_in(&phase)?;
+        if change == Change::Loads {
+            self.expect_commands()?;
+            match self.change_loads(forces)? {
+                None => {
+                    self.is_commanded = true;
+                    self.phase = Arc::new(phase);
+                    self.find_leg();
+                    return Ok(());
+                }
+                Some(refused) => forces = refused,
+            }
+        }
+        let mut system = self.rest()?;
+        let constrains = change == Change::Constraints;
+        let before = match change {
+            Change::Contacts => energy(&system, self.time, &self.state).balance(),
+            _ => 0.0,
+        };
+        if constrains || !system.change_forces(forces) {
+            match self.followed_by(&phase, &system) {
+                Ok(next) => system = next,
+                Err(error) => {
+                    self.resume(system);
+                    return Err(error.into());
+                }
+            }
+        } else if change == Change::Contacts {
+            self.supply(energy(&system, self.time, &self.state).balance() - before);
+        }
+        if constrains {
+            project(&self.settings, &phase, &mut system, self.time, &mut self.state);
+            self.constraints = Arc::new(());
+            self.stage.follow(Plan::new(&self.settings, &mut system, self.time, &self.state));
+        }
+        (self.phase, self.is_commanded) = (Arc::new(phase), true);
+        self.resume(system);
+        Ok(())
+    }
+
+    /// Leaves a multistep method that was chosen automatically once commands keep coming.
+    fn expect_commands(&mut self) -> Result<(), Error> {
+        self.stage.commands += 1;
+        if self.stage.commands > NEW_STARTS
+            && let Some(plan) = self.stage.plan.under_commands()
+        {
+            let system = self.rest()?;
+            self.stage.follow(plan);
+            self.resume(system);
+        }
+        Ok(())
+    }
+
+    /// Changes the forces of an integrator at work, if it can go on with others; gives them back if not.
+    fn change_loads(&mut self, forces: Forces) -> Result<Option<Forces>, Error> {
+        let (At::Work(work), None) = (&mut self.at, &self.stage.ended) else {
+            return Ok(Some(forces));
+        };
+        if !work.stepper.system_mut().change_forces(forces.clone()) || !self.keep_on()? {
+            return Ok(Some(forces));
+        }
+        Ok(None)
+    }
+
+    /// Sets numbers of the phase in force.
+    pub(super) fn set_live(&mut self, live: &Live, values: &[f64]) -> Result<(), Error> {
+        self.expect_commands()?;
+        live.set(values);
+        if !self.keep_on()? {
+            let mut system = self.rest()?;
+            system.forget_tangents();
+            self.resume(system);
+        }
+        Ok(())
+    }
+
+    /// Lets the integrator at work, if there is one that can, go on under forces that have jumped.
+    fn keep_on(&mut self) -> Result<bool, Error> {
+        let (At::Work(work), None) = (&mut self.at, &self.stage.ended) else { return Ok(false) };
+        work.stepper.system_mut().forget_tangents();
+        match work.stepper.resume(self.time, &self.state) {
+            Ok(true) => {
+                work.stop = f64::NAN;
+                let (system, located) = (work.stepper.system(), self.stage.plan.locates());
+                self.stage.leg.events.begin(system, self.time, &self.state, located);
+                self.remember();
+                Ok(true)
+            }
+            Ok(false) => Ok(false),
+            Err(source) => Err(self.failure(source, 0.0)),
+        }
+    }
+
+    /// A state to come back to.
+    pub(super) fn checkpoint(&self, time: f64, state: &[f64]) -> Checkpoint {
+        let rows = self.system().map_or(&[][..], System::rows);
+        Checkpoint {
+            scene: self.scene.clone(),
+            constraints: self.constraints.clone(),
+            plan: self.stage.plan.clone(),
+            kept: Kept {
+                time,
+                state: state.to_vec(),
+                phase: self.phase.frozen(),
+                number: self.number,
+                is_commanded: self.is_commanded,
+                origins: rows.iter().map(Row::origin).collect(),
+                first_step: self.next_step(),
+                steps: self.steps,
+                commands: self.stage.commands,
+                balance: self.balance,
+                energies: self.trajectory.noted(),
+                angles: self.angles.clone(),
+            },
+        }
+    }
+
+    /// Comes back to a state.
+    pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
+        let Checkpoint { scene, constraints, plan, kept } = checkpoint;
+        let Kept { time, ref state, ref phase, number, balance, steps, .. } = *kept;
+        if !Arc::ptr_eq(&self.scene, scene) {
+            let mend = "it belongs to another simulation: restore it there, or in a fork of that";
+            return Err(InputError::new("checkpoint", format!("at {time} s"), mend).into());
+        }
+        let mut system = self.rest()?;
+        self.time = time;
+        self.state.copy_from_slice(state);
+        self.angles.clone_from(&kept.angles);
+        if !Arc::ptr_eq(&self.phase, phase) {
+            let forces = self.scene.forces_in(phase)?;
+            let same = Arc::ptr_eq(&self.constraints, constraints) && system.change_forces(forces);
+            if !same {
+                system = kept.equations(self)?;
+            }
+            (self.phase, self.constraints) = (phase.clone(), constraints.clone());
+            self.is_commanded = kept.is_commanded;
+        }
+        if self.number != number {
+            self.number = number;
+            self.stage = self.new_stage(plan.clone());
+            let before = number.checked_sub(1).map_or(0.0, |last| self.scene.phases()[last].until);
+            self.trajectory.report.phases.retain(|phase| phase.end <= before);
+        }
+        self.sample_from(time);
+        self.stage.plan = plan.clone();
+        (self.stage.first_step, self.stage.commands) = (kept.first_step, kept.commands);
+        self.stage.leg.steps = self.settings.max_steps;
+        (self.balance, self.standing, self.steps) = (balance, 0, steps);
+        let samples = self.trajectory.samples().partition_point(|sample| sample.time <= time);
+        self.trajectory.go_back(samples.max(1), kept.energies);
+        self.resume(system);
+        Ok(())
+    }
+
+    /// A run of its own from `state` = (u, v, energies) at time `t` (s) on.
+    pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
+        let rows = match self.system() {
+            Some(system) => system.rows().to_vec(),
+            None => self.equations(&self.phase, &self.state)?.rows().to_vec(),
+        };
+        let phase = self.phase.frozen();
+        let forces = self.scene.forces_in(&phase)?;
+        let (alpha, name) = (self.settings.alpha, &phase.name);
+        let system = System::new(self.model.clone(), forces, rows, alpha, name)?;
+        let mut run = self.twin();
+        run.phase = phase;
+        run.time = t;
+        run.state.copy_from_slice(state);
+        run.sample_from(t);
+        run.stage.first_step = self.next_step();
+        run.resume(system);
+        Ok(run)
+    }
+
+    /// Size of the next step (s), as far as it is known.
+    fn next_step(&self) -> Option<f64> {
+        match &self.at {
+            At::Work(work) => Some(work.stepper.next_step()).filter(|h| h.is_finite() && *h > 0.0),
+            _ => self.stage.first_step,
+        }
+    }
+
+    /// Ends the integrator, and gives its equations back; the next one knows its step size.
+    fn rest(&mut self) -> Result<System, Error> {
+        self.stage.first_step = self.next_step();
+        if let Some(Ending::Doubtful { instead: plan } | Ending::Better(plan)) =
+            self.stage.ended.take()
+        {
+            self.stage.follow(plan);
+        }
+        match take(&mut self.at) {
+            At::Work(work) => Ok(self.stage.rest(work)),
+            At::Rest(system) => Ok(system),
+            At::Nothing => Ok(self.equations(&self.phase, &self.state)?),
+        }
+    }
+
+    /// Goes on from the present state by the equations `system` of the phase in force.
+    fn resume(&mut self, system: System) {
+        self.find_stops();
+        (self.stage.ended, self.stage.way) = (Some(Ending::Reached), Way::default());
+        self.begin_events(&system);
+        self.at = At::Rest(system);
+        self.follow_angles();
+        self.remember();
+    }
+
+    /// Finds where the leg that the present time lies in ends, and those after it.
+    pub(super) fn find_leg(&mut self) {
+        self.find_stops();
+        self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
+    }
+
+    /// Finds where the legs of the phase in force end from now on.
+    fn find_stops(&mut self) {
+        let mut stops = self.phase.breaks(self.scene.obstacles());
+        stops.retain(|&stop| self.time < stop && stop < self.phase.until);
+        stops.push(self.phase.until);
+        stops.reverse();
+        (self.stage.stops, self.stage.leg.inside) = (stops, None);
+    }
+
+    /// Counts a sudden change of what is stored (J) as supplied from outside.
+    pub(super) fn supply(&mut self, energy: f64) {
+        let supplied = 2 * self.scene.body().dofs() + 1;
+        self.state[supplied] += energy;
+    }
+
+    /// The phase in force from the present time on, integrated by `plan`.
+    pub(super) fn new_stage(&self, plan: Plan) -> Stage {
+        let times = self.sampling.within(self.time, self.phase.until);
+        Stage::new(plan, times, self.scene.stops(self.number), self.settings.max_steps)
+    }
+
+    /// Takes samples at other times from the end of the last step on.
+    pub(super) fn record(&mut self, sampling: &Sampling, sensors: Sensors) {
+        self.trajectory.unread(sensors.quantities.clone());
+        self.trajectory.peaks.clear();
+        self.angles.keep(|name| sensors.quantities.iter().any(|quantity| quantity.name == name));
+        (self.sampling, self.sensors) = (sampling.clone(), sensors);
+        if self.trajectory.last().time == self.time {
+            let mut now = self.trajectory.last().clone();
+            self.complete(&mut now);
+            self.trajectory.replace_last(now);
+        }
+        self.follow_angles();
+        self.sample_from(self.time);
+        // what was sampled at other times is not gone back behind
+        self.remember();
+    }
+
+    /// Takes the samples after time `t` (s), whether they were taken before or not.
+    fn sample_from(&mut self, t: f64) {
+        self.stage.leg.times = self.sampling.within(t, self.phase.until);
+        self.stage.leg.taken = 0;
+    }
+}

@@ -1,0 +1,399 @@
+//! A scene on its way: phases one after the other, and their legs.
+
+use std::mem::take;
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::angles::Angles;
+use super::auto::Plan;
+use super::failure::in_mechanics;
+use super::leg::{Ending, Good};
+use super::progress::Observer;
+use super::records::{self, begin_to_move, energy, project};
+use super::sampling::Sampling;
+use super::sensor::Sensors;
+use super::stage::{At, Stage, Work};
+use super::stepper::{self, Failed};
+use super::view::{Gauges, View};
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::dynamics::indicators;
+use crate::dynamics::matrices::Model;
+use crate::dynamics::report::{Report, creation};
+use crate::dynamics::state::{ENERGIES, State};
+use crate::dynamics::system::System;
+use crate::dynamics::trajectory::{IntegrationFailure, Interrupted, Sample, Trajectory};
+use crate::elements::force::Forces;
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::{PhaseStart, prescribe};
+use crate::scene::settings::{Method, Scales, Settings};
+use crate::scene::timeline::{Phase, Scene};
+
+/// A scene on its way.
+pub(super) struct Run {
+    pub(super) scene: Arc<Scene>,
+    pub(super) settings: Settings,
+    pub(super) model: Arc<Model>,
+    pub(super) gauges: Arc<Gauges>,
+    pub(super) sampling: Sampling,
+    pub(super) sensors: Sensors,
+    /// Where the angles among them are at the present time.
+    pub(super) angles: Angles,
+    scales: Scales,
+    /// Absolute tolerance of displacements as it was asked for (m).
+    pub(super) atol_position: f64,
+    /// Started with the run.
+    clock: Instant,
+    /// The phase in force, as commands have changed it, and its number.
+    pub(super) phase: Arc<Phase>,
+    pub(super) number: usize,
+    /// Whether commands have changed it.
+    pub(super) is_commanded: bool,
+    /// Identity of the constraints in force.
+    pub(super) constraints: Arc<()>,
+    pub(super) stage: Stage,
+    pub(super) at: At,
+    pub(super) time: f64,
+    /// (u, v, energies, internal strains)
+    pub(super) state: Vec<f64>,
+    /// Steps taken since t = 0.
+    pub(super) steps: usize,
+    /// Steps in a row that did not move time ahead.
+    pub(super) standing: usize,
+    pub(super) trajectory: Trajectory,
+    /// Where the energy balance last was in order.
+    pub(super) good: Good,
+    /// Energy balance (J) that methods are judged by: that of the start or, once a phase has ended with one
+    /// that was not in order, of the next one, which is not to blame for that.
+    pub(super) balance: f64,
+    /// Energies below this (J) are too small to be watched.
+    pub(super) least_energy: f64,
+    /// A time (s) at which steps end, though no leg does.
+    pub(super) pause: Option<f64>,
+}
+
+impl Run {
+    /// A run of `scene` under the `forces` of its first phase, at its start.
+    pub(super) fn new(
+        scene: &Scene,
+        settings: &Settings,
+        (sampling, sensors): (&Sampling, Sensors),
+        clock: Instant,
+        (model, gauges): (Arc<Model>, Gauges),
+        forces: Forces,
+    ) -> Result<Self, Error> {
+        let phase = scene.first_phase()?;
+        let (u, v) = (scene.initial_displacements(), scene.initial_velocities()?);
+        let start = PhaseStart { time: 0.0, u };
+        let mut system = scene.system(&model, phase, forces, &start, settings.alpha)?;
+        if system.relaxation_rate() > 0.0 && !settings.method.takes_branches() {
+            let takes = Method::ALL.into_iter().filter(|method| method.takes_branches());
+            let takes: Vec<&str> = takes.map(Method::name).collect();
+            let mend = format!("bodies with Maxwell branches are for {}", takes.join(", "));
+            return Err(InputError::new("method", settings.method, mend).into());
+        }
+        let mut state = [u, &v, &[0.0; ENERGIES], &system.relaxed(u)].concat();
+        begin_to_move(settings, phase, &mut system, &mut state);
+        let mut first = records::sample(0, &mut system, 0.0, &state)
+            .map_err(|failure| scene.bad_start(failure))?;
+        if !first.energy.balance().is_finite() {
+            let reason = "the energies are beyond the range of double precision";
+            return Err(scene.bad_start(Failure::Recoverable(reason.into())).into());
+        }
+        let scales = Scales::of(scene);
+        let atol_position = settings.tolerances_by(&scales).position;
+        let report = Report {
+            method: settings.method,
+            rtol: settings.rtol,
+            atol_position,
+            alpha: settings.alpha,
+            ..Report::default()
+        };
+        let plan = Plan::new(settings, &mut system, 0.0, &state);
+        let times = sampling.within(0.0, phase.until);
+        let (phase, balance) = (Arc::new(phase.clone()), first.energy.balance());
+        let angles = Angles::default();
+        records::complete(&mut first, (&sensors, &angles), (scene, &gauges), &phase, false);
+        let mut trajectory = Trajectory::new(scene, report, first);
+        trajectory.sensors = sensors.quantities.clone();
+        let mut run = Self {
+            stage: Stage::new(plan, times, scene.stops(0), settings.max_steps),
+            phase,
+            is_commanded: false,
+            number: 0,
+            constraints: Arc::new(()),
+            at: At::Nothing,
+            settings: settings.clone(),
+            model,
+            gauges: Arc::new(gauges),
+            sampling: sampling.clone(),
+            sensors,
+            angles,
+            scales,
+            atol_position,
+            clock,
+            time: 0.0,
+            state,
+            steps: 0,
+            standing: 0,
+            good: Good::default(),
+            balance,
+            trajectory,
+            // that of strains of a thousandth
+            least_energy: 1e-6 * scene.body().material().young * scene.body().volume(),
+            pause: None,
+            scene: Arc::new(scene.clone()),
+        };
+        run.follow_angles();
+        run.begin(&system);
+        run.at = At::Rest(system);
+        Ok(run)
+    }
+
+    /// Takes a step; `false` at the end of the scene, where there is none.
+    pub(super) fn advance(&mut self, observer: Observer) -> Result<bool, Error> {
+        loop {
+            let system = match take(&mut self.at) {
+                At::Work(mut work) if self.stage.ended.is_none() => {
+                    let ended = self.try_step(&mut work, observer);
+                    self.at = At::Work(work);
+                    self.stage.ended = ended.map_err(|source| self.give_up(source))?;
+                    return Ok(true);
+                }
+                At::Work(work) => self.stage.rest(work),
+                At::Rest(system) => system,
+                At::Nothing => {
+                    let system = self.equations(&self.phase, &self.state)?;
+                    self.begin_events(&system);
+                    system
+                }
+            };
+            if !self.go_on(system)? {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Begins the next leg, if need be that of the next phase; `false` at the end of the scene.
+    pub(super) fn go_on(&mut self, mut system: System) -> Result<bool, Error> {
+        loop {
+            match self.stage.ended.take() {
+                Some(Ending::Reached) if self.stage.leg.inside.take().is_some() => {}
+                Some(Ending::Reached) => match self.stage.stops.pop() {
+                    Some(stop) => self.stage.leg.stop = stop,
+                    None if self.is_last_phase() => {
+                        self.stage.ended = Some(Ending::Reached);
+                        self.at = At::Rest(system);
+                        return Ok(false);
+                    }
+                    None => system = self.next_phase(system)?,
+                },
+                Some(Ending::Event) => self.stage.leg.inside = None,
+                // a step that ends within the obstacle feels it
+                Some(Ending::Passage(t)) => self.stage.leg.inside = Some(t),
+                Some(Ending::Better(other)) => {
+                    self.stage.follow(other);
+                    self.begin_events(&system);
+                }
+                Some(Ending::Doubtful { instead }) => {
+                    self.go_back();
+                    self.find_leg();
+                    self.stage.follow(instead);
+                    self.begin_events(&system);
+                }
+                None => {}
+            }
+            if self.time < self.stage.leg.end() {
+                break;
+            }
+            // an event, or a look at the method, just where the leg ends
+            self.stage.ended = Some(Ending::Reached);
+        }
+        system.forget_counts();
+        let (settings, end) = (&self.stage.plan.settings, self.stop());
+        let atol = settings.tolerances_by(&self.scales);
+        let first = self.stage.first_step.take();
+        match stepper::start(system, settings, &atol, [self.time, end], first, &self.state) {
+            Ok(stepper) => self.at = At::Work(Work::new(stepper, self.time, end)),
+            Err(source) => return Err(self.failure(source, 0.0)),
+        }
+        Ok(true)
+    }
+
+    /// Where steps end (s).
+    pub(super) fn stop(&self) -> f64 {
+        self.pause.unwrap_or(f64::INFINITY).min(self.stage.leg.end())
+    }
+
+    pub(super) fn is_last_phase(&self) -> bool {
+        self.number + 1 == self.scene.phases().len()
+    }
+
+    /// Begins the phase after that of `system`.
+    pub(super) fn next_phase(&mut self, system: System) -> Result<System, Error> {
+        self.trajectory.report = self.report();
+        let scene = self.scene.clone();
+        let phase = scene.phases()[self.number + 1].clone();
+        let phase = Arc::new(phase.after(&self.phase, scene.obstacles(), self.time));
+        let mut next = self.followed_by(&phase, &system)?;
+        (self.number, self.phase, self.is_commanded) =
+            (self.number + 1, phase.clone(), phase.is_turned());
+        project(&self.settings, &phase, &mut next, self.time, &mut self.state);
+        let plan = Plan::new(&self.settings, &mut next, self.time, &self.state);
+        (self.stage, self.constraints) = (self.new_stage(plan), Arc::new(()));
+        self.begin(&next);
+        Ok(next)
+    }
+
+    /// The equations of `phase`, which follows that of `system`.
+    pub(super) fn followed_by(
+        &mut self,
+        phase: &Phase,
+        system: &System,
+    ) -> Result<System, InputError> {
+        let n = self.scene.body().dofs();
+        let mut u = self.state[..n].to_vec();
+        prescribe(system.rows(), self.time, &mut u);
+        let next = self.equations(phase, &u)?;
+        // an obstacle that begins or ceases to act with nodes inside it changes what is stored: that comes
+        // from outside
+        let [before, after] =
+            [system, &next].map(|system| energy(system, self.time, &self.state).balance());
+        self.supply(after - before);
+        Ok(next)
+    }
+
+    /// The equations of a phase that begins with the displacements that `u` begins with.
+    pub(super) fn equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
+        let start = PhaseStart { time: self.time, u };
+        let forces = self.scene.forces_in(phase)?;
+        self.scene.system(&self.model, phase, forces, &start, self.settings.alpha)
+    }
+
+    /// Begins the phase in force, whose equations are `system`.
+    fn begin(&mut self, system: &System) {
+        self.begin_events(system);
+        let balance = energy(system, self.time, &self.state).balance();
+        let (created, scale) = self.created(balance);
+        if creation(created, scale).is_some() {
+            self.balance = balance;
+        }
+        self.remember();
+    }
+
+    pub(super) fn begin_events(&mut self, system: &System) {
+        let located = self.stage.plan.locates();
+        self.stage.leg.events.begin(system, self.time, &self.state, located);
+    }
+
+    /// A run in the same state without equations; its trajectory begins with the last sample of this one.
+    pub(super) fn twin(&self) -> Self {
+        Self {
+            scene: self.scene.clone(),
+            settings: self.settings.clone(),
+            model: self.model.clone(),
+            gauges: self.gauges.clone(),
+            sampling: self.sampling.clone(),
+            sensors: self.sensors.clone(),
+            angles: self.angles.clone(),
+            scales: self.scales,
+            atol_position: self.atol_position,
+            clock: Instant::now(),
+            phase: self.phase.clone(),
+            number: self.number,
+            is_commanded: self.is_commanded,
+            constraints: self.constraints.clone(),
+            stage: self.new_stage(self.stage.plan.clone()),
+            at: At::Nothing,
+            time: self.time,
+            state: self.state.clone(),
+            steps: self.steps,
+            standing: 0,
+            trajectory: self.trajectory.at_end(),
+            good: self.good.clone(),
+            balance: self.balance,
+            least_energy: self.least_energy,
+            pause: None,
+        }
+    }
+
+    /// How the motion was computed so far.
+    pub(super) fn report(&self) -> Report {
+        let mut report = self.trajectory.report.clone();
+        let phase = self.stage.report(&self.phase.name, self.time, &self.at);
+        report.wall_seconds = self.clock.elapsed().as_secs_f64();
+        report.states = phase.states;
+        report.phases.push(phase);
+        report
+    }
+
+    /// The motion, at the end of the run.
+    pub(super) fn into_trajectory(mut self) -> Trajectory {
+        self.trajectory.report = self.report();
+        self.trajectory.report.indicators = indicators::of_motion(&self.trajectory);
+        self.trajectory
+    }
+
+    /// The error of an integrator that has given up, with the state that the last step led to, unless the
+    /// equations have no meaning there.
+    fn give_up(&mut self, source: Failed) -> Error {
+        let At::Work(work) = take(&mut self.at) else { return self.failure(source, 0.0) };
+        let step = work.stepper.counts().last_step;
+        let mut system = self.stage.rest(work);
+        if self.time > self.trajectory.last().time {
+            let last = records::sample(self.number, &mut system, self.time, &self.state);
+            if let Ok(mut last) = last {
+                self.complete(&mut last);
+                self.trajectory.push(last);
+            }
+        }
+        self.at = At::Rest(system);
+        self.failure(source, step)
+    }
+
+    /// Adds to a sample what is not of the equations.
+    pub(super) fn complete(&self, sample: &mut Sample) {
+        let own = (&*self.scene, &*self.gauges);
+        let sensors = (&self.sensors, &self.angles);
+        records::complete(sample, sensors, own, &self.phase, self.is_commanded);
+    }
+
+    /// Brings the angles of sensors to the present state.
+    pub(super) fn follow_angles(&mut self) {
+        if !self.sensors.have_angles() {
+            return;
+        }
+        let Self { scene, phase, gauges, time, state, sensors, angles, .. } = self;
+        let state = State::of(state, scene.body().dofs());
+        let view = View { scene, phase, gauges, time: *time, state };
+        sensors.follow(&view, angles);
+    }
+
+    /// Size (s) and order of the last step of the integrator at work.
+    pub(super) fn last_step(&self) -> (f64, u32) {
+        match &self.at {
+            At::Work(work) => (work.stepper.counts().last_step, work.stepper.last_order()),
+            _ => (0.0, 0),
+        }
+    }
+
+    /// The error of a run that was stopped.
+    pub(super) fn interrupted(&mut self) -> Error {
+        self.give_up(Interrupted.into())
+    }
+
+    pub(super) fn failure(&self, source: Failed, step: f64) -> Error {
+        let mut trajectory = self.trajectory.clone();
+        trajectory.report = self.report();
+        trajectory.report.indicators = indicators::of_motion(&trajectory);
+        Box::new(IntegrationFailure {
+            phase: self.phase.name.clone(),
+            method: self.settings.method,
+            time: self.time,
+            step,
+            source: in_mechanics(source, indicators::doom(&trajectory.report.indicators)),
+            trajectory,
+        })
+        .into()
+    }
+}

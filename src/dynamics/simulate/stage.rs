@@ -1,0 +1,140 @@
+//! A phase at work: its legs, the method that integrates them, and what that has cost so far.
+
+use std::time::Instant;
+
+use super::auto::{LONG, Plan, TRIALS};
+use super::events::Events;
+use super::leg::{Ending, Leg};
+use super::sampling::Schedule;
+use super::stepper::Stepper;
+use crate::dynamics::report::{Counts, PhaseReport};
+use crate::dynamics::system::System;
+use crate::scene::settings::Method;
+
+/// A phase at work.
+pub(super) struct Stage {
+    clock: Instant,
+    pub(super) plan: Plan,
+    pub(super) leg: Leg,
+    /// Ends of the legs that are left (s), the last one first.
+    pub(super) stops: Vec<f64>,
+    /// How the last leg ended, once it has.
+    pub(super) ended: Option<Ending>,
+    /// Changes of the forces by commands.
+    pub(super) commands: usize,
+    /// First step of the next integrator (s), if it is known.
+    pub(super) first_step: Option<f64>,
+    pub(super) way: Way,
+    /// What the integrators have cost that are done.
+    counts: Counts,
+    /// Unknowns of the last one.
+    states: usize,
+}
+
+/// The equations in force, and what integrates them. There is one: its size does not matter.
+#[derive(Default)]
+#[expect(clippy::large_enum_variant)]
+pub(super) enum At {
+    /// An integrator could not be made.
+    #[default]
+    Nothing,
+    /// No integrator, between two legs.
+    Rest(System),
+    Work(Work),
+}
+
+/// An integrator at work on a leg.
+pub(super) struct Work {
+    pub(super) stepper: Box<dyn Stepper>,
+    /// Where it stops (s).
+    pub(super) stop: f64,
+    /// Room for a state of the integrator.
+    pub(super) sample: Vec<f64>,
+    /// Steps, when the last trial began (s), and mean step sizes (s) of the last ones, the last one first.
+    pub(super) steps: usize,
+    pub(super) trial_began: f64,
+    pub(super) means: [f64; TRIALS],
+}
+
+/// How far the last steps of a plan have led, whatever legs they lay in.
+#[derive(Default)]
+pub(super) struct Way {
+    steps: usize,
+    /// Where the first one began (s).
+    began: f64,
+}
+
+impl Way {
+    /// Adds a step; after each [`LONG`] of them gives their mean size (s).
+    pub(super) fn add(&mut self, [start, end]: [f64; 2]) -> Option<f64> {
+        if self.steps == 0 {
+            self.began = start;
+        }
+        self.steps = (self.steps + 1) % LONG;
+        (self.steps == 0).then(|| (end - self.began) / LONG as f64)
+    }
+}
+
+impl Work {
+    pub(super) fn new(stepper: Box<dyn Stepper>, time: f64, stop: f64) -> Self {
+        let sample = vec![0.0; stepper.state().len()];
+        Self { stepper, stop, sample, steps: 0, trial_began: time, means: [f64::INFINITY; TRIALS] }
+    }
+}
+
+impl Stage {
+    /// A phase at its start, of at most `steps` steps.
+    pub(super) fn new(plan: Plan, times: Schedule, stops: Vec<f64>, steps: usize) -> Self {
+        let events = Events::default();
+        Self {
+            clock: Instant::now(),
+            plan,
+            leg: Leg { times, taken: 0, stop: 0.0, inside: None, steps, events },
+            stops: stops.into_iter().rev().collect(),
+            ended: Some(Ending::Reached),
+            commands: 0,
+            first_step: None,
+            way: Way::default(),
+            counts: Counts::default(),
+            states: 0,
+        }
+    }
+
+    /// Goes on with another plan.
+    pub(super) fn follow(&mut self, plan: Plan) {
+        (self.plan, self.way) = (plan, Way::default());
+        self.counts.notice = None;
+    }
+
+    /// Ends an integrator, and gives its equations back.
+    pub(super) fn rest(&mut self, work: Work) -> System {
+        self.counts.add(work.stepper.counts());
+        self.states = work.stepper.state().len();
+        work.stepper.into_system()
+    }
+
+    /// What has become of the phase named `name` up to time `end` (s), with the integrator `at` work.
+    pub(super) fn report(&self, name: &str, end: f64, at: &At) -> PhaseReport {
+        let (mut counts, mut states) = (self.counts.clone(), self.states);
+        if let At::Work(work) = at {
+            counts.add(work.stepper.counts());
+            states = work.stepper.state().len();
+        }
+        counts.contact_events = self.leg.events.count;
+        let Plan { settings, reason, .. } = &self.plan;
+        if reason.is_some() && settings.method == Method::Rk {
+            // what it notices of stability, the choice of methods looks after
+            counts.notice = None;
+        }
+        PhaseReport {
+            name: name.to_owned(),
+            end,
+            states,
+            wall_seconds: self.clock.elapsed().as_secs_f64(),
+            method: settings.method,
+            reason: reason.clone(),
+            counts,
+            slips: self.leg.events.slips.clone(),
+        }
+    }
+}

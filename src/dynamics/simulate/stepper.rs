@@ -1,0 +1,288 @@
+//! The integrator of a phase: made by the settings, and used behind one face, whatever form of the
+//! equations it takes.
+
+use crate::dynamics::report::Counts;
+use crate::dynamics::state::ENERGIES;
+use crate::dynamics::system::{DaeForm, Form, Index, SecondOrderForm, System};
+use crate::integrators::central_difference::CentralDifference;
+use crate::integrators::common::Integrator;
+use crate::integrators::ode::Failure;
+use crate::integrators::rk::{self, DormandPrince};
+use crate::integrators::rosenbrock::{self, Rosenbrock};
+use crate::integrators::sundials::{
+    Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
+    LinearSolver, Multistep, Pattern,
+};
+use crate::scene::settings::{AbsoluteTolerances, Method, Settings};
+
+pub(super) type Failed = Box<dyn std::error::Error + Send + Sync>;
+
+/// An integrator at work on the equations of one phase.
+pub(super) trait Stepper: Send {
+    /// Takes one step towards `end` and returns the time reached.
+    fn step(&mut self, end: f64) -> Result<f64, Failed>;
+
+    /// Lets the steps end at time `t` (s), exactly.
+    fn stop_at(&mut self, t: f64) -> Result<(), Failed>;
+
+    /// Goes on from `state` at time `t` (s) after a change of the forces; `false` if that needs a new
+    /// integrator.
+    fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed>;
+
+    /// The state at a time within the last step.
+    fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed>;
+
+    /// Order of the last step.
+    fn last_order(&self) -> u32;
+
+    /// Size of the next step (s), as far as it is known.
+    fn next_step(&self) -> f64;
+
+    /// The state at the end of the last step: (u, v, energies, ...).
+    fn state(&self) -> &[f64];
+
+    fn system(&self) -> &System;
+
+    fn system_mut(&mut self) -> &mut System;
+
+    /// The equations, back from the integrator.
+    fn into_system(self: Box<Self>) -> System;
+
+    /// What the integration has cost so far, and what it noticed.
+    fn counts(&self) -> Counts;
+}
+
+impl<I: Integrator<System: Form> + Send> Stepper for I {
+    fn step(&mut self, end: f64) -> Result<f64, Failed> {
+        let _ = Integrator::step(self, end)?;
+        Ok(self.t())
+    }
+
+    fn stop_at(&mut self, t: f64) -> Result<(), Failed> {
+        Ok(self.set_stop_time(Some(t))?)
+    }
+
+    fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed> {
+        Ok(state.len() == self.y().len() && Integrator::resume(self, t, state)?)
+    }
+
+    fn interpolate(&mut self, t: f64, state: &mut [f64]) -> Result<(), Failed> {
+        Ok(Integrator::interpolate(self, t, 0, state)?)
+    }
+
+    fn last_order(&self) -> u32 {
+        Integrator::last_order(self)
+    }
+
+    fn next_step(&self) -> f64 {
+        self.statistics().current_step
+    }
+
+    fn state(&self) -> &[f64] {
+        self.y()
+    }
+
+    fn system(&self) -> &System {
+        Integrator::system(self).system()
+    }
+
+    fn system_mut(&mut self) -> &mut System {
+        Integrator::system_mut(self).system_mut()
+    }
+
+    fn into_system(self: Box<Self>) -> System {
+        Integrator::into_system(*self).into_system()
+    }
+
+    fn counts(&self) -> Counts {
+        let (s, system) = (self.statistics(), Stepper::system(self));
+        let [spared, linear_iterations, indefinite] = system.newton_counts();
+        Counts {
+            steps: s.steps as usize,
+            evaluations: s.evaluations as usize,
+            jacobian_evaluations: system.tangent_evaluations(),
+            difference_evaluations: system.difference_evaluations(),
+            factorizations: (s.linear_setups as usize).saturating_sub(spared),
+            linear_iterations,
+            error_test_failures: s.error_test_failures as usize,
+            convergence_failures: (s.nonlinear_failures + s.refused_steps) as usize,
+            contact_events: 0,
+            last_step: s.last_step,
+            last_order: s.last_order,
+            notice: self.notice().or_else(|| compression(indefinite)),
+        }
+    }
+}
+
+/// A notice if Newton matrices were not positive definite.
+fn compression(indefinite: usize) -> Option<String> {
+    (indefinite > 0).then(|| {
+        format!(
+            "{indefinite} Newton matrices were not positive definite, which costs time: at states that were tried and given \
+             up, or because friction falls with the speed, or because the body is pressed together until it may buckle \
+             or collapse; if it is, see whether it ought to"
+        )
+    })
+}
+
+/// Starts the integrator that the settings name at `t` with `state` = (u, v, energies), if known with a step of the
+/// size `first` (s); it will stop at `end`.
+pub(super) fn start(
+    mut system: System,
+    settings: &Settings,
+    atol: &AbsoluteTolerances,
+    [t, end]: [f64; 2],
+    first: Option<f64>,
+    state: &[f64],
+) -> Result<Box<dyn Stepper>, Failed> {
+    let n = system.dofs();
+    let longest = settings.max_step.unwrap_or(f64::INFINITY);
+    let mut tolerances = vec![atol.position; n];
+    tolerances.resize(2 * n, atol.velocity);
+    tolerances.resize(2 * n + ENERGIES, atol.energy);
+    tolerances.resize(system.unknowns(), atol.strain);
+    system.expect_iteration(iterates(settings.method, &system));
+    match settings.method {
+        // a plan names a method of its own
+        Method::Auto | Method::CvodeBdf | Method::CvodeAdams => {
+            let options = cvode_options(settings, tolerances).max_step(longest);
+            until(end, Cvode::new(system, t, state, &options)?)
+        }
+        Method::Arkode => {
+            let options = arkode_options(settings, tolerances, system.is_linear())?;
+            let options = options.max_step(longest);
+            let options = first.into_iter().fold(options, ArkodeOptions::initial_step);
+            until(end, Arkode::new(system, t, state, &options)?)
+        }
+        Method::Ida | Method::IdaKlu | Method::IdaIndexTwo => {
+            let rows = system.rows().len();
+            tolerances.resize(2 * n + ENERGIES + rows, atol.force);
+            let index = match settings.method {
+                Method::IdaIndexTwo => Index::Two,
+                _ => Index::One,
+            };
+            if index == Index::Two {
+                tolerances.resize(2 * n + ENERGIES + 2 * rows, atol.momentum);
+            }
+            let mut equations = DaeForm::new(system, index);
+            let (y, yp) = equations.consistent(t, state).map_err(Failure::into_error)?;
+            let options = ida_options(settings, tolerances, &equations)?.max_step(longest);
+            until(end, Ida::new(equations, t, &y, &yp, &options)?)
+        }
+        Method::Rosenbrock => {
+            let options =
+                rosenbrock_options(settings, tolerances, system.is_linear()).max_step(longest);
+            let options = first.into_iter().fold(options, rosenbrock::Options::initial_step);
+            until(end, Rosenbrock::new(system, t, state, &options)?)
+        }
+        Method::Rk => {
+            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+            let options = first.into_iter().fold(options, rk::Options::initial_step);
+            until(end, DormandPrince::new(system, t, state, &options)?)
+        }
+        Method::CentralDifference => {
+            let options = rk::Options::new(settings.rtol, tolerances).max_step(longest);
+            let options = first.into_iter().fold(options, rk::Options::initial_step);
+            until(end, CentralDifference::new(SecondOrderForm::new(system), t, state, &options)?)
+        }
+    }
+}
+
+/// Whether a method solves its Newton systems more than once, until their residuals are small enough.
+fn iterates(method: Method, system: &System) -> bool {
+    match method {
+        Method::Arkode => !system.is_linear(),
+        Method::Rosenbrock | Method::Rk | Method::CentralDifference => false,
+        _ => true,
+    }
+}
+
+/// Sets the stop time of an integrator.
+fn until<I: Integrator<System: Form> + Send + 'static>(
+    end: f64,
+    mut integrator: I,
+) -> Result<Box<dyn Stepper>, Failed> {
+    integrator.set_stop_time(Some(end))?;
+    Ok(Box::new(integrator))
+}
+
+fn cvode_options(settings: &Settings, tolerances: Vec<f64>) -> CvodeOptions {
+    let method = match settings.method {
+        Method::CvodeAdams => Multistep::Adams,
+        _ => Multistep::Bdf,
+    };
+    let options = CvodeOptions::new(settings.rtol, tolerances)
+        .method(method)
+        .newton(LinearSolver::Custom)
+        .stability_limit_detection(settings.stability_limit_detection);
+    match settings.max_order {
+        Some(order) => options.max_order(order),
+        None => options,
+    }
+}
+
+/// Steps after which ARKODE has a new Newton matrix, with new tangents, in any case: few enough that
+/// iterations converge in one or two, which is the fastest on all of Hirai's scenes.
+const STEPS_BETWEEN_SETUPS: u32 = 2;
+
+fn arkode_options(
+    settings: &Settings,
+    tolerances: Vec<f64>,
+    is_linear: bool,
+) -> Result<ArkodeOptions, Failed> {
+    let table = settings.max_order.map_or(Ok(ButcherTable::default()), ButcherTable::implicit)?;
+    let options =
+        ArkodeOptions::new(settings.rtol, tolerances).table(table).newton(LinearSolver::Custom);
+    Ok(match is_linear {
+        true => options.linear(),
+        false => options
+            .max_steps_between_setups(STEPS_BETWEEN_SETUPS)
+            .max_steps_between_jacobians(STEPS_BETWEEN_SETUPS),
+    })
+}
+
+fn rosenbrock_options(
+    settings: &Settings,
+    tolerances: Vec<f64>,
+    is_linear: bool,
+) -> rosenbrock::Options {
+    let options = rosenbrock::Options::new(settings.rtol, tolerances).newton(LinearSolver::Custom);
+    let options = settings.max_order.into_iter().fold(options, rosenbrock::Options::order);
+    if is_linear { options.linear() } else { options }
+}
+
+fn ida_options(
+    settings: &Settings,
+    tolerances: Vec<f64>,
+    equations: &DaeForm,
+) -> Result<IdaOptions, Failed> {
+    // What is not marked as differential stays out of the error test: energies and multipliers.
+    let motion = 2 * equations.system.dofs();
+    let differential: Vec<bool> = (0..equations.size()).map(|i| i < motion).collect();
+    let linear_solver = match settings.method {
+        Method::IdaKlu => LinearSolver::Klu {
+            pattern: jacobian_pattern(equations)?,
+            jacobian: Jacobian::Supplied,
+        },
+        _ => LinearSolver::Custom,
+    };
+    let options = IdaOptions::new(settings.rtol, tolerances)
+        .newton(linear_solver)
+        .check_jacobian(false)
+        .differential(differential)
+        .suppress_algebraic(true);
+    Ok(match settings.max_order {
+        Some(order) => options.max_order(order),
+        None => options,
+    })
+}
+
+fn jacobian_pattern(equations: &DaeForm) -> Result<Pattern, Failed> {
+    let size = equations.size();
+    let (mut offsets, mut row_indices) = (vec![0; size + 1], Vec::new());
+    equations.visit_jacobian(1.0, |row, column, _| {
+        row_indices.push(row);
+        offsets[column + 1] = row_indices.len();
+    });
+    Ok(Pattern::from_csc(&offsets, &row_indices)?)
+}

@@ -1,0 +1,206 @@
+//! The steps of a leg: how far they go, what casts doubt on them, and the samples within them.
+
+use super::auto::{LONG, TRIAL};
+use super::events::Met;
+use super::failure::{STANDING, crawling, standing_still, too_many_steps};
+use super::leg::{Ending, Good, Outcome};
+use super::progress::{Observer, Progress};
+use super::records::{self, energy};
+use super::run::Run;
+use super::stage::Work;
+use super::stepper::{Failed, Stepper};
+use crate::dynamics::report::creation;
+use crate::dynamics::system::System;
+use crate::dynamics::trajectory::Interrupted;
+use crate::integrators::ode::Failure;
+
+/// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
+const WATCH: usize = 32;
+
+/// Times within a step at which peaks of sensors are sought: a period that takes ten steps has 40, which miss its peak by 0.3 % at most.
+const PARTS: usize = 4;
+
+/// Part of the largest energy that methods may have created in a state that others go on from.
+const CLEAN: f64 = 0.001;
+
+impl Run {
+    /// Takes one step of a leg; gives how the leg ended, if it did.
+    ///
+    /// The energy balance is looked at now and then, and may cast doubt on a method that can be exchanged.
+    pub(super) fn try_step(
+        &mut self,
+        work: &mut Work,
+        observer: Observer,
+    ) -> Result<Option<Ending>, Failed> {
+        if self.stage.leg.steps == 0 {
+            return Err(too_many_steps(self.settings.max_steps, &work.stepper.counts()));
+        }
+        self.stage.leg.steps -= 1;
+        let stop = self.stop();
+        if work.stop != stop {
+            work.stepper.stop_at(stop)?;
+            work.stop = stop;
+        }
+        let start = self.time;
+        let (step, is_event) = match self.step(work)? {
+            Outcome::Taken(step) => (step, false),
+            Outcome::CutOff(step) => (step, true),
+            Outcome::Refused(t) => return Ok(Some(Ending::Passage(t))),
+        };
+        if self.steps.is_multiple_of(WATCH) || self.time >= self.stage.leg.stop {
+            let energy = energy(work.stepper.system(), self.time, &self.state);
+            self.trajectory.note_energy(&energy);
+            if self.stage.plan.is_on_trial() {
+                let (created, scale) = self.created(energy.balance());
+                let trouble = creation(created, scale);
+                match trouble.and_then(|trouble| self.stage.plan.instead(&trouble)) {
+                    Some(instead) => return Ok(Some(Ending::Doubtful { instead })),
+                    // what another method would begin with
+                    None if created < CLEAN * scale => self.remember(),
+                    None => {}
+                }
+            }
+        }
+        self.report_progress(step, work.stepper.last_order(), observer)?;
+        let led = self.stage.way.add([start, self.time]);
+        if let Some(mean) = led {
+            let refusal = work.stepper.system().refusal();
+            if let Some(failed) = crawling(LONG, mean, self.time, refusal) {
+                return Err(failed);
+            }
+            if let Some(other) = self.stage.plan.turned_back(mean) {
+                return Ok(Some(Ending::Better(other)));
+            }
+        }
+        if is_event {
+            return Ok(Some(Ending::Event));
+        }
+        work.steps += 1;
+        if work.steps.is_multiple_of(TRIAL) {
+            work.means.rotate_right(1);
+            work.means[0] = (self.time - work.trial_began) / TRIAL as f64;
+            work.trial_began = self.time;
+            if let Some(other) = self.stage.plan.reconsidered(work.means, work.steps) {
+                return Ok(Some(Ending::Better(other)));
+            }
+        }
+        Ok((self.time >= self.stage.leg.end()).then_some(Ending::Reached))
+    }
+
+    /// What the methods have created if the energy balance is now `balance`, and the scale of it (J).
+    pub(super) fn created(&self, balance: f64) -> (f64, f64) {
+        let scale = self.trajectory.report.energy_scale.max(self.least_energy);
+        (balance - self.balance, scale)
+    }
+
+    /// Keeps the present state to go back to.
+    pub(super) fn remember(&mut self) {
+        let good = &mut self.good;
+        (good.time, good.taken, good.samples) =
+            (self.time, self.stage.leg.taken, self.trajectory.samples().len());
+        good.energies = self.trajectory.noted();
+        good.angles.clone_from(&self.angles);
+        good.peaks.clone_from(&self.trajectory.peaks);
+        good.state.clone_from(&self.state);
+    }
+
+    /// Goes back to the state last kept.
+    pub(super) fn go_back(&mut self) {
+        let Good { time, ref state, taken, samples, energies, ref angles, ref peaks } = self.good;
+        self.angles.clone_from(angles);
+        self.trajectory.peaks.clone_from(peaks);
+        (self.time, self.stage.leg.taken, self.standing) = (time, taken, 0);
+        self.state.clone_from(state);
+        self.trajectory.go_back(samples, energies);
+    }
+
+    /// Takes one step, up to the first contact event within it, and the samples there are.
+    fn step(&mut self, work: &mut Work) -> Result<Outcome, Failed> {
+        let (n, length) = (self.scene.body().dofs(), self.state.len());
+        let Work { stepper, stop, sample, .. } = work;
+        let stepper = &mut **stepper;
+        let reached = stepper.step(*stop)?;
+        let times = [self.time, reached];
+        let (events, tolerance) = (&mut self.stage.leg.events, self.atol_position);
+        let event = match events.met(stepper, &self.state, times, tolerance, sample)? {
+            Met::Nothing => None,
+            Met::Event(t) => Some(t),
+            Met::Passage(t) => return Ok(Outcome::Refused(t)),
+        };
+        let time = event.unwrap_or(reached);
+        self.standing = if time > self.time { 0 } else { self.standing + 1 };
+        if self.standing == STANDING {
+            return Err(standing_still(stepper.system().refusal()));
+        }
+        // a step that is refused leaves no samples
+        let (system, arrived) = arrival(stepper, event, sample)?;
+        let before = &self.state[..n];
+        system.check_step(time, before, &arrived[..n]).map_err(Failure::into_error)?;
+        while let Some(t) = self.stage.leg.next_sample().filter(|&t| t <= time) {
+            self.stage.leg.taken += 1;
+            stepper.interpolate(t, sample)?;
+            let taken = records::sample(self.number, stepper.system_mut(), t, sample);
+            let mut taken = taken.map_err(Failure::into_error)?;
+            self.complete(&mut taken);
+            self.trajectory.push(taken);
+        }
+        if self.sampling.finds_peaks() {
+            self.find_peaks(stepper, time, sample)?;
+        }
+        let (system, arrived) = arrival(stepper, event, sample)?;
+        let step = time - self.time;
+        self.time = time;
+        self.steps += 1;
+        self.state.copy_from_slice(&arrived[..length]);
+        if event.is_some() {
+            self.stage.leg.events.pass(system, time, &self.state, step);
+        }
+        let drift = system.drift(time, &self.state[..n]);
+        let worst = &mut self.trajectory.report.constraint_drift;
+        *worst = worst.max(drift);
+        self.follow_angles();
+        Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
+    }
+
+    /// Reads the sensors at a few times within a step up to `time`, for the largest and the least that they come to.
+    fn find_peaks(
+        &mut self,
+        stepper: &mut dyn Stepper,
+        time: f64,
+        state: &mut [f64],
+    ) -> Result<(), Failed> {
+        for k in 1..=PARTS {
+            let t = match k {
+                PARTS => time,
+                _ => self.time + (time - self.time) * k as f64 / PARTS as f64,
+            };
+            stepper.interpolate(t, state)?;
+            let seen = records::sample(self.number, stepper.system_mut(), t, state);
+            let mut seen = seen.map_err(Failure::into_error)?;
+            self.complete(&mut seen);
+            self.trajectory.note_peaks(&seen.sensors);
+        }
+        Ok(())
+    }
+
+    /// Shows the observer how far the run has come.
+    fn report_progress(&self, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
+        let Self { time, steps, number, .. } = *self;
+        let name = &self.phase.name;
+        let (phase, trajectory) = (number, &self.trajectory);
+        let answer = observer(&Progress { time, phase, name, steps, step, order, trajectory });
+        // the last step leaves nothing to be stopped
+        if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
+    }
+}
+
+/// Where a step has led, by its event or else by itself.
+fn arrival<'s>(
+    stepper: &'s mut dyn Stepper,
+    event: Option<f64>,
+    sample: &'s mut [f64],
+) -> Result<(&'s System, &'s [f64]), Failed> {
+    let Some(t) = event else { return Ok((stepper.system(), stepper.state())) };
+    stepper.interpolate(t, sample)?;
+    Ok((stepper.system(), sample))
+}

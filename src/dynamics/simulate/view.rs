@@ -1,0 +1,253 @@
+//! What is seen of a simulation at one time.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::base::input::InputError;
+use crate::dynamics::state::State;
+use crate::elements::body::{Body, CellField};
+use crate::elements::force::{Force, Forces, NodalForces};
+use crate::elements::mesh::Selection;
+use crate::scene::forces::{ChamberForce, Contact, SpringForce};
+use crate::scene::timeline::{LoadKind, Phase, Scene};
+
+/// The motion of a [`Simulation`](super::Simulation) or at a [sample](crate::Sampling::sensor), without copies.
+pub struct View<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) phase: &'a Phase,
+    pub(super) gauges: &'a Gauges,
+    pub(super) time: f64,
+    pub(super) state: State<'a>,
+}
+
+/// What measures chambers and springs, in the order of the scene.
+pub(super) struct Gauges {
+    chambers: Vec<Arc<ChamberForce>>,
+    springs: Vec<SpringForce>,
+}
+
+impl Gauges {
+    pub(super) fn new(scene: &Scene) -> Result<Self, InputError> {
+        let body = scene.body();
+        let chambers = scene.chambers().iter();
+        let chambers = chambers.map(|chamber| chamber.force(body, Vec::new()).map(Arc::new));
+        let springs = scene.springs().iter().map(|spring| spring.force(body.mesh()));
+        Ok(Self {
+            chambers: chambers.collect::<Result<_, _>>()?,
+            springs: springs.collect::<Result<_, _>>()?,
+        })
+    }
+
+    /// The forces of all chambers, without pressure.
+    pub(super) fn chambers(&self) -> Forces {
+        let mut forces = Forces::new();
+        for chamber in &self.chambers {
+            forces.push(chamber.clone());
+        }
+        forces
+    }
+}
+
+/// Short: where it is.
+impl fmt::Debug for View<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("View")
+            .field("time", &self.time)
+            .field("phase", &self.phase.name)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> View<'a> {
+    /// Time (s).
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The body.
+    pub fn body(&self) -> &'a Body {
+        self.scene.body()
+    }
+
+    /// Displacements (m), dimension components per node.
+    pub fn displacements(&self) -> &'a [f64] {
+        self.state.u
+    }
+
+    /// Velocities (m/s), dimension components per node.
+    pub fn velocities(&self) -> &'a [f64] {
+        self.state.v
+    }
+
+    /// Where the nodes of `selection` are (m), in the mean over them: one component per dimension.
+    ///
+    /// # Errors
+    /// An unknown set, a number out of range, a selection without nodes.
+    pub fn position(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
+        let selection = selection.into();
+        let natural = self.mean(&selection, self.body().mesh().positions())?;
+        let moved = self.mean(&selection, self.state.u)?;
+        Ok(natural.iter().zip(moved).map(|(x, u)| x + u).collect())
+    }
+
+    /// How fast they move (m/s), in the mean over them.
+    ///
+    /// # Errors
+    /// As [`position`](Self::position).
+    pub fn velocity(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
+        self.mean(&selection.into(), self.state.v)
+    }
+
+    /// Centre of mass (m).
+    pub fn centre_of_mass(&self) -> Vec<f64> {
+        let natural = self.body().mass_average(self.body().mesh().positions());
+        natural.iter().zip(self.body().mass_average(self.state.u)).map(|(x, u)| x + u).collect()
+    }
+
+    /// Velocity of the centre of mass (m/s).
+    pub fn mean_velocity(&self) -> Vec<f64> {
+        self.body().mass_average(self.state.v)
+    }
+
+    /// Volume that the walls of a chamber enclose (m^3).
+    ///
+    /// # Errors
+    /// A name that no chamber has.
+    pub fn chamber_volume(&self, chamber: &str) -> Result<f64, InputError> {
+        let number = self.scene.chamber_number(chamber, "chamber")?;
+        Ok(self.gauges.chambers[number].volume(self.state.u))
+    }
+
+    /// Pressure in a chamber (Pa).
+    ///
+    /// # Errors
+    /// A name that no chamber has.
+    pub fn pressure(&self, chamber: &str) -> Result<f64, InputError> {
+        self.scene.chamber_number(chamber, "chamber")?;
+        let pressures = self.phase.pressures.iter().filter(|(name, _)| name == chamber);
+        Ok(pressures.map(|(_, pressure)| pressure.at(self.time)).sum())
+    }
+
+    /// Force of the actuator of a spring (N), above 0 where it extends the spring.
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn actuation(&self, spring: &str) -> Result<f64, InputError> {
+        self.scene.spring_number(spring, "spring")?;
+        let actuations = self.phase.actuations.iter();
+        let of_spring = actuations.flat_map(|(names, force)| {
+            names.iter().filter(|name| *name == spring).map(|_| force.at(self.time))
+        });
+        Ok(of_spring.sum())
+    }
+
+    /// Force (N) on each of the nodes of `selection`, in the mean over them, one component per dimension, by the
+    /// loads given for this very selection; 0 without one.
+    ///
+    /// # Errors
+    /// Nodes that do not exist.
+    pub fn load(&self, selection: impl Into<Selection>) -> Result<Vec<f64>, InputError> {
+        self.load_of(&selection.into(), LoadKind::Each)
+    }
+
+    /// The same as a load of another `kind`.
+    pub(crate) fn load_of(
+        &self,
+        selection: &Selection,
+        kind: LoadKind,
+    ) -> Result<Vec<f64>, InputError> {
+        self.scene.load_on(self.phase, selection, kind, self.time)
+    }
+
+    /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping, less that of its
+    /// actuator.
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn spring_pull(&self, spring: &str) -> Result<f64, InputError> {
+        let number = self.scene.spring_number(spring, "spring")?;
+        let pull = self.gauges.springs[number].pull(self.state.u, self.state.v);
+        Ok(pull - self.actuation(spring)?)
+    }
+
+    /// Force (N) of an obstacle on the body, one component per dimension; 0 where it does not act.
+    ///
+    /// # Errors
+    /// A name that no obstacle has; a distance function of your own that has no meaning.
+    pub fn contact_force(&self, obstacle: &str) -> Result<Vec<f64>, InputError> {
+        let (forces, d) = (self.contact_forces(obstacle)?, self.body().dimension());
+        let along = |axis| forces.iter().skip(axis).step_by(d).sum();
+        Ok((0..d).map(along).collect())
+    }
+
+    /// The part of it on the nodes of `selection` (N). A stiffness per area acts between the nodes: its forces are shared out
+    /// to them.
+    ///
+    /// # Errors
+    /// As [`contact_force`](Self::contact_force) and [`position`](Self::position).
+    pub fn contact_force_on(
+        &self,
+        obstacle: &str,
+        selection: impl Into<Selection>,
+    ) -> Result<Vec<f64>, InputError> {
+        let nodes = self.body().mesh().select(&selection.into())?;
+        let (forces, d) = (self.contact_forces(obstacle)?, self.body().dimension());
+        let along = |axis| nodes.iter().map(|node| forces[node * d + axis]).sum();
+        Ok((0..d).map(along).collect())
+    }
+
+    /// The forces of an obstacle (N) on all nodes, dimension components each.
+    fn contact_forces(&self, obstacle: &str) -> Result<Vec<f64>, InputError> {
+        self.scene.obstacle_number(obstacle, "obstacle")?;
+        let (body, State { u, v, .. }) = (self.body(), self.state);
+        let mut nodal = NodalForces::zeros(body.dofs());
+        for acting in self.phase.contacts(self.scene.obstacles())? {
+            if acting.name() == obstacle {
+                let added = Contact::new(body, acting)?.add_forces(self.time, u, v, &mut nodal);
+                added.map_err(|failure| {
+                    let reason = failure.into_error().to_string();
+                    InputError::new("obstacle", format!("\"{obstacle}\""), reason)
+                })?;
+            }
+        }
+        let mut forces = vec![0.0; body.dofs()];
+        nodal.add_up(&mut forces);
+        Ok(forces)
+    }
+
+    /// Angle (rad, counter-clockwise, between -pi and pi) by which a two-dimensional body has turned as a whole: that of the rotation
+    /// which, in the mean over its mass, brings the undeformed shape nearest to the present one. `None` in other
+    /// dimensions. The sensor [`Reading::rotation`](crate::dynamics::simulate::Reading::rotation) goes on over whole turns.
+    pub fn rotation(&self) -> Option<f64> {
+        self.body().rotation(self.state.u)
+    }
+
+    /// Length of a spring (m).
+    ///
+    /// # Errors
+    /// A name that no spring has.
+    pub fn spring_length(&self, spring: &str) -> Result<f64, InputError> {
+        let number = self.scene.spring_number(spring, "spring")?;
+        Ok(self.gauges.springs[number].length(self.state.u))
+    }
+
+    /// Strain, stress and strain energy density of each cell.
+    pub fn cell_fields(&self) -> Vec<CellField> {
+        self.body().cell_fields(self.state.u)
+    }
+
+    fn mean(&self, selection: &Selection, x: &[f64]) -> Result<Vec<f64>, InputError> {
+        let nodes = self.body().mesh().select(selection)?;
+        let dimension = self.body().dimension();
+        Ok(mean(&nodes, x, dimension)[..dimension].to_vec())
+    }
+}
+
+/// Mean of `x`, `dimension` components per node, over `nodes` (counted from 0); 0 beyond the dimension.
+pub(super) fn mean(nodes: &[usize], x: &[f64], dimension: usize) -> [f64; 3] {
+    let sum = |axis| nodes.iter().map(|node| x[node * dimension + axis]).sum::<f64>();
+    std::array::from_fn(|axis| match axis < dimension {
+        true => sum(axis) / nodes.len() as f64,
+        false => 0.0,
+    })
+}

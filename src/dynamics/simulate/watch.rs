@@ -1,0 +1,110 @@
+//! Events: functions of the motion whose changes of sign are met exactly.
+
+use std::ops::ControlFlow;
+
+use super::view::View;
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+
+/// Which changes of the sign of an event count.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Direction {
+    /// All.
+    #[default]
+    Either,
+    /// From below 0 upwards.
+    Rising,
+    /// From above 0 downwards.
+    Falling,
+}
+
+impl Direction {
+    /// Whether a change from one value to another counts.
+    pub(super) fn counts(self, before: f64, after: f64) -> bool {
+        let (rises, falls) = (before < 0.0 && after >= 0.0, before > 0.0 && after <= 0.0);
+        match self {
+            Self::Either => rises || falls,
+            Self::Rising => rises,
+            Self::Falling => falls,
+        }
+    }
+}
+
+type Event = dyn FnMut(&View) -> f64 + Send;
+type Action<S> = dyn FnMut(&mut S) -> Result<ControlFlow<()>, Error> + Send;
+
+/// An event that is watched, and what is done when it is met in a simulation `S`.
+pub(super) struct Watch<S> {
+    pub(super) event: Box<Event>,
+    pub(super) direction: Direction,
+    pub(super) action: Box<Action<S>>,
+    /// When it was met last (s).
+    pub(super) met: f64,
+    pub(super) turns: Turns,
+}
+
+/// Events in a row that gave commands, each sooner after the last one than that after the one before: an impact law that leaves a
+/// part of the speed has infinitely many of them in a finite time.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Turns {
+    count: usize,
+    /// Times of the first and the last one (s).
+    first: f64,
+    last: f64,
+    /// Time between the last two, and between the two before (s).
+    pauses: [f64; 2],
+}
+
+/// Turns of which at least is known whether they accumulate: the pauses between them have shrunk twice.
+const ENOUGH: usize = 4;
+
+/// Part of the time since the first turn within which all those to come would lie when they accumulate. A bounce is then
+/// a millionth as long as the first one and 1e-12 as high, which round-off still tells from none.
+const LEFT: f64 = 1e-6;
+
+impl Turns {
+    /// Adds an event at time `t` (s), after which the motion goes on by commands or not.
+    pub(super) fn add(&mut self, t: f64, turns: bool) {
+        let pause = t - self.last;
+        let Self { count, first, last, pauses: [before, _] } = *self;
+        *self = match count {
+            _ if !turns => Self::default(),
+            count if count == 0 || pause <= 0.0 => {
+                Self { count: 1, first: t, last: t, pauses: [f64::INFINITY; 2] }
+            }
+            _ if pause < before => {
+                Self { count: count + 1, first, last: t, pauses: [pause, before] }
+            }
+            _ => Self { count: 2, first: last, last: t, pauses: [pause, f64::INFINITY] },
+        };
+    }
+
+    /// Whether those to come, each sooner by the ratio of the last two pauses, lie within no time.
+    pub(super) fn accumulate(&self) -> bool {
+        let [pause, before] = self.pauses;
+        let left = pause * pause / (before - pause);
+        self.count >= ENOUGH && left < LEFT * (self.last - self.first)
+    }
+
+    /// The error of event `number`, which they lead no further than.
+    pub(super) fn error(&self, number: usize) -> InputError {
+        let Self { count, last, .. } = self;
+        let input = format!("number of times that event {} of `when` was met", number + 1);
+        let value = format!("{count} up to t = {last} s");
+        let mend = "its action turns the motion back ever sooner, or by less than the tolerances tell from nothing, and no time leads \
+                    past all the events that are still to come: below some speed let it bring the motion to rest and `hold` \
+                    what has landed, let an obstacle act (`contact`), or stop the advance by ControlFlow::Break";
+        InputError::new(input, value, mend)
+    }
+}
+
+/// What an advance ended with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Arrival {
+    /// The time that it was to go on to.
+    Time,
+    /// The event that it was to go on to.
+    Event,
+    /// An action that stopped it.
+    Stopped,
+}

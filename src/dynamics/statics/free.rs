@@ -1,0 +1,165 @@
+//! The search with a body that the constraints leave free to move as a whole.
+//!
+//! K + floor M of the search is definite, and its steps leave the body where it is. Two things remain to be done. Loads of
+//! constant direction (dead loads) may have to turn a body far before they balance each other. Straight steps would strain
+//! it as it turns, so it turns along circles, rigidly: Newton's method on the angles, downhill. And in
+//! equilibrium, motions against which nothing acts are taken out of the displacements.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::newton::{Search, Stuck};
+use crate::base::vector::{dot, largest};
+use crate::dynamics::system::rigid::{self, RigidMotion, Shape};
+
+/// Turns before each step of Newton's method: ten do from anywhere.
+const MOST_TURNS: usize = 20;
+
+/// Largest turn (rad): a part of the quarter after which a moment decreases.
+const LARGEST_TURN: f64 = 0.5;
+
+/// Rounds in which finite turns are taken out of displacements.
+const MOST_ROUNDS: usize = 20;
+
+/// Part of |K| |R| that is round-off in K R.
+const ROUND_OFF: f64 = 1e-12;
+
+impl Search<'_> {
+    /// Turns the body as far as the energy falls, from where the forces are known.
+    pub(super) fn turn(&mut self) {
+        if !self.is_loose || !self.turns_in_circles() {
+            return;
+        }
+        for _ in 0..MOST_TURNS {
+            let mut turns = self.free_motions(&self.u);
+            turns.retain(|motion| motion.is_turn);
+            let moments = turns.iter().map(|motion| dot(&motion.values, &self.at.total));
+            let moments = DVector::from_iterator(turns.len(), moments);
+            let nothing = 0.1 * self.statics.rtol * self.at.scale * self.size;
+            if moments.iter().all(|moment| moment.abs() <= nothing) {
+                return;
+            }
+            self.rest.update_tangent(self.tried, &self.u);
+            let stiffness = self.stiffness_against(&turns).symmetric_eigen();
+            let mut angles = stiffness.eigenvectors.tr_mul(&moments);
+            for (angle, resistance) in angles.iter_mut().zip(stiffness.eigenvalues.iter()) {
+                let moment = if angle.abs() > nothing { *angle } else { 0.0 };
+                *angle = moment / resistance.abs().max(moment.abs() / LARGEST_TURN).max(nothing);
+            }
+            let angles = stiffness.eigenvectors * angles;
+            let mut turned = self.u.clone();
+            for (motion, &angle) in turns.iter().zip(angles.iter()) {
+                motion.carry(angle, self.body.mesh().positions(), &mut turned);
+            }
+            if !self.is_lower(&turned) {
+                return;
+            }
+            std::mem::swap(&mut self.at, &mut self.trial);
+            self.u = turned;
+        }
+    }
+
+    /// Whether the energy is lower at other displacements, where constraints are met no worse; `trial` are the forces there.
+    fn is_lower(&mut self, other: &[f64]) -> bool {
+        self.rest.lacking(self.tried, &self.u, &mut self.d);
+        let lacking = largest(&self.d);
+        self.rest.lacking(self.tried, other, &mut self.d);
+        if largest(&self.d) > lacking + 1e-13 * self.size
+            || self.rest.evaluate(self.tried, other, &mut self.trial).is_err()
+        {
+            return false;
+        }
+        self.x.iter_mut().zip(other).zip(&self.u).for_each(|((x, other), u)| *x = other - u);
+        let rise = self.trial.energy_since(&self.at, 1.0, &self.x);
+        rise <= self.trial.round_off(&self.u) + self.at.round_off(&self.u)
+    }
+
+    /// Takes the motions against which nothing acts out of the step x: what round-off and the small floor have made of them.
+    pub(super) fn keep_place(&mut self) {
+        if self.is_loose && !self.is_linear {
+            let mut motions = self.free_motions(&self.u);
+            motions.retain(|motion| self.is_neutral(motion, 0.0));
+            rigid::remove(&motions, self.body.inertia(), &mut self.x);
+        }
+    }
+
+    /// Takes the motions against which nothing acts out of the equilibrium that was found.
+    pub(super) fn place(&mut self) -> Result<(), Stuck> {
+        if !self.is_loose {
+            return Ok(());
+        }
+        let mut motions = self.free_motions(&self.u);
+        if !self.is_linear {
+            self.rest.update_tangent(self.tried, &self.u);
+            let residual = 10.0 * self.statics.rtol * self.at.scale;
+            motions.retain(|motion| self.is_neutral(motion, residual));
+        }
+        self.removed = motions.iter().map(|motion| motion.words.clone()).collect();
+        let inertia = self.body.inertia();
+        if !self.turns_in_circles() {
+            rigid::remove(&motions, inertia, &mut self.u);
+            return if self.is_linear { Ok(()) } else { self.balance() };
+        }
+        for _ in 0..MOST_ROUNDS {
+            let parts = rigid::parts(&motions, inertia, &self.u);
+            for (motion, &part) in motions.iter().zip(&parts) {
+                motion.carry(-part, self.body.mesh().positions(), &mut self.u);
+            }
+            if largest(&parts) <= f64::EPSILON * self.size.max(1.0) {
+                break;
+            }
+            motions
+                .iter_mut()
+                .for_each(|motion| motion.move_to(self.body.mesh().positions(), &self.u));
+        }
+        self.balance()
+    }
+
+    /// What the loads come to along the motions that nothing holds, where the search has come to.
+    pub(super) fn resultants(&self) -> Vec<String> {
+        let motions = self.free_motions(&self.u);
+        motions.iter().filter_map(|motion| motion.resultant(&self.at.total)).collect()
+    }
+
+    /// The rigid motions that the constraints leave free, of the body with the displacements `u`.
+    fn free_motions(&self, u: &[f64]) -> Vec<RigidMotion> {
+        let mesh = self.body.mesh();
+        let mut positions = mesh.positions().to_vec();
+        if self.turns_in_circles() {
+            positions.iter_mut().zip(u).for_each(|(x, u)| *x += u);
+        }
+        let shape = Shape { dimension: mesh.dimension(), size: self.size, positions: &positions };
+        rigid::free_motions(shape, self.body.inertia().pattern(), self.rest.system().rows())
+    }
+
+    /// Whether a turn along circles strains nothing; under linear strain, that along straight lines does not.
+    fn turns_in_circles(&self) -> bool {
+        self.body.constant_stiffness().is_none()
+    }
+
+    /// Moments that `turns` by a unit angle bring about against each other (N m), where the forces and K are known: R^T K R
+    /// and, for the forces keep their directions as their points turn, less f . W R.
+    fn stiffness_against(&self, turns: &[RigidMotion]) -> DMatrix<f64> {
+        let stiffness = DMatrix::from_fn(turns.len(), turns.len(), |i, j| {
+            let [one, other] = [&turns[i], &turns[j]];
+            let stiffness = dot(&one.values, &self.resistance(other));
+            stiffness - one.turned_work(&self.at.total, &other.values)
+        });
+        0.5 * (&stiffness + stiffness.transpose())
+    }
+
+    /// K R of a motion R.
+    fn resistance(&self, motion: &RigidMotion) -> Vec<f64> {
+        let mut forces = vec![0.0; motion.values.len()];
+        self.rest.tangent().add_product(1.0, &motion.values, &mut forces);
+        forces
+    }
+
+    /// Whether no force changes along a motion, where K is known, but for round-off and a `residual` (N).
+    pub(super) fn is_neutral(&self, motion: &RigidMotion, residual: f64) -> bool {
+        let sizes: Vec<f64> = motion.values.iter().map(|r| r.abs()).collect();
+        let most = (0..sizes.len())
+            .map(|dof| self.rest.tangent().absolute_row_product(dof, &sizes))
+            .fold(0.0, f64::max);
+        largest(&self.resistance(motion)) <= ROUND_OFF * most + residual
+    }
+}

@@ -1,0 +1,232 @@
+//! Statics: the shape in which a scene is in equilibrium.
+//!
+//! What holds the body and what loads it is that of one phase, at its end:
+//!
+//! | forces | equations | solved by |
+//! | --- | --- | --- |
+//! | Cauchy strain, constant loads | K u - A lambda = f, A^T u = b | one saddle-point solve |
+//! | Green strain, contact, springs, ... | least U - W under A^T u = b | Newton's method with the exact tangent and a line search on the energy |
+//!
+//! Where the tangent is indefinite, a multiple of M is added to it until it is not, so that the
+//! search goes on downhill. If it does not converge, what moves and loads the body is brought on in smaller
+//! and smaller steps: constraints and obstacles along their way; gravity, loads, pressure and the forces
+//! of actuators by a factor. Obstacles in motion count as standing where they are: nothing is dragged
+//! along. Nor does friction act, for how it acts depends on how the body came there.
+//!
+//! A body that nothing holds is in equilibrium if its loads balance each other. Of all its places that
+//! one is taken in which it has not moved as a whole: the displacements have no part in any rigid motion R, R^T M u = 0.
+//! With Green's strain a body turns to where loads of constant direction balance each other, and is free only for motions against
+//! which no force acts: all of them if it is under pressure all around.
+//!
+//! By arc length the load is no longer given, but found with the displacements, along the path of equilibria: it falls
+//! where the body snaps through.
+
+mod arc_length;
+mod free;
+mod newton;
+mod options;
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use newton::{Hold, Point, Search, Stuck};
+pub use options::Statics;
+
+use crate::base::input::{InputError, find};
+use crate::dynamics::equilibrium::{Equilibrium, NoEquilibrium, Stability};
+use crate::dynamics::error::Error;
+use crate::dynamics::indicators;
+use crate::dynamics::report::Report;
+use crate::dynamics::system::AtRest;
+use crate::dynamics::system::rigid::{self, RigidMotion};
+use crate::dynamics::trajectory::{Commanded, Quantity, Sample, Trajectory};
+use crate::scene::constraint::{PhaseStart, Row, prescribe};
+use crate::scene::timeline::{Phase, Scene};
+
+impl Scene {
+    /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first
+    /// phase at its end, without motion: what the body would come to rest in if they stayed.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Phase, Scene, Statics, Strain};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.02], [11, 3], Cells::Triangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.48, viscosity: 4.0 };
+    /// let beam = Body::new(mesh, rubber).thickness(0.01).strain(Strain::Green).build()?;
+    /// let scene = Scene::new(beam).phase(Phase::until(1.0).hold("left").load([22], [0.0, -0.5]));
+    /// let equilibrium = scene.equilibrium(&Statics::default())?;
+    /// assert!(equilibrium.displacements()[2 * 21 + 1] < -0.03); // node 22 sinks
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Bad input; [`Error::Input`] if the body is held so that it can still move as a
+    /// whole, and its loads move it; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
+    pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
+        self.equilibrium_in(0, statics)
+    }
+
+    /// As [`equilibrium`](Self::equilibrium), of the phase of that name (`"phase 2"`, say, if it was given none): under what acts
+    /// at its end.
+    ///
+    /// What earlier phases held or moved, and this one holds, stays where it was left; nodes that were free until
+    /// then are held in their natural place, for where a motion would have brought them, statics does not know.
+    ///
+    /// # Errors
+    /// As [`equilibrium`](Self::equilibrium); no phase of that name.
+    pub fn equilibrium_of(&self, phase: &str, statics: &Statics) -> Result<Equilibrium, Error> {
+        let names = self.phases().iter().map(Phase::name);
+        self.equilibrium_in(find(phase, names, "phase of statics", "phases")?, statics)
+    }
+
+    /// The phase of that `number` (from 0) at rest.
+    pub(crate) fn at_rest_in(&self, number: usize) -> Result<AtRest, InputError> {
+        let mut forces = self.forces()?;
+        let model = self.model(&forces);
+        let phase = &self.phases()[number]; // `forces` makes sure that there is one
+        let (time, u) = self.left_by_phases_before(number)?;
+        let start = PhaseStart { time, u: &u };
+        let system = self.system(&model, phase, forces.swap_remove(number), &start, 0.0)?;
+        AtRest::new(system, phase.end(), phase.name())
+    }
+
+    fn equilibrium_in(&self, number: usize, statics: &Statics) -> Result<Equilibrium, Error> {
+        let clock = Instant::now();
+        statics.validate()?;
+        let rest = self.at_rest_in(number)?;
+        let phase = &self.phases()[number];
+        let natural = rigid::Shape::natural(self.body().mesh());
+        let pattern = self.body().inertia().pattern();
+        let free = rigid::free_motions(natural, pattern, rest.system().rows());
+        let words: Vec<&str> = free.iter().map(|motion| &*motion.words).collect();
+        let words = words.join(", ");
+        let loose = |freedom: &str, mend: &str| {
+            let input = format!("constraints of phase \"{}\"", phase.name());
+            let value = format!("leaving the body free {freedom}");
+            Error::from(InputError::new(input, value, mend))
+        };
+        let linear = rest.is_linear();
+        // rows of several nodes hold nothing while K is factorized
+        let (of_nodes, sums): (Vec<Row>, Vec<Row>) = rest
+            .system()
+            .rows()
+            .iter()
+            .cloned()
+            .partition(|row| row.node(natural.dimension).is_some());
+        let is_held_by_nodes =
+            || sums.is_empty() || rigid::free_motions(natural, pattern, &of_nodes).is_empty();
+        let hold = match free.is_empty() {
+            false => Hold::Loose,
+            true if is_held_by_nodes() => Hold::Whole,
+            true => Hold::BySums,
+        };
+        let mut search = Search::new(rest, statics, self.body(), hold);
+        if !free.is_empty() && search.rest.is_under_dead_loads() {
+            // forces in the undeformed shape have a meaning
+            let _ = search.rest.evaluate(1.0, &search.u, &mut search.at);
+            // what a moment does, a turn may balance
+            let is_lost = |motion: &&RigidMotion| !motion.is_turn && search.is_neutral(motion, 0.0);
+            let mut lost = free.iter().filter(|motion| linear || is_lost(motion));
+            if let Some(resultant) = lost.find_map(|motion| motion.resultant(&search.at.total)) {
+                let freedom = format!("for {words}; {resultant}");
+                return Err(loose(&freedom, "hold more of its nodes, or balance the loads"));
+            }
+        }
+        if statics.arc_steps > 0 {
+            if !free.is_empty() {
+                return Err(loose(
+                    &format!("for {words}"),
+                    "for arc length, hold more of its nodes",
+                ));
+            }
+            if search.rest.is_driven() {
+                let input = format!("statics.arc_steps for phase \"{}\"", phase.name());
+                let mend = "obstacles that move cannot go back with the load: let them stand, or leave it 0";
+                return Err(InputError::new(input, statics.arc_steps, mend).into());
+            }
+        }
+        let result = if statics.arc_steps > 0 { search.trace() } else { search.all() };
+        let mut trajectory = self.load_curve(number, &mut search);
+        trajectory.report.wall_seconds = clock.elapsed().as_secs_f64();
+        trajectory.report.indicators = indicators::of_equilibrium(&trajectory, result.is_ok());
+        if let Err(Stuck { mut cause, residual }) = result {
+            if !free.is_empty() {
+                cause += &format!("; the constraints leave the body free for {words}");
+                search.resultants().iter().for_each(|left| cause += &format!("; {left}"));
+            }
+            return Err(Box::new(NoEquilibrium {
+                phase: phase.name().into(),
+                fraction: search.fraction,
+                tried: search.tried,
+                residual,
+                iterations: search.iterations,
+                cause,
+                trajectory,
+            })
+            .into());
+        }
+        let stability = search.stability();
+        if linear && free.is_empty() && stability == Stability::Neutral {
+            return Err(loose("to deform without force", "hold more of its nodes"));
+        }
+        Ok(Equilibrium {
+            trajectory,
+            stability,
+            removed: std::mem::take(&mut search.removed),
+            residual: search.residual,
+            force_scale: search.at.scale,
+            iterations: search.iterations,
+            factorizations: search.rest.factorizations(),
+            difference_evaluations: search.rest.system().difference_evaluations(),
+            load_steps: search.load_steps,
+            failed_steps: search.failed_steps,
+            mesh_estimate: None,
+        })
+    }
+
+    /// When the phase of that `number` begins (s), and the displacements (m) that the constraints of those before it
+    /// have left.
+    fn left_by_phases_before(&self, number: usize) -> Result<(f64, Vec<f64>), InputError> {
+        let (mut time, mut u) = (0.0, vec![0.0; self.body().dofs()]);
+        for phase in &self.phases()[..number] {
+            let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
+            time = phase.end();
+            prescribe(&rows, time, &mut u);
+        }
+        Ok((time, u))
+    }
+
+    /// The undeformed shape and the equilibria that were found, as samples.
+    fn load_curve(&self, phase: usize, search: &mut Search) -> Trajectory {
+        let natural = Point::natural(self.body().dofs(), search.mu.len());
+        let unloaded = search.rest.energy(0.0, &natural.u);
+        let points = std::mem::take(&mut search.curve);
+        let is_curve = search.statics.is_curve();
+        let (acting, d) = (&self.phases()[phase], self.body().dimension());
+        let sample = |(number, point): (usize, &Point)| {
+            let mut energy = search.rest.energy(point.fraction, &point.u);
+            energy.supplied = energy.balance() - unloaded.balance();
+            Sample {
+                time: search.time(number, points.len(), point.fraction),
+                phase,
+                u: point.u.clone(),
+                v: vec![0.0; point.u.len()],
+                multipliers: point.mu.clone(),
+                energy,
+                constraint_drift: point.drift,
+                sensors: if is_curve { vec![point.fraction] } else { Vec::new() },
+                commanded: Commanded(Some(Arc::new(acting.at_rest(
+                    point.fraction,
+                    self.obstacles(),
+                    d,
+                )))),
+            }
+        };
+        let mut trajectory = Trajectory::new(self, Report::default(), sample((0, &natural)));
+        if is_curve {
+            trajectory.sensors = vec![Quantity { name: "load factor".into(), unit: "1".into() }];
+        }
+        (1..).zip(&points).map(sample).for_each(|sample| trajectory.push(sample));
+        trajectory
+    }
+}

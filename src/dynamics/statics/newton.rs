@@ -1,0 +1,399 @@
+//! The search for an equilibrium: Newton's method downhill, load step by load step.
+
+use super::options::Statics;
+use crate::base::vector::{dot, largest};
+use crate::dynamics::equilibrium::Stability;
+use crate::dynamics::system::{AtRest, ForceBalance};
+use crate::elements::body::Body;
+use crate::integrators::ode::Failure;
+
+/// The search stopped: why, and the largest unbalanced force (N).
+pub(super) struct Stuck {
+    pub(super) cause: String,
+    pub(super) residual: f64,
+}
+
+/// An equilibrium on the way.
+pub(super) struct Point {
+    /// Part of constraints and loads.
+    pub(super) fraction: f64,
+    pub(super) u: Vec<f64>,
+    /// Constraint forces.
+    pub(super) mu: Vec<f64>,
+    /// Largest |A^T u - b| (m).
+    pub(super) drift: f64,
+}
+
+impl Point {
+    /// The undeformed shape.
+    pub(super) fn natural(dofs: usize, rows: usize) -> Self {
+        Self { fraction: 0.0, u: vec![0.0; dofs], mu: vec![0.0; rows], drift: 0.0 }
+    }
+}
+
+/// What the constraints leave of the freedom of the body to move as a whole.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Hold {
+    /// Nothing, by those on single nodes alone.
+    Whole,
+    /// Nothing, but only together with those that tie several nodes.
+    BySums,
+    /// Something.
+    Loose,
+}
+
+/// A search on its way.
+pub(super) struct Search<'a> {
+    pub(super) rest: AtRest,
+    pub(super) statics: &'a Statics,
+    pub(super) body: &'a Body,
+    /// Whether the constraints alone do not hold the body.
+    pub(super) is_loose: bool,
+    /// Size of the body (m): no iteration moves a node by more than half of it.
+    pub(super) size: f64,
+    /// Multiples of M that are added to K: the least one, and the present one (1/s^2).
+    floor: f64,
+    shift: f64,
+    /// Order of the largest eigenvalue of K x = eigenvalue M x.
+    highest: f64,
+    /// K is constant, and has been factorized.
+    is_done: bool,
+    pub(super) is_linear: bool,
+    /// Part of constraints and loads in force at `u`.
+    pub(super) fraction: f64,
+    /// Part last tried.
+    pub(super) tried: f64,
+    pub(super) u: Vec<f64>,
+    /// Constraint forces there.
+    pub(super) mu: Vec<f64>,
+    pub(super) at: ForceBalance,
+    pub(super) residual: f64,
+    pub(super) iterations: usize,
+    pub(super) load_steps: usize,
+    pub(super) failed_steps: usize,
+    /// The equilibria found: those of a load curve, or else the last one.
+    pub(super) curve: Vec<Point>,
+    /// Rigid motions, in words, that were taken out of the last one.
+    pub(super) removed: Vec<String>,
+    pub(super) trial: ForceBalance,
+    pub(super) x: Vec<f64>,
+    pub(super) d: Vec<f64>,
+    pub(super) work: Vec<f64>,
+}
+
+/// Iterations of Newton's method to an equilibrium that is near, stable or not, and what is near, as a part of the size of
+/// the body.
+const MOST_CLIMBING: usize = 20;
+const NEAR: f64 = 0.5;
+
+/// Parts of the highest eigenvalue: the smallest shift that is tried (and the one that stays on if
+/// rigid motions are free, or held by rows of several nodes), and the largest.
+const SHIFTS: [f64; 2] = [1e-10, 1e3];
+
+impl<'a> Search<'a> {
+    /// From the undeformed shape of a `body`.
+    pub(super) fn new(mut rest: AtRest, statics: &'a Statics, body: &'a Body, hold: Hold) -> Self {
+        let (dofs, rows) = (rest.system().dofs(), rest.system().rows().len());
+        let u = vec![0.0; dofs];
+        rest.update_tangent(1.0, &u);
+        let highest = rest.highest();
+        let floor = if hold == Hold::Whole { 0.0 } else { SHIFTS[0] * highest };
+        Self {
+            is_linear: rest.is_linear(),
+            rest,
+            statics,
+            body,
+            is_loose: hold == Hold::Loose,
+            size: body.mesh().size(),
+            floor,
+            shift: floor,
+            highest,
+            is_done: false,
+            fraction: 0.0,
+            tried: 0.0,
+            u,
+            mu: vec![0.0; rows],
+            at: ForceBalance::zeros(dofs),
+            residual: 0.0,
+            iterations: 0,
+            load_steps: 0,
+            failed_steps: 0,
+            curve: Vec::new(),
+            removed: Vec::new(),
+            trial: ForceBalance::zeros(dofs),
+            x: vec![0.0; dofs],
+            d: vec![0.0; rows],
+            work: vec![0.0; dofs],
+        }
+    }
+
+    /// Brings on the whole load.
+    pub(super) fn all(&mut self) -> Result<(), Stuck> {
+        let largest = 1.0 / self.statics.load_steps as f64;
+        let mut step = largest;
+        while self.fraction < 1.0 {
+            // what round-off alone keeps apart from the whole load is the whole load
+            let target = self.fraction + step;
+            self.tried = if target > 1.0 - 1e-9 { 1.0 } else { target };
+            let (u, mu) = (self.u.clone(), self.mu.clone());
+            match self.balance().and_then(|()| self.place()) {
+                Ok(()) => {
+                    self.arrive();
+                    step = largest.min(2.0 * step);
+                }
+                Err(stuck) => {
+                    (self.u, self.mu) = (u, mu);
+                    self.failed_steps += 1;
+                    step *= 0.5;
+                    if self.is_linear || step < self.statics.min_load_step {
+                        return Err(stuck);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes note of the equilibrium that was found.
+    pub(super) fn arrive(&mut self) {
+        self.fraction = self.tried;
+        self.load_steps += 1;
+        if !self.statics.is_curve() {
+            self.curve.clear();
+        }
+        let drift = self.drift();
+        let (u, mu) = (self.u.clone(), self.mu.clone());
+        self.curve.push(Point { fraction: self.fraction, u, mu, drift });
+    }
+
+    /// Time (s) of the equilibrium of that `number`, of `count`, for a part of the load.
+    pub(super) fn time(&self, number: usize, count: usize, fraction: f64) -> f64 {
+        let part = match self.statics.arc_steps {
+            0 => fraction,
+            _ => number as f64 / count.max(1) as f64,
+        };
+        part * self.rest.time()
+    }
+
+    /// Finds the equilibrium for the part `tried` of the load, from `u`.
+    pub(super) fn balance(&mut self) -> Result<(), Stuck> {
+        let Statics { rtol, max_iterations, .. } = *self.statics;
+        self.shift = self.floor;
+        self.residual = f64::INFINITY;
+        let from = self.u.clone();
+        self.evaluate()?;
+        for iteration in 0..max_iterations {
+            self.iterations += 1;
+            self.turn();
+            self.prepare()?;
+            self.rest.lacking(self.tried, &self.u, &mut self.d);
+            self.rest.solve(&self.at.total, &self.d, &mut self.x, &mut self.mu);
+            self.keep_place();
+            let before = self.residual;
+            self.residual = self.rest.residual(&self.at.total, &self.mu, &mut self.work);
+            let (lacking, length) = (largest(&self.d), largest(&self.x));
+            if !length.is_finite() {
+                return Err(self.stuck("the displacements grow without bound".into()));
+            }
+            if lacking > 1e-12 * self.size && iteration < 2 {
+                // the constraints are met first, whatever it costs
+                self.u.iter_mut().zip(&self.x).for_each(|(u, x)| *u += x);
+                self.evaluate()?;
+                continue;
+            }
+            let is_newton = self.shift == self.floor;
+            let is_round_off = is_newton && length <= 1e-3 * rtol * self.size;
+            if self.residual <= rtol * self.at.scale || is_round_off || self.is_exhausted(before) {
+                return Ok(());
+            }
+            self.descend((0.5 * self.size / length).min(1.0))?;
+        }
+        if self.shift > self.floor && self.climb(&from) {
+            return Ok(());
+        }
+        let beyond = match self.shift > self.floor {
+            true => {
+                "the stiffness has become indefinite, as beyond buckling, and the way down from there is long: give it a side \
+                 to buckle to by a small load, or "
+            }
+            false => "",
+        };
+        Err(self.stuck(format!(
+            "not converged after {max_iterations} iterations: {beyond}raise max_iterations or load_steps"
+        )))
+    }
+
+    /// Goes on from where the search began by Newton's method without regard to the energy, to an equilibrium that may be
+    /// unstable. Returns whether there is one near; if not, all is as it was.
+    fn climb(&mut self, from: &[f64]) -> bool {
+        let before = (self.u.clone(), self.mu.clone(), self.at.clone(), self.residual);
+        let rtol = self.statics.rtol;
+        self.u.copy_from_slice(from);
+        for _ in 0..MOST_CLIMBING {
+            self.iterations += 1;
+            if self.evaluate().is_err() {
+                break;
+            }
+            self.rest.update_tangent(self.tried, &self.u);
+            if !self.rest.factorize_any() {
+                break;
+            }
+            self.rest.lacking(self.tried, &self.u, &mut self.d);
+            self.rest.solve(&self.at.total, &self.d, &mut self.x, &mut self.mu);
+            self.residual = self.rest.residual(&self.at.total, &self.mu, &mut self.work);
+            let (lacking, length) = (largest(&self.d), largest(&self.x));
+            let is_round_off = length <= 1e-3 * rtol * self.size;
+            if lacking <= 1e-12 * self.size
+                && (self.residual <= rtol * self.at.scale || is_round_off)
+            {
+                // what stability is told by
+                self.shift = self.floor;
+                return self.prepare().is_ok();
+            }
+            self.u.iter_mut().zip(&self.x).for_each(|(u, x)| *u += x);
+            let way = self.u.iter().zip(from).map(|(u, from)| (u - from).abs());
+            let is_near = way.fold(0.0, f64::max) <= NEAR * self.size;
+            if !is_near || self.x.iter().any(|x| !x.is_finite()) {
+                break;
+            }
+        }
+        (self.u, self.mu, self.at, self.residual) = before;
+        false
+    }
+
+    /// Whether round-off is all that is left of the forces, and iterations no longer make it less than it was `before`: in a nearly
+    /// incompressible body what nodes pull at each other is so much larger than what is left of it that the tolerance is out of reach.
+    fn is_exhausted(&mut self, before: f64) -> bool {
+        if self.residual < 0.5 * before {
+            return false;
+        }
+        self.work.iter_mut().zip(&self.u).for_each(|(size, u)| *size = u.abs());
+        self.residual <= self.rest.round_off(&self.work)
+    }
+
+    pub(super) fn evaluate(&mut self) -> Result<(), Stuck> {
+        let result = self.rest.evaluate(self.tried, &self.u, &mut self.at);
+        result.map_err(|failure| self.stuck(reason(failure)))
+    }
+
+    /// Factorizes K, shifted just so far that it is positive definite.
+    fn prepare(&mut self) -> Result<(), Stuck> {
+        if self.is_linear && self.is_done {
+            return Ok(());
+        }
+        self.rest.update_tangent(self.tried, &self.u);
+        let [least, most] = SHIFTS.map(|part| part * self.highest);
+        self.shift = if self.shift <= 10.0 * least { self.floor } else { 0.1 * self.shift };
+        while !self.rest.factorize(self.shift) {
+            if self.is_linear || self.shift > most {
+                let cause = "the stiffness matrix is not positive definite: hold more of the body";
+                return Err(self.stuck(cause.into()));
+            }
+            self.shift = (10.0 * self.shift).max(100.0 * least);
+        }
+        self.is_done = true;
+        Ok(())
+    }
+
+    /// Goes along x as far as the energy falls, `factor` times its length at most.
+    fn descend(&mut self, mut factor: f64) -> Result<(), Stuck> {
+        let slope = -dot(&self.at.total, &self.x);
+        let mut refused = None;
+        for _ in 0..40 {
+            self.work.copy_from_slice(&self.u);
+            self.work.iter_mut().zip(&self.x).for_each(|(u, x)| *u += factor * x);
+            let shorter = match self.rest.evaluate(self.tried, &self.work, &mut self.trial) {
+                Ok(()) => {
+                    let rise = self.trial.energy_since(&self.at, factor, &self.x);
+                    let round_off = self.trial.round_off(&self.u) + self.at.round_off(&self.u);
+                    if rise <= 1e-4 * factor * slope + round_off {
+                        std::mem::swap(&mut self.at, &mut self.trial);
+                        std::mem::swap(&mut self.u, &mut self.work);
+                        return Ok(());
+                    }
+                    // lowest point of the parabola through what is known
+                    -0.5 * slope * factor / (rise / factor - slope)
+                }
+                Err(Failure::Recoverable(message)) => {
+                    refused = Some(message);
+                    0.5 * factor
+                }
+                Err(fatal) => return Err(self.stuck(reason(fatal))),
+            };
+            // not a number, say: half
+            let shorter = if shorter.is_finite() { shorter } else { 0.5 * factor };
+            factor = shorter.clamp(0.1 * factor, 0.5 * factor);
+        }
+        let stalled = "the energy falls no further along the Newton step: forces without a \
+                       potential, or with a jump, may have no equilibrium here";
+        Err(self.stuck(refused.unwrap_or_else(|| stalled.into())))
+    }
+
+    /// What a small push does to the equilibrium at `u`, by the last factorization: that of K there.
+    pub(super) fn stability(&mut self) -> Stability {
+        let eigenvalue = self.rest.lowest_eigenvalue(self.shift);
+        let omega = eigenvalue.abs().sqrt();
+        // round-off of K against M
+        match eigenvalue.abs() <= 1e-13 * self.highest {
+            true => Stability::Neutral,
+            false if eigenvalue > 0.0 => {
+                Stability::Stable { frequency: omega / std::f64::consts::TAU }
+            }
+            false => Stability::Unstable { growth: omega },
+        }
+    }
+
+    /// Largest |A^T u - b| (m).
+    fn drift(&mut self) -> f64 {
+        self.rest.lacking(self.fraction, &self.u, &mut self.d);
+        largest(&self.d)
+    }
+
+    pub(super) fn stuck(&self, cause: String) -> Stuck {
+        Stuck { cause, residual: self.residual }
+    }
+}
+
+pub(super) fn reason(failure: Failure) -> String {
+    match failure {
+        Failure::Recoverable(message) => message,
+        Failure::Fatal(error) => error.to_string(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::body::Strain;
+    use crate::elements::mesh::Mesh;
+    use crate::scene::constraint::PhaseStart;
+    use crate::scene::timeline::{Phase, Scene};
+    use crate::studies::samples::BEAM_MATERIAL;
+
+    /// A direction downhill, a hundred times too long: the bar is stretched no further than the
+    /// energy falls.
+    #[test]
+    fn no_step_goes_uphill() {
+        let mesh = Mesh::bar(0.1, 3).unwrap();
+        let body = Body::new(mesh, BEAM_MATERIAL).area(2e-4).strain(Strain::Green).build().unwrap();
+        let phase = Phase::until(1.0).hold("left").load("right", [1.0]);
+        let scene = Scene::new(body).phase(phase.clone());
+        let start = PhaseStart { time: 0.0, u: &[0.0; 3] };
+        let mut forces = scene.forces().unwrap();
+        let model = scene.model(&forces);
+        let system = scene.system(&model, &phase, forces.remove(0), &start, 0.0).unwrap();
+        let rest = AtRest::new(system, 1.0, "test").unwrap();
+        let statics = Statics::default();
+        let mut search = Search::new(rest, &statics, scene.body(), Hold::Whole);
+        search.tried = 1.0;
+        assert!(search.evaluate().is_ok());
+        let start = search.at.clone();
+        // F L/(E A) = 1 cm: the energy of both halves of the bar is least there
+        search.x = vec![0.0, 0.5, 1.0];
+        assert!(search.descend(1.0).is_ok());
+        let change = search.at.energy_since(&start, search.u[2], &[0.0, 0.5, 1.0]);
+        // at 1 cm it is -F^2 L/(2 E A) = -5 mJ, were the bar linear
+        assert!(change < 0.0 && search.u[2] < 0.02, "{} m, {change} J", search.u[2]);
+        assert!((search.u[1] - 0.5 * search.u[2]).abs() < 1e-16);
+    }
+}

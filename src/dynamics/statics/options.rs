@@ -1,0 +1,81 @@
+//! How an equilibrium is sought.
+
+use std::ops::RangeInclusive;
+
+use crate::base::input::InputError;
+
+/// How an equilibrium is sought.
+///
+/// All forces act as they do at rest: dampers, friction and obstacles in motion drag nothing along. Where a body would
+/// stick to an obstacle depends on how it came there; [`Scene::simulate`](crate::Scene::simulate) knows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Statics {
+    /// Forces are in balance when none is left that is larger than this part of the largest one.
+    /// Default: 1e-10, some orders above round-off; 1e-14 to 1e-2.
+    pub rtol: f64,
+    /// Newton iterations in one load step. Default: 100; ten do unless the body has to move far.
+    pub max_iterations: usize,
+    /// Steps in which constraints and loads are brought on. Default: 1, everything at once; more
+    /// of them when it converges to an equilibrium other than the one that a slow loading reaches.
+    ///
+    /// With more than one, the trajectory is a load curve: it has the equilibrium of each step, the time of which is that part
+    /// of the end of the phase, and a sensor `load factor` tells the part.
+    pub load_steps: usize,
+    /// Most steps by arc length; default: 0, the load is given. With them the load rises and falls as the path of
+    /// equilibria has it, stable or not, past limit points in load or displacement (snap-through, snap-back), until it
+    /// reaches 1 for the first time. The first step is that of a `load_steps`th of the load, and no later one
+    /// moves the body further by more than a tenth, nor turns by more than 60 degrees: such steps are halved. The trajectory is the load curve, its samples evenly spread over the phase.
+    /// Of what the equilibria look like between steps nothing is known: take enough `load_steps`.
+    pub arc_steps: usize,
+    /// Smallest load step, as a part of the whole load, at most 1 (by arc length, as a part of the first step). Default: 1e-3.
+    pub min_load_step: f64,
+}
+
+impl Default for Statics {
+    fn default() -> Self {
+        Self { rtol: 1e-10, max_iterations: 100, load_steps: 1, arc_steps: 0, min_load_step: 1e-3 }
+    }
+}
+
+/// Relative tolerances that can be meant: with larger ones a body that has not moved at all passes for one
+/// in balance.
+const RTOL: RangeInclusive<f64> = 1e-14..=1e-2;
+
+/// Most steps of a load curve: so that no slip of the keyboard fills the memory.
+const MOST_STEPS: usize = 100_000;
+
+impl Statics {
+    /// Whether the trajectory is a load curve: the equilibria of all steps, with a sensor `load factor`.
+    pub fn is_curve(&self) -> bool {
+        self.load_steps > 1 || self.arc_steps > 0
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
+        if !RTOL.contains(&self.rtol) {
+            let [least, most] = [RTOL.start(), RTOL.end()];
+            let mend = format!("it must lie between {least:e}, near round-off, and {most:e}");
+            return Err(InputError::new("statics.rtol", self.rtol, mend));
+        }
+        if !(self.min_load_step > 0.0 && self.min_load_step <= 1.0) {
+            let mend = "it is a part of the whole load, above 0 and at most 1";
+            return Err(InputError::new("statics.min_load_step", self.min_load_step, mend));
+        }
+        for (input, number) in [
+            ("statics.max_iterations", self.max_iterations),
+            ("statics.load_steps", self.load_steps),
+        ] {
+            if number == 0 {
+                return Err(InputError::new(input, number, "it must be 1 at least"));
+            }
+        }
+        for (input, number) in
+            [("statics.load_steps", self.load_steps), ("statics.arc_steps", self.arc_steps)]
+        {
+            if number > MOST_STEPS {
+                let mend = format!("{MOST_STEPS} are the most, for all of them are kept");
+                return Err(InputError::new(input, number, mend));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,359 @@
+//! A phase at rest: forces without motion, tangents, and the saddle-point system of statics
+//!
+//! ```text
+//! [ K   -A ] [ x  ]   [ f ]
+//! [ -A^T 0 ] [ mu ] = [ -d ]
+//! ```
+//!
+//! with K = -df/du. What acts from outside is brought on little by little: gravity, loads, pressure and
+//! the forces of actuators by a fraction of their strength, obstacles in motion along their way. The
+//! body and its springs are what they are.
+
+#[cfg(feature = "study")]
+mod dual;
+#[cfg(test)]
+mod tests;
+
+use super::System;
+use super::newton_matrix::NewtonMatrix;
+use super::reduced::nodal_multipliers;
+use super::source::Source;
+use crate::base::input::InputError;
+use crate::base::sparse::{BlockMatrix, NodeMatrix};
+use crate::base::vector::{dot, largest};
+use crate::dynamics::system::Energy;
+use crate::elements::force::{Force, NodalForces, Reservoir};
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::{Prescribed, Row};
+
+/// The system of a phase at its end, without velocities.
+pub(crate) struct AtRest {
+    system: System,
+    time: f64,
+    still: Vec<f64>,
+    /// Velocities of the nodes for each of the forces: those of an obstacle in motion, so that it drags
+    /// nothing along and no damper acts, as if it stood where it is. Empty for others.
+    velocities: Vec<Vec<f64>>,
+    nodal: NodalForces,
+    factorizations: usize,
+}
+
+/// Forces and energy at some displacements.
+#[derive(Clone)]
+pub(crate) struct ForceBalance {
+    /// Sum of all nodal forces but those of the constraints (N).
+    pub(crate) total: Vec<f64>,
+    /// Those among them that have no potential.
+    unbound: Vec<f64>,
+    /// Potential energy of the others (J).
+    potential: f64,
+    /// Sum of the absolute values that add up to `potential`: what its round-off compares to.
+    terms: f64,
+    /// Largest nodal force of any one kind (N): the scale of the forces in balance.
+    pub(crate) scale: f64,
+}
+
+impl ForceBalance {
+    pub(crate) fn zeros(dofs: usize) -> Self {
+        let zeros = vec![0.0; dofs];
+        Self { total: zeros.clone(), unbound: zeros, potential: 0.0, terms: 0.0, scale: 0.0 }
+    }
+
+    /// Energy (J) at `self` less that at `from`, a step of `factor` `x` before. The work of forces
+    /// without a potential is that of their mean: exact for constant ones.
+    pub(crate) fn energy_since(&self, from: &ForceBalance, factor: f64, x: &[f64]) -> f64 {
+        let work = 0.5 * factor * (dot(&self.unbound, x) + dot(&from.unbound, x));
+        self.potential - from.potential - work
+    }
+
+    /// Size of the round-off in differences of energy (J) at displacements near `u`, of which the work has the digits.
+    pub(crate) fn round_off(&self, u: &[f64]) -> f64 {
+        let work: f64 = self.unbound.iter().zip(u).map(|(f, u)| (f * u).abs()).sum();
+        f64::EPSILON * (8.0 * self.terms + work)
+    }
+
+    fn clear(&mut self) {
+        self.total.fill(0.0);
+        self.unbound.fill(0.0);
+        (self.potential, self.terms, self.scale) = (0.0, 0.0, 0.0);
+    }
+
+    fn add_potential(&mut self, energy: f64) {
+        self.potential += energy;
+        self.terms += energy.abs();
+    }
+
+    /// Adds `share` times the forces `nodal`, of which the conservative ones have a potential if
+    /// `bound`.
+    fn add(&mut self, nodal: &NodalForces, share: f64, bound: bool) {
+        let NodalForces { conservative, dissipative, applied, .. } = nodal;
+        for (i, total) in self.total.iter_mut().enumerate() {
+            let unbound = dissipative[i] + applied[i] + if bound { 0.0 } else { conservative[i] };
+            let force = conservative[i] + dissipative[i] + applied[i];
+            *total += share * force;
+            self.unbound[i] += share * unbound;
+            self.scale = self.scale.max((share * force).abs());
+        }
+    }
+}
+
+impl AtRest {
+    /// # Errors
+    /// A path of a constraint that gives no finite displacement at `time` (s).
+    pub(crate) fn new(system: System, time: f64, phase: &str) -> Result<Self, InputError> {
+        let lost = |prescribed: Prescribed| !prescribed.displacement.is_finite();
+        if let Some(row) = system.rows.iter().find(|row| lost(row.prescribed(time))) {
+            return Err(InputError::new(
+                format!("path of {} in phase \"{phase}\"", row.label(system.model.dimension)),
+                format!("{} m at t = {time} s", row.prescribed(time).displacement),
+                "it must give finite numbers",
+            ));
+        }
+        let dofs = system.dofs();
+        let still = vec![0.0; dofs];
+        let velocities = vec![Vec::new(); system.forces.len()];
+        let nodal = NodalForces::zeros(dofs);
+        Ok(Self { system, time, still, velocities, nodal, factorizations: 0 })
+    }
+
+    pub(crate) fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// The end of the phase (s).
+    pub(crate) fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Whether obstacles move.
+    pub(crate) fn is_driven(&self) -> bool {
+        self.system.forces.iter().any(|force| force.velocity(self.time).is_some())
+    }
+
+    /// M x
+    pub(crate) fn weigh(&self, x: &[f64], product: &mut [f64]) {
+        product.fill(0.0);
+        let model = &self.system.model;
+        model.inertia.add_product(model.dimension, 1.0, x, product);
+    }
+
+    /// Number of factorizations so far.
+    pub(crate) fn factorizations(&self) -> usize {
+        self.factorizations
+    }
+
+    /// Whether no force but the linear elastic one depends on the displacements.
+    pub(crate) fn is_linear(&self) -> bool {
+        self.system.forces.iter().all(|force| !force.is_nonlinear())
+    }
+
+    /// Whether no force from outside depends on the displacements.
+    pub(crate) fn is_under_dead_loads(&self) -> bool {
+        let mut forces = self.system.forces.iter();
+        forces.all(|force| !force.is_nonlinear() || force.reservoir() == Reservoir::Strain)
+    }
+
+    /// Potential energies with a fraction of gravity and of the way of obstacles.
+    pub(crate) fn energy(&self, fraction: f64, u: &[f64]) -> Energy {
+        let energy = self.system.energy(fraction * self.time, u, &self.still, &[]);
+        Energy { gravity: fraction * energy.gravity, ..energy }
+    }
+
+    /// What the constraints lack, b - A^T u, with b for a fraction of the way: a path that begins in
+    /// the undeformed shape is followed, another one is shortened.
+    pub(crate) fn lacking(&self, fraction: f64, u: &[f64], d: &mut [f64]) {
+        for (d, row) in d.iter_mut().zip(&self.system.rows) {
+            let b = |t: f64| row.prescribed(t).displacement;
+            let part = match b(0.0) == 0.0 {
+                true => b(fraction * self.time),
+                false => fraction * b(self.time),
+            };
+            *d = part - row.apply(u);
+        }
+    }
+
+    /// Evaluates the forces at `u` at a fraction of the load.
+    pub(crate) fn evaluate(
+        &mut self,
+        fraction: f64,
+        u: &[f64],
+        at: &mut ForceBalance,
+    ) -> Result<(), Failure> {
+        at.clear();
+        self.stand_still(fraction);
+        if let Some(stiffness) = &self.system.model.stiffness {
+            self.nodal.clear();
+            stiffness.add_product(-1.0, u, &mut self.nodal.conservative);
+            at.add(&self.nodal, 1.0, true);
+            at.add_potential(-0.5 * dot(u, &self.nodal.conservative));
+        }
+        for (force, v) in self.system.forces.iter().zip(&self.velocities) {
+            let v = if v.is_empty() { &self.still } else { v };
+            self.nodal.clear();
+            let time = when(&**force, fraction, self.time);
+            let share = if is_load(&**force) { fraction } else { 1.0 };
+            force.add_forces(time, u, v, &mut self.nodal)?;
+            let bound = force.reservoir() != Reservoir::None;
+            at.add(&self.nodal, share, bound);
+            if bound {
+                at.add_potential(share * force.potential(time, u));
+            }
+        }
+        Ok(())
+    }
+
+    /// Lets the nodes move along with each obstacle, where that is at a fraction of its way.
+    fn stand_still(&mut self, fraction: f64) {
+        let dimension = self.system.model.dimension;
+        for (force, v) in self.system.forces.iter().zip(&mut self.velocities) {
+            if let Some(w) = force.velocity(when(&**force, fraction, self.time)) {
+                v.resize(self.still.len(), 0.0);
+                v.iter_mut().enumerate().for_each(|(dof, v)| *v = w[dof % dimension]);
+            }
+        }
+    }
+
+    /// Brings K to `u`. A linear phase has it at once.
+    pub(crate) fn update_tangent(&mut self, fraction: f64, u: &[f64]) {
+        self.stand_still(fraction);
+        let NewtonMatrix { stiffness, damping, differences, .. } = &mut self.system.newton;
+        let still = &self.still;
+        let own = (stiffness.begin(&None), damping.begin(&None));
+        let (Some(stiffness), Some(damping)) = own else { return };
+        let mut add = |loads: bool, stiffness: &mut BlockMatrix| {
+            for (force, v) in self.system.forces.iter().zip(&self.velocities) {
+                if is_load(&**force) == loads {
+                    let time = when(&**force, fraction, self.time);
+                    let v = if v.is_empty() { still } else { v };
+                    differences.add_tangents(force, time, [u, v], [stiffness, damping]);
+                }
+            }
+        };
+        add(true, stiffness);
+        stiffness.values.iter_mut().for_each(|k| *k *= fraction);
+        add(false, stiffness);
+        if let Some(constant) = &self.system.model.stiffness {
+            stiffness.values.iter_mut().zip(&constant.values).for_each(|(k, c)| *k += c);
+        }
+    }
+
+    /// K as it was last brought to some displacements.
+    pub(crate) fn tangent(&self) -> &BlockMatrix {
+        self.system.tangents().0
+    }
+
+    /// Largest K_ii / M_ii (1/s^2): of the order of the square of the highest frequency.
+    pub(crate) fn highest(&self) -> f64 {
+        let (k, _) = self.system.tangents();
+        let (m, d) = (&self.system.model.inertia, self.system.model.dimension);
+        let ratio = |dof: usize| k.get(dof, dof).abs() / m.get(dof / d, dof / d);
+        (0..self.system.dofs()).map(ratio).fold(0.0, f64::max)
+    }
+
+    /// Factorizes the symmetric part of K + `shift` M. Returns whether it is positive definite
+    /// at the free degrees of freedom.
+    pub(crate) fn factorize(&mut self, shift: f64) -> bool {
+        self.factorizations += 1;
+        let System { model, newton, .. } = &mut self.system;
+        let (inertia, stiffness) = (&model.inertia, newton.stiffness.get());
+        newton.solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
+    }
+
+    /// Factorizes the symmetric part of K, definite or not. Returns whether it could.
+    pub(crate) fn factorize_any(&mut self) -> bool {
+        self.factorize(0.0) || self.system.newton.solver.factorize_indefinite().is_ok()
+    }
+
+    /// Solves the saddle-point system above, K shifted as in the last factorization. `mu` are the multipliers known so far, and
+    /// become those that balance `f` where the rows act: those of an equilibrium once x vanishes. Those of general rows are
+    /// found by their change, so that iterations leave round-off of what is not balanced yet alone.
+    pub(crate) fn solve(&mut self, f: &[f64], d: &[f64], x: &mut [f64], mu: &mut [f64]) {
+        let System { rows, newton, .. } = &mut self.system;
+        let NewtonMatrix { solver, right, mu: change, .. } = newton;
+        right.copy_from_slice(f);
+        let general = |(row, _): &(&Row, _)| row.nodal().is_none();
+        for (row, mu) in rows.iter().zip(&*mu).filter(general) {
+            row.terms.iter().for_each(|&(dof, c)| right[dof] += c * mu);
+        }
+        solver.solve(rows, right, d, x, change);
+        for ((_, mu), change) in
+            rows.iter().zip(&mut *mu).zip(&*change).filter(|(of, _)| of.0.nodal().is_none())
+        {
+            *mu += change;
+        }
+        nodal_multipliers(rows, mu, |dof| -f[dof]);
+    }
+
+    /// Size of the round-off in nodal forces (N) at displacements of these `sizes` (m): some of the last digits of the terms of K u, of which
+    /// forces are what is left. K is that of the last [`update_tangent`](Self::update_tangent).
+    pub(crate) fn round_off(&self, sizes: &[f64]) -> f64 {
+        let k = self.tangent();
+        let terms = (0..sizes.len()).map(|dof| k.absolute_row_product(dof, sizes));
+        8.0 * f64::EPSILON * terms.fold(0.0, f64::max)
+    }
+
+    /// Largest component of f + A mu (N).
+    pub(crate) fn residual(&self, f: &[f64], mu: &[f64], work: &mut [f64]) -> f64 {
+        work.copy_from_slice(f);
+        for (row, mu) in self.system.rows.iter().zip(mu) {
+            row.terms.iter().for_each(|&(dof, c)| work[dof] += c * mu);
+        }
+        largest(work)
+    }
+
+    /// Lowest eigenvalue (1/s^2) of K x = eigenvalue M x among the motions that the constraints
+    /// allow, by inverse iteration with the last factorization, that of K + `shift` M: from above,
+    /// so that a value below zero is a proof. Infinite if nothing can move.
+    pub(crate) fn lowest_eigenvalue(&mut self, shift: f64) -> f64 {
+        let (dofs, count) = (self.system.dofs(), self.system.rows.len());
+        let noise = |i: usize| (12.9898 * (i as f64 + 1.0)).sin().mul_add(43.758, 0.3).sin();
+        let mut right: Vec<f64> = (0..dofs).map(noise).collect();
+        let (mut x, mut mu) = (vec![0.0; dofs], vec![0.0; count]);
+        let nowhere = vec![0.0; count];
+        let mut lowest = f64::INFINITY;
+        for _ in 0..ITERATIONS {
+            let System { rows, newton, .. } = &mut self.system;
+            newton.solver.solve(rows, &right, &nowhere, &mut x, &mut mu);
+            let System { model, newton, .. } = &self.system;
+            right.fill(0.0);
+            model.inertia.add_product(model.dimension, 1.0, &x, &mut right);
+            let square = dot(&x, &right);
+            if square == 0.0 {
+                break;
+            }
+            let before = lowest;
+            lowest = newton.stiffness.get().quadratic_form(&x) / square;
+            if before - lowest <= 1e-8 * (lowest + shift) {
+                break;
+            }
+            right.iter_mut().for_each(|r| *r /= square.sqrt());
+        }
+        lowest
+    }
+}
+
+/// Entry of `shift` M + the symmetric part of K.
+pub(super) fn shifted(
+    inertia: &NodeMatrix,
+    stiffness: &BlockMatrix,
+    shift: f64,
+    source: Source,
+) -> f64 {
+    let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
+    let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
+    shift * mass + stiffness.symmetric(entry, transposed, axes)
+}
+
+/// Bound on inverse iterations: enough for six digits even of close pairs of eigenvalues.
+const ITERATIONS: usize = 300;
+
+/// The time (s) up to the end `time` at which a force acts at a `fraction` of the load: an obstacle in
+/// motion has come so far on its way.
+fn when(force: &dyn Force, fraction: f64, time: f64) -> f64 {
+    if force.reservoir() == Reservoir::Contact { fraction * time } else { time }
+}
+
+/// Whether a force is brought on by fractions of its strength.
+fn is_load(force: &dyn Force) -> bool {
+    matches!(force.reservoir(), Reservoir::Gravity | Reservoir::None)
+}

@@ -1,0 +1,74 @@
+//! The saddle-point system of statics and its dual, the tangent as it is: what forces left unbalanced do to the equilibrium, and to
+//! a number of it.
+
+use super::AtRest;
+use crate::base::sparse::BlockMatrix;
+use crate::base::vector::largest;
+
+/// Refinements of a solution, the factors being those of the symmetric part of K: each takes off a share as large as the part
+/// that is not symmetric.
+const MOST_REFINEMENTS: usize = 100;
+
+/// Where they end, as a part of the solution: no estimate of an error has more digits.
+const ENOUGH: f64 = 1e-9;
+
+impl AtRest {
+    /// Solves K x - A mu = f, A^T x = d by the last factorization, which has to be that of K without a shift, K symmetric or not: a
+    /// step of Newton's method with its constraint forces. Returns whether it could.
+    pub(crate) fn solve_exactly(
+        &mut self,
+        [f, d]: [&[f64]; 2],
+        x: &mut [f64],
+        mu: &mut [f64],
+    ) -> bool {
+        self.refine([f, d], x, mu, BlockMatrix::add_product)
+    }
+
+    /// Solves the dual K^T z - A nu = j, A^T z = -g likewise: the step above has j . x + g . mu = z . f - nu . d.
+    pub(crate) fn solve_dual(
+        &mut self,
+        [j, g]: [&[f64]; 2],
+        z: &mut [f64],
+        nu: &mut [f64],
+    ) -> bool {
+        let demands: Vec<f64> = g.iter().map(|g| -g).collect();
+        self.refine([j, &demands], z, nu, BlockMatrix::add_transposed_product)
+    }
+
+    /// Solves with K or K^T, as `add_product` has it.
+    fn refine(
+        &mut self,
+        [f, d]: [&[f64]; 2],
+        x: &mut [f64],
+        mu: &mut [f64],
+        add_product: fn(&BlockMatrix, f64, &[f64], &mut [f64]),
+    ) -> bool {
+        x.fill(0.0);
+        mu.fill(0.0);
+        let (mut more, mut more_mu) = (x.to_vec(), mu.to_vec());
+        let (mut left, mut demands) = (f.to_vec(), d.to_vec());
+        for _ in 0..MOST_REFINEMENTS {
+            let solver = &mut self.system.newton.solver;
+            solver.solve(&self.system.rows, &left, &demands, &mut more, &mut more_mu);
+            x.iter_mut().zip(&more).for_each(|(x, more)| *x += more);
+            mu.iter_mut().zip(&more_mu).for_each(|(mu, more)| *mu += more);
+            demands.fill(0.0);
+            left.copy_from_slice(f);
+            add_product(self.tangent(), -1.0, x, &mut left);
+            for (row, mu) in self.system.rows.iter().zip(&*mu) {
+                if row.nodal().is_none() {
+                    row.terms.iter().for_each(|&(dof, c)| left[dof] += c * mu);
+                }
+            }
+            if largest(&more) <= ENOUGH * largest(x) {
+                for (row, mu) in self.system.rows.iter().zip(mu) {
+                    if let Some((dof, c)) = row.nodal() {
+                        *mu = -left[dof] / c;
+                    }
+                }
+                return true;
+            }
+        }
+        false
+    }
+}

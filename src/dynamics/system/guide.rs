@@ -1,0 +1,100 @@
+//! Where the constraints lead.
+//!
+//! Their stabilized equation R'' + 2 alpha R' + alpha^2 R = 0 for R = A^T u - b has the solution
+//!
+//! ```text
+//! R(t) = (R_0 + (R_0' + alpha R_0) (t - t_0)) exp(-alpha (t - t_0))
+//! ```
+//!
+//! so that A^T u is known beforehand and can be prescribed as it is: no alpha, however large, bounds
+//! the step, and nothing drifts.
+
+use super::System;
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::Prescribed;
+
+/// The motion that each row prescribes.
+pub(super) struct Guide {
+    since: f64,
+    /// R_0 and R_0' + alpha R_0, row by row.
+    remainders: Vec<(f64, f64)>,
+    /// Whether all of them are 0: nothing fades that would have to be computed.
+    is_on_path: bool,
+    /// A^T v that kicks lead to, row by row.
+    pub(super) rates: Vec<f64>,
+}
+
+impl Guide {
+    /// Without motion, for `rows` rows.
+    pub(super) fn new(rows: usize) -> Self {
+        let remainders = vec![(0.0, 0.0); rows];
+        Self { since: 0.0, remainders, is_on_path: true, rates: vec![0.0; rows] }
+    }
+
+    /// Leads on from (t, u, v).
+    pub(super) fn start(
+        &mut self,
+        system: &System,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+    ) -> Result<(), Failure> {
+        self.since = t;
+        for (remainder, row) in self.remainders.iter_mut().zip(&system.rows) {
+            let Prescribed { displacement, velocity, .. } = system.prescribed(row, t)?;
+            let off = row.apply(u) - displacement;
+            *remainder = (off, row.apply(v) - velocity + system.alpha * off);
+        }
+        self.is_on_path = self.remainders.iter().all(|remainder| *remainder == (0.0, 0.0));
+        Ok(())
+    }
+
+    /// Aims at the mean rates from `t` on over a time `h`, free of the round-off in differences of
+    /// positions.
+    pub(super) fn aim_at_mean_rates(
+        &mut self,
+        system: &System,
+        t: f64,
+        h: f64,
+    ) -> Result<(), Failure> {
+        let (alpha, elapsed) = (system.alpha, t - self.since);
+        let [decay, ahead, change] = match self.is_on_path {
+            true => [0.0; 3],
+            false => [(-alpha * elapsed).exp(), (-alpha * h).exp(), (-alpha * h).exp_m1() / h],
+        };
+        for (k, (row, &(off, slope))) in system.rows.iter().zip(&self.remainders).enumerate() {
+            let velocity = |s: f64| system.prescribed(row, t + s * h).map(|motion| motion.velocity);
+            let prescribed = match row.constant_velocity() {
+                Some(velocity) => velocity,
+                // Simpson's rule
+                None => (velocity(0.0)? + 4.0 * velocity(0.5)? + velocity(1.0)?) / 6.0,
+            };
+            let remainder = (off + slope * elapsed) * change + slope * ahead;
+            self.rates[k] = prescribed + remainder * decay;
+        }
+        Ok(())
+    }
+
+    /// Puts the components that nodal rows prescribe where they are at time `t`, and aims at the rates
+    /// of all rows there.
+    pub(super) fn prescribe(
+        &mut self,
+        system: &System,
+        t: f64,
+        u: &mut [f64],
+        v: &mut [f64],
+    ) -> Result<(), Failure> {
+        let (alpha, elapsed) = (system.alpha, t - self.since);
+        let decay = if self.is_on_path { 0.0 } else { (-alpha * elapsed).exp() };
+        for (k, (row, &(off, slope))) in system.rows.iter().zip(&self.remainders).enumerate() {
+            let Prescribed { displacement, velocity, .. } = system.prescribed(row, t)?;
+            let remainder = off + slope * elapsed;
+            self.rates[k] = velocity + (slope - alpha * remainder) * decay;
+            if let Some((dof, coefficient)) = row.nodal() {
+                u[dof] = (displacement + remainder * decay) / coefficient;
+                v[dof] = self.rates[k] / coefficient;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,133 @@
+//! How velocities follow from forces under the constraints,
+//!
+//! ```text
+//! M a = f + A lambda,   w = v + tau a,   A^T w = rates
+//! ```
+
+use super::System;
+use super::reduced::nodal_multipliers;
+use crate::base::simd::{Formula, each};
+use crate::base::tensor::Real;
+use crate::dynamics::matrices::Model;
+use crate::integrators::ode::Kick;
+use crate::scene::constraint::Row;
+
+pub(super) enum Mobility {
+    /// Lumped inertia, one component per row: nothing is to be solved.
+    Diagonal {
+        /// 1/M_ii (1/kg); 0 where a row prescribes.
+        inverse: Vec<f64>,
+        rows: Vec<NodalRow>,
+    },
+    /// Anything else.
+    Coupled {
+        /// A^T a and lambda, row by row.
+        demands: Vec<f64>,
+        multipliers: Vec<f64>,
+    },
+}
+
+pub(super) struct NodalRow {
+    dof: usize,
+    coefficient: f64,
+    mass: f64,
+}
+
+impl Mobility {
+    pub(super) fn new(system: &System) -> Self {
+        let Model { inertia, dimension, .. } = &*system.model;
+        let rows: Option<Vec<_>> = system.rows.iter().map(Row::nodal).collect();
+        let Some(rows) = rows.filter(|_| system.is_lumped()) else {
+            let none = vec![0.0; system.rows.len()];
+            return Self::Coupled { demands: none.clone(), multipliers: none };
+        };
+        let mass = |dof: usize| inertia.get(dof / dimension, dof / dimension);
+        let mut inverse: Vec<f64> = (0..system.dofs()).map(|dof| 1.0 / mass(dof)).collect();
+        rows.iter().for_each(|&(dof, _)| inverse[dof] = 0.0);
+        let row = |(dof, coefficient)| NodalRow { dof, coefficient, mass: mass(dof) };
+        Self::Diagonal { inverse, rows: rows.into_iter().map(row).collect() }
+    }
+
+    /// Whether accelerations are those of the force alone, whatever the velocities.
+    pub(super) fn is_diagonal(&self) -> bool {
+        matches!(self, Self::Diagonal { .. })
+    }
+
+    /// The accelerations in a kick, 0 where a nodal row prescribes.
+    pub(super) fn accelerations(
+        &mut self,
+        system: &mut System,
+        kick: &Kick<'_>,
+        rates: &[f64],
+        accelerations: &mut [f64],
+    ) {
+        let Kick { duration, force, before } = *kick;
+        match self {
+            Self::Diagonal { inverse, .. } => {
+                each(ByMass, [inverse, force], [accelerations]);
+            }
+            Self::Coupled { demands, multipliers } => {
+                let rows = system.rows.iter().zip(rates);
+                demands
+                    .iter_mut()
+                    .zip(rows)
+                    .for_each(|(d, (row, rate))| *d = (rate - row.apply(before)) / duration);
+                system.accelerations(force, demands, accelerations, multipliers);
+                let rows = system.rows.iter().filter_map(Row::nodal);
+                rows.for_each(|(dof, _)| accelerations[dof] = 0.0);
+            }
+        }
+    }
+
+    /// Leads the velocities `after` the kick last asked about, which are v + tau a so far, where nodal
+    /// rows prescribe. Returns the work of the constraint forces (J).
+    pub(super) fn lead(
+        &self,
+        system: &System,
+        kick: &Kick<'_>,
+        rates: &[f64],
+        after: &mut [f64],
+    ) -> f64 {
+        let Kick { duration, force, before } = *kick;
+        let mut work = 0.0;
+        match self {
+            Self::Diagonal { rows, .. } => {
+                for (&NodalRow { dof, coefficient, mass }, rate) in rows.iter().zip(rates) {
+                    after[dof] = rate / coefficient;
+                    let momentum = mass * (after[dof] - before[dof]) - duration * force[dof];
+                    work += 0.5 * momentum * (before[dof] + after[dof]);
+                }
+            }
+            Self::Coupled { multipliers, .. } => {
+                for ((row, rate), multiplier) in system.rows.iter().zip(rates).zip(multipliers) {
+                    work += 0.5 * duration * multiplier * (row.apply(before) + rate);
+                    if let Some((dof, coefficient)) = row.nodal() {
+                        after[dof] = rate / coefficient;
+                    }
+                }
+            }
+        }
+        work
+    }
+}
+
+/// a = f / M
+struct ByMass;
+
+impl Formula<2, 1, 0> for ByMass {
+    #[inline(always)]
+    fn at<T: Real>(&self, [inverse, f]: [T; 2], _: [T; 1]) -> ([T; 1], [T; 0]) {
+        ([inverse * f], [])
+    }
+}
+
+impl System {
+    /// Accelerations a and multipliers lambda with M a - A lambda = f, A^T a = d.
+    fn accelerations(&mut self, f: &[f64], d: &[f64], a: &mut [f64], multipliers: &mut [f64]) {
+        self.inertia.solve(&self.rows, f, d, a, multipliers);
+        let Model { inertia, dimension, .. } = &*self.model;
+        nodal_multipliers(&self.rows, multipliers, |dof| {
+            inertia.row_product(*dimension, dof, a) - f[dof]
+        });
+    }
+}

@@ -1,0 +1,455 @@
+//! The equations of one phase of a scene.
+//!
+//! With displacements u, velocities v, forces f(t, u, v) and the rows A of the constraints
+//! (Hirai (4.3.4)):
+//!
+//! ```text
+//! u' = v
+//! [ M   -A ] [ v'     ]   [ f ]
+//! [ -A^T 0 ] [ lambda ] = [ C ],   C = -b'' + 2 alpha (A^T v - b') + alpha^2 (A^T u - b)
+//! ```
+//!
+//! [`System`] is the ODE form, in which v' and lambda are solved for; [`DaeForm`] the
+//! differential-algebraic forms, in which lambda is an unknown, and [`SecondOrderForm`] the form in
+//! which the constraints are motion that is known. The first two solve their Newton systems with
+//! the one symmetric matrix of [`newton`], half as large as the state.
+//!
+//! Two more unknowns are integrated: the energy dissipated and the energy supplied since the phase
+//! began. They cost two dot products, nothing depends on them, and the error control leaves them
+//! out; they make the energy balance as accurate as the integration itself.
+
+mod at_rest;
+mod cholesky;
+mod dae;
+mod differences;
+mod form;
+mod gradients;
+mod guide;
+mod mobility;
+mod newton;
+mod newton_matrix;
+mod ode;
+mod rates;
+mod reduced;
+pub(crate) mod rigid;
+mod scene;
+mod second_order;
+mod source;
+mod spectrum;
+mod summary;
+mod symmetric;
+#[cfg(test)]
+mod tests;
+
+use std::sync::Arc;
+
+pub(crate) use at_rest::{AtRest, ForceBalance};
+pub(crate) use dae::{DaeForm, Index};
+pub(crate) use form::Form;
+use newton_matrix::NewtonMatrix;
+use reduced::{EXACT, Reduced, nodal_multipliers};
+pub(crate) use second_order::SecondOrderForm;
+use source::Coupling;
+pub use spectrum::Spectrum;
+pub use summary::PhaseSummary;
+
+use crate::base::input::InputError;
+use crate::base::sparse::NodeMatrix;
+use crate::base::vector::dot;
+use crate::dynamics::matrices::Model;
+use crate::dynamics::state;
+use crate::elements::body::Branches;
+use crate::elements::force::{Forces, NodalForces, Reservoir, Step};
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::{Prescribed, Row};
+
+/// Equations of one phase, with everything that evaluating and solving them needs.
+pub(crate) struct System {
+    model: Arc<Model>,
+    forces: Forces,
+    rows: Vec<Row>,
+    /// Stabilization rate alpha (1/s).
+    alpha: f64,
+    inertia: Reduced,
+    newton: NewtonMatrix,
+    at: Evaluation,
+    /// Why a force had no meaning, the last time that one had none.
+    refusal: String,
+}
+
+/// What the last evaluation of the equations found.
+struct Evaluation {
+    nodal: NodalForces,
+    /// f, the sum of all nodal forces.
+    total: Vec<f64>,
+    /// v'
+    acceleration: Vec<f64>,
+    /// lambda, one per row.
+    multipliers: Vec<f64>,
+    /// A^T v, one per row.
+    rates: Vec<f64>,
+    /// A^T v' as the stabilization wants it, one per row.
+    demands: Vec<f64>,
+    /// Rates (1/s) of the internal strains, and the power (W) that they dissipate.
+    relaxing: Vec<f64>,
+    relaxed: f64,
+}
+
+/// Energies of a state (J).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Energy {
+    /// (1/2) v.M v
+    pub kinetic: f64,
+    /// Strain energy.
+    pub strain: f64,
+    /// Potential of gravity, 0 at height 0.
+    pub gravity: f64,
+    /// Stored in the penalty springs of contacts.
+    pub contact: f64,
+    /// Stored in springs between nodes.
+    pub springs: f64,
+    /// Turned into heat since t = 0 by viscosity, damping and friction of contacts.
+    pub dissipated: f64,
+    /// Supplied since t = 0 by loads and constraints.
+    pub supplied: f64,
+}
+
+impl Energy {
+    /// Kinetic + potential + dissipated - supplied: constant along an exact motion.
+    pub fn balance(&self) -> f64 {
+        let stored = self.strain + self.gravity + self.contact + self.springs;
+        self.kinetic + stored + self.dissipated - self.supplied
+    }
+
+    /// Sum of all but gravity, whose zero is arbitrary, as the scale of the balance; potentials may be below 0.
+    pub(crate) fn size(&self) -> f64 {
+        let stored = self.strain.abs() + self.contact.abs() + self.springs.abs();
+        self.kinetic + stored + self.dissipated.abs() + self.supplied.abs()
+    }
+}
+
+impl System {
+    /// # Errors
+    /// General constraint rows that follow from others.
+    pub(crate) fn new(
+        model: Arc<Model>,
+        forces: Forces,
+        rows: Vec<Row>,
+        alpha: f64,
+        phase: &str,
+    ) -> Result<Self, InputError> {
+        let (dimension, dofs) = (model.dimension, model.dofs());
+        let coupling = match model.inertia.is_diagonal() {
+            true => Coupling::Diagonal,
+            false => Coupling::SameAxis,
+        };
+        let mut inertia = Reduced::new(&model, &rows, coupling);
+        let values = &model.inertia.values;
+        if inertia.begin(EXACT, |source| values[source.entry()]).is_err() {
+            return Err(match inertia.dependent_row() {
+                Some(row) => InputError::new(
+                    format!("constraints of phase \"{phase}\""),
+                    format!("row {}", rows[row].label(dimension)),
+                    "it follows from the other constraints: leave it out",
+                ),
+                None => InputError::new(
+                    "material.density",
+                    format!("giving {:e} kg on node 1", model.inertia.get(0, 0)),
+                    "with this mesh the masses are beyond the range of double precision",
+                ),
+            });
+        }
+        let newton = NewtonMatrix::new(&model, &rows, follows(&model, &forces));
+        let internal = model.branches.as_ref().map_or(0, Branches::unknowns);
+        let at = Evaluation {
+            nodal: NodalForces::zeros(dofs),
+            total: vec![0.0; dofs],
+            acceleration: vec![0.0; dofs],
+            multipliers: vec![0.0; rows.len()],
+            rates: vec![0.0; rows.len()],
+            demands: vec![0.0; rows.len()],
+            relaxing: vec![0.0; internal],
+            relaxed: 0.0,
+        };
+        Ok(Self { model, forces, rows, alpha, inertia, newton, at, refusal: String::new() })
+    }
+
+    /// Number of displacement components.
+    pub(crate) fn dofs(&self) -> usize {
+        self.model.dofs()
+    }
+
+    /// Replaces the forces, if the Newton matrix has room for their tangents; all else stays as it is.
+    pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
+        if follows(&self.model, &forces) != self.newton.follows {
+            return false;
+        }
+        self.forces = forces;
+        self.forget_tangents();
+        true
+    }
+
+    /// The tangents are no longer those of the forces.
+    pub(crate) fn forget_tangents(&mut self) {
+        self.newton.is_set = false;
+    }
+
+    /// The inertia matrix.
+    pub(crate) fn inertia(&self) -> &NodeMatrix {
+        &self.model.inertia
+    }
+
+    /// The constraints, row by row.
+    pub(crate) fn rows(&self) -> &[Row] {
+        &self.rows
+    }
+
+    /// Starts the counts below from 0.
+    pub(crate) fn forget_counts(&mut self) {
+        self.newton.forget_counts();
+    }
+
+    /// Number of evaluations of the tangents so far; 0 where they are constant.
+    pub(crate) fn tangent_evaluations(&self) -> usize {
+        self.newton.tangent_evaluations()
+    }
+
+    /// Of the Newton matrices so far: how many were never factorized, iterations for them and others, and how many were found
+    /// not to be positive definite.
+    pub(crate) fn newton_counts(&self) -> [usize; 3] {
+        self.newton.solver.counts()
+    }
+
+    /// Number of evaluations of forces that do not tell their tangents, for the tangents.
+    pub(crate) fn difference_evaluations(&self) -> usize {
+        self.newton.difference_evaluations()
+    }
+
+    /// The constraint forces lambda (N) at (t, u, v) and the internal strains, row by row.
+    pub(crate) fn multipliers(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        internal: &[f64],
+    ) -> Result<&[f64], Failure> {
+        self.evaluate(t, u, v, internal)?;
+        Ok(&self.at.multipliers)
+    }
+
+    /// The velocities nearest to `v`, in the sense of kinetic energy, that the constraints allow
+    /// at time `t`.
+    pub(crate) fn project(&mut self, t: f64, v: &mut [f64]) {
+        self.at.total.fill(0.0);
+        let Model { inertia, dimension, .. } = &*self.model;
+        inertia.add_product(*dimension, 1.0, v, &mut self.at.total);
+        for (demand, row) in self.at.demands.iter_mut().zip(&self.rows) {
+            *demand = row.prescribed(t).velocity;
+        }
+        let Evaluation { total, demands, multipliers, .. } = &mut self.at;
+        self.inertia.solve(&self.rows, total, demands, v, multipliers);
+    }
+
+    /// Why a force had no meaning at a trial point, the last time that one had none; empty if all
+    /// always had.
+    pub(crate) fn refusal(&self) -> &str {
+        &self.refusal
+    }
+
+    /// Asks the forces whether the step from displacements `before` to `after` makes sense.
+    pub(crate) fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        self.forces.iter().try_for_each(|force| force.check_step(t, before, after))
+    }
+
+    /// Number of switches of all forces.
+    pub(crate) fn switches(&self) -> usize {
+        self.forces.iter().map(|force| force.switches()).sum()
+    }
+
+    /// Writes their values.
+    pub(crate) fn switch_values(&self, t: f64, u: &[f64], v: &[f64], mut values: &mut [f64]) {
+        for force in &self.forces {
+            let (own, rest) = values.split_at_mut(force.switches());
+            force.switch_values(t, u, v, own);
+            values = rest;
+        }
+    }
+
+    /// A time (s) within a step at which a force acts that its ends do not show, if any.
+    pub(crate) fn passage(
+        &self,
+        step: &Step,
+        tolerance: f64,
+        mut clearances: &mut [f64],
+    ) -> Option<f64> {
+        let mut first: Option<f64> = None;
+        for force in &self.forces {
+            let (own, rest) = clearances.split_at_mut(force.switches());
+            clearances = rest;
+            if let Some(t) = force.passage(step, tolerance, own) {
+                first = Some(first.map_or(t, |first| first.min(t)));
+            }
+        }
+        first
+    }
+
+    /// Keeps each of them on or off, or lets all of them act by their values again.
+    pub(crate) fn hold_switches(&self, on: Option<&[bool]>) {
+        let mut start = 0;
+        for force in &self.forces {
+            let end = start + force.switches();
+            force.hold_switches(on.map(|on| &on[start..end]));
+            start = end;
+        }
+    }
+
+    /// What the body rubs against, force by force, and [whether it slides](crate::elements::force::Force::slides) there.
+    pub(crate) fn slides(&self) -> impl Iterator<Item = Option<(&str, Option<bool>)>> {
+        self.forces.iter().map(|force| force.slides())
+    }
+
+    /// Largest |A^T u - b| (m).
+    pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
+        let drift = |row: &Row| (row.apply(u) - row.prescribed(t).displacement).abs();
+        self.rows.iter().map(drift).fold(0.0, f64::max)
+    }
+
+    /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` strains
+    /// Maxwell branches have relaxed.
+    pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Energy {
+        let Model { inertia, stiffness, linear_by_cells, dimension, branches, .. } = &*self.model;
+        let mut energy = Energy {
+            kinetic: 0.5 * inertia.quadratic_form(*dimension, v),
+            strain: match linear_by_cells {
+                Some(cells) => cells.energy(u),
+                None => stiffness.as_ref().map_or(0.0, |k| 0.5 * k.quadratic_form(u)),
+            },
+            ..Energy::default()
+        };
+        if let (Some(branches), [_, ..]) = (branches, internal) {
+            energy.strain += branches.energy(u, internal);
+        }
+        for force in &self.forces {
+            let potential = force.potential(t, u);
+            match force.reservoir() {
+                Reservoir::Strain => energy.strain += potential,
+                Reservoir::Gravity => energy.gravity += potential,
+                Reservoir::Contact => energy.contact += potential,
+                Reservoir::Springs => energy.springs += potential,
+                Reservoir::None => {}
+            }
+        }
+        energy
+    }
+
+    /// Evaluates forces, accelerations and multipliers. Without `internal` strains Maxwell branches have relaxed.
+    fn evaluate(&mut self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Result<(), Failure> {
+        self.evaluate_forces(t, u, v, internal)?;
+        self.evaluate_rows(t, u, v)?;
+        let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
+        self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
+        let Model { inertia, dimension, .. } = &*self.model;
+        nodal_multipliers(&self.rows, multipliers, |dof| {
+            inertia.row_product(*dimension, dof, acceleration) - total[dof]
+        });
+        Ok(())
+    }
+
+    fn evaluate_forces(
+        &mut self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        internal: &[f64],
+    ) -> Result<(), Failure> {
+        self.collect_forces(t, u, v)?;
+        if let (Some(branches), [_, ..]) = (&self.model.branches, internal) {
+            let Evaluation { nodal, relaxing, relaxed, .. } = &mut self.at;
+            *relaxed = branches.add_forces(u, internal, &mut nodal.conservative, relaxing);
+        }
+        self.at.nodal.add_up(&mut self.at.total);
+        Ok(())
+    }
+
+    fn collect_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+        let nodal = &mut self.at.nodal;
+        nodal.clear();
+        let model = &*self.model;
+        match (&model.linear_by_cells, &model.stiffness) {
+            (Some(cells), _) => cells.add_forces(u, v, nodal)?,
+            (None, Some(k)) => k.add_product(-1.0, u, &mut nodal.conservative),
+            (None, None) => {}
+        }
+        match (&model.damping, &model.mass_damping) {
+            (Some(b), _) if model.damps_by_matrix => b.add_product(-1.0, v, &mut nodal.dissipative),
+            (_, Some(m)) => m.add_product(model.dimension, -1.0, v, &mut nodal.dissipative),
+            (_, None) => {}
+        }
+        for force in &self.forces {
+            let added = force.add_forces(t, u, v, nodal);
+            if let Err(Failure::Recoverable(reason)) = &added {
+                self.refusal.clone_from(reason);
+            }
+            added?;
+        }
+        Ok(())
+    }
+
+    fn evaluate_rows(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
+        let alpha = self.alpha;
+        for (k, row) in self.rows.iter().enumerate() {
+            let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
+            let (position, rate) = (row.apply(u), row.apply(v));
+            if !(displacement + velocity + acceleration).is_finite() {
+                return Err(self.not_finite(row, t));
+            }
+            self.at.rates[k] = rate;
+            self.at.demands[k] = acceleration
+                - 2.0 * alpha * (rate - velocity)
+                - alpha * alpha * (position - displacement);
+        }
+        Ok(())
+    }
+
+    /// Power dissipated and power supplied (W) at the last evaluation.
+    fn powers(&self, v: &[f64], multipliers: &[f64]) -> (f64, f64) {
+        let (dissipated, applied) = self.at.nodal.powers(v);
+        (dissipated + self.at.relaxed, applied + dot(multipliers, &self.at.rates))
+    }
+
+    /// Number of unknowns of the ODE form.
+    pub(crate) fn unknowns(&self) -> usize {
+        state::length(self.dofs()) + self.at.relaxing.len()
+    }
+
+    /// The internal strains with which nothing pulls at the displacements `u`.
+    pub(crate) fn relaxed(&self, u: &[f64]) -> Vec<f64> {
+        let mut internal = vec![0.0; self.at.relaxing.len()];
+        if let Some(branches) = &self.model.branches {
+            branches.relax(u, &mut internal);
+        }
+        internal
+    }
+
+    /// Largest rate (1/s) at which Maxwell branches relax; 0 without any.
+    pub(crate) fn relaxation_rate(&self) -> f64 {
+        self.model.branches.as_ref().map_or(0.0, Branches::fastest)
+    }
+
+    fn not_finite(&self, row: &Row, t: f64) -> Failure {
+        let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
+        let label = row.label(self.model.dimension);
+        Failure::Fatal(
+            format!(
+                "the path of {label} gives b = {displacement}, b' = {velocity}, \
+                 b'' = {acceleration} at t = {t} s: it must give finite numbers"
+            )
+            .into(),
+        )
+    }
+}
+
+/// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.
+fn follows(model: &Model, forces: &Forces) -> bool {
+    model.branches.is_some() || forces.iter().any(|force| force.is_nonlinear())
+}

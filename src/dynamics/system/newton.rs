@@ -1,0 +1,257 @@
+//! Solves with the structured Newton matrix.
+//!
+//! An implicit method of step parameter gamma needs x with (I - gamma J) x = r, J the Jacobian of
+//! the ODE form. J holds M^-1 and is dense; it is never formed. With Kt = -df/du, D = -df/dv and
+//! x = (xu, xv), r = (ru, rv), the same x follows from
+//!
+//! ```text
+//! (M + gamma D + gamma^2 Kt) xv - A mu = M rv - gamma Kt ru
+//! A^T xv = (A^T rv - gamma alpha^2 A^T ru) / (1 + alpha gamma)^2
+//! xu = ru + gamma xv
+//! ```
+//!
+//! One sparse symmetric matrix N of half the size; alpha costs nothing, however large.
+//!
+//! Maxwell branches are eliminated point by point (`body/branches.rs`), so that Kt is what they leave in a step of gamma.
+//!
+//! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
+//! M rv is M cv + gamma f, and no iteration solves a system with M.
+
+use super::System;
+use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
+use super::reduced::nodal_multipliers;
+use super::source::Source;
+use crate::base::sparse::BlockMatrix;
+use crate::base::vector::{dot, largest};
+use crate::dynamics::matrices::Model;
+use crate::integrators::ode::Failure;
+
+impl System {
+    /// Whether all forces are linear in u and v, so that Kt and D never change.
+    pub(crate) fn is_linear(&self) -> bool {
+        !self.newton.follows
+    }
+
+    /// Tells whether residuals of the Newton systems are looked at again, and solutions corrected, as in Newton's iteration.
+    pub(crate) fn expect_iteration(&mut self, iterates: bool) {
+        self.newton.accuracy = if iterates { ITERATED } else { SOLVED_ONCE };
+    }
+
+    /// Step parameter of the last factorization.
+    pub(super) fn gamma(&self) -> f64 {
+        self.newton.gamma
+    }
+
+    /// Kt and D in force.
+    pub(crate) fn tangents(&self) -> (&BlockMatrix, &BlockMatrix) {
+        (self.newton.stiffness.get(), self.newton.damping.get())
+    }
+
+    /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
+    /// current.
+    pub(crate) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
+        let NewtonMatrix {
+            stiffness,
+            damping,
+            differences,
+            follows,
+            is_set,
+            is_damped,
+            tangent_evaluations,
+            ..
+        } = &mut self.newton;
+        if !*follows {
+            return true;
+        }
+        if reuse && *is_set {
+            return false;
+        }
+        let Model { stiffness: k, damping: b, .. } = &*self.model;
+        if let (Some(stiffness), Some(damping)) = (stiffness.begin(k), damping.begin(b)) {
+            for force in &self.forces {
+                differences.add_tangents(force, t, [u, v], [stiffness, damping]);
+            }
+        }
+        *is_set = true;
+        *is_damped = damping.get().values.iter().any(|&value| value != 0.0);
+        *tangent_evaluations += 1;
+        true
+    }
+
+    /// Adds to Kt, just renewed, what Maxwell branches exert in a step of the parameter `gamma`: at once if that is 0, and
+    /// without stress if there are no `internal` strains.
+    pub(crate) fn add_branch_tangents(&mut self, gamma: f64, u: &[f64], internal: &[f64]) {
+        let Some(branches) = &self.model.branches else { return };
+        let NewtonMatrix { stiffness, place, .. } = &mut self.newton;
+        if let Some(stiffness) = stiffness.own() {
+            branches.add_tangents(gamma, u, internal, stiffness);
+        }
+        for (place, now) in place.iter_mut().zip([u, internal]) {
+            place.clear();
+            place.extend_from_slice(now);
+        }
+    }
+
+    /// Brings N = M + gamma D + gamma^2 Kt into force.
+    pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
+        self.newton.gamma = gamma;
+        let NewtonMatrix { solver, stiffness, damping, is_damped, accuracy, .. } = &mut self.newton;
+        let (stiffness, damping) = (stiffness.get(), damping.get());
+        let inertia = &self.model.inertia;
+        let factorized = solver.begin(*accuracy, |source: Source| {
+            let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
+            let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
+            // the symmetric part: tangents of viscosity and contact need not be symmetric
+            let part = |matrix: &BlockMatrix| matrix.symmetric(entry, transposed, axes);
+            let damped = if *is_damped { part(damping) } else { 0.0 };
+            mass + gamma * (damped + gamma * part(stiffness))
+        });
+        if factorized.is_ok() {
+            return Ok(());
+        }
+        self.newton.solver.factorize_indefinite().map_err(|_| {
+            Failure::Recoverable(
+                "the Newton matrix is singular (a body that is about to buckle or to collapse)"
+                    .into(),
+            )
+        })
+    }
+
+    /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds
+    /// M rv - gamma Kt ru and `self.newton.demands` what A^T xv is to be. Leaves xv and, complete with
+    /// those of nodal rows, mu.
+    fn solve_newton(&mut self, ru: &mut [f64]) {
+        let gamma = self.newton.gamma;
+        let NewtonMatrix { solver, stiffness, damping, right, xv, demands, mu, .. } =
+            &mut self.newton;
+        let (stiffness, damping) = (stiffness.get(), damping.get());
+        solver.solve(&self.rows, right, demands, xv, mu);
+        let (inertia, dimension) = (&self.model.inertia, self.model.dimension);
+        nodal_multipliers(&self.rows, mu, |dof| {
+            let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
+            inertia.row_product(dimension, dof, xv) + gamma * damped - right[dof]
+        });
+        ru.iter_mut().zip(&*xv).for_each(|(x, xv)| *x += gamma * xv);
+    }
+
+    /// Turns A^T rv in `self.newton.demands` into A^T xv.
+    fn stabilize_demands(&mut self, ru: &[f64]) {
+        let (gamma, alpha) = (self.newton.gamma, self.alpha);
+        let decay = 1.0 + alpha * gamma;
+        for (demand, row) in self.newton.demands.iter_mut().zip(&self.rows) {
+            *demand = (*demand - gamma * alpha * alpha * row.apply(ru)) / (decay * decay);
+        }
+    }
+
+    /// The Newton system of the ODE form: `ru`, `rv` become xu, xv. `share` times the accelerations that
+    /// follow from the forces and demands last evaluated is added to `rv` first. Leaves in mu
+    /// gamma times the change of lambda, or with those accelerations all of `share` times lambda. `internal` are the
+    /// residuals of the internal strains.
+    pub(crate) fn solve_newton_ode(
+        &mut self,
+        share: f64,
+        ru: &mut [f64],
+        rv: &mut [f64],
+        internal: &[f64],
+    ) {
+        let NewtonMatrix { stiffness, right, demands, gamma, place, .. } = &mut self.newton;
+        right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
+        if let (Some(branches), [_, ..]) = (&self.model.branches, internal) {
+            branches.add_residuals(*gamma, place.each_ref().map(|at| &at[..]), internal, right);
+        }
+        self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
+        for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
+            *demand = row.apply(rv) + share * of_forces;
+        }
+        // u' = v is linear: from the second iteration on, round-off is all that ru holds
+        if largest(ru) > 1e-12 * *gamma * largest(rv) {
+            stiffness.get().add_product(-*gamma, ru, right);
+        }
+        self.stabilize_demands(ru);
+        self.solve_newton(ru);
+        rv.copy_from_slice(&self.newton.xv);
+    }
+
+    /// Makes of the residuals `x` of the internal strains their changes, with those of the displacements, `xu`. Gives how the
+    /// power that they dissipate changes (W).
+    pub(super) fn solve_branches(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
+        let (NewtonMatrix { place, gamma, .. }, rates) = (&self.newton, &self.at.relaxing);
+        let branches = self.model.branches.as_ref();
+        let place = place.each_ref().map(|at| &at[..]);
+        branches.map_or(0.0, |branches| branches.solve(*gamma, place, rates, xu, x))
+    }
+
+    /// The Newton system of the index-1 form, cj dF/dy' + dF/dy with cj = 1/gamma: the residuals
+    /// `r1`, `r2`, `r3` become xu, xv and the change of lambda.
+    pub(super) fn solve_newton_index_one(
+        &mut self,
+        r1: &mut [f64],
+        r2: &mut [f64],
+        r3: &mut [f64],
+    ) {
+        let gamma = self.newton.gamma;
+        r1.iter_mut().for_each(|r| *r *= gamma);
+        let NewtonMatrix { stiffness, right, demands, .. } = &mut self.newton;
+        right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
+        stiffness.get().add_product(-gamma, r1, right);
+        demands.iter_mut().zip(&*r3).for_each(|(d, r)| *d = gamma * r);
+        self.stabilize_demands(r1);
+        self.solve_newton(r1);
+        r2.copy_from_slice(&self.newton.xv);
+        r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
+    }
+
+    /// The Newton system of the form of index 2 likewise; `r4` becomes the change of eta. With
+    /// xu = s + gamma xv it falls into
+    ///
+    /// ```text
+    /// M s - gamma A xeta = gamma r1,   A^T s = r4 - gamma r3
+    /// (M + gamma D + gamma^2 Kt) xv - A mu = gamma r2 - gamma Kt s,   A^T xv = r3
+    /// ```
+    pub(super) fn solve_newton_index_two(
+        &mut self,
+        r1: &mut [f64],
+        r2: &mut [f64],
+        r3: &mut [f64],
+        r4: &mut [f64],
+    ) {
+        let gamma = self.newton.gamma;
+        let NewtonMatrix { stiffness, right, demands, .. } = &mut self.newton;
+        right.iter_mut().zip(&*r1).for_each(|(f, r)| *f = gamma * r);
+        let of_slip = r4.iter().zip(&*r3).map(|(r4, r3)| r4 - gamma * r3);
+        demands.iter_mut().zip(of_slip).for_each(|(d, of_slip)| *d = of_slip);
+        self.inertia.solve(&self.rows, right, demands, r1, r4);
+        let Model { inertia, dimension, .. } = &*self.model;
+        nodal_multipliers(&self.rows, r4, |dof| {
+            inertia.row_product(*dimension, dof, r1) - right[dof]
+        });
+        right.iter_mut().zip(&*r2).for_each(|(f, r)| *f = gamma * r);
+        stiffness.get().add_product(-gamma, r1, right);
+        demands.copy_from_slice(r3);
+        self.solve_newton(r1);
+        r2.copy_from_slice(&self.newton.xv);
+        r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
+        r4.iter_mut().for_each(|x| *x /= gamma);
+    }
+
+    /// How the powers dissipated and supplied change along the last solution of the Newton
+    /// system: where forces are linear, exactly, for powers are quadratic then. So one iteration
+    /// settles the energies, too. Multipliers that the evaluation left at 0 are all in mu.
+    pub(super) fn power_changes(&mut self) -> (f64, f64) {
+        let NewtonMatrix { damping, is_damped, right, xv, mu, gamma, .. } = &mut self.newton;
+        let (mut dissipated, mut supplied) = self.at.nodal.work(xv);
+        if *is_damped {
+            right.fill(0.0);
+            damping.get().add_product(1.0, xv, right);
+            // damping forces are proportional to velocity
+            dissipated = 2.0 * dissipated + dot(right, xv);
+        }
+        for ((row, mu), (multiplier, rate)) in
+            self.rows.iter().zip(mu).zip(self.at.multipliers.iter().zip(&self.at.rates))
+        {
+            let change = row.apply(xv);
+            supplied += multiplier * change + *mu / *gamma * (rate + change);
+        }
+        (dissipated, supplied)
+    }
+}

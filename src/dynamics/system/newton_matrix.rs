@@ -1,0 +1,124 @@
+//! The Newton matrix, factorized, and the tangents of the forces of which it is made.
+
+use std::sync::Arc;
+
+use super::differences::Differences;
+use super::reduced::Reduced;
+use super::source::Coupling;
+use crate::base::sparse::BlockMatrix;
+use crate::dynamics::matrices::Model;
+use crate::scene::constraint::Row;
+
+/// Residuals, relative to the right-hand side, that systems may be solved to where that saves work: far below what a
+/// Newton iteration leaves, and below what any integrator sees that solves each system once.
+pub(super) const ITERATED: f64 = 1e-5;
+pub(super) const SOLVED_ONCE: f64 = 1e-11;
+
+pub(super) struct NewtonMatrix {
+    pub(super) solver: Reduced,
+    pub(super) stiffness: Tangent,
+    pub(super) damping: Tangent,
+    pub(super) differences: Differences,
+    /// Whether the tangents follow the state, and have been evaluated.
+    pub(super) follows: bool,
+    pub(super) is_set: bool,
+    /// Whether D is not all zeros.
+    pub(super) is_damped: bool,
+    pub(super) gamma: f64,
+    /// Displacements (m) and internal strains at which Maxwell branches have been eliminated.
+    pub(super) place: [Vec<f64>; 2],
+    pub(super) accuracy: f64,
+    pub(super) tangent_evaluations: usize,
+    /// f of the linear system, and its solution xv.
+    pub(super) right: Vec<f64>,
+    pub(super) xv: Vec<f64>,
+    /// d of the linear system, and its multipliers mu.
+    pub(super) demands: Vec<f64>,
+    pub(super) mu: Vec<f64>,
+}
+
+/// Kt or D.
+pub(super) enum Tangent {
+    /// The constant matrix of the model, in a phase without forces that change it.
+    Constant(Arc<BlockMatrix>),
+    /// A matrix of its own.
+    Own(BlockMatrix),
+}
+
+impl Tangent {
+    fn new(model: &Model, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
+        match constant {
+            Some(constant) if !follows => Self::Constant(constant.clone()),
+            _ => Self::Own(BlockMatrix::zeros(model.pattern(), model.dimension)),
+        }
+    }
+
+    pub(super) fn get(&self) -> &BlockMatrix {
+        match self {
+            Self::Constant(matrix) => matrix,
+            Self::Own(matrix) => matrix,
+        }
+    }
+
+    /// Its own matrix, as it is.
+    pub(super) fn own(&mut self) -> Option<&mut BlockMatrix> {
+        match self {
+            Self::Own(matrix) => Some(matrix),
+            Self::Constant(_) => None,
+        }
+    }
+
+    /// Its own matrix, set back to the constant part.
+    pub(super) fn begin(
+        &mut self,
+        constant: &Option<Arc<BlockMatrix>>,
+    ) -> Option<&mut BlockMatrix> {
+        let matrix = self.own()?;
+        match constant {
+            Some(constant) => matrix.values.copy_from_slice(&constant.values),
+            None => matrix.values.fill(0.0),
+        }
+        Some(matrix)
+    }
+}
+
+impl NewtonMatrix {
+    pub(super) fn new(model: &Model, rows: &[Row], follows: bool) -> Self {
+        let dofs = model.dofs();
+        Self {
+            solver: Reduced::new(model, rows, Coupling::AllAxes),
+            stiffness: Tangent::new(model, &model.stiffness, follows),
+            damping: Tangent::new(model, &model.damping, follows),
+            differences: Differences::new(model.scales),
+            follows,
+            is_set: false,
+            is_damped: model.damping.is_some(),
+            gamma: f64::NAN,
+            place: match &model.branches {
+                Some(branches) => [vec![0.0; dofs], vec![0.0; branches.unknowns()]],
+                None => [Vec::new(), Vec::new()],
+            },
+            accuracy: SOLVED_ONCE,
+            tangent_evaluations: 0,
+            right: vec![0.0; dofs],
+            xv: vec![0.0; dofs],
+            demands: vec![0.0; rows.len()],
+            mu: vec![0.0; rows.len()],
+        }
+    }
+
+    /// Starts all counts from 0.
+    pub(super) fn forget_counts(&mut self) {
+        self.tangent_evaluations = 0;
+        self.solver.forget_counts();
+        self.differences.forget_counts();
+    }
+
+    pub(super) fn tangent_evaluations(&self) -> usize {
+        self.tangent_evaluations
+    }
+
+    pub(super) fn difference_evaluations(&self) -> usize {
+        self.differences.evaluations()
+    }
+}

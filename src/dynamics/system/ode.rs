@@ -1,0 +1,64 @@
+//! The ODE form: y = (u, v, energy dissipated, energy supplied, internal strains of Maxwell branches).
+
+use super::System;
+use crate::dynamics::state::{ENERGIES, State, StateMut};
+use crate::integrators::ode::{Failure, Ode};
+
+impl Ode for System {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let State { u, v, others, .. } = State::of(y, self.dofs());
+        self.evaluate(t, u, v, others)?;
+        let rates = StateMut::of(ydot, self.dofs());
+        rates.u.copy_from_slice(v);
+        rates.v.copy_from_slice(&self.at.acceleration);
+        (*rates.dissipated, *rates.supplied) = self.powers(v, &self.at.multipliers);
+        rates.others.copy_from_slice(&self.at.relaxing);
+        Ok(())
+    }
+
+    fn integrals(&self) -> usize {
+        // those that nothing depends on are the last ones
+        if self.at.relaxing.is_empty() { ENERGIES } else { 0 }
+    }
+
+    fn newton_setup(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _ydot: &[f64],
+        gamma: f64,
+        reuse: bool,
+    ) -> Result<bool, Failure> {
+        let State { u, v, others, .. } = State::of(y, self.dofs());
+        // what Maxwell branches add depends on gamma
+        let current = self.update_tangents(t, u, v, reuse && others.is_empty());
+        self.add_branch_tangents(gamma, u, others);
+        self.factorize_newton(gamma)?;
+        Ok(current)
+    }
+
+    /// Leaves the accelerations to [`newton_solve`](Self::newton_solve), and with them the
+    /// power of the constraints.
+    fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        let State { u, v, others, .. } = State::of(y, self.dofs());
+        self.evaluate_forces(t, u, v, others)?;
+        self.evaluate_rows(t, u, v)?;
+        self.at.multipliers.fill(0.0);
+        let rates = StateMut::of(ydot, self.dofs());
+        rates.u.copy_from_slice(v);
+        rates.v.fill(0.0);
+        (*rates.dissipated, *rates.supplied) = self.powers(v, &self.at.multipliers);
+        rates.others.copy_from_slice(&self.at.relaxing);
+        Ok(())
+    }
+
+    fn newton_solve(&mut self, gamma: f64, r: &mut [f64]) -> Result<(), Failure> {
+        let r = StateMut::of(r, self.dofs());
+        self.solve_newton_ode(gamma, r.u, r.v, r.others);
+        let (dissipated, supplied) = self.power_changes();
+        let relaxed = self.solve_branches(r.u, r.others);
+        *r.dissipated += self.gamma() * (dissipated + relaxed);
+        *r.supplied += self.gamma() * supplied;
+        Ok(())
+    }
+}

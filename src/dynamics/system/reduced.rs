@@ -1,0 +1,371 @@
+//! The linear systems of a phase, [X -A; -A^T 0] [x; mu] = [f; -d], with X the inertia matrix or
+//! the Newton matrix.
+//!
+//! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is
+//! a Cholesky solve with the free part of X. General rows, few of them, are met by a Schur
+//! complement as large as their number.
+//!
+//! X may be singular without the general rows: planes of symmetry off the axes may be all that holds a body. So where X is
+//! factorized as it is, springs of its own stiffness rho act along the rows g of single nodes, which have room in its
+//! pattern: X + rho g g^T has the same solution where g.x = d, with a multiplier that is rho d larger.
+
+#[cfg(test)]
+mod tests;
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::linalg::cholesky::llt::factor::{
+    LltError, LltRegularization, cholesky_in_place, cholesky_in_place_scratch,
+};
+use faer::linalg::cholesky::llt::solve::{solve_in_place, solve_in_place_scratch};
+use faer::sparse::SymbolicSparseColMat;
+use faer::{Mat, MatMut, Par, Spec};
+
+use super::cholesky::Indefinite;
+use super::gradients::Gradients;
+use super::source::{Coupling, Source};
+use super::symmetric::Symmetric;
+use crate::dynamics::matrices::Model;
+use crate::scene::constraint::Row;
+
+/// Residual, relative to the right-hand side, that is round-off.
+pub(super) const EXACT: f64 = 1e-13;
+
+/// Solver for one X and one set of constraints.
+pub(super) struct Reduced {
+    /// The free part of X.
+    symmetric: Symmetric,
+    /// Entries of X between a free row (position in `free`) and a fixed column (dof).
+    border: Vec<(usize, usize, Source)>,
+    border_values: Vec<f64>,
+    general: GeneralRows,
+    springs: Vec<Spring>,
+    /// What they add, to which entries of the free part.
+    stiffening: Vec<(usize, f64)>,
+    /// Right-hand side and solution at the free degrees of freedom.
+    work: Vec<f64>,
+}
+
+/// A spring along a general row of a single node.
+struct Spring {
+    /// Number of the row among the general ones.
+    row: usize,
+    /// Entries of the free part of X with the products of two coefficients of the row.
+    entries: Vec<(usize, f64)>,
+    /// The diagonal of X there.
+    diagonal: Vec<Source>,
+}
+
+impl Reduced {
+    pub(super) fn new(model: &Model, rows: &[Row], coupling: Coupling) -> Self {
+        let (pattern, dimension) = (model.pattern(), model.dimension);
+        let dofs = pattern.nodes() * dimension;
+        let mut position: Vec<Option<usize>> = vec![Some(0); dofs];
+        rows.iter().filter_map(Row::nodal).for_each(|(dof, _)| position[dof] = None);
+        let free: Vec<usize> = (0..dofs).filter(|&dof| position[dof].is_some()).collect();
+        free.iter().enumerate().for_each(|(at, &dof)| position[dof] = Some(at));
+
+        let (mut offsets, mut row_indices) = (vec![0], Vec::new());
+        let (mut sources, mut border) = (Vec::new(), Vec::new());
+        for column in 0..dofs {
+            for (entry, node) in pattern.row(column / dimension) {
+                for axis in 0..dimension {
+                    let axes = [column % dimension, axis];
+                    let is_coupled = match coupling {
+                        Coupling::Diagonal => node * dimension + axis == column,
+                        Coupling::SameAxis => axes[0] == axes[1],
+                        Coupling::AllAxes => true,
+                    };
+                    if !is_coupled {
+                        continue;
+                    }
+                    // X is symmetric: entry (column, row) stands for (row, column).
+                    let source = Source::new(entry, pattern.transposed(entry), axes);
+                    match (position[node * dimension + axis], position[column]) {
+                        (Some(row), Some(column)) if row >= column => {
+                            row_indices.push(row);
+                            sources.push(source);
+                        }
+                        (Some(row), None) => border.push((row, column, source)),
+                        _ => {}
+                    }
+                }
+            }
+            if position[column].is_some() {
+                offsets.push(row_indices.len());
+            }
+        }
+        let general = GeneralRows::new(rows, &position);
+        let entry = |row: usize, column: usize| {
+            let [start, end] = [offsets[column], offsets[column + 1]];
+            (start..end).find(|&at| row_indices[at] == row)
+        };
+        let spring = |number: usize| {
+            let general: &GeneralRow = &general.rows[number];
+            rows[general.number].node(dimension)?;
+            let mut spring = Spring { row: number, entries: Vec::new(), diagonal: Vec::new() };
+            for &(row, c) in &general.free {
+                for &(column, other) in general.free.iter().filter(|term| term.0 <= row) {
+                    let at = entry(row, column)?;
+                    spring.entries.push((at, c * other));
+                    if row == column {
+                        spring.diagonal.push(sources[at]);
+                    }
+                }
+            }
+            Some(spring)
+        };
+        let springs: Vec<Spring> = (0..general.rows.len()).filter_map(spring).collect();
+        let lower =
+            SymbolicSparseColMat::new_checked(free.len(), free.len(), offsets, None, row_indices);
+        let of_nodes = |nodes: &Vec<usize>| -> Vec<usize> {
+            let of = |(axis, &node): (usize, &usize)| position[node * dimension + axis];
+            let axes = 0..dimension;
+            match coupling {
+                // axes that are not coupled are eliminated one after the other
+                Coupling::Diagonal | Coupling::SameAxis => axes
+                    .flat_map(|axis| nodes.iter().map(move |n| (axis, n)))
+                    .filter_map(of)
+                    .collect(),
+                Coupling::AllAxes => {
+                    let all = nodes.iter().flat_map(|n| axes.clone().map(move |axis| (axis, n)));
+                    all.filter_map(of).collect()
+                }
+            }
+        };
+        // a diagonal fills in no order
+        let dissection = model.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
+        let order = dissection.map(of_nodes);
+        let gradients = || Gradients::new(model, rows, coupling);
+        Self {
+            border_values: vec![0.0; border.len()],
+            general,
+            stiffening: Vec::with_capacity(springs.iter().map(|spring| spring.entries.len()).sum()),
+            springs,
+            work: vec![0.0; free.len()],
+            symmetric: Symmetric::new(free, sources, lower, order, gradients),
+            border,
+        }
+    }
+
+    /// Brings X, positive definite, into force, whose entries `value` gives. That it is not positive definite may be found later;
+    /// on large solids systems are solved to an `accuracy` relative to their right-hand sides.
+    pub(super) fn begin(
+        &mut self,
+        accuracy: f64,
+        value: impl Fn(Source) -> f64,
+    ) -> Result<(), Indefinite> {
+        // prescribed components are as exact as the systems are
+        let accuracy = if self.general.rows.is_empty() { accuracy } else { EXACT };
+        self.assemble_border(&value);
+        self.general.rows.iter_mut().for_each(|row| row.spring = 0.0);
+        self.symmetric.begin(accuracy, value)?;
+        self.general.factorize(&mut self.symmetric)
+    }
+
+    /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value` gives.
+    pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
+        self.assemble_border(&value);
+        self.stiffening.clear();
+        for Spring { row, entries, diagonal } in &self.springs {
+            let stiffness: f64 = diagonal.iter().map(|&source| value(source).abs()).sum();
+            self.general.rows[*row].spring = stiffness;
+            self.stiffening.extend(entries.iter().map(|&(at, product)| (at, stiffness * product)));
+        }
+        self.symmetric.factorize(value, &self.stiffening)?;
+        self.general.factorize(&mut self.symmetric)
+    }
+
+    /// Factorizes the X last given, which has turned out not to be positive definite.
+    pub(super) fn factorize_indefinite(&mut self) -> Result<(), Indefinite> {
+        self.symmetric.factorize_indefinite()?;
+        self.general.factorize(&mut self.symmetric)
+    }
+
+    fn assemble_border(&mut self, value: impl Fn(Source) -> f64) {
+        self.border_values
+            .iter_mut()
+            .zip(&self.border)
+            .for_each(|(x, &(_, _, source))| *x = value(source));
+    }
+
+    /// Solves X x - A mu = f, A^T x = d. `d` has one number per row of the constraints. `mu` gets
+    /// the multipliers of the general rows; those of nodal rows are left to the caller, who knows
+    /// X x - f at the fixed components.
+    pub(super) fn solve(
+        &mut self,
+        rows: &[Row],
+        f: &[f64],
+        d: &[f64],
+        x: &mut [f64],
+        mu: &mut [f64],
+    ) {
+        for (row, d) in rows.iter().zip(d) {
+            if let Some((dof, coefficient)) = row.nodal() {
+                x[dof] = d / coefficient;
+            }
+        }
+        self.work.iter_mut().zip(self.symmetric.free()).for_each(|(work, &dof)| *work = f[dof]);
+        for (&(row, column, _), value) in self.border.iter().zip(&self.border_values) {
+            self.work[row] -= value * x[column];
+        }
+        self.symmetric.solve(&mut self.work);
+        self.general.solve(rows, d, x, &mut self.work, mu);
+        self.work.iter().zip(self.symmetric.free()).for_each(|(work, &dof)| x[dof] = *work);
+    }
+
+    /// Has iterations tried before a factor, for so many more than solves with it would cost, however small the body is.
+    #[cfg(test)]
+    fn rent(mut self, model: &Model, rows: &[Row], coupling: Coupling, iterations: f64) -> Self {
+        self.symmetric.rent(Gradients::new(model, rows, coupling), iterations);
+        self
+    }
+
+    /// Starts the counts from 0.
+    pub(super) fn forget_counts(&mut self) {
+        self.symmetric.forget_counts();
+    }
+
+    /// [What solving has cost](Symmetric::counts).
+    pub(super) fn counts(&self) -> [usize; 3] {
+        self.symmetric.counts()
+    }
+
+    /// The general row found to follow from the others (its number in the list of all rows).
+    pub(super) fn dependent_row(&self) -> Option<usize> {
+        self.general.dependent
+    }
+}
+
+/// The Schur complement S = G^T X^-1 G of the general rows, with G their free part.
+struct GeneralRows {
+    /// Number of each general row in the list of all rows, its free and its fixed terms.
+    rows: Vec<GeneralRow>,
+    /// X^-1 G, one column per row.
+    inverse_g: Mat<f64>,
+    schur: Mat<f64>,
+    right: Vec<f64>,
+    memory: MemBuffer,
+    dependent: Option<usize>,
+}
+
+struct GeneralRow {
+    number: usize,
+    free: Vec<(usize, f64)>,
+    fixed: Vec<(usize, f64)>,
+    /// Stiffness of the spring along it in the X in force.
+    spring: f64,
+}
+
+impl GeneralRows {
+    fn new(rows: &[Row], position: &[Option<usize>]) -> Self {
+        let general = rows.iter().enumerate().filter(|(_, row)| row.nodal().is_none());
+        let rows: Vec<GeneralRow> = general
+            .map(|(number, row)| {
+                let split = |&(dof, c): &(usize, f64)| position[dof].map(|at| (at, c));
+                let is_fixed = |&&(dof, _): &&(usize, f64)| position[dof].is_none();
+                GeneralRow {
+                    number,
+                    free: row.terms.iter().filter_map(split).collect(),
+                    fixed: row.terms.iter().filter(is_fixed).copied().collect(),
+                    spring: 0.0,
+                }
+            })
+            .collect();
+        let (free, count) = (position.iter().flatten().count(), rows.len());
+        let memory = MemBuffer::new(StackReq::any_of(&[
+            cholesky_in_place_scratch::<f64>(count, Par::Seq, Spec::default()),
+            solve_in_place_scratch::<f64>(count, 1, Par::Seq),
+        ]));
+        Self {
+            rows,
+            inverse_g: Mat::zeros(free, count),
+            schur: Mat::zeros(count, count),
+            right: vec![0.0; count],
+            memory,
+            dependent: None,
+        }
+    }
+
+    fn factorize(&mut self, symmetric: &mut Symmetric) -> Result<(), Indefinite> {
+        if self.rows.is_empty() {
+            return Ok(());
+        }
+        for (k, row) in self.rows.iter().enumerate() {
+            let column = self.inverse_g.col_as_slice_mut(k);
+            column.fill(0.0);
+            row.free.iter().for_each(|&(at, coefficient)| column[at] = coefficient);
+            symmetric.solve(column);
+        }
+        for (i, row) in self.rows.iter().enumerate() {
+            for j in 0..self.rows.len() {
+                let column = self.inverse_g.col_as_slice(j);
+                self.schur[(i, j)] = row.free.iter().map(|&(at, c)| c * column[at]).sum();
+            }
+        }
+        let diagonal: Vec<f64> = (0..self.rows.len()).map(|i| self.schur[(i, i)]).collect();
+        let factorized = cholesky_in_place(
+            self.schur.as_mut(),
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+            Spec::default(),
+        );
+        // A row that follows from the rows before it leaves a pivot of the size of round-off.
+        let pivot_is_lost = |&i: &usize| self.schur[(i, i)].powi(2) <= 1e-12 * diagonal[i];
+        let lost = match factorized {
+            Err(LltError::NonPositivePivot { index }) => Some(index),
+            Ok(_) => (0..self.rows.len()).find(pivot_is_lost),
+        };
+        self.dependent = lost.map(|i| self.rows[i].number);
+        if lost.is_some() { Err(Indefinite) } else { Ok(()) }
+    }
+
+    /// Corrects `free` = X^-1 f so that the rows hold.
+    fn solve(&mut self, all: &[Row], d: &[f64], x: &[f64], free: &mut [f64], mu: &mut [f64]) {
+        if self.rows.is_empty() {
+            return;
+        }
+        debug_assert_eq!(all.len(), d.len());
+        for (right, row) in self.right.iter_mut().zip(&self.rows) {
+            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
+            let free: f64 = row.free.iter().map(|&(at, c)| c * free[at]).sum();
+            *right = d[row.number] - fixed - free;
+        }
+        let count = self.rows.len();
+        solve_in_place(
+            self.schur.as_ref(),
+            MatMut::from_column_major_slice_mut(&mut self.right, count, 1),
+            Par::Seq,
+            MemStack::new(&mut self.memory),
+        );
+        for (k, (multiplier, row)) in self.right.iter().zip(&self.rows).enumerate() {
+            let fixed: f64 = row.fixed.iter().map(|&(dof, c)| c * x[dof]).sum();
+            mu[row.number] = *multiplier - row.spring * (d[row.number] - fixed);
+            let column = self.inverse_g.col_as_slice(k);
+            free.iter_mut().zip(column).for_each(|(x, g)| *x += g * multiplier);
+        }
+    }
+}
+
+/// Completes the multipliers by those of nodal rows: `residual` is X x - f at a fixed component,
+/// where X x - f = A mu.
+pub(super) fn nodal_multipliers(
+    rows: &[Row],
+    multipliers: &mut [f64],
+    residual: impl Fn(usize) -> f64,
+) {
+    for (row, multiplier) in rows.iter().zip(&mut *multipliers) {
+        if let Some((dof, coefficient)) = row.nodal() {
+            *multiplier = residual(dof) / coefficient;
+        }
+    }
+    for general in (0..rows.len()).filter(|&k| rows[k].nodal().is_none()) {
+        for &(dof, c) in &rows[general].terms {
+            let fixed = |row: &Row| row.nodal().filter(|term| term.0 == dof);
+            let found = rows.iter().enumerate().find_map(|(k, row)| Some((k, fixed(row)?.1)));
+            if let Some((k, coefficient)) = found {
+                multipliers[k] -= c * multipliers[general] / coefficient;
+            }
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The equations of the phases of a scene, and how fast a body can move by them.
+
+use std::sync::Arc;
+
+use super::{Spectrum, System};
+use crate::base::input::InputError;
+use crate::dynamics::matrices::Model;
+use crate::elements::force::Forces;
+use crate::scene::constraint::PhaseStart;
+use crate::scene::timeline::{Phase, Scene};
+
+impl Scene {
+    /// The constant numbers of the scene under the forces of its phases.
+    pub(crate) fn model(&self, forces: &[Forces]) -> Arc<Model> {
+        let all = forces.iter().flatten().map(|force| &**force);
+        Arc::new(Model::new(self.body(), all))
+    }
+
+    /// The equations of one phase under its forces.
+    pub(crate) fn system(
+        &self,
+        model: &Arc<Model>,
+        phase: &Phase,
+        forces: Forces,
+        start: &PhaseStart,
+        alpha: f64,
+    ) -> Result<System, InputError> {
+        System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
+    }
+
+    /// How fast the body can move in each phase, in its undeformed shape and at rest: what makes a scene
+    /// stiff, and which method is the right one for it.
+    ///
+    /// ```
+    /// let scene = pliant::samples::square_jump(4)?;
+    /// let free = scene.spectrum()?[2];
+    /// assert!(free.highest_frequency > 4e3 && free.slowest_period().unwrap() > 0.01);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn spectrum(&self) -> Result<Vec<Spectrum>, InputError> {
+        let forces = self.forces()?;
+        let model = self.model(&forces);
+        let rest = vec![0.0; self.body().dofs()];
+        let mut time = 0.0;
+        let spectra = self.phases().iter().zip(forces).map(|(phase, forces)| {
+            let start = PhaseStart { time, u: &rest };
+            let mut system = self.system(&model, phase, forces, &start, 0.0)?;
+            let spectrum = system.spectrum(time, &rest, &rest);
+            time = phase.until;
+            Ok(spectrum)
+        });
+        spectra.collect()
+    }
+}

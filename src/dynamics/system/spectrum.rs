@@ -1,0 +1,271 @@
+//! How fast the motions of a phase are: the numbers that choose a method.
+
+use nalgebra::{DMatrix, SymmetricEigen};
+
+use super::System;
+use super::at_rest::shifted;
+use super::reduced::Reduced;
+use super::rigid::{self, Shape};
+use super::source::Coupling;
+use crate::base::sparse::{BlockMatrix, NodeMatrix};
+use crate::base::vector::{dot, noise};
+use crate::dynamics::matrices::Model;
+
+/// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
+/// the constraints allow. Contacts and springs count as far as they act in that state, Maxwell branches as springs, without
+/// their damping.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spectrum {
+    /// Highest angular frequency (rad/s), of Kt x = omega^2 M x: an estimate from below, good to a
+    /// few per cent.
+    pub highest_frequency: f64,
+    /// Lowest angular frequency (rad/s) of a vibration, rigid motions left out; `None` if nothing
+    /// vibrates.
+    pub lowest_frequency: Option<f64>,
+    /// Largest rate of decay (1/s), of D x = rate M x: likewise an estimate from below.
+    pub damping_rate: f64,
+    /// Damping ratio of the lowest vibration, x.D x / (2 omega x.M x) of its shape x.
+    pub lowest_damping_ratio: f64,
+    /// What of it is [mass damping](crate::Substance::mass_damping), which damps fast vibrations less.
+    pub mass_damping_ratio: f64,
+}
+
+impl Spectrum {
+    /// Period of the slowest vibration (s).
+    pub fn slowest_period(&self) -> Option<f64> {
+        self.lowest_frequency.map(|omega| std::f64::consts::TAU / omega)
+    }
+
+    /// Largest |eigenvalue| (1/s) of the equations of motion, those of the constraints' stabilization
+    /// left out: what bounds the step of an explicit method. The fastest decay and the fastest
+    /// vibration are taken to have the same shape, as they have in a body of one material.
+    pub fn stiffest_rate(&self) -> f64 {
+        let (omega, half) = (self.highest_frequency, 0.5 * self.damping_rate);
+        if half > omega { half + (half * half - omega * omega).sqrt() } else { omega }
+    }
+
+    /// Twice the damping ratio over the angular frequency of the lowest vibration (s): c/E where
+    /// viscosity alone damps. The damping ratio of other vibrations is about half of it times theirs.
+    pub fn retardation_time(&self) -> f64 {
+        self.lowest_frequency.map_or(0.0, |omega| 2.0 * self.lowest_damping_ratio / omega)
+    }
+}
+
+/// Bounds on iterations. Power iteration is within some per cent by then; subspace iteration ends
+/// when the lowest vibration is known to three digits.
+const POWER_ITERATIONS: usize = 40;
+const SUBSPACE_ITERATIONS: usize = 12;
+
+/// Parts of the highest eigenvalue: those below the first are of motions without stiffness; the second is the
+/// shift that makes Kt + shift M definite and leaves the solves their digits.
+const RIGID: f64 = 1e-12;
+const SHIFT: f64 = 1e-8;
+/// Part of the lowest eigenvalue that the shift is lowered to where it is above that: slender bodies are so soft.
+const LOWER_SHIFT: f64 = 0.1;
+
+impl System {
+    /// The spectrum at (t, u, v).
+    pub(crate) fn spectrum(&mut self, t: f64, u: &[f64], v: &[f64]) -> Spectrum {
+        self.update_tangents(t, u, v, false);
+        self.add_branch_tangents(0.0, u, &[]);
+        let highest = self.highest(|system| system.tangents().0);
+        let damping_rate = self.highest(|system| system.tangents().1);
+        let mut spectrum = Spectrum {
+            highest_frequency: highest.sqrt(),
+            lowest_frequency: None,
+            damping_rate,
+            lowest_damping_ratio: 0.0,
+            mass_damping_ratio: 0.0,
+        };
+        let rigid = self.rigid_motions(u, highest);
+        if let Some((eigenvalue, x)) = self.lowest(highest, &rigid) {
+            let omega = eigenvalue.sqrt();
+            spectrum.lowest_frequency = Some(omega);
+            spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
+            let by_mass = |m: &NodeMatrix| m.quadratic_form(self.model.dimension, &x);
+            spectrum.mass_damping_ratio =
+                self.model.mass_damping.as_deref().map_or(0.0, by_mass) / (2.0 * omega);
+        }
+        spectrum
+    }
+
+    /// Largest eigenvalue of X x = eigenvalue M x, X symmetric, by power iteration; 0 if nothing can
+    /// move.
+    fn highest(&mut self, matrix: impl Fn(&Self) -> &BlockMatrix) -> f64 {
+        let (dofs, count) = (self.dofs(), self.rows.len());
+        let (mut x, mut image) = (noise(dofs, 0), vec![0.0; dofs]);
+        let (nowhere, mut mu) = (vec![0.0; count], vec![0.0; count]);
+        let mut highest = 0.0;
+        for iteration in 0..=POWER_ITERATIONS {
+            // the constraints take their part out of the first guess as out of all others
+            image.fill(0.0);
+            match iteration {
+                0 => self.model.inertia.add_product(self.model.dimension, 1.0, &x, &mut image),
+                _ => matrix(self).add_product(1.0, &x, &mut image),
+            }
+            if iteration > 0 {
+                // x has length 1 in the norm of M
+                highest = f64::max(highest, dot(&x, &image));
+            }
+            self.inertia.solve(&self.rows, &image, &nowhere, &mut x, &mut mu);
+            let length = self.length(&x);
+            if length == 0.0 {
+                break;
+            }
+            x.iter_mut().for_each(|x| *x /= length);
+        }
+        highest
+    }
+
+    /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, orthonormal by M.
+    fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
+        let Model { positions, size, stiffness, dimension, inertia, .. } = &*self.model;
+        let mut positions = positions.clone();
+        // under linear strain turns along straight lines strain nothing
+        if stiffness.is_none() {
+            positions.iter_mut().zip(u).for_each(|(x, u)| *x += u);
+        }
+        let shape = Shape { dimension: *dimension, size: *size, positions: &positions };
+        let free = rigid::free_motions(shape, inertia.pattern(), &self.rows);
+        let mut motions = free.into_iter().map(|motion| motion.values).collect();
+        self.orthonormalize(&[], &mut motions);
+        if motions.is_empty() {
+            return motions;
+        }
+        let values = self.ritz(&mut motions);
+        let unresisted = motions.into_iter().zip(values);
+        let unresisted = unresisted.filter(|(_, value)| value.abs() <= RIGID * highest);
+        unresisted.map(|(motion, _)| motion).collect()
+    }
+
+    /// Lowest eigenvalue of Kt x = eigenvalue M x above those of motions without stiffness, and its x of length 1
+    /// in the norm of M, by subspace iteration across the `rigid` motions, which are orthonormal by M.
+    fn lowest(&mut self, highest: f64, rigid: &[Vec<f64>]) -> Option<(f64, Vec<f64>)> {
+        let (dofs, d) = (self.dofs(), self.model.dimension);
+        if highest == 0.0 {
+            return None;
+        }
+        let mut solver = Reduced::new(&self.model, &self.rows, Coupling::AllAxes);
+        let mut shift = SHIFT * highest;
+        // Kt may have become indefinite by compression
+        while !self.shift(&mut solver, shift) {
+            shift *= 100.0;
+            if shift > highest {
+                return None;
+            }
+        }
+        let mut block = (d * (d + 1) / 2 + 2).min(dofs);
+        let mut basis: Vec<Vec<f64>> = (0..block).map(|k| noise(dofs, k)).collect();
+        let (nowhere, mut mu) = (vec![0.0; self.rows.len()], vec![0.0; self.rows.len()]);
+        let mut found: Option<(f64, Vec<f64>)> = None;
+        let mut can_be_lower = shift <= SHIFT * highest;
+        let mut iterations = 0;
+        while iterations < SUBSPACE_ITERATIONS {
+            for x in &mut basis {
+                let mut image = vec![0.0; dofs];
+                self.model.inertia.add_product(d, 1.0, x, &mut image);
+                solver.solve(&self.rows, &image, &nowhere, x, &mut mu);
+            }
+            self.orthonormalize(rigid, &mut basis);
+            if basis.is_empty() {
+                return None; // numbers beyond double precision
+            }
+            let values = self.ritz(&mut basis);
+            let Some(lowest) = values.iter().position(|&value| value > RIGID * highest) else {
+                if basis.len() < block || block == dofs {
+                    return None;
+                }
+                // mechanisms fill it
+                let filled = block;
+                block = (2 * block).min(dofs);
+                basis.extend((filled..block).map(|k| noise(dofs, k)));
+                continue;
+            };
+            iterations += 1;
+            let value = values[lowest];
+            let before = found.replace((value, basis[lowest].clone()));
+            if can_be_lower && value < shift {
+                let lower = (LOWER_SHIFT * value).max(RIGID * highest);
+                can_be_lower = self.shift(&mut solver, lower);
+                if can_be_lower {
+                    shift = lower;
+                } else {
+                    self.shift(&mut solver, shift);
+                }
+                iterations = 0;
+                continue;
+            }
+            if before.is_some_and(|(before, _)| (before - value).abs() < 1e-3 * before) {
+                break;
+            }
+        }
+        found
+    }
+
+    /// Has `solver` solve with Kt + `shift` M. Returns whether that is positive definite.
+    fn shift(&self, solver: &mut Reduced, shift: f64) -> bool {
+        let (inertia, stiffness) = (&self.model.inertia, self.tangents().0);
+        solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
+    }
+
+    /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are orthonormal; what
+    /// follows from others is dropped.
+    fn orthonormalize(&self, others: &[Vec<f64>], basis: &mut Vec<Vec<f64>>) {
+        let Self { model, .. } = self;
+        let with_image = |x: Vec<f64>| {
+            let mut image = vec![0.0; x.len()];
+            model.inertia.add_product(model.dimension, 1.0, &x, &mut image);
+            (x, image)
+        };
+        let mut done: Vec<(Vec<f64>, Vec<f64>)> = others.iter().cloned().map(with_image).collect();
+        for mut x in basis.drain(..) {
+            let before = self.length(&x);
+            // twice is enough: the first round leaves round-off of the part it takes out
+            for _ in 0..2 {
+                for (other, image) in &done {
+                    let part = dot(image, &x);
+                    x.iter_mut().zip(other).for_each(|(x, other)| *x -= part * other);
+                }
+            }
+            let length = self.length(&x);
+            if length > 1e-12 * before {
+                x.iter_mut().for_each(|x| *x /= length);
+                done.push(with_image(x));
+            }
+        }
+        basis.extend(done.into_iter().skip(others.len()).map(|(x, _)| x));
+    }
+
+    /// Turns a basis that is orthonormal by M into one that is orthogonal by Kt as well, and tells
+    /// its eigenvalues, ascending.
+    fn ritz(&self, basis: &mut Vec<Vec<f64>>) -> Vec<f64> {
+        let dofs = self.dofs();
+        let image = |x: &Vec<f64>| {
+            let mut image = vec![0.0; dofs];
+            self.tangents().0.add_product(1.0, x, &mut image);
+            image
+        };
+        let images: Vec<Vec<f64>> = basis.iter().map(image).collect();
+        let product = |i: usize, j: usize| dot(&basis[i], &images[j]);
+        let size = basis.len();
+        let small = DMatrix::from_fn(size, size, |i, j| 0.5 * (product(i, j) + product(j, i)));
+        let eigen = SymmetricEigen::new(small);
+        let mut order: Vec<usize> = (0..size).collect();
+        order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+        let combined = |&mode: &usize| {
+            let mut x = vec![0.0; dofs];
+            for (vector, &part) in basis.iter().zip(eigen.eigenvectors.column(mode).iter()) {
+                x.iter_mut().zip(vector).for_each(|(x, v)| *x += part * v);
+            }
+            x
+        };
+        let combined = order.iter().map(combined).collect();
+        *basis = combined;
+        order.iter().map(|&mode| eigen.eigenvalues[mode]).collect()
+    }
+
+    /// sqrt(x.M x)
+    fn length(&self, x: &[f64]) -> f64 {
+        self.model.inertia.quadratic_form(self.model.dimension, x).sqrt()
+    }
+}

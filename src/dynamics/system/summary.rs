@@ -1,0 +1,77 @@
+//! What a scene contains, phase by phase.
+
+use super::Spectrum;
+use crate::base::input::InputError;
+use crate::scene::constraint::PhaseStart;
+use crate::scene::forces::Obstacle;
+use crate::scene::timeline::{Phase, Scene};
+
+/// What happens in a phase, and how fast the body can move then.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PhaseSummary {
+    /// Name of the phase.
+    pub name: String,
+    /// When it begins (s).
+    pub start: f64,
+    /// When it ends (s).
+    pub end: f64,
+    /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
+    pub gravity: Option<Vec<f64>>,
+    /// Number of rows of its constraints: one for each component of a node that is held or moved.
+    pub constraints: usize,
+    /// Number of nodes under loads and pressures on faces, counted once for each of them.
+    pub loaded_nodes: usize,
+    /// Names of the springs that are actuated.
+    pub actuated: Vec<String>,
+    /// Names of the chambers that are under pressure.
+    pub pressurized: Vec<String>,
+    /// Names of the obstacles that it meets.
+    pub obstacles: Vec<String>,
+    /// How fast the body can move, in its undeformed shape and at rest.
+    pub spectrum: Spectrum,
+}
+
+impl Scene {
+    /// What happens in each phase.
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate).
+    pub fn summary(&self) -> Result<Vec<PhaseSummary>, InputError> {
+        self.validate()?;
+        let spectra = self.spectrum()?;
+        let starts = [0.0].into_iter().chain(self.phases().iter().map(Phase::end));
+        let phases = self.phases().iter().zip(starts).zip(spectra);
+        phases.map(|((phase, start), spectrum)| self.summary_of(phase, start, spectrum)).collect()
+    }
+
+    fn summary_of(
+        &self,
+        phase: &Phase,
+        start: f64,
+        spectrum: Spectrum,
+    ) -> Result<PhaseSummary, InputError> {
+        let rows =
+            self.rows(phase, &PhaseStart { time: start, u: self.initial_displacements() })?;
+        let mut loaded_nodes = 0;
+        let loads = phase.loads.iter().map(|(selection, _)| selection);
+        for selection in loads.chain(phase.face_pressures.iter().map(|(selection, _)| selection)) {
+            loaded_nodes += self.body().mesh().select(selection)?.len();
+        }
+        let actuated = phase.actuations.iter().flat_map(|(springs, _)| springs);
+        let pressurized = phase.pressures.iter().map(|(chamber, _)| chamber);
+        let obstacles = phase.contacts(self.obstacles())?.into_iter().map(Obstacle::name);
+        let gravity = phase.gravity.as_deref().filter(|own| Some(*own) != self.acceleration());
+        Ok(PhaseSummary {
+            name: phase.name.clone(),
+            start,
+            end: phase.until,
+            gravity: gravity.map(Into::into),
+            constraints: rows.len(),
+            loaded_nodes,
+            actuated: actuated.cloned().collect(),
+            pressurized: pressurized.cloned().collect(),
+            obstacles: obstacles.map(str::to_owned).collect(),
+            spectrum,
+        })
+    }
+}

@@ -1,0 +1,111 @@
+//! Forces that a sample does not carry but that follow from it.
+
+use super::{Sample, Trajectory};
+use crate::base::input::InputError;
+use crate::elements::force::{Force, NodalForces};
+use crate::elements::mesh::Selection;
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::PhaseStart;
+use crate::scene::forces::Contact;
+use crate::scene::timeline::Phase;
+
+impl Trajectory {
+    /// Forces (N) of all obstacles on the nodes, dimension components per node; 0 where there is no
+    /// contact. A stiffness per area acts between the nodes: its forces are shared out to them.
+    ///
+    /// # Errors
+    /// A sample that is not of this trajectory; a distance function of your own that has changed
+    /// since the run and has no meaning any more.
+    pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
+        self.forces_of(&self.scene.contacts(self.phase_of(sample)?)?, sample)
+    }
+
+    /// The same of `contacts` alone.
+    pub(crate) fn forces_of<'a>(
+        &self,
+        contacts: impl IntoIterator<Item = &'a Contact>,
+        sample: &Sample,
+    ) -> Result<Vec<f64>, InputError> {
+        let mut forces = NodalForces::zeros(self.body().dofs());
+        for contact in contacts {
+            let added = contact.add_forces(sample.time, &sample.u, &sample.v, &mut forces);
+            added.map_err(|failure| refused(sample, failure))?;
+        }
+        let mut total = vec![0.0; self.body().dofs()];
+        forces.add_up(&mut total);
+        Ok(total)
+    }
+
+    /// Forces (N) of the constraints on the nodes, dimension components per node; 0 where nothing is
+    /// held or moved.
+    ///
+    /// # Errors
+    /// A sample that is not of this trajectory.
+    pub fn constraint_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
+        let phase = self.phase_of(sample)?;
+        let mut forces = vec![0.0; self.body().dofs()];
+        // where the rows start from tells what they prescribe, not which components they tie
+        let before = self.scene.phases()[..sample.phase].last();
+        let start = PhaseStart { time: before.map_or(0.0, Phase::end), u: &forces };
+        let rows = self.scene.rows(phase, &start)?;
+        if rows.len() != sample.multipliers.len() {
+            return Err(foreign(sample));
+        }
+        for (row, multiplier) in rows.iter().zip(&sample.multipliers) {
+            for &(dof, coefficient) in &row.terms {
+                forces[dof] += coefficient * multiplier;
+            }
+        }
+        Ok(forces)
+    }
+
+    /// The force (N), one component per dimension, with which constraints act on the nodes of
+    /// `selection` together: what a probe that holds or moves them reads, with the opposite sign.
+    ///
+    /// ```
+    /// # use pliant::{Body, Material, Mesh, Phase, Sampling, Scene, Settings};
+    /// # let soft = Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 200.0 };
+    /// # let bar = Body::new(Mesh::bar(0.1, 6)?, soft).area(2e-4).build()?;
+    /// let scene = Scene::new(bar).phase(Phase::until(1.0).hold("left").load("right", [2.0]));
+    /// let trajectory = scene.simulate(&Settings::default(), &Sampling::phase_ends())?;
+    /// let held = trajectory.constraint_force(trajectory.last(), "left")?;
+    /// assert!((held[0] - -2.0).abs() < 1e-3); // it has nearly come to rest
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`constraint_forces`](Self::constraint_forces); a selection without nodes.
+    pub fn constraint_force(
+        &self,
+        sample: &Sample,
+        selection: impl Into<Selection>,
+    ) -> Result<Vec<f64>, InputError> {
+        let nodes = self.body().mesh().select(&selection.into())?;
+        let forces = self.constraint_forces(sample)?;
+        let dimension = self.body().dimension();
+        let along = |axis| nodes.iter().map(|node| forces[node * dimension + axis]).sum();
+        Ok((0..dimension).map(along).collect())
+    }
+
+    /// The phase in force at a sample.
+    pub(crate) fn phase_of<'a>(&'a self, sample: &'a Sample) -> Result<&'a Phase, InputError> {
+        let dofs = self.body().dofs();
+        let phase = sample.commanded.0.as_deref();
+        let phase = phase.or_else(|| self.scene.phases().get(sample.phase));
+        let fits = sample.u.len() == dofs && sample.v.len() == dofs;
+        phase.filter(|_| fits).ok_or_else(|| foreign(sample))
+    }
+}
+
+fn foreign(sample: &Sample) -> InputError {
+    let mend = "it is not a sample of this trajectory: take one from Trajectory::samples";
+    InputError::new("sample", format!("that at {} s", sample.time), mend)
+}
+
+fn refused(sample: &Sample, failure: Failure) -> InputError {
+    let reason = match failure {
+        Failure::Recoverable(reason) => reason,
+        Failure::Fatal(error) => error.to_string(),
+    };
+    InputError::new("sample", format!("that at {} s", sample.time), reason)
+}

@@ -1,0 +1,319 @@
+//! Finer meshes: cells divided at the middles of their edges, or given mid nodes.
+
+use std::collections::BTreeMap;
+
+use super::ReferenceCell;
+use super::with_element;
+use crate::base::input::InputError;
+use crate::elements::mesh::{CellKind, Mesh};
+
+/// A mesh made finer: nodes keep their numbers, and new ones follow.
+pub(crate) struct Finer {
+    pub(crate) mesh: Mesh,
+    /// Cells that each cell has become.
+    pub(crate) children: usize,
+    /// The nodes of the first mesh, and where all nodes are in it.
+    old: usize,
+    places: Vec<Place>,
+    /// Node numbers by their places.
+    numbers: BTreeMap<Corners, usize>,
+    is_boundary: Vec<bool>,
+}
+
+/// Where a node is in the first mesh.
+struct Place {
+    corners: Corners,
+    /// Nodes of the first mesh with the values of their shape functions.
+    shares: Vec<(usize, f64)>,
+}
+
+/// Corners of a cell with their parts of a point, ascending: the same from all cells around it.
+type Corners = Vec<(usize, u32)>;
+
+/// The parts of the corners add up to this: points at quarters of edges and middles of hexahedra are whole numbers.
+const WHOLE: f64 = 64.0;
+
+/// A point of the reference cell; coordinates beyond its dimension are 0.
+type Point = [f64; 3];
+
+impl Mesh {
+    /// The same mesh with each cell divided into 2, 4 or 8 of its kind, at the middles of its edges. Nodes keep their
+    /// numbers. New ones follow; they belong to the node sets that all corners around them belong to, and those of
+    /// cell c (from 0), n each, are the cells n c to n c + n - 1.
+    ///
+    /// ```
+    /// use pliant::{Cells, Mesh};
+    ///
+    /// let coarse = Mesh::rectangle([0.2, 0.1], [3, 2], Cells::Triangles)?;
+    /// let fine = coarse.halved();
+    /// assert_eq!((fine.cell_count(), fine.node_count()), (16, 15));
+    /// assert_eq!(fine.sets()["bottom"].len(), 5);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    #[must_use]
+    pub fn halved(&self) -> Self {
+        self.divided().mesh
+    }
+
+    /// The same mesh with quadratic cells: triangles, tetrahedra and hexahedra get a node in the middle of each edge,
+    /// quadrilaterals are divided into two such triangles first. Nodes keep their numbers, as in
+    /// [`halved`](Self::halved).
+    ///
+    /// # Errors
+    /// Cells that are quadratic, or of which there are none that are (segments).
+    pub fn quadratic(&self) -> Result<Self, InputError> {
+        self.elevated().map(|finer| finer.mesh)
+    }
+
+    pub(crate) fn divided(&self) -> Finer {
+        let kind = self.kind();
+        let children = halves(linear(kind));
+        Finer::new(self, kind, &children)
+    }
+
+    /// See [`quadratic`](Self::quadratic).
+    pub(crate) fn elevated(&self) -> Result<Finer, InputError> {
+        let (kind, children): (_, &[&[usize]]) = match self.kind() {
+            CellKind::Triangle => (CellKind::Triangle6, &[&[0, 1, 2]]),
+            CellKind::Quadrilateral => (CellKind::Triangle6, &[&[0, 1, 2], &[0, 2, 3]]),
+            CellKind::Tetrahedron => (CellKind::Tetrahedron10, &[&[0, 1, 2, 3]]),
+            CellKind::Hexahedron => (CellKind::Hexahedron20, &[&[0, 1, 2, 3, 4, 5, 6, 7]]),
+            kind => {
+                let mend = "triangles, quadrilaterals, tetrahedra and hexahedra of linear shape functions get mid nodes";
+                return Err(InputError::new("cells", kind.name(), mend));
+            }
+        };
+        let corners = nodes(self.kind());
+        let child = |child: &&[usize]| child.iter().map(|&node| corners[node]).collect();
+        Ok(Finer::new(self, kind, &children.iter().map(child).collect::<Vec<_>>()))
+    }
+}
+
+impl Finer {
+    /// `mesh` with cells of a `kind` in place of its own: `children` are the corners of each in the reference cell.
+    fn new(mesh: &Mesh, kind: CellKind, children: &[Vec<Point>]) -> Self {
+        let old = mesh.node_count();
+        let mut finer = Self {
+            mesh: mesh.clone(),
+            children: children.len(),
+            old,
+            places: Vec::new(),
+            numbers: BTreeMap::new(),
+            is_boundary: Vec::new(),
+        };
+        let mut places: Vec<Option<Place>> = (0..old).map(|_| None).collect();
+        let reference = nodes(mesh.kind());
+        for cell in mesh.cells() {
+            for (node, at) in cell.iter().zip(&reference) {
+                let place = Place::new(mesh.kind(), cell, at);
+                finer.numbers.insert(place.corners.clone(), *node);
+                places[*node] = Some(place);
+            }
+        }
+        // nodes of no cell are where they are
+        let alone = |(node, place): (usize, Option<Place>)| {
+            place.unwrap_or_else(|| Place {
+                corners: vec![(node, WHOLE as u32)],
+                shares: vec![(node, 1.0)],
+            })
+        };
+        finer.places = places.into_iter().enumerate().map(alone).collect();
+        let points: Vec<Vec<Point>> =
+            children.iter().map(|child| with_mid_nodes(kind, child)).collect();
+        let mut connectivity = Vec::with_capacity(mesh.cell_count() * points.len() * kind.nodes());
+        for cell in mesh.cells() {
+            for point in points.iter().flatten() {
+                let place = Place::new(mesh.kind(), cell, point);
+                let next = finer.places.len();
+                let number = *finer.numbers.entry(place.corners.clone()).or_insert(next);
+                if number == next {
+                    finer.places.push(place);
+                }
+                connectivity.push(number);
+            }
+        }
+        let positions = finer.interpolated(mesh.positions(), mesh.dimension());
+        finer.mesh = mesh.with_cells(positions, kind, connectivity);
+        finer.is_boundary = vec![false; finer.places.len()];
+        for &node in finer.mesh.boundary_nodes() {
+            finer.is_boundary[node] = true;
+        }
+        for (name, nodes) in mesh.sets() {
+            if !["all", "boundary"].contains(&&name[..]) {
+                finer.mesh.set_nodes(name, finer.extended(nodes));
+            }
+        }
+        for (name, cells) in mesh.cell_groups() {
+            finer.mesh.set_cells(name, finer.children_of(cells));
+        }
+        finer
+    }
+
+    /// The cells (from 0) that those of the first mesh have become.
+    pub(crate) fn children_of(&self, cells: &[usize]) -> Vec<usize> {
+        cells
+            .iter()
+            .flat_map(|cell| (0..self.children).map(move |k| cell * self.children + k))
+            .collect()
+    }
+
+    /// Nodes (from 0) of the first mesh, with the new ones between them, in the order in which they run. Where all
+    /// given ones are on the boundary, so are the new ones.
+    pub(crate) fn extended(&self, nodes: &[usize]) -> Vec<usize> {
+        let mut is_given = vec![false; self.old];
+        nodes.iter().for_each(|&node| is_given[node] = true);
+        let all_outside = nodes.iter().all(|&node| self.is_boundary[node]);
+        let mut is_new: Vec<bool> = self.places.iter().map(|_| false).collect();
+        for (number, place) in self.places.iter().enumerate().skip(self.old) {
+            let is_between = place.corners.iter().all(|(corner, _)| is_given[*corner]);
+            is_new[number] = is_between && (self.is_boundary[number] || !all_outside);
+        }
+        let mut run = Vec::with_capacity(2 * nodes.len());
+        let next = nodes.iter().skip(1).chain(nodes.first());
+        for (&node, &next) in nodes.iter().zip(next) {
+            run.push(node);
+            let middle = middle(&self.places[node].corners, &self.places[next].corners);
+            if let Some(&number) = self.numbers.get(&middle).filter(|number| is_new[**number]) {
+                run.push(number);
+                is_new[number] = false;
+            }
+        }
+        run.extend((self.old..is_new.len()).filter(|&number| is_new[number]));
+        run
+    }
+
+    /// The number (from 0) of a node of the first mesh, or of a point mass, which come last.
+    #[cfg(feature = "study")]
+    pub(crate) fn number(&self, node: usize) -> usize {
+        if node < self.old { node } else { node + self.places.len() - self.old }
+    }
+
+    /// The nodes (from 0) that the first mesh did not have.
+    #[cfg(feature = "study")]
+    pub(crate) fn new_nodes(&self) -> std::ops::Range<usize> {
+        self.old..self.places.len()
+    }
+
+    /// A field of vectors, given at the nodes of the first mesh, at all nodes. Those of point masses, which come last, still do.
+    pub(crate) fn interpolated(&self, field: &[f64], dimension: usize) -> Vec<f64> {
+        let (field, points) = field.split_at((self.old * dimension).min(field.len()));
+        let mut values = field.to_vec();
+        for place in &self.places[self.old..] {
+            let part = |axis| {
+                place
+                    .shares
+                    .iter()
+                    .map(|(node, share)| share * field[node * dimension + axis])
+                    .sum::<f64>()
+            };
+            values.extend((0..dimension).map(part));
+        }
+        values.extend_from_slice(points);
+        values
+    }
+}
+
+impl Place {
+    /// The place `at` of the reference cell in a cell of a `kind`.
+    fn new(kind: CellKind, cell: &[usize], at: &Point) -> Self {
+        let parts = shape_functions(linear(kind), at);
+        let parts =
+            cell.iter().zip(parts).map(|(node, part)| (*node, (WHOLE * part).round() as u32));
+        let mut corners: Corners = parts.filter(|(_, part)| *part > 0).collect();
+        corners.sort_unstable();
+        let shares = cell.iter().copied().zip(shape_functions(kind, at));
+        Self { corners, shares: shares.filter(|(_, share)| *share != 0.0).collect() }
+    }
+}
+
+/// The middle between two places, as it is known by its corners.
+fn middle(one: &Corners, other: &Corners) -> Corners {
+    let mut parts = BTreeMap::new();
+    for (corner, part) in one.iter().chain(other) {
+        *parts.entry(*corner).or_insert(0) += part;
+    }
+    parts.into_iter().map(|(corner, part)| (corner, part / 2)).collect()
+}
+
+/// The kind with the same corners, and no other nodes.
+fn linear(kind: CellKind) -> CellKind {
+    match kind {
+        CellKind::Triangle6 => CellKind::Triangle,
+        CellKind::Tetrahedron10 => CellKind::Tetrahedron,
+        CellKind::Hexahedron20 => CellKind::Hexahedron,
+        kind => kind,
+    }
+}
+
+/// The corners of a cell of a `kind`, and the middles of its edges if it has nodes there.
+fn with_mid_nodes(kind: CellKind, corners: &[Point]) -> Vec<Point> {
+    let mut points = corners.to_vec();
+    for edge in kind.edges().iter().filter(|edge| edge.len() > 2) {
+        points.push(between(&corners[edge[0]], &corners[edge[1]]));
+    }
+    points
+}
+
+fn between(a: &Point, b: &Point) -> Point {
+    std::array::from_fn(|i| 0.5 * (a[i] + b[i]))
+}
+
+/// Corners of the cells into which one of linear shape functions is divided.
+fn halves(kind: CellKind) -> Vec<Vec<Point>> {
+    let corners = nodes(kind);
+    let simplices: &[&[usize]] = match kind {
+        CellKind::Triangle => &[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]],
+        // four at the corners; the octahedron that is left is divided along the line from 6 to 8 (Bey 1995)
+        CellKind::Tetrahedron => &[
+            &[0, 4, 6, 7],
+            &[4, 1, 5, 8],
+            &[6, 5, 2, 9],
+            &[7, 8, 9, 3],
+            &[4, 6, 7, 8],
+            &[4, 5, 6, 8],
+            &[6, 9, 7, 8],
+            &[5, 9, 6, 8],
+        ],
+        // each corner draws the cell to itself
+        _ => {
+            let child = |corner: &Point| corners.iter().map(|node| between(node, corner)).collect();
+            return corners.iter().map(child).collect();
+        }
+    };
+    let quadratic = match kind {
+        CellKind::Triangle => CellKind::Triangle6,
+        _ => CellKind::Tetrahedron10,
+    };
+    let points = with_mid_nodes(quadratic, &corners);
+    simplices.iter().map(|child| child.iter().map(|&point| points[point]).collect()).collect()
+}
+
+/// Where the nodes of the reference cell are.
+fn nodes(kind: CellKind) -> Vec<Point> {
+    fn nodes<
+        C: ReferenceCell<N, M>,
+        const N: usize,
+        const M: usize,
+        const D: usize,
+        const P: usize,
+    >() -> Vec<Point> {
+        C::NODES.map(|x| std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))).into()
+    }
+    with_element!(kind, 3, nodes())
+}
+
+/// The shape functions of a cell of a `kind` at a point.
+fn shape_functions(kind: CellKind, at: &Point) -> Vec<f64> {
+    fn values<
+        C: ReferenceCell<N, M>,
+        const N: usize,
+        const M: usize,
+        const D: usize,
+        const P: usize,
+    >(
+        at: &Point,
+    ) -> Vec<f64> {
+        C::values(std::array::from_fn(|i| at[i])).into()
+    }
+    with_element!(kind, 3, values(at))
+}

@@ -1,0 +1,391 @@
+//! A body as it is assembled: its constant matrices, and what follows from displacements.
+
+use std::fmt;
+use std::sync::Arc;
+
+use super::assembly::Elements;
+use super::dilatation::Dilatation;
+use super::fields::{CellField, NodalField, Probe, nodal_fields};
+use super::forces::Terms;
+use super::inertia::Inertia;
+use super::recipe::Recipe;
+use super::regions::Regions;
+use super::reinforcement::{Families, Reinforcement};
+use super::relaxing::Branches;
+use crate::base::input::{InputError, finite};
+use crate::base::sparse::{BlockMatrix, NodeMatrix};
+use crate::elements::basis::shares_at;
+use crate::elements::force::NodalForces;
+use crate::elements::material::{
+    self, Hooke, Hookean, Lame, Material, Plane, Strain, Substance, Viscosity,
+};
+use crate::elements::mesh::Mesh;
+use crate::integrators::ode::Failure;
+
+/// An elastic body: mesh, material, and the matrices M, K and B.
+///
+/// ```
+/// use pliant::{Body, Cells, Material, Mesh};
+///
+/// let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+/// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+/// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+/// assert!((body.mass() - 0.9).abs() < 1e-12); // kg
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Clone)]
+pub struct Body {
+    pub(super) mesh: Mesh,
+    pub(super) material: Material,
+    pub(super) strain: Strain,
+    pub(super) plane: Plane,
+    pub(super) viscosity: Viscosity,
+    pub(super) section: f64,
+    pub(super) elements: Arc<dyn Elements>,
+    pub(super) regions: Arc<Regions>,
+    pub(super) inertia: Arc<NodeMatrix>,
+    pub(super) stiffness: Arc<BlockMatrix>,
+    pub(super) damping: Arc<BlockMatrix>,
+    /// The part a M of the damping, if there is one.
+    pub(super) mass_damping: Option<Arc<NodeMatrix>>,
+    pub(super) fibres: Arc<Families>,
+    /// What it was made from.
+    pub(super) recipe: Arc<Recipe>,
+}
+
+impl fmt::Debug for Body {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Body")
+            .field("nodes", &self.mesh.node_count())
+            .field("cells", &self.mesh.cell_count())
+            .field("kind", &self.mesh.kind())
+            .field("material", &self.recipe.material)
+            .field("regions", &self.recipe.regions)
+            .field("strain", &self.strain)
+            .field("viscosity", &self.viscosity)
+            .finish_non_exhaustive()
+    }
+}
+
+impl Body {
+    /// The mesh in its undeformed shape.
+    pub fn mesh(&self) -> &Mesh {
+        &self.mesh
+    }
+
+    /// What it is made of.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// What it and its regions are made of.
+    pub(crate) fn materials(&self) -> &[Material] {
+        &self.regions.materials
+    }
+
+    /// What it assumes about the third dimension, if its cells have two.
+    pub(crate) fn plane(&self) -> Plane {
+        self.plane
+    }
+
+    /// How strain is measured.
+    pub fn strain(&self) -> Strain {
+        self.strain
+    }
+
+    /// How inertia is shared out among the nodes.
+    pub fn inertia_kind(&self) -> Inertia {
+        self.recipe.inertia
+    }
+
+    /// Where it resists a change of its volume.
+    pub fn dilatation(&self) -> Dilatation {
+        self.recipe.dilatation
+    }
+
+    /// What it is made of, and after that each of its regions.
+    pub fn substances(&self) -> impl Iterator<Item = &Substance> {
+        let regions = self.recipe.regions.iter().map(|(_, substance)| substance);
+        std::iter::once(&self.recipe.material).chain(regions)
+    }
+
+    /// Number of regions that were given.
+    #[cfg(feature = "study")]
+    pub(crate) fn region_count(&self) -> usize {
+        self.recipe.regions.len()
+    }
+
+    /// How viscosity acts.
+    pub fn viscosity(&self) -> Viscosity {
+        self.viscosity
+    }
+
+    /// Thickness (m) of a body of two-dimensional cells, cross-sectional area (m^2) of one of
+    /// segments, 1 otherwise.
+    pub(crate) fn section(&self) -> f64 {
+        self.section
+    }
+
+    /// Dimension of space.
+    pub fn dimension(&self) -> usize {
+        self.mesh.dimension()
+    }
+
+    /// Number of displacement components: nodes times dimension.
+    pub fn dofs(&self) -> usize {
+        self.mesh.node_count() * self.dimension()
+    }
+
+    /// Inertia matrix M = m (x) I; this is m (kg).
+    pub fn inertia(&self) -> &NodeMatrix {
+        &self.inertia
+    }
+
+    /// Stiffness matrix K = lambda J_lambda + mu J_mu (N/m).
+    pub fn stiffness(&self) -> &BlockMatrix {
+        &self.stiffness
+    }
+
+    /// Damping matrix B = lambda_vis J_lambda + mu_vis J_mu + a M (N s/m), with the rate a of
+    /// [mass damping](crate::Substance::mass_damping).
+    pub fn damping(&self) -> &BlockMatrix {
+        &self.damping
+    }
+
+    /// The connection matrices J_lambda and J_mu: geometry only (slides, "stiffness matrix").
+    pub fn connection_matrices(&self) -> [BlockMatrix; 2] {
+        [Lame { lambda: 1.0, mu: 0.0 }, Lame { lambda: 0.0, mu: 1.0 }].map(|unit| {
+            let unit = material::Elastic::Linear(Hookean(Hooke::new(unit, 3, Plane::Strain)));
+            let mut matrix = BlockMatrix::zeros(self.stiffness.pattern(), self.dimension());
+            self.elements.add_stiffness(&self.regions, &|_| unit, &mut matrix);
+            matrix
+        })
+    }
+
+    /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
+    pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
+        self.elements.volume_ratios(u)
+    }
+
+    /// Angle (rad, 0 to pi) by which each cell has turned under the displacements `u` (m): that of the rotation
+    /// nearest to its mean deformation gradient.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.1], [2, 2], Cells::Rectangles)?;
+    /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
+    /// let body = Body::new(mesh, soft).thickness(0.01).build()?;
+    /// // sheared: the lower side stays, the upper one moves to the right by the height
+    /// let turned = body.cell_rotations(&[0.0, 0.0, 0.0, 0.0, 0.1, 0.0, 0.1, 0.0]);
+    /// assert!((turned[0].tan() - 0.5).abs() < 1e-12);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn cell_rotations(&self, u: &[f64]) -> Vec<f64> {
+        self.elements.rotations(u)
+    }
+
+    /// Strain, stress and strain energy density of each cell under the displacements `u` (m,
+    /// dimension components per node).
+    ///
+    /// ```
+    /// use pliant::{Body, Material, Mesh, Strain};
+    ///
+    /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.3, viscosity: 0.0 };
+    /// let bar = Body::new(Mesh::bar(0.1, 2)?, soft).area(2e-4).strain(Strain::Cauchy).build()?;
+    /// let [field] = bar.cell_fields(&[0.0, 0.001])[..] else { panic!("one cell") };
+    /// assert!((field.strain[0][0] - 0.01).abs() < 1e-12);
+    /// assert!((field.stress[0][0] - 500.0).abs() < 1e-9 && (field.von_mises() - 500.0).abs() < 1e-9);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn cell_fields(&self, u: &[f64]) -> Vec<CellField> {
+        self.elements.fields(&self.regions, u)
+    }
+
+    /// Part of the strain energy (0 to 1) under the displacements `u` (m) that is stored in differences between the
+    /// strain and a continuous one. `None` without strain.
+    pub(crate) fn strain_jumps(&self, u: &[f64]) -> Option<f64> {
+        let [energy, jumps] = self.elements.jumps(&self.regions, self.strain, u);
+        (energy > 0.0).then(|| jumps / energy)
+    }
+
+    /// Cells (counted from 0) that the displacements `u` (m) turn inside out.
+    pub(crate) fn inverted_cells(&self, u: &[f64]) -> Vec<usize> {
+        self.elements.inverted(u)
+    }
+
+    /// Strain and stress at each node under the displacements `u` (m): those of the cells around it, extrapolated from
+    /// where they are computed, in the mean over the volumes of the cells. What is linear in space comes out exact
+    /// with quadratic cells.
+    ///
+    /// Where materials meet, it is a mean over both: look at [`cell_fields`](Self::cell_fields) there.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Strain};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.1], [3, 3], Cells::Triangles6)?;
+    /// let soft = Material { density: 1000.0, young: 5e4, poisson: 0.0, viscosity: 0.0 };
+    /// let body = Body::new(mesh, soft).thickness(0.01).strain(Strain::Cauchy).build()?;
+    /// // a strain of x / (1 m) along x
+    /// let positions = body.mesh().positions().chunks(2);
+    /// let u: Vec<f64> = positions.flat_map(|x| [x[0] * x[0] / 2.0, 0.0]).collect();
+    /// for (field, x) in body.nodal_fields(&u).iter().zip(body.mesh().positions().chunks(2)) {
+    ///     assert!((field.stress[0][0] - 5e4 * x[0]).abs() < 1e-9);
+    /// }
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn nodal_fields(&self, u: &[f64]) -> Vec<NodalField> {
+        nodal_fields(&*self.elements, &self.regions, self.mesh.node_count(), u)
+    }
+
+    /// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there.
+    ///
+    /// # Errors
+    /// A point outside the body.
+    pub(crate) fn shares_at(&self, x: &[f64]) -> Result<Vec<(usize, f64)>, InputError> {
+        if x.len() != self.dimension() {
+            let mend = format!("it needs {} component(s) (m)", self.dimension());
+            return Err(InputError::new("point", format!("{x:?}"), mend));
+        }
+        finite("point", x)?;
+        shares_at(&self.mesh, x).ok_or_else(|| {
+            let mend =
+                "it lies outside the body: give the undeformed position of one of its points";
+            InputError::new("point", format!("{x:?}"), mend)
+        })
+    }
+
+    /// What reads the sum of the fields at nodes (counted from 0), each times its weight.
+    pub(crate) fn probe(&self, weights: &[(usize, f64)]) -> Probe {
+        Probe::new(&self.mesh, &self.cell_volumes(), weights)
+    }
+
+    /// What `probe` reads under the displacements `u` (m).
+    pub(crate) fn probed(&self, probe: &Probe, u: &[f64]) -> NodalField {
+        probe.read(&*self.elements, &self.regions, u)
+    }
+
+    /// Natural volume of each cell (m^3).
+    pub fn cell_volumes(&self) -> Vec<f64> {
+        self.elements.volumes()
+    }
+
+    /// Adds the elastic forces (N) at the displacements `u` (m, dimension components per node) to the
+    /// conservative ones of `forces`, element by element. With Cauchy strain they are -K u.
+    ///
+    /// # Errors
+    /// A cell for which the material's law has no meaning: one that `u` turns inside out, with Green
+    /// strain.
+    pub fn add_elastic_forces(&self, u: &[f64], forces: &mut NodalForces) -> Result<(), Failure> {
+        // without objective viscosity velocities count for nothing
+        let terms = Terms { elastic: true, viscous: false };
+        self.elements.add_forces(&self.regions, terms, u, u, forces)
+    }
+
+    /// Volume of the cells (m^3).
+    pub fn volume(&self) -> f64 {
+        self.cell_volumes().iter().sum()
+    }
+
+    pub(crate) fn shared_inertia(&self) -> Arc<NodeMatrix> {
+        self.inertia.clone()
+    }
+
+    /// K, if the elastic force is -K u.
+    pub(crate) fn constant_stiffness(&self) -> Option<Arc<BlockMatrix>> {
+        (self.strain == Strain::Cauchy).then(|| self.stiffness.clone())
+    }
+
+    /// Whether the viscous force is that of a constant matrix, and not 0.
+    pub(super) fn has_natural_viscosity(&self) -> bool {
+        self.viscosity == Viscosity::Natural && self.regions.are_viscous()
+    }
+
+    /// The part of B that is constant, if it is not 0: all of it if viscosity is natural, a M otherwise.
+    pub(crate) fn constant_damping(&self) -> Option<Arc<BlockMatrix>> {
+        if self.has_natural_viscosity() {
+            return Some(self.damping.clone());
+        }
+        self.mass_damping.as_ref().map(|by_mass| {
+            let mut matrix = BlockMatrix::zeros(self.damping.pattern(), self.dimension());
+            matrix.add_on_all_axes(by_mass);
+            Arc::new(matrix)
+        })
+    }
+
+    /// The part a M of B, if it is not 0.
+    pub(crate) fn mass_damping(&self) -> Option<Arc<NodeMatrix>> {
+        self.mass_damping.clone()
+    }
+
+    /// Whether -B v is least work with the matrix of all constant damping.
+    pub(crate) fn damps_by_matrix(&self) -> bool {
+        self.has_natural_viscosity() && !self.is_linear_by_cells()
+    }
+
+    /// The forces of its fibres, if it has any.
+    pub(crate) fn reinforcement(&self) -> Option<Reinforcement> {
+        (!self.fibres.is_empty()).then(|| Reinforcement(self.fibres.clone()))
+    }
+
+    /// The Maxwell branches, if there are any.
+    pub(crate) fn branches(&self) -> Option<Branches> {
+        let (elements, regions) = (self.elements.clone(), self.regions.clone());
+        self.regions.branches().next().is_some().then_some(Branches { elements, regions })
+    }
+
+    /// Total mass (kg).
+    pub fn mass(&self) -> f64 {
+        self.inertia.values.iter().sum()
+    }
+
+    /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, corners of
+    /// quadratic cells may have none, or less than none.
+    pub fn nodal_masses(&self) -> Vec<f64> {
+        let pattern = self.inertia.pattern();
+        let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();
+        (0..pattern.nodes()).map(row_sum).collect()
+    }
+
+    /// Mean of `x`, dimension components per node, over the mass.
+    pub(crate) fn mass_average(&self, x: &[f64]) -> Vec<f64> {
+        let (dimension, mass) = (self.dimension(), self.mass());
+        let mut average = vec![0.0; dimension];
+        for (nodal_mass, x) in self.nodal_masses().iter().zip(x.chunks_exact(dimension)) {
+            average.iter_mut().zip(x).for_each(|(a, x)| *a += nodal_mass * x / mass);
+        }
+        average
+    }
+
+    /// Angle (rad, counter-clockwise) by which a body of the plane has turned as a whole under the displacements
+    /// `u` (m): that of the rotation which, in the mean over its mass, brings the undeformed shape nearest to the
+    /// present one. `None` in other dimensions.
+    pub(crate) fn rotation(&self, u: &[f64]) -> Option<f64> {
+        if self.dimension() != 2 {
+            return None;
+        }
+        Some(self.turned(&self.arms(), u))
+    }
+
+    /// The mass of each node of a body in the plane times where the node naturally is from the centre of mass (kg m). They add up to 0.
+    pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
+        let positions = self.mesh().positions();
+        let centre = self.mass_average(positions);
+        let masses = self.nodal_masses();
+        let arm = |(mass, x): (&f64, &[f64])| [0, 1].map(|i| mass * (x[i] - centre[i]));
+        masses.iter().zip(positions.chunks_exact(2)).map(arm).collect()
+    }
+
+    /// The [`rotation`](Self::rotation) of a body in the plane, by its `arms`.
+    pub(crate) fn turned(&self, arms: &[[f64; 2]], u: &[f64]) -> f64 {
+        let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
+        let (mut along, mut across) = (0.0, 0.0);
+        for ([a, b], (x, u)) in arms.iter().zip(nodes) {
+            // from any point: the arms add up to 0
+            let [x, y] = [x[0] + u[0], x[1] + u[1]];
+            along += a * x + b * y;
+            across += a * y - b * x;
+        }
+        across.atan2(along)
+    }
+}

@@ -1,0 +1,44 @@
+//! Elements behind an interface without kind and dimension.
+
+use super::branches::Branched;
+use super::elements::ElementsOf;
+use super::fibres::Reinforced;
+use super::fields::Fields;
+use super::forces::Forces;
+use super::inertia::Masses;
+use super::recovery::Recovery;
+use super::tangents::Tangents;
+use crate::base::input::InputError;
+use crate::base::sparse::NodePattern;
+use crate::elements::basis::{ReferenceCell, with_element};
+use crate::elements::mesh::Mesh;
+
+/// All elements of a body.
+pub(super) trait Elements:
+    Masses + Forces + Branched + Reinforced + Tangents + Fields + Recovery + Send + Sync
+{
+}
+
+impl<T> Elements for T where
+    T: Masses + Forces + Branched + Reinforced + Tangents + Fields + Recovery + Send + Sync
+{
+}
+
+/// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
+pub(super) fn elements(
+    mesh: &Mesh,
+    section: f64,
+    mean_dilatation: bool,
+    pattern: &NodePattern,
+) -> Result<Box<dyn Elements>, InputError> {
+    with_element!(mesh.kind(), mesh.dimension(), of(mesh, section, mean_dilatation, pattern))
+}
+
+fn of<C: ReferenceCell<N, M>, const N: usize, const M: usize, const D: usize, const Q: usize>(
+    mesh: &Mesh,
+    section: f64,
+    mean_dilatation: bool,
+    pattern: &NodePattern,
+) -> Result<Box<dyn Elements>, InputError> {
+    Ok(Box::new(ElementsOf::<N, M, D, Q>::new::<C>(mesh, section, mean_dilatation, pattern)?))
+}

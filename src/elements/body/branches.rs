@@ -1,0 +1,377 @@
+//! The Maxwell branches of all elements: their forces, and their internal strains as unknowns.
+//!
+//! A branch has a strain G at each strain point of a cell, its components one after the other: those of the branches of a point, of
+//! the points of a cell, of the cells. Nothing couples those of two points but the displacements, so that the Newton system
+//! is solved for them point by point: with P = 1 / (1 + gamma/tau), or what a flow above the yield stress makes of it, and the
+//! change B xu of the strain,
+//!
+//! ```text
+//! xG = P rG + (I - P) B xu
+//! (... + gamma^2 sum B^T C P B) xv = ... + gamma sum B^T C P rG
+//! ```
+//!
+//! With a mean dilatation the stress at a point takes the mean over the cell of the trace of E - G, which no other equation does.
+
+use super::elements::{ElementsOf, gradient};
+use super::forces::{collect, relative};
+use super::regions::Regions;
+use super::tangents::add_blocks;
+use crate::base::sparse::{BlockMatrix, Rows};
+use crate::base::tensor::Matrix;
+use crate::elements::basis::StrainPoint;
+use crate::elements::material::{
+    Block, Blocks, Components, Relaxing, Step, Strained, Stretch, trace,
+};
+
+/// Elements with branches.
+pub(super) trait Branched {
+    fn internal_strains(&self, regions: &Regions) -> usize;
+
+    fn relax(&self, regions: &Regions, u: &[f64], internal: &mut [f64]);
+
+    fn add_branch_forces(
+        &self,
+        regions: &Regions,
+        u: &[f64],
+        internal: &[f64],
+        forces: &mut [f64],
+        rates: &mut [f64],
+    ) -> f64;
+
+    fn branch_energy(&self, regions: &Regions, u: &[f64], internal: &[f64]) -> f64;
+
+    fn add_branch_tangents(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        at: [&[f64]; 2],
+        stiffness: &mut BlockMatrix,
+    );
+
+    fn add_branch_residuals(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        at: [&[f64]; 2],
+        residuals: &[f64],
+        right: &mut [f64],
+    );
+
+    fn solve_branches(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        at: [&[f64]; 2],
+        rates: &[f64],
+        xu: &[f64],
+        x: &mut [f64],
+    ) -> f64;
+}
+
+/// A branch at a point of a cell.
+struct Site<'a, const N: usize, const M: usize, const D: usize> {
+    branch: &'a Relaxing,
+    point: &'a StrainPoint<f64, N, M, D>,
+    at: Strained<M, D>,
+    cell: usize,
+    /// Place of its internal strain among all.
+    first: usize,
+}
+
+impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
+    /// Of a point of a `cell` whose nodes are displaced by `x`, relative to the first.
+    fn new(
+        branch: &'a Relaxing,
+        point: &'a StrainPoint<f64, N, M, D>,
+        x: &[[f64; D]; N],
+        cell: usize,
+        first: usize,
+    ) -> Self {
+        let at = branch.at(point.frame, gradient(1, x, &point.gradients));
+        Self { branch, point, at, cell, first }
+    }
+
+    /// Its own of the internal strains, or of their rates or residuals.
+    fn own(&self, internal: &[f64]) -> Components {
+        let mut own = Components::default();
+        let all = &internal[self.first..][..self.branch.components()];
+        own[..all.len()].copy_from_slice(all);
+        own
+    }
+
+    fn own_mut<'i>(&self, internal: &'i mut [f64]) -> &'i mut [f64] {
+        &mut internal[self.first..][..self.branch.components()]
+    }
+
+    /// What passes to E - G in a step of the parameter `gamma`.
+    fn step(&self, gamma: f64, internal: &[f64]) -> Step {
+        self.branch.step::<M>(gamma, &self.apart(internal))
+    }
+
+    /// E - G
+    fn apart(&self, internal: &[f64]) -> Components {
+        let own = self.own(internal);
+        let mut apart = self.at.strain();
+        apart.iter_mut().zip(own).for_each(|(e, g)| *e -= g);
+        apart
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Visits all branches at all points, with the strains of their springs that `strains` tells of each.
+    fn visit<const K: usize>(
+        &self,
+        regions: &Regions,
+        u: &[f64],
+        strains: impl Fn(&Site<'_, N, M, D>) -> [Components; K],
+        mut work: impl FnMut(&Site<'_, N, M, D>, [Stretch; K]),
+    ) {
+        let u = u.as_chunks::<D>().0;
+        let mut of_cells = 0;
+        for (cell, nodes) in self.nodes.iter().enumerate() {
+            let branches = &regions.of(cell).branches;
+            if branches.is_empty() {
+                continue;
+            }
+            let x = relative(nodes, u);
+            let of_point =
+                |count: usize| branches[..count].iter().map(Relaxing::components).sum::<usize>();
+            let all = of_point(branches.len());
+            let own = |point: usize, branch: usize| of_cells + point * all + of_point(branch);
+            // a mean is that of one branch
+            let together = if self.mean_dilatation { 1 } else { branches.len() };
+            for start in (0..branches.len()).step_by(together) {
+                let mean = self.mean_dilatation.then(|| {
+                    let (mut sums, mut volume) = ([0.0; K], 0.0);
+                    for (q, point) in self.points(cell).enumerate() {
+                        let (branch, first) = (&branches[start], own(q, start));
+                        let strains = strains(&Site::new(branch, &point, &x, cell, first));
+                        for k in 0..K {
+                            sums[k] += point.volume * trace::<M>(&strains[k]);
+                        }
+                        volume += point.volume;
+                    }
+                    sums.map(|sum| sum / volume)
+                });
+                for (q, point) in self.points(cell).enumerate() {
+                    let mut first = own(q, start);
+                    for branch in &branches[start..start + together] {
+                        let site = Site::new(branch, &point, &x, cell, first);
+                        let strains = strains(&site);
+                        let traces =
+                            mean.unwrap_or_else(|| strains.map(|strain| trace::<M>(&strain)));
+                        let stretch = |k: usize| Stretch { strain: strains[k], trace: traces[k] };
+                        work(&site, std::array::from_fn(stretch));
+                        first += branch.components();
+                    }
+                }
+            }
+            of_cells += Q * all;
+        }
+    }
+
+    /// Adds `factor` sum P g_a to the vectors of the nodes of a cell.
+    fn pull(
+        &self,
+        site: &Site<'_, N, M, D>,
+        stress: &Matrix<f64, D, M>,
+        factor: f64,
+        vectors: &mut [f64],
+    ) {
+        let vectors = vectors.as_chunks_mut::<D>().0;
+        let mut pulls = [[0.0; D]; N];
+        collect(&site.point.gradients, stress, &mut pulls);
+        let nodes = &self.nodes[site.cell];
+        for (pull, &node) in pulls.iter().zip(nodes).skip(1) {
+            for i in 0..D {
+                vectors[node][i] += factor * pull[i];
+                vectors[nodes[0]][i] -= factor * pull[i];
+            }
+        }
+    }
+
+    /// Adds what the mean dilatation of each cell adds to the tangents: lambda/V G_a G_b^T of what a branch feels of a step, with
+    /// G_a = sum w F g_a.
+    fn add_mean_tangents(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        u: &[f64],
+        stiffness: &mut Rows<'_, D>,
+    ) {
+        let (mut swelling, mut volume, mut points) = ([[0.0; D]; N], 0.0, 0);
+        self.visit(
+            regions,
+            u,
+            |_| [],
+            |Site { branch, point, at, cell, .. }, []| {
+                let of_point = at.swelling(&point.gradients, point.volume);
+                for (sum, part) in
+                    swelling.as_flattened_mut().iter_mut().zip(of_point.as_flattened())
+                {
+                    *sum += part;
+                }
+                (volume, points) = (volume + point.volume, points + 1);
+                if points == Q {
+                    // what flows keeps its volume
+                    let part = branch.step::<M>(gamma, &Components::default()).part;
+                    let share = part * branch.lambda() / volume;
+                    add_blocks(&self.entries[*cell], stiffness, &OfMean { swelling, share });
+                    (swelling, volume, points) = ([[0.0; D]; N], 0.0, 0);
+                }
+            },
+        );
+    }
+}
+
+/// `share` G_a G_b^T
+struct OfMean<const N: usize, const D: usize> {
+    swelling: [[f64; D]; N],
+    share: f64,
+}
+
+impl<const N: usize, const D: usize> Blocks<f64, D> for OfMean<N, D> {
+    fn block(&self, a: usize, b: usize) -> Block<f64, D> {
+        let Self { swelling, share } = self;
+        std::array::from_fn(|i| swelling[b].map(|along| share * swelling[a][i] * along))
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
+    for ElementsOf<N, M, D, Q>
+{
+    fn internal_strains(&self, regions: &Regions) -> usize {
+        let of_point =
+            |cell| -> usize { regions.of(cell).branches.iter().map(Relaxing::components).sum() };
+        (0..self.nodes.len()).map(|cell| Q * of_point(cell)).sum()
+    }
+
+    fn relax(&self, regions: &Regions, u: &[f64], internal: &mut [f64]) {
+        let strain = |site: &Site<'_, N, M, D>| [site.at.strain()];
+        self.visit(regions, u, strain, |site, [Stretch { strain, .. }]| {
+            site.own_mut(internal).iter_mut().zip(strain).for_each(|(g, e)| *g = e);
+        });
+    }
+
+    fn add_branch_forces(
+        &self,
+        regions: &Regions,
+        u: &[f64],
+        internal: &[f64],
+        forces: &mut [f64],
+        rates: &mut [f64],
+    ) -> f64 {
+        let mut power = 0.0;
+        let apart = |site: &Site<'_, N, M, D>| [site.apart(internal)];
+        self.visit(regions, u, apart, |site, [apart]| {
+            let (branch, volume) = (site.branch, site.point.volume);
+            self.pull(site, &branch.stress(&site.at, &apart, volume), -1.0, forces);
+            power += volume * branch.loss::<M>(&apart) / branch.time;
+            let own = branch.rate::<M>(&apart.strain);
+            site.own_mut(rates).iter_mut().zip(own).for_each(|(rate, own)| *rate = own);
+        });
+        power
+    }
+
+    fn branch_energy(&self, regions: &Regions, u: &[f64], internal: &[f64]) -> f64 {
+        let mut twice = 0.0;
+        let apart = |site: &Site<'_, N, M, D>| [site.apart(internal)];
+        self.visit(regions, u, apart, |site, [apart]| {
+            twice += site.point.volume * site.branch.twice_energy::<M>(&apart);
+        });
+        0.5 * twice
+    }
+
+    fn add_branch_tangents(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        [u, internal]: [&[f64]; 2],
+        stiffness: &mut BlockMatrix,
+    ) {
+        let mut stiffness = stiffness.rows_mut::<D>();
+        let apart = |site: &Site<'_, N, M, D>| match internal {
+            [] => [Components::default()],
+            internal => [site.apart(internal)],
+        };
+        self.visit(regions, u, apart, |site, [apart]| {
+            let Site { branch, point, at, cell, .. } = site;
+            let step = branch.step::<M>(gamma, &apart.strain);
+            let lambda = if self.mean_dilatation { 0.0 } else { branch.lambda() };
+            let tangent =
+                branch.tangent(at, &apart, (&step, lambda), &point.gradients, point.volume);
+            add_blocks(&self.entries[*cell], &mut stiffness, &tangent);
+        });
+        if self.mean_dilatation {
+            self.add_mean_tangents(regions, gamma, u, &mut stiffness);
+        }
+    }
+
+    fn add_branch_residuals(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        [u, internal]: [&[f64]; 2],
+        residuals: &[f64],
+        right: &mut [f64],
+    ) {
+        // what passes is not the same part at all points, so that the mean is that of all of it
+        let passed = |site: &Site<'_, N, M, D>| {
+            let step = site.step(gamma, internal);
+            let passed = step.passed::<M>(&site.own(residuals));
+            [passed, passed.map(|passed| step.part * passed)]
+        };
+        self.visit(regions, u, passed, |site, [mut passed, whole]| {
+            let part = site.step(gamma, internal).part;
+            if self.mean_dilatation {
+                passed.trace = whole.trace / part;
+            }
+            let stress = site.branch.stress(&site.at, &passed, site.point.volume);
+            self.pull(site, &stress, gamma * part, right);
+        });
+    }
+
+    fn solve_branches(
+        &self,
+        regions: &Regions,
+        gamma: f64,
+        [u, internal]: [&[f64]; 2],
+        rates: &[f64],
+        xu: &[f64],
+        x: &mut [f64],
+    ) -> f64 {
+        let xu = xu.as_chunks::<D>().0;
+        let change = |site: &Site<'_, N, M, D>| {
+            let of_nodes = relative(&self.nodes[site.cell], xu);
+            site.at.change(&gradient(1, &of_nodes, &site.point.gradients))
+        };
+        self.visit(
+            regions,
+            u,
+            |site| [change(site)],
+            |site, [Stretch { strain, .. }]| {
+                let step = site.step(gamma, internal);
+                let [passed, left] = [site.own(x), strain].map(|strain| step.passed::<M>(&strain));
+                for (v, x) in site.own_mut(x).iter_mut().enumerate() {
+                    let flows = step.part * (left[v] - strain[v]);
+                    *x = step.part * passed[v] + (1.0 - step.part) * strain[v] - flows;
+                }
+            },
+        );
+        let mut power = 0.0;
+        let apart = |site: &Site<'_, N, M, D>| {
+            // below the yield stress rates do not tell it
+            let before = match site.branch.yields() {
+                true => site.apart(internal),
+                false => site.own(rates).map(|rate| site.branch.time * rate),
+            };
+            let (strain, x) = (change(site), site.own(x));
+            [before, std::array::from_fn(|v| before[v] + strain[v] - x[v])]
+        };
+        self.visit(regions, u, apart, |site, [before, after]| {
+            let change = site.branch.loss_change::<M>(&before, &after);
+            power += site.point.volume * change / site.branch.time;
+        });
+        power
+    }
+}

@@ -1,0 +1,158 @@
+use super::*;
+use crate::base::sparse::BlockMatrix;
+use crate::elements::body::Body;
+use crate::elements::body::tests::{bodies, noise};
+use crate::elements::force::{Force, NodalForces};
+use crate::elements::material::{Law, Strain};
+use crate::studies::samples::SQUARE_MATERIAL;
+
+/// Bodies of all kinds of cells that can have a mean dilatation, by each law, nearly incompressible.
+fn with_mean() -> Vec<(String, Body)> {
+    let rubber = SQUARE_MATERIAL;
+    let laws = [
+        (Strain::Cauchy, rubber.into()),
+        (Strain::Green, rubber.into()),
+        (Strain::Green, rubber.law(Law::NeoHookean)),
+        (Strain::Green, rubber.law(Law::MooneyRivlin { second: 0.3 })),
+    ];
+    let mut found = Vec::new();
+    for (strain, substance) in laws {
+        for (name, body) in bodies(strain) {
+            let body =
+                body.to_builder().material(substance.clone()).dilatation(Dilatation::Mean).build();
+            found.extend(
+                body.map(|body| (format!("{name}, {strain:?}, {:?}", substance.law), body)),
+            );
+        }
+    }
+    // quadrilaterals, triangles of 6 nodes, tetrahedra of 10, hexahedra of 8 and of 20, by four laws
+    assert_eq!(found.len(), 5 * 4);
+    found
+}
+
+fn forces(body: &Body, u: &[f64]) -> Vec<f64> {
+    let mut forces = NodalForces::zeros(body.dofs());
+    body.add_elastic_forces(u, &mut forces).unwrap();
+    forces.conservative.to_vec()
+}
+
+fn energy(body: &Body, u: &[f64]) -> f64 {
+    let fields = body.cell_fields(u).into_iter().zip(body.cell_volumes());
+    let of_fields: f64 = fields.map(|(field, volume)| field.energy_density * volume).sum();
+    let energy = body.elements.energy(&body.regions, u);
+    assert!((of_fields / energy - 1.0).abs() < 1e-12, "{of_fields} {energy}");
+    energy
+}
+
+fn moved(x: &[f64], j: usize, by: f64) -> Vec<f64> {
+    let mut x = x.to_vec();
+    x[j] += by;
+    x
+}
+
+/// Forces are the slope of the energy, tangents that of the forces, and the constant stiffness is the tangent at rest. By central differences,
+/// off by the square of h over the size 0.1 of cells, times third derivatives, and by round-off of 1e-16/h.
+#[test]
+fn forces_and_tangents_are_derivatives() {
+    let h = 1e-5;
+    for (name, body) in with_mean() {
+        let n = body.dofs();
+        let u = noise(n, 0.03, 1.0);
+        let at = forces(&body, &u);
+        let scale = body.stiffness().values.iter().fold(0.0_f64, |s, k| s.max(k.abs()));
+        let tangent = |u: &[f64]| match body.elastic() {
+            None => body.stiffness().clone(),
+            Some(elastic) => {
+                let zeros = BlockMatrix::zeros(body.inertia().pattern(), body.dimension());
+                let (mut stiffness, mut damping) = (zeros.clone(), zeros);
+                elastic.add_tangents(0.0, u, &vec![0.0; n], &mut stiffness, &mut damping);
+                stiffness
+            }
+        };
+        let (stiffness, at_rest) = (tangent(&u), tangent(&vec![0.0; n]));
+        for (j, at) in at.iter().enumerate() {
+            let slope =
+                (energy(&body, &moved(&u, j, h)) - energy(&body, &moved(&u, j, -h))) / (2.0 * h);
+            assert!((at + slope).abs() < 1e-7 * scale, "{name}: dU/du {j}: {at} {slope}");
+            let [ahead, behind] = [h, -h].map(|by| forces(&body, &moved(&u, j, by)));
+            for i in 0..n {
+                let by_u = (behind[i] - ahead[i]) / (2.0 * h);
+                let apart = (stiffness.get(i, j) - by_u).abs();
+                assert!(apart < 1e-6 * scale, "{name}: -df/du ({i}, {j}) {by_u}, {apart:e}");
+                let apart = (at_rest.get(i, j) - body.stiffness().get(i, j)).abs();
+                assert!(apart < 1e-13 * scale, "{name}: K ({i}, {j}), {apart:e}");
+            }
+        }
+    }
+}
+
+/// The same of objective viscosity: its forces by the velocities and the displacements.
+#[test]
+fn viscous_tangents_are_derivatives() {
+    let h = 1e-5;
+    for (name, body) in with_mean().into_iter().filter(|(_, body)| body.strain() == Strain::Green) {
+        let n = body.dofs();
+        let (u, v) = (noise(n, 0.03, 1.0), noise(n, 2.0, 7.0));
+        let elastic = body.elastic().unwrap();
+        let zeros = BlockMatrix::zeros(body.inertia().pattern(), body.dimension());
+        let (mut stiffness, mut damping) = (zeros.clone(), zeros.clone());
+        elastic.add_tangents(0.0, &u, &v, &mut stiffness, &mut damping);
+        let (mut of_elasticity, mut none) = (zeros.clone(), zeros);
+        elastic.add_tangents(0.0, &u, &vec![0.0; n], &mut of_elasticity, &mut none);
+        let viscous = |u: &[f64], v: &[f64]| {
+            let mut forces = NodalForces::zeros(n);
+            elastic.add_forces(0.0, u, v, &mut forces).unwrap();
+            forces.dissipative.to_vec()
+        };
+        let heat: f64 = viscous(&u, &v).iter().zip(&v).map(|(f, v)| -f * v).sum();
+        assert!(heat > 0.0, "{name}: {heat}");
+        let scale =
+            |matrix: &BlockMatrix| matrix.values.iter().fold(0.0_f64, |s, k| s.max(k.abs()));
+        let (by_u, by_v) = (scale(&stiffness), scale(&damping));
+        for j in 0..n {
+            let [ahead, behind] = [h, -h].map(|by| viscous(&moved(&u, j, by), &v));
+            let [faster, slower] = [h, -h].map(|by| viscous(&u, &moved(&v, j, by)));
+            for i in 0..n {
+                let slope = (behind[i] - ahead[i]) / (2.0 * h);
+                let apart = (stiffness.get(i, j) - of_elasticity.get(i, j) - slope).abs();
+                assert!(apart < 1e-7 * by_u, "{name}: -df/du ({i}, {j}) {slope}, {apart:e}");
+                let slope = (slower[i] - faster[i]) / (2.0 * h);
+                let apart = (damping.get(i, j) - slope).abs();
+                assert!(apart < 1e-7 * by_v, "{name}: -df/dv ({i}, {j}) {slope}, {apart:e}");
+            }
+        }
+    }
+}
+
+/// Where a body is deformed alike everywhere, nothing changes; and its forces are other ones where it is not.
+#[test]
+fn homogeneous_deformations_have_the_same_forces() {
+    for (name, body) in with_mean() {
+        let pointwise = body.to_builder().dilatation(Dilatation::AtPoints).build().unwrap();
+        let d = body.dimension();
+        let u: Vec<f64> = body
+            .mesh()
+            .positions()
+            .chunks(d)
+            .flat_map(|x| (0..d).map(|i| 0.1 * x[i] - 0.07 * x[(i + 1) % d]).collect::<Vec<_>>())
+            .collect();
+        let apart = |u: &[f64]| {
+            let (mean, plain) = (forces(&body, u), forces(&pointwise, u));
+            let largest = plain.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+            let apart = mean.iter().zip(&plain).map(|(a, b)| (a - b).abs());
+            apart.fold(0.0, f64::max) / largest
+        };
+        assert!(apart(&u) < 1e-12, "{name}: {:e}", apart(&u));
+        assert!(apart(&noise(body.dofs(), 0.03, 1.0)) > 0.1, "{name}");
+    }
+}
+
+#[test]
+fn bodies_that_do_not_lock_refuse_it() {
+    for (name, body) in bodies(Strain::Green) {
+        let Err(error) = body.to_builder().dilatation(Dilatation::Mean).build() else { continue };
+        let message = error.to_string();
+        assert!(message.starts_with("dilatation = mean"), "{name}: {message}");
+        assert!(message.contains("one point") || message.contains("free to change"), "{message}");
+    }
+}

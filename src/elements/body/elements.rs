@@ -1,0 +1,250 @@
+//! The finite elements of a body: all cells of one kind with their quadrature points.
+//!
+//! With natural-shape gradients g_a, weights w and H = sum u_a g_a^T, every force of the elements is one
+//! loop over these points: -sum w P g_a, with the first Piola stress P that the material's law gives for
+//! H (and its rate, if the law is viscous). Tangents are loops over the derivatives of P, likewise.
+//!
+//! What elements are good for is in chapters: their inertia, forces, tangents and fields.
+
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
+
+use pulp::Simd;
+
+use super::rows::Rows;
+use super::shares::Shares;
+use crate::base::input::InputError;
+use crate::base::lane::{Abreast, Lane, SIDE_BY_SIDE};
+use crate::base::sparse::NodePattern;
+use crate::base::tensor::{Matrix, Real};
+use crate::elements::basis::{
+    MassPoint, ReferenceCell, StrainPoint, extrapolation, mass_points, strain_points,
+};
+use crate::elements::mesh::Mesh;
+
+/// Elements of `N` nodes, dimension `M` and `Q` strain points in a space of dimension `D`.
+pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, const Q: usize> {
+    pub(super) nodes: Vec<[usize; N]>,
+    /// For each cell the entries of all pairs of its nodes in the pattern of the body, by which tangents are added up.
+    pub(super) entries: Vec<[[u32; N]; N]>,
+    /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes times section.
+    /// Cells that are missing at the end repeat the last one.
+    points: Vec<StrainPoint<Abreast, N, M, D>>,
+    /// Shape functions at the strain points of a cell.
+    pub(super) values: [[f64; N]; Q],
+    /// What values at the strain points of a cell count for at each of its nodes.
+    pub(super) extrapolation: [[f64; Q]; N],
+    /// For each cell, sum w N_a N_b (m^3).
+    pub(super) products: Vec<[[f64; N]; N]>,
+    pub(super) quadratic: bool,
+    /// Whether what resists a change of volume takes the mean of that over each cell.
+    pub(super) mean_dilatation: bool,
+    pub(super) shares: Shares,
+    pub(super) rows: Rows<N>,
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Whether a mean dilatation is something else than that of the points; where it is not, no loops are compiled for it.
+    pub(super) const CAN_LOCK: bool = M == D && M > 1 && Q > 1;
+
+    /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
+    pub(super) fn new<C: ReferenceCell<N, M>>(
+        mesh: &Mesh,
+        section: f64,
+        mean_dilatation: bool,
+        pattern: &NodePattern,
+    ) -> Result<Self, InputError> {
+        const { assert!(C::STIFFNESS_RULE.len() == Q) };
+        let positions = mesh.positions().as_chunks::<D>().0;
+        let (mut nodes, mut points, mut products) = (Vec::new(), Vec::new(), Vec::new());
+        let mut entries = Vec::with_capacity(mesh.cell_count());
+        for (number, cell) in mesh.cells().enumerate() {
+            let natural: [[f64; D]; N] = std::array::from_fn(|a| positions[cell[a]]);
+            let of_cell = strain_points::<C, N, M, D>(&natural)
+                .map_err(|volume| bad_cell(number, cell, volume))?;
+            points.extend(
+                of_cell
+                    .into_iter()
+                    .map(|point| StrainPoint { volume: section * point.volume, ..point }),
+            );
+            let mut product = [[0.0; N]; N];
+            for MassPoint { values, volume } in mass_points::<C, N, M, D>(&natural) {
+                for (a, b) in pairs::<N>() {
+                    product[a][b] += section * volume * values[a] * values[b];
+                }
+            }
+            products.push(product);
+            let mut of_pairs = [[0; N]; N];
+            for (a, b) in pairs::<N>() {
+                let entry = pattern.find(cell[a], cell[b]).and_then(|entry| entry.try_into().ok());
+                of_pairs[a][b] = entry.ok_or_else(|| too_many(pattern))?;
+            }
+            entries.push(of_pairs);
+            nodes.push(std::array::from_fn(|a| cell[a]));
+        }
+        let points = side_by_side::<N, M, D, Q>(&points);
+        let values = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
+        let quadratic = mesh.kind().is_quadratic();
+        let shares = Shares::new(&nodes, mesh.node_count());
+        let rows = Rows::new(&nodes);
+        Ok(Self {
+            nodes,
+            entries,
+            points,
+            values,
+            extrapolation: extrapolation::<C, N, M, Q>(),
+            products,
+            quadratic,
+            mean_dilatation,
+            shares,
+            rows,
+        })
+    }
+
+    /// Elements of one dimension on the nodes of some of these cells, with strain points of their own, on a mesh of `node_count`
+    /// nodes.
+    pub(super) fn with_points(
+        &self,
+        cells: &[usize],
+        points: &[StrainPoint<f64, N, 1, D>],
+        node_count: usize,
+    ) -> ElementsOf<N, 1, D, Q> {
+        let nodes: Vec<[usize; N]> = cells.iter().map(|&cell| self.nodes[cell]).collect();
+        ElementsOf {
+            entries: cells.iter().map(|&cell| self.entries[cell]).collect(),
+            points: side_by_side::<N, 1, D, Q>(points),
+            values: self.values,
+            extrapolation: self.extrapolation,
+            products: cells.iter().map(|&cell| self.products[cell]).collect(),
+            quadratic: self.quadratic,
+            mean_dilatation: false,
+            shares: Shares::new(&nodes, node_count),
+            rows: Rows::new(&nodes),
+            nodes,
+        }
+    }
+
+    /// The strain points of [`SIDE_BY_SIDE`] cells at once, from those of the first cells on.
+    pub(super) fn abreast(&self) -> &[[StrainPoint<Abreast, N, M, D>; Q]] {
+        self.points.as_chunks::<Q>().0
+    }
+
+    /// The strain points of a cell.
+    #[inline(always)]
+    pub(super) fn points(&self, cell: usize) -> impl Iterator<Item = StrainPoint<f64, N, M, D>> {
+        let lane = cell % SIDE_BY_SIDE;
+        self.abreast()[cell / SIDE_BY_SIDE].iter().map(move |point| point.of_cell(lane))
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize> StrainPoint<Abreast, N, M, D> {
+    /// Those of as many cells as a register holds, from number `part` of these registers.
+    #[inline(always)]
+    pub(super) fn lane<S: Simd>(&self, simd: S, part: usize) -> StrainPoint<Lane<S>, N, M, D> {
+        let zero = Lane::splat(simd, 0.0);
+        let (mut gradients, mut frame) = ([[zero; M]; N], [[zero; D]; M]);
+        for j in 0..M {
+            for a in 0..N {
+                gradients[a][j] = Lane::load(simd, &self.gradients[a][j].0, part);
+            }
+            for i in 0..D {
+                frame[j][i] = Lane::load(simd, &self.frame[j][i].0, part);
+            }
+        }
+        StrainPoint { gradients, frame, volume: Lane::load(simd, &self.volume.0, part) }
+    }
+
+    /// That of one of the cells.
+    #[inline(always)]
+    fn of_cell(&self, lane: usize) -> StrainPoint<f64, N, M, D> {
+        let (mut gradients, mut frame) = ([[0.0; M]; N], [[0.0; D]; M]);
+        for j in 0..M {
+            (0..N).for_each(|a| gradients[a][j] = self.gradients[a][j].0[lane]);
+            (0..D).for_each(|i| frame[j][i] = self.frame[j][i].0[lane]);
+        }
+        StrainPoint { gradients, frame, volume: self.volume.0[lane] }
+    }
+}
+
+/// The points of cells, `Q` of each, in lanes.
+fn side_by_side<const N: usize, const M: usize, const D: usize, const Q: usize>(
+    points: &[StrainPoint<f64, N, M, D>],
+) -> Vec<StrainPoint<Abreast, N, M, D>> {
+    let cells = points.as_chunks::<Q>().0;
+    let mut lanes = Vec::with_capacity(Q * cells.len().div_ceil(SIDE_BY_SIDE));
+    for cells in cells.chunks(SIDE_BY_SIDE) {
+        for q in 0..Q {
+            let of_lane = |lane: usize| &cells[lane.min(cells.len() - 1)][q];
+            let each = |number: &dyn Fn(&StrainPoint<f64, N, M, D>) -> f64| {
+                Abreast(std::array::from_fn(|lane| number(of_lane(lane))))
+            };
+            lanes.push(StrainPoint {
+                gradients: std::array::from_fn(|a| {
+                    std::array::from_fn(|j| each(&|point| point.gradients[a][j]))
+                }),
+                frame: std::array::from_fn(|j| {
+                    std::array::from_fn(|i| each(&|point| point.frame[j][i]))
+                }),
+                volume: each(&|point| point.volume),
+            });
+        }
+    }
+    lanes
+}
+
+/// H = sum x_a g_a^T, with the vectors x of the nodes from number `first` on and the gradients g of their shape functions:
+/// from 1 on, if they are relative to that of the first node.
+#[inline(always)]
+pub(super) fn gradient<T: Real, const N: usize, const M: usize, const D: usize>(
+    first: usize,
+    x: &[[T; D]; N],
+    gradients: &[[T; M]; N],
+) -> Matrix<T, D, M> {
+    let mut h = [x[first]; M];
+    for j in 0..M {
+        for i in 0..D {
+            h[j][i] = x[first][i] * gradients[first][j];
+            for a in first + 1..N {
+                h[j][i] += x[a][i] * gradients[a][j];
+            }
+        }
+    }
+    h
+}
+
+/// The same of several fields.
+#[inline(always)]
+pub(super) fn gradients<T: Real, const N: usize, const M: usize, const D: usize, const K: usize>(
+    first: usize,
+    x: &[[[T; D]; N]; K],
+    gradients: &[[T; M]; N],
+) -> [Matrix<T, D, M>; K] {
+    let mut all = [[x[0][first]; M]; K];
+    for k in 0..K {
+        all[k] = gradient(first, &x[k], gradients);
+    }
+    all
+}
+
+/// All pairs of the nodes of a cell.
+pub(super) fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
+    (0..N).flat_map(|a| (0..N).map(move |b| (a, b)))
+}
+
+fn too_many(pattern: &NodePattern) -> InputError {
+    let mend = "4,294,967,296 are the most: take a coarser mesh";
+    InputError::new("number of pairs of nodes that share a cell", pattern.entries(), mend)
+}
+
+fn bad_cell(number: usize, cell: &[usize], volume: f64) -> InputError {
+    let nodes: Vec<usize> = cell.iter().map(|node| node + 1).collect();
+    let mend = if volume < 0.0 {
+        "its nodes run the wrong way round (clockwise, in two dimensions): reverse them"
+    } else {
+        "it is flat: move its nodes apart or leave the cell out"
+    };
+    InputError::new(
+        format!("signed volume of cell {} (nodes {nodes:?})", number + 1),
+        format!("{volume:.3e}"),
+        format!("{mend} (numbers count from 1)"),
+    )
+}

@@ -1,0 +1,189 @@
+//! The strain energy of all elements, computed for as many cells at once as their forces are.
+
+use std::ops::Range;
+
+use pulp::{Arch, Simd, WithSimd};
+
+use super::elements::{ElementsOf, gradient};
+use super::regions::Regions;
+use crate::base::lane::{Lane, SIDE_BY_SIDE};
+use crate::base::tensor::Real;
+use crate::elements::material::{ByPoint, Deformation, Elastic, ElasticLaw};
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Strain energy (J), added up in the order of cells, whatever the machine computes at once.
+    pub(super) fn strain_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
+        let all = 0..self.nodes.len();
+        regions.runs(&all).fold(0.0, |sum, (cells, laws)| match &laws.elastic {
+            Elastic::Linear(law) => self.add_energy(cells, law, u, sum),
+            Elastic::StVenantKirchhoff(law) => self.add_energy(cells, law, u, sum),
+            Elastic::ByPoint(law) => self.add_energy(cells, law, u, sum),
+        })
+    }
+
+    /// The energy of cells of one law, added to a `sum`.
+    pub(super) fn add_energy(
+        &self,
+        cells: Range<usize>,
+        law: &impl Density,
+        u: &[f64],
+        sum: f64,
+    ) -> f64 {
+        Arch::new().dispatch(Pass { elements: self, cells, u: u.as_chunks::<D>().0, law, sum })
+    }
+}
+
+/// Strain energy per natural volume.
+pub(super) trait Density {
+    /// W (J/m^3)
+    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T;
+
+    /// W_shape (J/m^3), and the measure of volume.
+    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> [T; 2];
+
+    /// U (J/m^3) of a mean dilatation.
+    fn of_mean<T: Real>(&self, dilatation: T) -> T;
+}
+
+/// Of laws whose formulas are compiled into the loop.
+impl<L: ElasticLaw> Density for L {
+    #[inline(always)]
+    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        self.energy(&self.point(L::twice_strain(at)))
+    }
+
+    #[inline(always)]
+    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> [T; 2] {
+        let point = self.point(L::twice_strain(at));
+        [self.energy_of_shape(&point), self.dilatation(&point)]
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [energy, ..] = self.of_volume(dilatation);
+        energy
+    }
+}
+
+impl Density for ByPoint {
+    #[inline(always)]
+    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
+        self.energy(&at.twice_green())
+    }
+
+    #[inline(always)]
+    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+    ) -> [T; 2] {
+        self.shape_and_volume(&at.twice_green())
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [energy, ..] = self.of_volume(dilatation);
+        energy
+    }
+}
+
+/// The energy of a run of cells of one law, compiled for each kind of machine.
+struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
+    elements: &'a ElementsOf<N, M, D, Q>,
+    cells: Range<usize>,
+    u: &'a [[f64; D]],
+    law: &'a L,
+    /// That of the cells before.
+    sum: f64,
+}
+
+impl<L: Density, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
+    for Pass<'_, L, N, M, D, Q>
+{
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> f64 {
+        let Self { elements, cells, u, law, mut sum } = self;
+        let is_mean = const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && elements.mean_dilatation;
+        let abreast = elements.abreast();
+        let zero = Lane::splat(simd, 0.0);
+        for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
+            let start = register * S::F64_LANES;
+            let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
+            let x = elements.gather(simd, start, u);
+            let (mut energy, mut swelling, mut whole) = (zero, zero, zero);
+            for point in &abreast[block] {
+                let point = point.lane(simd, part);
+                let at = Deformation::new(point.frame, gradient(1, &x, &point.gradients));
+                if is_mean {
+                    let [of_shape, dilatation] = law.shape_and_volume(&at);
+                    energy += point.volume * of_shape;
+                    swelling += point.volume * dilatation;
+                    whole += point.volume;
+                } else {
+                    energy += point.volume * law.of_point(&at);
+                }
+            }
+            if is_mean {
+                energy += law.of_mean(swelling / whole) * whole;
+            }
+            let mut numbers = [0.0; SIDE_BY_SIDE];
+            energy.store(&mut numbers, 0);
+            for cell in cells.start.max(start)..cells.end.min(start + S::F64_LANES) {
+                sum += numbers[cell - start];
+            }
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::elements::body::Body;
+    use crate::elements::body::tests::noise;
+    use crate::elements::material::{Material, Strain};
+    use crate::elements::mesh::{Cells, Mesh, SolidCells};
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    /// Against the energy densities of the cells, each computed by itself, on meshes that fill no whole number of registers
+    /// and change the material within one.
+    #[test]
+    fn energies_of_cells_add_up() {
+        let meshes = [
+            Mesh::bar(1.0, 20),
+            Mesh::rectangle([1.0, 0.5], [8, 4], Cells::Triangles),
+            Mesh::rectangle([1.0, 0.5], [8, 4], Cells::Rectangles),
+            Mesh::rectangle([1.0, 0.5], [6, 4], Cells::Triangles6),
+            Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Tetrahedra),
+            Mesh::cuboid([1.0, 0.5, 0.5], [4, 3, 4], SolidCells::Hexahedra),
+        ];
+        for mesh in meshes {
+            let mesh = mesh.unwrap();
+            let stiff = Material { young: 3e6, ..SQUARE_MATERIAL };
+            let kind = mesh.kind();
+            for strain in [Strain::Cauchy, Strain::Green] {
+                let body = Body::new(mesh.clone(), SQUARE_MATERIAL).strain(strain);
+                let body = match kind.dimension() {
+                    1 => body.area(1e-4),
+                    2 => body.thickness(0.01),
+                    _ => body,
+                };
+                let cells = crate::CellSelection::Numbers((5..=11).collect());
+                let body = body.region(cells, stiff).build().unwrap();
+                let u = noise(body.dofs(), 1e-2, 1.0);
+                let volumes = body.cell_volumes();
+                let fields = body.cell_fields(&u);
+                let expected: f64 =
+                    fields.iter().zip(volumes).map(|(cell, v)| cell.energy_density * v).sum();
+                let energy = body.elements.energy(&body.regions, &u);
+                assert!((energy / expected - 1.0).abs() < 1e-13, "{kind:?}: {energy}, {expected}");
+            }
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! The fibres of a body: strings through the strain points of its cells.
+//!
+//! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the same nodes: its
+//! gradients are those of the shape functions along it, and its frame is its direction.
+
+use super::elements::ElementsOf;
+use super::forces::ElasticPull;
+use super::tangents::ElasticSlope;
+use crate::base::input::InputError;
+use crate::base::sparse::BlockMatrix;
+use crate::base::tensor::{apply, dot};
+use crate::elements::basis::StrainPoint;
+use crate::elements::material::{Course, Fibre};
+use crate::elements::mesh::Mesh;
+use crate::integrators::ode::Failure;
+
+/// Elements that fibres can lie in.
+pub(super) trait Reinforced {
+    /// The fibres of a `course` in some cells.
+    fn fibres(
+        &self,
+        mesh: &Mesh,
+        cells: &[usize],
+        course: &Course,
+    ) -> Result<Box<dyn Strings>, InputError>;
+}
+
+/// Fibres in cells, whatever these are.
+pub(super) trait Strings: Send + Sync {
+    fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure>;
+
+    /// Adds tangents to the stiffness; the rows of the damping are shared out alike.
+    fn add_tangents(
+        &self,
+        law: &Fibre,
+        u: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    );
+
+    fn energy(&self, law: &Fibre, u: &[f64]) -> f64;
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
+    for ElementsOf<N, M, D, Q>
+{
+    fn fibres(
+        &self,
+        mesh: &Mesh,
+        cells: &[usize],
+        course: &Course,
+    ) -> Result<Box<dyn Strings>, InputError> {
+        course.validate_in(D)?;
+        let positions = mesh.positions().as_chunks::<D>().0;
+        let mut points = Vec::with_capacity(Q * cells.len());
+        for &cell in cells {
+            let of_nodes = self.nodes[cell].map(|node| positions[node]);
+            for (point, values) in self.points(cell).zip(&self.values) {
+                let mut position = [0.0; D];
+                for (value, of_node) in values.iter().zip(&of_nodes) {
+                    position.iter_mut().zip(of_node).for_each(|(x, of_node)| *x += value * of_node);
+                }
+                let direction = course.at(&position);
+                let mut own: [f64; M] = std::array::from_fn(|j| {
+                    point.frame[j].iter().zip(&direction).map(|(e, d)| e * d).sum()
+                });
+                let length = dot(&own, &own).sqrt();
+                // what is left of a unit vector by rounding
+                if length < 1e-9 {
+                    let mend = "fibres have no direction there: move their axis out of the cell, turn them into the membrane, or \
+                                give them a region of their own";
+                    return Err(InputError::new("fibres in cell", cell + 1, mend));
+                }
+                own.iter_mut().for_each(|x| *x /= length);
+                points.push(StrainPoint {
+                    gradients: std::array::from_fn(|a| [dot(&point.gradients[a], &own)]),
+                    frame: [apply(&point.frame, &own)],
+                    volume: point.volume,
+                });
+            }
+        }
+        Ok(Box::new(self.with_points(cells, &points, mesh.node_count())))
+    }
+}
+
+impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1, D, Q> {
+    fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure> {
+        let u = u.as_chunks::<D>().0;
+        self.share_out(forces, |run, first, forces| {
+            self.add(run.clone(), [u], first, forces, ElasticPull { law, is_mean: false })
+        })
+    }
+
+    fn add_tangents(
+        &self,
+        law: &Fibre,
+        u: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        let u = u.as_chunks::<D>().0;
+        self.shares.each(stiffness.rows_mut::<D>(), damping.rows_mut(), &|share, mut rows, _| {
+            for run in &self.shares.cells[share] {
+                self.add_to(&mut rows, run.clone(), [u], ElasticSlope { law, is_mean: false });
+            }
+        });
+    }
+
+    fn energy(&self, law: &Fibre, u: &[f64]) -> f64 {
+        self.add_energy(0..self.nodes.len(), law, u, 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests;

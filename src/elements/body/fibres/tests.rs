@@ -1,0 +1,126 @@
+//! Fibres in all cells: forces are derivatives of the energy, tangents those of forces.
+
+use crate::base::sparse::BlockMatrix;
+use crate::elements::body::Body;
+use crate::elements::body::tests::noise;
+use crate::elements::force::{Force, NodalForces};
+use crate::elements::material::{Fibres, Law};
+use crate::elements::mesh::{Cells, Mesh, SolidCells};
+use crate::studies::samples::SQUARE_MATERIAL;
+
+fn meshes() -> Vec<Mesh> {
+    let plane = |cells| Mesh::rectangle([0.3, 0.2], [4, 3], cells).unwrap();
+    let solid = |cells| Mesh::cuboid([0.3, 0.2, 0.2], [4, 3, 3], cells).unwrap();
+    let membrane = plane(Cells::Triangles).mapped(|x| [x[0], x[1], 0.3 * x[0]]);
+    vec![
+        plane(Cells::Triangles),
+        plane(Cells::Rectangles),
+        plane(Cells::Triangles6),
+        membrane.unwrap(),
+        solid(SolidCells::Tetrahedra),
+        solid(SolidCells::Hexahedra),
+        solid(SolidCells::Tetrahedra10),
+        solid(SolidCells::Hexahedra20),
+    ]
+}
+
+fn with_fibres(mesh: Mesh, fibres: [Fibres; 2]) -> Body {
+    let is_thin = mesh.kind().dimension() == 2;
+    let [first, second] = fibres;
+    let substance = SQUARE_MATERIAL.law(Law::NeoHookean).fibres(first).fibres(second);
+    let body = Body::new(mesh, substance);
+    let body = if is_thin { body.thickness(0.01) } else { body };
+    body.build().unwrap()
+}
+
+fn pair(dimension: usize) -> [Fibres; 2] {
+    let along = |direction: &[f64]| Fibres::along(&direction[..dimension], 1e5).stiffening(3.0);
+    let axis: &[f64] = if dimension == 3 { &[0.2, 1.0, 0.0] } else { &[] };
+    let around = Fibres::around(&[-0.1, -0.2, 0.05][..dimension], axis, 2e5);
+    [along(&[1.0, 0.4, -0.3]), if dimension == 3 { around.pitch(0.4) } else { around }]
+}
+
+/// Along one direction, by central differences: off by 1e-8 of the largest, by terms of third order and round-off; more at
+/// points where a fibre is just about to be pulled, of which there is none here.
+#[test]
+fn forces_and_tangents_are_derivatives() {
+    for mesh in meshes() {
+        let kind = mesh.kind();
+        let dimension = mesh.dimension();
+        let body = with_fibres(mesh, pair(dimension));
+        let (n, h) = (body.dofs(), 1e-7);
+        let (u, x) = (noise(n, 0.02, 1.0), noise(n, 1.0, 3.0));
+        let still = vec![0.0; n];
+        let force = body.reinforcement().unwrap();
+        let moved = |by: f64| -> Vec<f64> { u.iter().zip(&x).map(|(u, x)| u + by * x).collect() };
+        let at = |by: f64| {
+            let mut forces = NodalForces::zeros(n);
+            force.add_forces(0.0, &moved(by), &still, &mut forces).unwrap();
+            forces.conservative.to_vec()
+        };
+        let by_energy =
+            (force.potential(0.0, &moved(h)) - force.potential(0.0, &moved(-h))) / (2.0 * h);
+        let work: f64 = at(0.0).iter().zip(&x).map(|(f, x)| f * x).sum();
+        assert!(work.abs() > 1.0, "{kind:?}: {work}");
+        assert!((work + by_energy).abs() < 1e-6 * work.abs(), "{kind:?}: {work} {by_energy}");
+        let zeros = BlockMatrix::zeros(body.inertia().pattern(), body.dimension());
+        let (mut stiffness, mut damping) = (zeros.clone(), zeros);
+        force.add_tangents(0.0, &u, &still, &mut stiffness, &mut damping);
+        assert!(damping.values.iter().all(|value| *value == 0.0));
+        let mut product = vec![0.0; n];
+        stiffness.add_product(1.0, &x, &mut product);
+        let largest = product.iter().fold(0.0_f64, |largest, f| largest.max(f.abs()));
+        let (behind, ahead) = (at(-h), at(h));
+        for (i, product) in product.iter().enumerate() {
+            let apart = ((behind[i] - ahead[i]) / (2.0 * h) - product).abs();
+            assert!(apart < 1e-6 * largest, "{kind:?} {i}: {apart:e} of {largest:e}");
+        }
+    }
+}
+
+/// K has them as they are when slightly pulled: along x a bar of one row of cells gets stiffer by young A / length.
+#[test]
+fn they_stiffen_the_undeformed_shape() {
+    let mesh = Mesh::rectangle([1.0, 0.1], [5, 2], Cells::Rectangles).unwrap();
+    let body = |substance: crate::Substance| {
+        Body::new(mesh.clone(), substance).thickness(0.01).build().unwrap()
+    };
+    let plain = body(SQUARE_MATERIAL.into());
+    let stiff = body(SQUARE_MATERIAL.fibres(Fibres::along([3.0, 0.0], 7e5)));
+    let pulled: Vec<f64> = mesh.positions().chunks(2).flat_map(|x| [x[0], 0.0]).collect();
+    let energy = |body: &Body| {
+        let mut forces = vec![0.0; pulled.len()];
+        body.stiffness().add_product(1.0, &pulled, &mut forces);
+        forces.iter().zip(&pulled).map(|(f, u)| f * u).sum::<f64>()
+    };
+    assert!((energy(&stiff) - energy(&plain) - 7e5 * 1e-3).abs() < 1e-9 * 7e2);
+}
+
+/// What no fibre can be is refused, and names the key, the value and the mend.
+#[test]
+fn nonsense_is_named() {
+    let build = |fibres: Fibres| {
+        let mesh = Mesh::cuboid([0.2, 0.2, 0.2], [3, 3, 3], SolidCells::Hexahedra).unwrap();
+        Body::new(mesh, SQUARE_MATERIAL.fibres(fibres)).build().unwrap_err().to_string()
+    };
+    for (fibres, start) in [
+        (
+            Fibres::along([0.0; 3], 1e5),
+            "fibres.along = [0.0, 0.0, 0.0] cannot be used: a direction needs a length",
+        ),
+        (
+            Fibres::along([1.0, 0.0], 1e5),
+            "fibres.along = [1.0, 0.0] cannot be used: it needs 3 numbers",
+        ),
+        (Fibres::along([1.0, 0.0, 0.0], -1.0), "fibres.young = -1"),
+        (Fibres::along([1.0, 0.0, 0.0], 1e5).stiffening(f64::NAN), "fibres.stiffening = NaN"),
+        (Fibres::around([0.0; 3], [], 1e5), "fibres.axis = [] cannot be used: it needs 3 numbers"),
+    ] {
+        let message = build(fibres);
+        assert!(message.starts_with(start), "{message}");
+    }
+    let cauchy =
+        Body::new(Mesh::bar(1.0, 3).unwrap(), SQUARE_MATERIAL.fibres(Fibres::along([1.0], 1.0)));
+    let message = cauchy.strain(crate::Strain::Cauchy).area(1.0).build().unwrap_err().to_string();
+    assert!(message.contains("fibres take tension alone"), "{message}");
+}

@@ -1,0 +1,90 @@
+//! Fields at nodes: what the cells around a node give there, each extrapolated from its strain points, in the mean
+//! over the volumes of the cells (Hinton and Campbell 1974; Hughes, *The Finite Element Method*, section 4.10).
+
+use super::{Fields, Tensors, von_mises};
+use crate::elements::body::regions::Regions;
+use crate::elements::mesh::Mesh;
+
+/// Strain and stress at a node, as [`CellField`](crate::CellField) has them for cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodalField {
+    /// Cauchy's or Green's strain, as the body's.
+    pub strain: [[f64; 3]; 3],
+    /// Stress (Pa).
+    pub stress: [[f64; 3]; 3],
+}
+
+impl NodalField {
+    /// The stress of von Mises (Pa): sqrt(3/2) times the norm of the stress without its mean pressure.
+    pub fn von_mises(&self) -> f64 {
+        von_mises(&self.stress)
+    }
+
+    fn new(sum: &Tensors, weight: f64) -> Self {
+        let [strain, stress] = sum.over(weight);
+        Self { strain, stress }
+    }
+}
+
+/// The fields at all of `count` nodes.
+pub(in crate::elements::body) fn nodal_fields<E: Fields + ?Sized>(
+    elements: &E,
+    regions: &Regions,
+    count: usize,
+    u: &[f64],
+) -> Vec<NodalField> {
+    let mut sums = vec![(0.0, Tensors::default()); count];
+    for (cell, volume) in elements.volumes().into_iter().enumerate() {
+        elements.each_node(regions, u, cell, &mut |node, _, tensors| {
+            let (total, sum) = &mut sums[node];
+            *total += volume;
+            sum.add(tensors, volume);
+        });
+    }
+    // a node of no cell has none
+    let field = |(total, sum)| NodalField::new(&sum, if total == 0.0 { 1.0 } else { total });
+    sums.into_iter().map(field).collect()
+}
+
+/// Reads the sum of the fields at some nodes, each times a weight.
+#[derive(Debug, Clone)]
+pub(crate) struct Probe {
+    /// Cells, with what the fields at each of their nodes count for.
+    cells: Vec<(usize, Vec<f64>)>,
+}
+
+impl Probe {
+    pub(in crate::elements::body) fn new(
+        mesh: &Mesh,
+        volumes: &[f64],
+        weights: &[(usize, f64)],
+    ) -> Self {
+        let mut of_nodes = vec![(0.0, 0.0); mesh.node_count()];
+        for &(node, weight) in weights {
+            of_nodes[node].0 += weight;
+        }
+        for (cell, volume) in mesh.cells().zip(volumes) {
+            cell.iter().for_each(|&node| of_nodes[node].1 += volume);
+        }
+        let share = |node: &usize, volume: f64| of_nodes[*node].0 * volume / of_nodes[*node].1;
+        let cells = mesh.cells().zip(volumes).enumerate();
+        let cells = cells.filter(|(_, (cell, _))| cell.iter().any(|&node| of_nodes[node].0 != 0.0));
+        let shares = cells.map(|(number, (cell, &volume))| {
+            (number, cell.iter().map(|node| share(node, volume)).collect())
+        });
+        Self { cells: shares.collect() }
+    }
+
+    pub(in crate::elements::body) fn read<E: Fields + ?Sized>(
+        &self,
+        elements: &E,
+        regions: &Regions,
+        u: &[f64],
+    ) -> NodalField {
+        let mut sum = Tensors::default();
+        for (cell, shares) in &self.cells {
+            elements.each_node(regions, u, *cell, &mut |_, a, tensors| sum.add(tensors, shares[a]));
+        }
+        NodalField::new(&sum, 1.0)
+    }
+}

@@ -1,0 +1,354 @@
+//! The forces of all elements: the loop in which explicit methods spend their time.
+//!
+//! It is compiled for each kind of machine (`pulp`), which computes as many cells at once as its registers hold numbers;
+//! the forces of these cells are added to each node in the order of the cells: one cell after the other, or for cells in a row
+//! (`rows`) one of their nodes after the other. So results are the same to the last bit on
+//! all machines. What the loop calls has to be compiled in place: a function of its own would be one for the
+//! oldest machine.
+//!
+//! The shape functions of a cell add up to 1 and their gradients to 0. So displacements count
+//! relative to the first node, whose force balances those on the others: less work, and forces far
+//! from home are as precise as there.
+
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
+
+use std::ops::Range;
+
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use super::elements::{ElementsOf, gradients};
+use super::regions::{Laws, Regions};
+use super::rows;
+use crate::base::lane::{Lane, SIDE_BY_SIDE};
+use crate::base::tensor::{Matrix, Real};
+use crate::elements::force::NodalForces;
+use crate::elements::material::{ByPoint, Deformation, Elastic, Hooke, Hookean, Linear};
+use crate::integrators::ode::Failure;
+
+mod pull;
+
+pub(super) use pull::ElasticPull;
+use pull::{CalledPull, Pull, ViscousPull};
+
+/// Which forces are computed element by element.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Terms {
+    pub(super) elastic: bool,
+    pub(super) viscous: bool,
+}
+
+/// Elements as forces.
+pub(super) trait Forces {
+    /// Adds the elastic forces to the conservative ones and those of objective viscosity to the
+    /// dissipative ones, as far as `terms` has them.
+    fn add_forces(
+        &self,
+        regions: &Regions,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
+
+    /// Adds -K u to the conservative forces and -B v to the dissipative ones, as far as `terms` has them.
+    fn add_linear_forces(
+        &self,
+        regions: &Regions,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
+    for ElementsOf<N, M, D, Q>
+{
+    fn add_forces(
+        &self,
+        regions: &Regions,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
+        if terms.elastic {
+            self.share_out(&mut forces.conservative, |run, first, forces| {
+                regions.runs(run).try_for_each(|(cells, laws)| {
+                    let is_mean = self.mean_dilatation;
+                    match &laws.elastic {
+                        Elastic::Linear(law) => {
+                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                        }
+                        Elastic::StVenantKirchhoff(law) => {
+                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                        }
+                        // a call would cost a seventh of so short a formula
+                        Elastic::ByPoint(ByPoint::Rivlin(law)) => {
+                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                        }
+                        Elastic::ByPoint(law) => {
+                            self.add(cells, [u], first, forces, CalledPull { law, is_mean })
+                        }
+                    }
+                })
+            })?;
+        }
+        if terms.viscous {
+            self.share_out(&mut forces.dissipative, |run, first, forces| {
+                regions.runs(run).try_for_each(|(cells, laws)| {
+                    let pull = ViscousPull { law: &laws.viscous, is_mean: self.mean_dilatation };
+                    self.add(cells, [u, v], first, forces, pull)
+                })
+            })?;
+        }
+        Ok(())
+    }
+
+    fn add_linear_forces(
+        &self,
+        regions: &Regions,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let add = |x: &[f64], hooke: fn(&Laws) -> Hooke, forces: &mut [f64]| {
+            let x = x.as_chunks::<D>().0;
+            self.share_out(forces, |run, first, forces| {
+                regions.runs(run).try_for_each(|(cells, laws)| {
+                    let law: Linear = Hookean(hooke(laws));
+                    self.add(cells, [x], first, forces, ElasticPull { law: &law, is_mean: false })
+                })
+            })
+        };
+        if terms.elastic {
+            add(u, |laws| laws.hooke, &mut forces.conservative)?;
+        }
+        if terms.viscous {
+            add(v, |laws| laws.viscous.0, &mut forces.dissipative)?;
+        }
+        Ok(())
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Calls `add` for all runs of cells with the forces on each share of the nodes and the first of
+    /// these, on threads if there are several shares.
+    pub(super) fn share_out(
+        &self,
+        forces: &mut [f64],
+        add: impl Fn(&Range<usize>, usize, &mut [[f64; D]]) -> Result<(), Failure> + Sync,
+    ) -> Result<(), Failure> {
+        let add_share = |number: usize, forces: &mut [f64]| {
+            let (first, forces) = (number * self.shares.nodes, forces.as_chunks_mut::<D>().0);
+            self.shares.cells[number].iter().try_for_each(|run| add(run, first, forces))
+        };
+        if self.shares.cells.len() == 1 {
+            return add_share(0, forces);
+        }
+        let shares = forces.par_chunks_mut(D * self.shares.nodes).enumerate();
+        let failed = shares.find_map_first(|(number, forces)| add_share(number, forces).err());
+        failed.map_or(Ok(()), Err)
+    }
+
+    /// Adds the forces of `cells` to those on the nodes from `first` on, by the `fields` that `pull` asks for: in the order of
+    /// cells, whatever the machine computes at once.
+    pub(super) fn add<const K: usize>(
+        &self,
+        cells: Range<usize>,
+        fields: [&[[f64; D]]; K],
+        first: usize,
+        forces: &mut [[f64; D]],
+        pull: impl Pull<K>,
+    ) -> Result<(), Failure> {
+        Arch::new().dispatch(Pass { elements: self, cells, fields, first, forces, pull })
+    }
+
+    /// Says what is wrong with the first of `cells` that is outside the domain.
+    #[cold]
+    fn outside<const K: usize>(
+        &self,
+        cells: Range<usize>,
+        fields: [&[[f64; D]]; K],
+        pull: &impl Pull<K>,
+    ) -> Result<(), Failure> {
+        for cell in cells {
+            let nodes = &self.nodes[cell];
+            let mut x = [[[0.0; D]; N]; K];
+            (0..K).for_each(|k| x[k] = relative(nodes, fields[k]));
+            for point in self.points(cell) {
+                let gradients = gradients(1, &x, &point.gradients);
+                let at = Deformation::new(point.frame, gradients[0]);
+                let (_, domain) = pull.stress(&at, &gradients, None, point.volume);
+                // which NaN is not
+                let is_inside = domain > 0.0;
+                if !is_inside {
+                    let (nodes, problem) = (nodes.map(|node| node + 1), pull.outside(domain));
+                    let problem = format!("cell {} (nodes {nodes:?}) {problem}", cell + 1);
+                    return Err(Failure::Recoverable(problem));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The forces of a run of cells of one law, compiled for each kind of machine.
+struct Pass<'a, P, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize> {
+    elements: &'a ElementsOf<N, M, D, Q>,
+    cells: Range<usize>,
+    fields: [&'a [[f64; D]]; K],
+    first: usize,
+    forces: &'a mut [[f64; D]],
+    pull: P,
+}
+
+impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize>
+    WithSimd for Pass<'_, P, N, M, D, Q, K>
+{
+    type Output = Result<(), Failure>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Result<(), Failure> {
+        let Self { elements, cells, fields, first, forces, pull } = self;
+        let (nodes, abreast) = (&elements.nodes[..], elements.abreast());
+        let zero = Lane::splat(simd, 0.0);
+        for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
+            let start = register * S::F64_LANES;
+            let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
+            let mut x = [[[zero; D]; N]; K];
+            for k in 0..K {
+                x[k] = elements.gather(simd, start, fields[k]);
+            }
+            let mut pull_of_mean = None;
+            if const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && pull.is_mean() {
+                let (mut sum, mut volume) = (zero, zero);
+                for point in &abreast[block] {
+                    let point = point.lane(simd, part);
+                    let gradients = gradients(1, &x, &point.gradients);
+                    let at = Deformation::new(point.frame, gradients[0]);
+                    sum += pull.dilatation(&at, &gradients) * point.volume;
+                    volume += point.volume;
+                }
+                pull_of_mean = Some(pull.of_mean(sum / volume));
+            }
+            let mut pulls = [[Lane::splat(simd, -0.0); D]; N];
+            let mut is_inside = true;
+            for point in &abreast[block] {
+                let point = point.lane(simd, part);
+                let gradients = gradients(1, &x, &point.gradients);
+                let at = Deformation::new(point.frame, gradients[0]);
+                let (stress, domain) = pull.stress(&at, &gradients, pull_of_mean, point.volume);
+                is_inside &= domain.are_positive();
+                collect(&point.gradients, &stress, &mut pulls);
+            }
+            let active = cells.start.max(start)..cells.end.min(start + S::F64_LANES);
+            if !is_inside {
+                elements.outside(active.clone(), fields, &pull)?;
+            }
+            let is_of_share =
+                |&node: &usize| first <= node && node + S::F64_LANES <= first + forces.len();
+            if let Some(order) = elements.rows.at(block)
+                && active.len() == S::F64_LANES
+                && nodes[start].iter().all(is_of_share)
+            {
+                balance(&mut pulls);
+                let mut vectors = [[[0.0; D]; SIDE_BY_SIDE]; N];
+                for a in 0..N {
+                    vectors[a] = rows::vectors(&pulls[a]);
+                }
+                for &a in order {
+                    let a = usize::from(a);
+                    rows::subtract(simd, &vectors[a], &mut forces[nodes[start][a] - first..]);
+                }
+                continue;
+            }
+            let mut numbers = [[[0.0; SIDE_BY_SIDE]; D]; N];
+            for a in 1..N {
+                for i in 0..D {
+                    pulls[a][i].store(&mut numbers[a][i], 0);
+                }
+            }
+            for cell in active {
+                subtract(&nodes[cell], &numbers, cell - start, first, forces);
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The vectors of the nodes of a cell, less that of the first one.
+#[inline(always)]
+pub(super) fn relative<const N: usize, const D: usize>(
+    nodes: &[usize; N],
+    x: &[[f64; D]],
+) -> [[f64; D]; N] {
+    let first = x[nodes[0]];
+    let mut relative = [[0.0; D]; N];
+    for a in 1..N {
+        let of_node = x[nodes[a]];
+        for i in 0..D {
+            relative[a][i] = of_node[i] - first[i];
+        }
+    }
+    relative
+}
+
+/// Adds P g_a to the forces of all nodes but the first.
+#[inline(always)]
+pub(super) fn collect<T: Real, const N: usize, const M: usize, const D: usize>(
+    gradients: &[[T; M]; N],
+    stress: &Matrix<T, D, M>,
+    pull: &mut [[T; D]; N],
+) {
+    for a in 1..N {
+        for j in 0..M {
+            for i in 0..D {
+                pull[a][i] += stress[j][i] * gradients[a][j];
+            }
+        }
+    }
+}
+
+/// Lets the force on the first node balance those on the others.
+#[inline(always)]
+fn balance<T: Real, const N: usize, const D: usize>(pulls: &mut [[T; D]; N]) {
+    for i in 0..D {
+        let mut sum = pulls[0][i];
+        for a in 1..N {
+            sum += pulls[a][i];
+        }
+        pulls[0][i] = sum * -1.0;
+    }
+}
+
+/// Subtracts the forces of one cell of a lane from those on a share of the nodes, which begins with node `first`;
+/// the first node of the cell gets what balances the others.
+#[inline(always)]
+fn subtract<const N: usize, const D: usize>(
+    nodes: &[usize; N],
+    pulls: &[[[f64; SIDE_BY_SIDE]; D]; N],
+    lane: usize,
+    first: usize,
+    forces: &mut [[f64; D]],
+) {
+    let mut sum = [-0.0; D];
+    for a in 1..N {
+        for i in 0..D {
+            sum[i] += pulls[a][i][lane];
+        }
+        if let Some(on_node) = forces.get_mut(nodes[a].wrapping_sub(first)) {
+            for i in 0..D {
+                on_node[i] -= pulls[a][i][lane];
+            }
+        }
+    }
+    if let Some(on_first) = forces.get_mut(nodes[0].wrapping_sub(first)) {
+        for i in 0..D {
+            on_first[i] += sum[i];
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! What pulls at the points of cells: elastic laws and viscosity, at points or with a mean dilatation.
+
+use crate::base::tensor::{Matrix, Real, product};
+use crate::elements::material::{ByPoint, Deformation, ElasticLaw, ObjectiveViscosity};
+
+/// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
+pub(in crate::elements::body) trait Pull<const K: usize> {
+    /// Whether what resists a change of volume takes the mean of that over the cell.
+    fn is_mean(&self) -> bool;
+
+    /// First Piola stress P times the `volume` of the point, with the `pull` of the mean dilatation if that counts, and a number
+    /// above 0 where it has meaning.
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[Matrix<T, D, M>; K],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T);
+
+    /// The dilatation of a point, or the rate of it.
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        gradients: &[Matrix<T, D, M>; K],
+    ) -> T;
+
+    /// What pulls at all points of a cell of this mean dilatation.
+    fn of_mean<T: Real>(&self, dilatation: T) -> T;
+
+    /// Says what happened where the number of [`Self::stress`] is not above 0.
+    fn outside(&self, domain: f64) -> String;
+}
+
+/// A law whose formulas are compiled into the loop.
+pub(in crate::elements::body) struct ElasticPull<'l, L> {
+    pub(in crate::elements::body) law: &'l L,
+    pub(in crate::elements::body) is_mean: bool,
+}
+
+impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T) {
+        let point = self.law.point(L::twice_strain(at));
+        let stress = product(&L::shape(at), &self.law.stress(&point, pull, volume));
+        (stress, self.law.domain(at.stretch(), &point))
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+    ) -> T {
+        self.law.dilatation(&self.law.point(L::twice_strain(at)))
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [_, pull, _] = self.law.of_volume(dilatation);
+        pull
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        self.law.outside(domain)
+    }
+}
+
+/// A law that is called.
+pub(super) struct CalledPull<'l> {
+    pub(super) law: &'l ByPoint,
+    pub(super) is_mean: bool,
+}
+
+impl Pull<1> for CalledPull<'_> {
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T) {
+        let (stress, domain) = self.law.stress(&at.twice_green(), at.stretch(), pull, volume);
+        (product(&at.gradient(), &stress), domain)
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+    ) -> T {
+        self.law.dilatation(&at.twice_green())
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> T {
+        let [_, pull, _] = self.law.of_volume(dilatation);
+        pull
+    }
+
+    fn outside(&self, domain: f64) -> String {
+        self.law.outside(domain)
+    }
+}
+
+pub(super) struct ViscousPull<'l> {
+    pub(super) law: &'l ObjectiveViscosity,
+    pub(super) is_mean: bool,
+}
+
+impl Pull<2> for ViscousPull<'_> {
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn stress<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+        pull: Option<T>,
+        volume: T,
+    ) -> (Matrix<T, D, M>, T) {
+        (self.law.stress(at, rate, pull, volume), volume.constant(1.0))
+    }
+
+    #[inline(always)]
+    fn dilatation<T: Real, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+    ) -> T {
+        self.law.rate_of_dilatation(at, rate)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, rate: T) -> T {
+        let [pull, _] = self.law.of_volume(rate);
+        pull
+    }
+
+    /// It has meaning everywhere.
+    fn outside(&self, _: f64) -> String {
+        String::new()
+    }
+}

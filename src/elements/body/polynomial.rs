@@ -1,0 +1,354 @@
+//! Green forces of triangles as cubic polynomials of the nodal displacements (Hirai, section 4.5).
+//!
+//! With c_u and c_v the displacements of all nodes along x and y, and products of two and three of
+//! them in collective vectors c_uu, c_uv, c_vv, c_uuu, c_uvv, c_vuu, c_vvv:
+//!
+//! ```text
+//! dU/dc_u = A_1 c_u + A_2 c_v + A_11 c_uu + A_12 c_uv + A_22 c_vv + C (c_uuu + c_uvv)   (4.5.12)
+//! dU/dc_v = B_1 c_u + B_2 c_v + B_11 c_uu + B_12 c_uv + B_22 c_vv + C (c_vuu + c_vvv)   (4.5.13)
+//! ```
+//!
+//! The matrices are built once. Collective vectors hold only products that some triangle has: of
+//! n_p nodes, n_e edges and n_t triangles n_p, n_p + 2 n_e and n_p + 6 n_e + 6 n_t. A_1, A_2, B_1
+//! and B_2 are K; C_1 and C_2 of the text are the same matrix C.
+
+use std::sync::Arc;
+
+use faer::Mat;
+
+use super::assembled::Body;
+use crate::base::input::InputError;
+use crate::base::sparse::BlockMatrix;
+use crate::elements::mesh::CellKind;
+
+/// Most nodes whose numbers fit three into 64 bits.
+const MOST_NODES: usize = (1 << 21) - 2;
+
+/// The coefficient matrices of the second and third order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Coefficients {
+    /// Of c_uu in the force along x.
+    A11,
+    /// Of c_uv in the force along x.
+    A12,
+    /// Of c_vv in the force along x.
+    A22,
+    /// Of c_uu in the force along y.
+    B11,
+    /// Of c_uv in the force along y.
+    B12,
+    /// Of c_vv in the force along y.
+    B22,
+    /// Of c_uuu + c_uvv in the force along x and of c_vuu + c_vvv in that along y.
+    C,
+}
+
+/// Green forces of a body of triangles by direct computation: a second way to the forces that
+/// [`Body::add_elastic_forces`] of a body with Green strain sums up cell by cell, equal to it but for
+/// round-off.
+///
+/// It does not notice cells that are inverted.
+///
+/// ```
+/// use pliant::body::GreenPolynomial;
+/// use pliant::{Body, Cells, Material, Mesh};
+///
+/// let mesh = Mesh::rectangle([2.0, 1.0], [3, 2], Cells::Triangles)?;
+/// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+/// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+/// let mut polynomial = GreenPolynomial::new(&body)?;
+/// assert_eq!(polynomial.quadratic_suffixes().len(), 24);
+/// assert_eq!(polynomial.cubic_suffixes().len(), 84);
+/// // a quarter turn costs nothing
+/// let turned = |x: &[f64]| [-x[1] - x[0], x[0] - x[1]];
+/// let u: Vec<f64> = body.mesh().positions().chunks(2).flat_map(turned).collect();
+/// let mut forces = vec![0.0; body.dofs()];
+/// polynomial.forces(&u, &mut forces)?;
+/// assert!(forces.iter().all(|force| force.abs() < 1e-9));
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct GreenPolynomial {
+    linear: Arc<BlockMatrix>,
+    /// c2i and c2j, from 0.
+    pairs: Vec<[u32; 2]>,
+    /// c3i, and the place of (c3j, c3k) among the pairs.
+    triples: Vec<[u32; 2]>,
+    /// A_11, A_12, A_22, B_11, B_12, B_22 at each entry.
+    quadratic: Rows<[f64; 6]>,
+    cubic: Rows<f64>,
+    /// Collective vectors: c_uu, c_uv, c_vv of each pair; c_uuu + c_uvv and c_vuu + c_vvv of each
+    /// triple.
+    second: Vec<[f64; 3]>,
+    third: Vec<[f64; 2]>,
+}
+
+/// A sparse matrix, row by row, of one or more numbers per entry.
+#[derive(Debug, Clone)]
+struct Rows<V> {
+    offsets: Vec<usize>,
+    columns: Vec<u32>,
+    values: Vec<V>,
+}
+
+impl<V: Clone> Rows<V> {
+    /// Zeros in the `columns` of each row.
+    fn zeros(rows: impl Iterator<Item = Vec<u32>>, zero: V) -> Self {
+        let (mut offsets, mut columns) = (vec![0], Vec::new());
+        for mut row in rows {
+            row.sort_unstable();
+            row.dedup();
+            columns.append(&mut row);
+            offsets.push(columns.len());
+        }
+        Self { values: vec![zero; columns.len()], offsets, columns }
+    }
+
+    fn row(&self, row: usize) -> impl Iterator<Item = (u32, &V)> {
+        let range = self.offsets[row]..self.offsets[row + 1];
+        self.columns[range.clone()].iter().copied().zip(&self.values[range])
+    }
+
+    /// The entry in `row` and `column`, if there is one.
+    fn entry(&mut self, row: usize, column: u32) -> Option<&mut V> {
+        let start = self.offsets[row];
+        let columns = &self.columns[start..self.offsets[row + 1]];
+        columns.binary_search(&column).ok().map(|at| &mut self.values[start + at])
+    }
+}
+
+impl GreenPolynomial {
+    /// Builds the coefficient matrices of `body`.
+    ///
+    /// # Errors
+    /// A body that is not made of triangles in the plane, or of more than 2,097,150 nodes.
+    pub fn new(body: &Body) -> Result<Self, InputError> {
+        let mesh = body.mesh();
+        if (mesh.kind(), mesh.dimension()) != (CellKind::Triangle, 2) {
+            let value = format!("{:?} in {} dimensions", mesh.kind(), mesh.dimension());
+            let mend = "the polynomials are those of triangles in the plane: add the forces up \
+                        cell by cell";
+            return Err(InputError::new("cells of the body", value, mend));
+        }
+        let nodes = mesh.node_count();
+        if nodes > MOST_NODES {
+            let mend = format!("products of three are numbered for {MOST_NODES} at most");
+            return Err(InputError::new("number of nodes", nodes, mend));
+        }
+        let cells: Vec<[usize; 3]> = mesh.cells().map(|cell| [cell[0], cell[1], cell[2]]).collect();
+
+        // (n_p + 1)-base numbers of the suffixes; their order is the lexicographic one
+        let base = nodes as u64 + 1;
+        let number = |suffixes: &[usize]| {
+            suffixes.iter().fold(0, |number, &node| base * number + node as u64 + 1)
+        };
+        let unique = |mut numbers: Vec<u64>| {
+            numbers.sort_unstable();
+            numbers.dedup();
+            numbers
+        };
+        let id2 = unique(cells.iter().flat_map(pairs_of).map(|pair| number(&pair)).collect());
+        let id3 = unique(cells.iter().flat_map(triples_of).map(|triple| number(&triple)).collect());
+        let place = |numbers: &[u64], suffixes: &[usize]| {
+            numbers.partition_point(|&other| other < number(suffixes)) as u32
+        };
+        let digit = |number: u64, power: u32| (number / base.pow(power) % base) as usize - 1;
+        let pairs: Vec<_> = id2.iter().map(|&n| [digit(n, 1) as u32, digit(n, 0) as u32]).collect();
+        let triple = |&n: &u64| [digit(n, 2) as u32, place(&id2, &[digit(n, 1), digit(n, 0)])];
+        let triples: Vec<_> = id3.iter().map(triple).collect();
+
+        let mut cells_of = vec![Vec::new(); nodes];
+        for cell in &cells {
+            cell.iter().for_each(|&node| cells_of[node].push(*cell));
+        }
+        let columns2 = |here: &Vec<[usize; 3]>| {
+            here.iter().flat_map(pairs_of).map(|pair| place(&id2, &pair)).collect()
+        };
+        let columns3 = |here: &Vec<[usize; 3]>| {
+            here.iter().flat_map(triples_of).map(|triple| place(&id3, &triple)).collect()
+        };
+        let mut quadratic = Rows::zeros(cells_of.iter().map(columns2), [0.0; 6]);
+        let mut cubic = Rows::zeros(cells_of.iter().map(columns3), 0.0);
+
+        let triangles: Vec<Triangle> =
+            cells.iter().map(|cell| Triangle::new(cell.map(|node| mesh.position(node)))).collect();
+        let area: f64 = triangles.iter().map(|triangle| triangle.area).sum();
+        let thickness = body.volume() / area;
+        for (number, (cell, triangle)) in cells.iter().zip(&triangles).enumerate() {
+            let lame = body.regions.of(number).hooke.lame;
+            let volume = thickness * triangle.area;
+            let weights = [lame.lambda * volume, lame.mu * volume];
+            for (p, &row) in cell.iter().enumerate() {
+                for ([q, r], pair) in local_pairs().zip(pairs_of(cell)) {
+                    let Some(entry) = quadratic.entry(row, place(&id2, &pair)) else { continue };
+                    let new = triangle.quadratic(weights, [p, q, r]);
+                    entry.iter_mut().zip(new).for_each(|(entry, new)| *entry += new);
+                }
+                for ([q, r, s], triple) in local_triples().zip(triples_of(cell)) {
+                    let Some(entry) = cubic.entry(row, place(&id3, &triple)) else { continue };
+                    *entry += triangle.cubic(weights, [p, q, r, s]);
+                }
+            }
+        }
+        Ok(Self {
+            linear: body.stiffness.clone(),
+            second: vec![[0.0; 3]; pairs.len()],
+            third: vec![[0.0; 2]; triples.len()],
+            pairs,
+            triples,
+            quadratic,
+            cubic,
+        })
+    }
+
+    /// Writes the nodal forces -dU/du (N) at the displacements `u` (m), both with two components
+    /// per node. It allocates nothing.
+    ///
+    /// # Errors
+    /// A length other than that of the body's degrees of freedom.
+    pub fn forces(&mut self, u: &[f64], forces: &mut [f64]) -> Result<(), InputError> {
+        let dofs = 2 * self.linear.pattern().nodes();
+        for (input, length) in [("length of u", u.len()), ("length of forces", forces.len())] {
+            if length != dofs {
+                return Err(InputError::new(input, length, format!("the body has {dofs}")));
+            }
+        }
+        forces.fill(0.0);
+        self.linear.add_product(-1.0, u, forces);
+        let at = u.as_chunks::<2>().0;
+        for (second, &[i, j]) in self.second.iter_mut().zip(&self.pairs) {
+            let ([ui, vi], [uj, vj]) = (at[i as usize], at[j as usize]);
+            *second = [ui * uj, ui * vj, vi * vj];
+        }
+        for (third, &[i, jk]) in self.third.iter_mut().zip(&self.triples) {
+            let ([ui, vi], [uu, _, vv]) = (at[i as usize], self.second[jk as usize]);
+            *third = [ui * (uu + vv), vi * (uu + vv)];
+        }
+        for (node, force) in forces.as_chunks_mut::<2>().0.iter_mut().enumerate() {
+            let mut sum = [0.0; 2];
+            for (column, &[a11, a12, a22, b11, b12, b22]) in self.quadratic.row(node) {
+                let [uu, uv, vv] = self.second[column as usize];
+                sum[0] += a11 * uu + a12 * uv + a22 * vv;
+                sum[1] += b11 * uu + b12 * uv + b22 * vv;
+            }
+            for (column, &c) in self.cubic.row(node) {
+                let [along_x, along_y] = self.third[column as usize];
+                sum[0] += c * along_x;
+                sum[1] += c * along_y;
+            }
+            force[0] -= sum[0];
+            force[1] -= sum[1];
+        }
+        Ok(())
+    }
+
+    /// Suffixes (i, j) of the products in c_uu, c_uv and c_vv, in their order: c2i and c2j of the
+    /// text. Nodes count from 1.
+    pub fn quadratic_suffixes(&self) -> Vec<[usize; 2]> {
+        self.pairs.iter().map(|pair| pair.map(|node| node as usize + 1)).collect()
+    }
+
+    /// Suffixes (i, j, k) of the products in c_uuu, c_uvv, c_vuu and c_vvv: c3i, c3j and c3k of the
+    /// text. Nodes count from 1.
+    pub fn cubic_suffixes(&self) -> Vec<[usize; 3]> {
+        let all = |&[i, jk]: &[u32; 2]| {
+            let [j, k] = self.pairs[jk as usize];
+            [i, j, k].map(|node| node as usize + 1)
+        };
+        self.triples.iter().map(all).collect()
+    }
+
+    /// A matrix of coefficients (N/m^2; C: N/m^3) as a dense one, for small bodies and tests: a
+    /// row per node, a column per product.
+    pub fn to_dense(&self, which: Coefficients) -> Mat<f64> {
+        let nodes = self.linear.pattern().nodes();
+        let mut dense = match which {
+            Coefficients::C => Mat::zeros(nodes, self.triples.len()),
+            _ => Mat::zeros(nodes, self.pairs.len()),
+        };
+        for node in 0..nodes {
+            match which {
+                Coefficients::C => {
+                    self.cubic.row(node).for_each(|(j, c)| dense[(node, j as usize)] = *c);
+                }
+                _ => self
+                    .quadratic
+                    .row(node)
+                    .for_each(|(j, entry)| dense[(node, j as usize)] = entry[which as usize]),
+            }
+        }
+        dense
+    }
+}
+
+fn local_pairs() -> impl Iterator<Item = [usize; 2]> {
+    (0..3).flat_map(|i| (0..3).map(move |j| [i, j]))
+}
+
+fn local_triples() -> impl Iterator<Item = [usize; 3]> {
+    (0..3).flat_map(|i| local_pairs().map(move |[j, k]| [i, j, k]))
+}
+
+fn pairs_of(cell: &[usize; 3]) -> impl Iterator<Item = [usize; 2]> {
+    local_pairs().map(|pair| pair.map(|local| cell[local]))
+}
+
+fn triples_of(cell: &[usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    local_triples().map(|triple| triple.map(|local| cell[local]))
+}
+
+/// Geometry of one triangle: u_x = a . gamma_u, u_y = b . gamma_u, likewise v.
+struct Triangle {
+    a: [f64; 3],
+    b: [f64; 3],
+    /// Area (m^2).
+    area: f64,
+}
+
+impl Triangle {
+    fn new(corners: [&[f64]; 3]) -> Self {
+        let across = |i: usize, j: usize, k: usize| corners[j][i] - corners[k][i];
+        let twice = across(0, 1, 0) * across(1, 2, 0) - across(1, 1, 0) * across(0, 2, 0);
+        let others = [[1, 2], [2, 0], [0, 1]];
+        Self {
+            a: others.map(|[j, k]| across(1, j, k) / twice),
+            b: others.map(|[j, k]| -across(0, j, k) / twice),
+            area: 0.5 * twice,
+        }
+    }
+
+    /// Coefficients (4.5.8) of the products with local suffixes q and r in the force on node p, for
+    /// `weights` = [lambda, mu] x volume: A_11, A_12, A_22, B_11, B_12, B_22.
+    fn quadratic(&self, [lambda, mu]: [f64; 2], [p, q, r]: [usize; 3]) -> [f64; 6] {
+        let (a, b) = (&self.a, &self.b);
+        let (aa, ab, ba, bb) = (a[q] * a[r], a[q] * b[r], b[q] * a[r], b[q] * b[r]);
+        let (a, b) = (a[p], b[p]);
+        let of_lambda = [
+            1.5 * a * aa + 0.5 * a * bb + b * ab,
+            a * ab + b * bb,
+            0.5 * a * (aa + bb),
+            0.5 * b * (aa + bb),
+            a * aa + b * ab,
+            1.5 * b * bb + 0.5 * b * aa + a * ba,
+        ];
+        let of_mu = [
+            3.0 * a * aa + a * bb + 2.0 * b * ab,
+            b * aa + a * ba + 2.0 * b * bb,
+            a * aa + b * ab,
+            b * bb + a * ba,
+            a * bb + b * ba + 2.0 * a * aa,
+            3.0 * b * bb + b * aa + 2.0 * a * ba,
+        ];
+        std::array::from_fn(|k| lambda * of_lambda[k] + mu * of_mu[k])
+    }
+
+    /// Coefficient (4.5.9) of the products with local suffixes q, r and s in the force on node p.
+    fn cubic(&self, [lambda, mu]: [f64; 2], [p, q, r, s]: [usize; 4]) -> f64 {
+        let (a, b) = (&self.a, &self.b);
+        let stretch = a[p] * a[q] + b[p] * b[q];
+        let of_lambda = 0.5 * stretch * (a[r] * a[s] + b[r] * b[s]);
+        let along_a = a[q] * a[r] * a[s] + b[q] * b[r] * a[s];
+        let along_b = b[q] * b[r] * b[s] + a[q] * a[r] * b[s];
+        lambda * of_lambda + mu * (a[p] * along_a + b[p] * along_b)
+    }
+}

@@ -1,0 +1,49 @@
+//! How a body is made of a mesh.
+
+use super::dilatation::Dilatation;
+use super::inertia::Inertia;
+use super::regions::CellSelection;
+use crate::base::input::{InputError, positive};
+use crate::elements::material::{Plane, Strain, Substance, Viscosity};
+use crate::elements::mesh::Mesh;
+
+/// What is made of a mesh.
+#[derive(Debug, Clone)]
+pub(super) struct Recipe {
+    pub(super) material: Substance,
+    pub(super) regions: Vec<(CellSelection, Substance)>,
+    pub(super) strain: Strain,
+    pub(super) viscosity: Option<Viscosity>,
+    pub(super) inertia: Inertia,
+    pub(super) plane: Plane,
+    pub(super) dilatation: Dilatation,
+    pub(super) thickness: Option<f64>,
+    pub(super) area: Option<f64>,
+    pub(super) points: Vec<(String, Vec<f64>, f64)>,
+}
+
+impl Recipe {
+    /// Thickness (m) or cross section (m^2), as the cells of `mesh` have it; 1 of solids.
+    ///
+    /// # Errors
+    /// One that is missing, or that such cells do not have.
+    pub(super) fn section(&self, mesh: &Mesh) -> Result<f64, InputError> {
+        let kind = mesh.kind();
+        let misplaced = |name: &str, value: f64| {
+            Err(InputError::new(name, value, format!("a body of {kind:?} cells has no {name}")))
+        };
+        match (kind.dimension(), self.area, self.thickness) {
+            (1, Some(area), None) => positive("area", area, "m^2"),
+            (2, None, Some(thickness)) => positive("thickness", thickness, "m"),
+            (3, None, None) => Ok(1.0),
+            (1 | 3, _, Some(thickness)) => misplaced("thickness", thickness),
+            (2 | 3, Some(area), _) => misplaced("area", area),
+            (1, None, None) => Err(missing("area", "a one-dimensional body needs its area in m^2")),
+            _ => Err(missing("thickness", "a two-dimensional body needs its thickness in m")),
+        }
+    }
+}
+
+fn missing(input: &str, mend: &str) -> InputError {
+    InputError::new(input, "(missing)", mend)
+}

@@ -1,0 +1,225 @@
+//! Regions: parts of a body with another material.
+
+use std::collections::BTreeSet;
+use std::fmt;
+use std::ops::Range;
+
+use crate::base::input::InputError;
+use crate::elements::material::{
+    Elastic, Hooke, Hookean, Lame, Material, ObjectiveViscosity, Plane, Relaxing, Strain, Substance,
+};
+use crate::elements::mesh::Mesh;
+
+/// Cells, by the name of a group, by number or by a box around their centroids.
+///
+/// Strings convert into it: `body.region("skin", stiff)`.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CellSelection {
+    /// A named group of cells of the mesh ([`Mesh::cell_groups`]).
+    Group(String),
+    /// Cell numbers, counted from 1 in the order of the mesh.
+    Numbers(Vec<usize>),
+    /// All cells whose centroid lies in the closed box between `min` and `max` (m).
+    Box {
+        /// Lower corner.
+        min: Vec<f64>,
+        /// Upper corner.
+        max: Vec<f64>,
+    },
+}
+
+impl fmt::Display for CellSelection {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Group(name) => write!(f, "\"{name}\""),
+            Self::Numbers(numbers) => write!(f, "cells {numbers:?}"),
+            Self::Box { min, max } => write!(f, "box [{min:?}, {max:?}]"),
+        }
+    }
+}
+
+impl From<&str> for CellSelection {
+    fn from(name: &str) -> Self {
+        Self::Group(name.into())
+    }
+}
+
+impl CellSelection {
+    /// All cells whose centroid lies in the closed box between `min` and `max` (m).
+    pub fn inside(min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
+        Self::Box { min: min.into(), max: max.into() }
+    }
+
+    /// The cells, counted from 0.
+    pub(crate) fn cells(&self, mesh: &Mesh) -> Result<Vec<usize>, InputError> {
+        let cells = match self {
+            Self::Group(name) => mesh.cell_groups().get(name).cloned().ok_or_else(|| {
+                let known: Vec<&str> = mesh.cell_groups().keys().map(String::as_str).collect();
+                let mend = match known.is_empty() {
+                    true => "the mesh has no groups of cells".into(),
+                    false => format!("the mesh has the groups {}", known.join(", ")),
+                };
+                InputError::new("group of cells", format!("\"{name}\""), mend)
+            })?,
+            Self::Numbers(numbers) => {
+                let count = mesh.cell_count();
+                if let Some(number) = numbers.iter().find(|n| !(1..=count).contains(*n)) {
+                    let mend = format!("the mesh has the cells 1 to {count}");
+                    return Err(InputError::new("cell of a region", number, mend));
+                }
+                numbers.iter().map(|number| number - 1).collect()
+            }
+            Self::Box { min, max } => {
+                let d = mesh.dimension();
+                for (name, corner) in [("region box min", min), ("region box max", max)] {
+                    if corner.len() != d || corner.iter().any(|x| x.is_nan()) {
+                        let mend = format!("it needs {d} numbers (m)");
+                        return Err(InputError::new(name, format!("{corner:?}"), mend));
+                    }
+                }
+                let inside = |cell: &[usize]| {
+                    (0..d).all(|i| {
+                        let sum: f64 = cell.iter().map(|&node| mesh.position(node)[i]).sum();
+                        (min[i]..=max[i]).contains(&(sum / cell.len() as f64))
+                    })
+                };
+                let cells = mesh.cells().enumerate().filter(|(_, cell)| inside(cell));
+                cells.map(|(number, _)| number).collect::<Vec<usize>>()
+            }
+        };
+        if cells.is_empty() {
+            let mend = "it contains no cell of the mesh";
+            return Err(InputError::new("region", self, mend));
+        }
+        Ok(cells)
+    }
+}
+
+/// What the elements of a region take: density (kg/m^3), rate of mass damping (1/s), laws and branches.
+#[derive(Debug, Clone)]
+pub(super) struct Laws {
+    pub(super) density: f64,
+    pub(super) mass_damping: f64,
+    pub(super) elastic: Elastic,
+    /// What the elastic law is at small strains.
+    pub(super) hooke: Hooke,
+    pub(super) viscous: ObjectiveViscosity,
+    pub(super) branches: Vec<Relaxing>,
+}
+
+impl Laws {
+    /// The law of the damping matrix B.
+    pub(super) fn natural_viscosity(&self) -> Elastic {
+        Elastic::Linear(Hookean(self.viscous.0))
+    }
+}
+
+/// Which substance each cell is made of.
+#[derive(Debug, Clone)]
+pub(super) struct Regions {
+    /// What the cells are made of.
+    pub(super) materials: Vec<Material>,
+    laws: Vec<Laws>,
+    /// Index of each cell's substance; empty if all cells have the first.
+    of_cell: Vec<u16>,
+}
+
+impl Regions {
+    /// `base` everywhere but in `regions`, of which the last one that holds a cell counts.
+    pub(super) fn new(
+        mesh: &Mesh,
+        strain: Strain,
+        plane: Plane,
+        base: &Substance,
+        regions: &[(CellSelection, Substance)],
+    ) -> Result<Self, InputError> {
+        let laws = |substance: &Substance| -> Result<Laws, InputError> {
+            substance.validate()?;
+            let Substance { material, law, mass_damping, branches, fibres } = substance;
+            if let (Some(law), Strain::Cauchy) = (law, strain) {
+                let mend = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
+                return Err(InputError::new("material.law", format!("{law:?}"), mend));
+            }
+            if strain == Strain::Cauchy && !fibres.is_empty() {
+                let mend =
+                    "fibres take tension alone, which is not linear: measure strain by Green's";
+                return Err(InputError::new("number of families of fibres", fibres.len(), mend));
+            }
+            let dimension = mesh.kind().dimension();
+            let hooke = |lame: Lame| Hooke::new(lame, dimension, plane);
+            Ok(Laws {
+                density: material.density,
+                mass_damping: *mass_damping,
+                elastic: Elastic::new(strain, *law, material.elastic(), dimension, plane),
+                hooke: hooke(material.elastic()),
+                viscous: ObjectiveViscosity(hooke(material.viscous())),
+                branches: branches
+                    .iter()
+                    .map(|branch| Relaxing::new(branch, material, strain, dimension, plane))
+                    .collect(),
+            })
+        };
+        let mut all =
+            Self { materials: vec![base.material], laws: vec![laws(base)?], of_cell: Vec::new() };
+        if regions.len() >= usize::from(u16::MAX) {
+            return Err(InputError::new("number of regions", regions.len(), "65,534 are the most"));
+        }
+        for (number, (cells, substance)) in (1_u16..).zip(regions) {
+            all.materials.push(substance.material);
+            all.laws.push(laws(substance)?);
+            all.of_cell.resize(mesh.cell_count(), 0);
+            cells.cells(mesh)?.into_iter().for_each(|cell| all.of_cell[cell] = number);
+        }
+        if !regions.is_empty() {
+            let used: BTreeSet<u16> = all.of_cell.iter().copied().collect();
+            all.materials = used.iter().map(|&number| all.materials[usize::from(number)]).collect();
+        }
+        Ok(all)
+    }
+
+    /// The substance of a cell.
+    pub(super) fn of(&self, cell: usize) -> &Laws {
+        &self.laws[self.of_cell.get(cell).map_or(0, |&index| usize::from(index))]
+    }
+
+    /// The cells of each substance, of `count` in all.
+    pub(super) fn by_substance(&self, count: usize) -> Vec<Vec<usize>> {
+        let mut cells = vec![Vec::new(); self.laws.len()];
+        for cell in 0..count {
+            let number = self.of_cell.get(cell).map_or(0, |&index| usize::from(index));
+            cells[number].push(cell);
+        }
+        cells
+    }
+
+    /// `cells`, divided into runs of one substance.
+    pub(super) fn runs(&self, cells: &Range<usize>) -> impl Iterator<Item = (Range<usize>, &Laws)> {
+        let Range { mut start, end } = *cells;
+        std::iter::from_fn(move || {
+            let run = match self.of_cell.get(start..end) {
+                None => start..end,
+                Some(indices) => {
+                    let same = indices.iter().take_while(|index| **index == indices[0]);
+                    start..start + same.count()
+                }
+            };
+            start = run.end;
+            (!run.is_empty()).then(|| (run.clone(), self.of(run.start)))
+        })
+    }
+
+    /// Whether any of them is viscous.
+    pub(super) fn are_viscous(&self) -> bool {
+        self.laws.iter().any(|laws| !laws.viscous.0.is_zero())
+    }
+
+    /// The branches of all of them.
+    pub(super) fn branches(&self) -> impl Iterator<Item = &Relaxing> {
+        self.laws.iter().flat_map(|laws| &laws.branches)
+    }
+
+    /// Whether any of them has mass damping.
+    pub(super) fn have_mass_damping(&self) -> bool {
+        self.laws.iter().any(|laws| laws.mass_damping > 0.0)
+    }
+}

@@ -1,0 +1,156 @@
+//! Cells in a row: their nodes are numbered on from cell to cell, as in meshes of rectangles and cuboids, so that those of
+//! several cells lie side by side in memory.
+
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
+
+use std::cmp::Reverse;
+
+use pulp::Simd;
+
+use crate::base::lane::{Lane, SIDE_BY_SIDE};
+
+/// Which of each [`SIDE_BY_SIDE`] cells of `N` nodes are in a row.
+#[derive(Debug)]
+pub(super) struct Rows<const N: usize>(Vec<Option<Order<N>>>);
+
+/// The nodes of a cell from the greatest number to the least. In this order a node that is the a-th of one cell and the b-th of
+/// another gets the forces of the two in the order of the cells.
+type Order<const N: usize> = [u8; N];
+
+impl<const N: usize> Rows<N> {
+    pub(super) fn new(cells: &[[usize; N]]) -> Self {
+        Self(cells.as_chunks::<SIDE_BY_SIDE>().0.iter().map(order).collect())
+    }
+
+    /// The order of the nodes of the cells side by side from number `block` of these on, if they are in a row.
+    #[inline(always)]
+    pub(super) fn at(&self, block: usize) -> Option<&Order<N>> {
+        self.0.get(block)?.as_ref()
+    }
+}
+
+fn order<const N: usize>(cells: &[[usize; N]; SIDE_BY_SIDE]) -> Option<Order<N>> {
+    let numbered_on = |pair: &[[usize; N]]| (0..N).all(|a| pair[1][a] == pair[0][a] + 1);
+    let mut order = std::array::from_fn(|a| a as u8);
+    order.sort_by_key(|&a| Reverse(cells[0][usize::from(a)]));
+    cells.windows(2).all(numbered_on).then_some(order)
+}
+
+/// As many of `vectors` as a register holds, less as many of `others`, by their components.
+#[inline(always)]
+pub(super) fn differences<S: Simd, const D: usize>(
+    simd: S,
+    vectors: &[[f64; D]],
+    others: &[[f64; D]],
+) -> [Lane<S>; D] {
+    let [vectors, others] = [vectors, others].map(|all| all[..S::F64_LANES].as_flattened());
+    let mut differences = [[0.0; D]; SIDE_BY_SIDE];
+    for part in 0..D {
+        let difference = Lane::load(simd, vectors, part) - Lane::load(simd, others, part);
+        difference.store(differences.as_flattened_mut(), part);
+    }
+    let mut components = [Lane::splat(simd, 0.0); D];
+    for i in 0..D {
+        let mut numbers = [0.0; SIDE_BY_SIDE];
+        for lane in 0..SIDE_BY_SIDE {
+            numbers[lane] = differences[lane][i];
+        }
+        components[i] = Lane::load(simd, &numbers, 0);
+    }
+    components
+}
+
+/// The vectors of as many cells as a register holds, given by their components.
+#[inline(always)]
+pub(super) fn vectors<S: Simd, const D: usize>(
+    components: &[Lane<S>; D],
+) -> [[f64; D]; SIDE_BY_SIDE] {
+    let mut vectors = [[0.0; D]; SIDE_BY_SIDE];
+    for i in 0..D {
+        let mut numbers = [0.0; SIDE_BY_SIDE];
+        components[i].store(&mut numbers, 0);
+        for lane in 0..S::F64_LANES {
+            vectors[lane][i] = numbers[lane];
+        }
+    }
+    vectors
+}
+
+/// Subtracts `vectors` from as many as a register holds.
+#[inline(always)]
+pub(super) fn subtract<S: Simd, const D: usize>(
+    simd: S,
+    vectors: &[[f64; D]; SIDE_BY_SIDE],
+    from: &mut [[f64; D]],
+) {
+    let (vectors, from) = (vectors.as_flattened(), from[..S::F64_LANES].as_flattened_mut());
+    for part in 0..D {
+        let difference = Lane::load(simd, from, part) - Lane::load(simd, vectors, part);
+        difference.store(from, part);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::CellSelection;
+    use crate::base::sparse::NodePattern;
+    use crate::elements::basis::{
+        Hexahedron, Quadrilateral, ReferenceCell, Segment, Tetrahedron, Triangle,
+    };
+    use crate::elements::body::elements::ElementsOf;
+    use crate::elements::body::forces::{Forces, Terms};
+    use crate::elements::body::regions::Regions;
+    use crate::elements::body::tests::noise;
+    use crate::elements::force::NodalForces;
+    use crate::elements::material::{Material, Plane, Strain};
+    use crate::elements::mesh::{Cells, Mesh, SolidCells};
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    /// The forces of cells in a row and of the same cells one by one are the same to the last bit: each node gets them in the
+    /// same order. A region begins and ends within a row.
+    fn are_those_of_single_cells<
+        C: ReferenceCell<N, M>,
+        const N: usize,
+        const M: usize,
+        const D: usize,
+        const Q: usize,
+    >(
+        mesh: &Mesh,
+    ) {
+        let pattern = NodePattern::new(mesh.node_count(), mesh.cells());
+        let mut elements = ElementsOf::<N, M, D, Q>::new::<C>(mesh, 1.0, false, &pattern).unwrap();
+        let base = Material { viscosity: 3.0, ..SQUARE_MATERIAL };
+        let stiff =
+            (CellSelection::Numbers((13..=27).collect()), Material { young: 2e6, ..base }.into());
+        let regions =
+            Regions::new(mesh, Strain::Green, Plane::Strain, &base.into(), &[stiff]).unwrap();
+        let dofs = mesh.node_count() * D;
+        let (u, v) = (noise(dofs, 1e-4, 1.0), noise(dofs, 1.0, 2.0));
+        let forces = |elements: &ElementsOf<N, M, D, Q>| {
+            let (mut forces, both) =
+                (NodalForces::zeros(dofs), Terms { elastic: true, viscous: true });
+            elements.add_forces(&regions, both, &u, &v, &mut forces).unwrap();
+            [forces.conservative.to_vec(), forces.dissipative.to_vec()]
+        };
+        let found = elements.rows.0.iter().flatten().count();
+        assert!(0 < found && found < elements.abreast().len(), "{found} in a row");
+        let by_rows = forces(&elements);
+        assert!(by_rows.iter().all(|of_kind| of_kind.iter().any(|force| *force != 0.0)));
+        elements.rows = Rows(Vec::new());
+        assert!(by_rows == forces(&elements));
+    }
+
+    #[test]
+    fn cells_in_a_row() {
+        let plane = |nodes, cells| Mesh::rectangle([2.0, 1.0], nodes, cells).unwrap();
+        let solid = |cells| Mesh::cuboid([2.0, 0.2, 0.2], [20, 3, 3], cells).unwrap();
+        are_those_of_single_cells::<Segment, 2, 1, 1, 1>(&Mesh::bar(1.0, 31).unwrap());
+        are_those_of_single_cells::<Triangle, 3, 2, 2, 1>(&plane([20, 4], Cells::Triangles));
+        are_those_of_single_cells::<Quadrilateral, 4, 2, 2, 4>(&plane([20, 4], Cells::Rectangles));
+        are_those_of_single_cells::<Tetrahedron, 4, 3, 3, 1>(&solid(SolidCells::Tetrahedra));
+        are_those_of_single_cells::<Hexahedron, 8, 3, 3, 8>(&solid(SolidCells::Hexahedra));
+        // nodes in several shares
+        are_those_of_single_cells::<Triangle, 3, 2, 2, 1>(&plane([150, 70], Cells::Triangles));
+    }
+}

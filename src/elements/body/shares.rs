@@ -1,0 +1,110 @@
+//! Dividing the work on cells among threads.
+//!
+//! Each share is a range of nodes, and computes what all cells that touch it do to these nodes. Cells on
+//! the border between shares are computed by each of them. So no two shares write to the same place,
+//! nothing has to be added up afterwards, and the sum at a node is the same to the last bit however many
+//! threads there are.
+
+use std::ops::Range;
+
+use crate::base::sparse::Rows;
+
+/// Nodes from which threads pay: some 100 microseconds of work.
+const LARGE: usize = 4000;
+/// Numbers of shares that are tried, and the part of the cells that may be computed twice.
+const NUMBERS: [usize; 4] = [64, 32, 16, 8];
+const TWICE: f64 = 0.25;
+
+/// The shares of a mesh: one, if it is small or its nodes are numbered in no good order.
+#[derive(Debug)]
+pub(super) struct Shares {
+    /// Nodes of each share but the last, which may have fewer.
+    pub(super) nodes: usize,
+    /// Cells that touch each share, in ascending order.
+    pub(super) cells: Vec<Vec<Range<usize>>>,
+}
+
+impl Shares {
+    /// The shares of `cells` on `nodes` nodes.
+    pub(super) fn new<const N: usize>(cells: &[[usize; N]], nodes: usize) -> Self {
+        let whole = Self { nodes, cells: vec![vec![0..cells.len()]] };
+        if nodes < LARGE {
+            return whole;
+        }
+        let few_twice = |shares: &Self| {
+            let all: usize = shares.cells.iter().flatten().map(Range::len).sum();
+            all as f64 <= (1.0 + TWICE) * cells.len() as f64
+        };
+        let divided = |number| Self::divided(cells, nodes.div_ceil(number), nodes);
+        NUMBERS.into_iter().map(divided).find(few_twice).unwrap_or(whole)
+    }
+
+    /// Calls `work` with each share's number and its rows of two matrices, on threads if there are
+    /// several.
+    pub(super) fn each<const D: usize>(
+        &self,
+        stiffness: Rows<'_, D>,
+        damping: Rows<'_, D>,
+        work: &(impl Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync),
+    ) {
+        self.each_of(0..self.cells.len(), stiffness, damping, work);
+    }
+
+    fn each_of<const D: usize>(
+        &self,
+        shares: Range<usize>,
+        stiffness: Rows<'_, D>,
+        damping: Rows<'_, D>,
+        work: &(impl Fn(usize, Rows<'_, D>, Rows<'_, D>) + Sync),
+    ) {
+        if shares.len() == 1 {
+            return work(shares.start, stiffness, damping);
+        }
+        let middle = shares.start + shares.len() / 2;
+        let (low, high) = stiffness.split_at(middle * self.nodes);
+        let (low_damping, high_damping) = damping.split_at(middle * self.nodes);
+        rayon::join(
+            || self.each_of(shares.start..middle, low, low_damping, work),
+            || self.each_of(middle..shares.end, high, high_damping, work),
+        );
+    }
+
+    fn divided<const N: usize>(cells: &[[usize; N]], each: usize, nodes: usize) -> Self {
+        let mut shares: Vec<Vec<Range<usize>>> = vec![Vec::new(); nodes.div_ceil(each)];
+        for (cell, of_cell) in cells.iter().enumerate() {
+            for node in of_cell {
+                match shares[node / each].last_mut() {
+                    Some(run) if run.end > cell => {}
+                    Some(run) if run.end == cell => run.end += 1,
+                    _ => shares[node / each].push(cell..cell + 1),
+                }
+            }
+        }
+        Self { nodes: each, cells: shares }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::mesh::{Cells, Mesh};
+
+    #[test]
+    fn every_cell_is_in_the_shares_of_its_nodes() {
+        let mesh = Mesh::rectangle([1.0, 1.0], [150, 70], Cells::Triangles).unwrap();
+        let cells: Vec<[usize; 3]> = mesh.cells().map(|cell| cell.try_into().unwrap()).collect();
+        let shares = Shares::new(&cells, mesh.node_count());
+        assert_eq!(shares.cells.len(), 16);
+        for (share, runs) in shares.cells.iter().enumerate() {
+            let listed: Vec<usize> = runs.iter().cloned().flatten().collect();
+            let touching = |cell: &[usize; 3]| cell.iter().any(|node| node / shares.nodes == share);
+            let expected = (0..cells.len()).filter(|&cell| touching(&cells[cell]));
+            assert!(expected.eq(listed), "share {share}");
+        }
+        // in a random order of the nodes all cells would be in all shares
+        let step = 7919;
+        let shuffled: Vec<_> =
+            cells.iter().map(|cell| cell.map(|node| node * step % mesh.node_count())).collect();
+        assert_eq!(Shares::new(&shuffled, mesh.node_count()).cells.len(), 1);
+    }
+}

@@ -1,0 +1,165 @@
+//! The tangents of all elements, and the constant matrices, which are tangents at rest.
+//!
+//! Tangents are computed as forces are: compiled for each kind of machine, several cells at once, in an order of
+//! additions that is the same on all machines. Those of a cell are summed up over its points, and added to the matrix once.
+//! The gradients of a cell add up to 0, and so do the rows and columns of its tangent: the blocks of its first node
+//! balance the others. Of a symmetric tangent half of the blocks are computed.
+
+use std::ops::Range;
+
+use pulp::Arch;
+
+use super::elements::{ElementsOf, pairs};
+use super::forces::Terms;
+use super::regions::{Laws, Regions};
+use crate::base::sparse::{BlockMatrix, Rows};
+use crate::base::tensor::Matrix;
+use crate::elements::material::{Blocks, Deformation, Elastic};
+
+mod pass;
+mod slope;
+#[cfg(test)]
+mod tests;
+
+use pass::Pass;
+pub(super) use slope::ElasticSlope;
+use slope::{CalledSlope, OfMean, RateSlope, Slope, ViscousSlope};
+
+/// Elements as matrices.
+pub(super) trait Tangents {
+    /// Adds the tangents at rest of the law that `law` tells: sum w (lambda g_a g_b^T + mu ((g_a . g_b) I + g_b g_a^T)).
+    fn add_stiffness(
+        &self,
+        regions: &Regions,
+        law: &dyn Fn(&Laws) -> Elastic,
+        stiffness: &mut BlockMatrix,
+    );
+
+    /// Adds -df/du and -df/dv of the forces of `terms`.
+    fn add_tangents(
+        &self,
+        regions: &Regions,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    );
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
+    for ElementsOf<N, M, D, Q>
+{
+    fn add_stiffness(
+        &self,
+        regions: &Regions,
+        law: &dyn Fn(&Laws) -> Elastic,
+        stiffness: &mut BlockMatrix,
+    ) {
+        let mut rows = stiffness.rows_mut::<D>();
+        for cell in 0..self.nodes.len() {
+            let is_mean = self.mean_dilatation;
+            match &law(regions.of(cell)) {
+                Elastic::Linear(law) => {
+                    self.add_at_rest(cell, &ElasticSlope { law, is_mean }, &mut rows);
+                }
+                Elastic::StVenantKirchhoff(law) => {
+                    self.add_at_rest(cell, &ElasticSlope { law, is_mean }, &mut rows);
+                }
+                Elastic::ByPoint(law) => {
+                    self.add_at_rest(cell, &CalledSlope { law, is_mean }, &mut rows);
+                }
+            }
+        }
+    }
+
+    fn add_tangents(
+        &self,
+        regions: &Regions,
+        terms: Terms,
+        u: &[f64],
+        v: &[f64],
+        stiffness: &mut BlockMatrix,
+        damping: &mut BlockMatrix,
+    ) {
+        let (u, v) = (u.as_chunks::<D>().0, v.as_chunks::<D>().0);
+        let add = |share: usize, mut stiffness: Rows<'_, D>, mut damping: Rows<'_, D>| {
+            for (cells, laws) in self.shares.cells[share].iter().flat_map(|run| regions.runs(run)) {
+                let is_mean = self.mean_dilatation;
+                if terms.elastic {
+                    let cells = cells.clone();
+                    match &laws.elastic {
+                        // constant
+                        Elastic::Linear(_) => {}
+                        Elastic::StVenantKirchhoff(law) => {
+                            self.add_to(&mut stiffness, cells, [u], ElasticSlope { law, is_mean });
+                        }
+                        Elastic::ByPoint(law) => {
+                            self.add_to(&mut stiffness, cells, [u], CalledSlope { law, is_mean });
+                        }
+                    }
+                }
+                if terms.viscous {
+                    let law = &laws.viscous;
+                    self.add_to(&mut damping, cells.clone(), [u], RateSlope { law, is_mean });
+                    self.add_to(&mut stiffness, cells, [u, v], ViscousSlope { law, is_mean });
+                }
+            }
+        };
+        self.shares.each(stiffness.rows_mut(), damping.rows_mut(), &add);
+    }
+}
+
+impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
+    /// Adds the tangent at rest of one cell.
+    fn add_at_rest(&self, cell: usize, slope: &impl Slope<1>, rows: &mut Rows<'_, D>) {
+        let entries = &self.entries[cell];
+        let (mut swelling, mut volume) = ([[0.0; D]; N], 0.0);
+        let pull = self.mean_dilatation.then_some(0.0);
+        for point in self.points(cell) {
+            let rest = Deformation::new(point.frame, [[0.0; D]; M]);
+            let (gradients, weight) = (&point.gradients, point.volume);
+            add_blocks(entries, rows, &slope.blocks(&rest, &[rest.h], pull, gradients, weight));
+            if self.mean_dilatation {
+                let (_, by_nodes, _) = slope.swelling(&rest, &[rest.h], gradients, weight);
+                add(&mut swelling, &by_nodes);
+                volume += weight;
+            }
+        }
+        if self.mean_dilatation {
+            let [_, stiff] = slope.of_mean(0.0);
+            let of_mean = OfMean { force: swelling, motion: swelling, share: stiff / volume };
+            add_blocks(entries, rows, &of_mean);
+        }
+    }
+
+    /// Adds the tangents of `cells`, cell after cell, to the rows of a matrix, by the `fields` that `slope` asks for.
+    pub(super) fn add_to<const K: usize>(
+        &self,
+        rows: &mut Rows<'_, D>,
+        cells: Range<usize>,
+        fields: [&[[f64; D]]; K],
+        slope: impl Slope<K>,
+    ) {
+        Arch::new().dispatch(Pass { elements: self, rows, cells, fields, slope });
+    }
+}
+
+/// Adds the blocks of all pairs of nodes of a cell to a matrix.
+pub(super) fn add_blocks<const N: usize, const D: usize>(
+    entries: &[[u32; N]; N],
+    rows: &mut Rows<'_, D>,
+    blocks: &impl Blocks<f64, D>,
+) {
+    for (a, b) in pairs::<N>() {
+        if let Some(sum) = rows.block_mut(entries[a][b]) {
+            add(sum, &blocks.block(a, b));
+        }
+    }
+}
+
+fn add<const R: usize, const C: usize>(sum: &mut Matrix<f64, R, C>, part: &Matrix<f64, R, C>) {
+    for (sum, part) in sum.as_flattened_mut().iter_mut().zip(part.as_flattened()) {
+        *sum += part;
+    }
+}

@@ -1,0 +1,186 @@
+//! The loop over the tangents of cells, as many at once as the machine can.
+
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
+
+use std::ops::Range;
+
+use pulp::{Simd, WithSimd};
+
+use super::slope::{OfMean, Slope};
+use crate::base::lane::{Abreast, Lane, SIDE_BY_SIDE};
+use crate::base::sparse::Rows;
+use crate::elements::body::elements::{ElementsOf, gradients};
+use crate::elements::material::{Block, Blocks, Deformation};
+
+/// The tangents of a run of cells of one law, compiled for each kind of machine.
+pub(super) struct Pass<
+    'a,
+    'r,
+    P,
+    const N: usize,
+    const M: usize,
+    const D: usize,
+    const Q: usize,
+    const K: usize,
+> {
+    pub(super) elements: &'a ElementsOf<N, M, D, Q>,
+    pub(super) rows: &'a mut Rows<'r, D>,
+    pub(super) cells: Range<usize>,
+    pub(super) fields: [&'a [[f64; D]]; K],
+    pub(super) slope: P,
+}
+
+/// The tangents of several cells. Of symmetric ones blocks below the diagonal are left out.
+type OfCells<const N: usize, const D: usize> = [[Block<Abreast, D>; N]; N];
+
+impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize>
+    WithSimd for Pass<'_, '_, P, N, M, D, Q, K>
+{
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { elements, rows, cells, fields, slope } = self;
+        let abreast = elements.abreast();
+        let zero = Lane::splat(simd, 0.0);
+        let mut sums = [[[[Abreast([0.0; SIDE_BY_SIDE]); D]; D]; N]; N];
+        for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
+            let start = register * S::F64_LANES;
+            let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
+            let mut x = [[[zero; D]; N]; K];
+            for k in 0..K {
+                x[k] = elements.gather(simd, start, fields[k]);
+            }
+            let nothing = [[zero; D]; N];
+            let mut of_mean = OfMean { force: nothing, motion: nothing, share: zero };
+            let mut pull = None;
+            let is_mean = const { ElementsOf::<N, M, D, Q>::CAN_LOCK } && slope.is_mean();
+            if is_mean {
+                let (mut sum, mut volume) = (zero, zero);
+                for point in &abreast[block] {
+                    let point = point.lane(simd, part);
+                    let fields = gradients(1, &x, &point.gradients);
+                    let at = Deformation::new(point.frame, fields[0]);
+                    let (of_point, force, motion) =
+                        slope.swelling(&at, &fields, &point.gradients, point.volume);
+                    sum += of_point;
+                    volume += point.volume;
+                    for a in 1..N {
+                        for i in 0..D {
+                            of_mean.force[a][i] += force[a][i];
+                            of_mean.motion[a][i] += motion[a][i];
+                        }
+                    }
+                }
+                let [mean_pull, stiff] = slope.of_mean(sum / volume);
+                (pull, of_mean.share) = (Some(mean_pull), stiff / volume);
+            }
+            for q in 0..Q {
+                let point = abreast[block][q].lane(simd, part);
+                let fields = gradients(1, &x, &point.gradients);
+                let at = Deformation::new(point.frame, fields[0]);
+                let blocks = slope.blocks(&at, &fields, pull, &point.gradients, point.volume);
+                for a in 1..N {
+                    for b in if P::IS_SYMMETRIC { a } else { 1 }..N {
+                        sum_up(simd, q == 0, &blocks.block(a, b), &mut sums[a][b]);
+                    }
+                }
+            }
+            if is_mean {
+                for a in 1..N {
+                    for b in if P::IS_SYMMETRIC { a } else { 1 }..N {
+                        sum_up(simd, false, &of_mean.block(a, b), &mut sums[a][b]);
+                    }
+                }
+            }
+            balance::<S, N, D>(simd, P::IS_SYMMETRIC, &mut sums);
+            for cell in cells.start.max(start)..cells.end.min(start + S::F64_LANES) {
+                let entries = &elements.entries[cell];
+                scatter(entries, P::IS_SYMMETRIC, &sums, cell - start, rows);
+            }
+        }
+    }
+}
+
+/// Adds a block of several cells to their sum, or begins with it.
+#[inline(always)]
+fn sum_up<S: Simd, const D: usize>(
+    simd: S,
+    is_first: bool,
+    block: &Block<Lane<S>, D>,
+    sum: &mut Block<Abreast, D>,
+) {
+    for i in 0..D {
+        for k in 0..D {
+            let sum = &mut sum[i][k].0;
+            let total = match is_first {
+                true => block[i][k],
+                false => Lane::load(simd, sum, 0) + block[i][k],
+            };
+            total.store(sum, 0);
+        }
+    }
+}
+
+/// Completes the tangents by the blocks of the first node, which balance all others.
+#[inline(always)]
+fn balance<S: Simd, const N: usize, const D: usize>(
+    simd: S,
+    is_symmetric: bool,
+    sums: &mut OfCells<N, D>,
+) {
+    let zero = Lane::splat(simd, 0.0);
+    for i in 0..D {
+        for k in 0..D {
+            let mut of_first = zero;
+            for b in 1..N {
+                let mut of_column = zero;
+                let mut of_row = zero;
+                for a in 1..N {
+                    of_column += match is_symmetric && a > b {
+                        true => Lane::load(simd, &sums[b][a][k][i].0, 0),
+                        false => Lane::load(simd, &sums[a][b][i][k].0, 0),
+                    };
+                    if !is_symmetric {
+                        of_row += Lane::load(simd, &sums[b][a][i][k].0, 0);
+                    }
+                }
+                (zero - of_column).store(&mut sums[0][b][i][k].0, 0);
+                if !is_symmetric {
+                    (zero - of_row).store(&mut sums[b][0][i][k].0, 0);
+                }
+                of_first += of_column;
+            }
+            // symmetric to the last bit
+            let of_first = match is_symmetric && k < i {
+                true => Lane::load(simd, &sums[0][0][k][i].0, 0),
+                false => of_first,
+            };
+            of_first.store(&mut sums[0][0][i][k].0, 0);
+        }
+    }
+}
+
+/// Adds the tangent of one of several cells to the rows of a matrix.
+#[inline(always)]
+fn scatter<const N: usize, const D: usize>(
+    entries: &[[u32; N]; N],
+    is_symmetric: bool,
+    sums: &OfCells<N, D>,
+    lane: usize,
+    rows: &mut Rows<'_, D>,
+) {
+    for a in 0..N {
+        for b in 0..N {
+            let Some(sum) = rows.block_mut(entries[a][b]) else { continue };
+            for i in 0..D {
+                for k in 0..D {
+                    sum[i][k] += match is_symmetric && a > b {
+                        true => sums[b][a][k][i].0[lane],
+                        false => sums[a][b][i][k].0[lane],
+                    };
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! The tangents at the points of cells: of elastic laws and of viscosity, at points or with a mean dilatation.
+
+#![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
+
+use crate::base::tensor::{Matrix, Real, product, times};
+use crate::elements::material::{
+    Block, Blocks, ByPoint, Deformation, ElasticLaw, ObjectiveViscosity, Tangent,
+};
+
+/// A tangent at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
+pub(in crate::elements::body) trait Slope<const K: usize> {
+    /// Whether the block of nodes b and a is that of a and b, transposed.
+    const IS_SYMMETRIC: bool;
+
+    /// Whether what resists a change of volume takes the mean of that over the cell.
+    fn is_mean(&self) -> bool;
+
+    /// The tangent of a point of this `volume`, where a `pull` of a mean dilatation stays as it is.
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        fields: &[Matrix<T, D, M>; K],
+        pull: Option<T>,
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> impl Blocks<T, D>;
+
+    /// The dilatation of a point, how forces follow what pulls there, and how the dilatation follows the nodes, times its `volume`.
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        fields: &[Matrix<T, D, M>; K],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]);
+
+    /// What pulls at all points of a cell of this mean dilatation, and its derivative by that.
+    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2];
+}
+
+/// What a change of the mean dilatation adds: `share` times the product of how forces follow it and how it follows the nodes.
+pub(super) struct OfMean<T, const N: usize, const D: usize> {
+    pub(super) force: [[T; D]; N],
+    pub(super) motion: [[T; D]; N],
+    pub(super) share: T,
+}
+
+impl<T: Real, const N: usize, const D: usize> Blocks<T, D> for OfMean<T, N, D> {
+    #[inline(always)]
+    fn block(&self, a: usize, b: usize) -> Block<T, D> {
+        let mut block = [[self.share; D]; D];
+        for i in 0..D {
+            for k in 0..D {
+                block[i][k] = self.force[a][i] * self.motion[b][k] * self.share;
+            }
+        }
+        block
+    }
+}
+
+/// Of a law whose formulas are compiled into the loop.
+pub(in crate::elements::body) struct ElasticSlope<'l, L> {
+    pub(in crate::elements::body) law: &'l L,
+    pub(in crate::elements::body) is_mean: bool,
+}
+
+impl<L: ElasticLaw> Slope<1> for ElasticSlope<'_, L> {
+    const IS_SYMMETRIC: bool = true;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        pull: Option<T>,
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> impl Blocks<T, D> {
+        let point = self.law.point(L::twice_strain(at));
+        self.law.tangent(L::shape(at), point, pull, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let point = self.law.point(L::twice_strain(at));
+        // F (dg/dE) g_a
+        let slope = product(&L::shape(at), &self.law.swelling(&point));
+        let by_nodes = times(product(&slope, gradients), volume);
+        (self.law.dilatation(&point) * volume, by_nodes, by_nodes)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
+        let [_, pull, stiff] = self.law.of_volume(dilatation);
+        [pull, stiff]
+    }
+}
+
+/// Of a law that is called.
+pub(super) struct CalledSlope<'l> {
+    pub(super) law: &'l ByPoint,
+    pub(super) is_mean: bool,
+}
+
+impl Slope<1> for CalledSlope<'_> {
+    const IS_SYMMETRIC: bool = true;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        pull: Option<T>,
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> impl Blocks<T, D> {
+        let response = self.law.response(&at.twice_green(), pull);
+        Tangent::new(&at.gradient(), &response, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let (dilatation, swelling) = self.law.swelling(&at.twice_green());
+        let slope = product(&at.gradient(), &swelling);
+        let by_nodes = times(product(&slope, gradients), volume);
+        (dilatation * volume, by_nodes, by_nodes)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
+        let [_, pull, stiff] = self.law.of_volume(dilatation);
+        [pull, stiff]
+    }
+}
+
+/// That of viscous stress by the rate.
+pub(super) struct RateSlope<'l> {
+    pub(super) law: &'l ObjectiveViscosity,
+    pub(super) is_mean: bool,
+}
+
+impl Slope<1> for RateSlope<'_> {
+    const IS_SYMMETRIC: bool = true;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        _: Option<T>,
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> impl Blocks<T, D> {
+        self.law.rate_tangent(at, self.is_mean, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        _: &[Matrix<T, D, M>; 1],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let force = times(product(&at.gradient(), gradients), volume);
+        (volume, force, force)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
+        self.law.of_volume(rate)
+    }
+}
+
+/// That of viscous stress by the deformation.
+pub(super) struct ViscousSlope<'l> {
+    pub(super) law: &'l ObjectiveViscosity,
+    pub(super) is_mean: bool,
+}
+
+impl Slope<2> for ViscousSlope<'_> {
+    const IS_SYMMETRIC: bool = false;
+
+    #[inline(always)]
+    fn is_mean(&self) -> bool {
+        self.is_mean
+    }
+
+    #[inline(always)]
+    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+        pull: Option<T>,
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> impl Blocks<T, D> {
+        self.law.tangent(at, rate, pull, gradients, volume)
+    }
+
+    #[inline(always)]
+    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Deformation<T, M, D>,
+        [_, rate]: &[Matrix<T, D, M>; 2],
+        gradients: &[[T; M]; N],
+        volume: T,
+    ) -> (T, [[T; D]; N], [[T; D]; N]) {
+        let force = times(product(&at.gradient(), gradients), volume);
+        let motion = times(product(rate, gradients), volume);
+        (self.law.rate_of_dilatation(at, rate) * volume, force, motion)
+    }
+
+    #[inline(always)]
+    fn of_mean<T: Real>(&self, rate: T) -> [T; 2] {
+        self.law.of_volume(rate)
+    }
+}

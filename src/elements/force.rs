@@ -1,0 +1,300 @@
+//! Nodal forces, and the trait of what exerts them.
+
+use std::fmt;
+use std::ops::{Deref, DerefMut};
+use std::sync::Arc;
+
+use crate::base::simd::add;
+use crate::base::sparse::BlockMatrix;
+use crate::base::vector::dot;
+use crate::integrators::ode::Failure;
+
+/// Nodal forces (N), kept apart by what they do to the energy of the system.
+#[derive(Debug, Clone)]
+pub struct NodalForces {
+    /// Forces with a potential: -dU/du.
+    pub conservative: ForceVector,
+    /// Forces that turn motion into heat: their power -f.v is dissipated.
+    pub dissipative: ForceVector,
+    /// Forces from outside: their power f.v is supplied.
+    pub applied: ForceVector,
+    /// Power (W) that obstacles in motion add to the heat: their own velocity times the
+    /// dissipative forces on the body.
+    pub carried_heat: f64,
+    /// Power (W) that keeps obstacles in motion: their velocity times their forces on the body.
+    pub carried_power: f64,
+}
+
+impl NodalForces {
+    /// No forces on `dofs` degrees of freedom.
+    pub fn zeros(dofs: usize) -> Self {
+        let none = ForceVector { values: vec![0.0; dofs], is_zero: true };
+        Self {
+            conservative: none.clone(),
+            dissipative: none.clone(),
+            applied: none,
+            carried_heat: 0.0,
+            carried_power: 0.0,
+        }
+    }
+
+    /// Sets all forces to 0.
+    pub fn clear(&mut self) {
+        self.conservative.clear();
+        self.dissipative.clear();
+        self.applied.clear();
+        (self.carried_heat, self.carried_power) = (0.0, 0.0);
+    }
+
+    /// Writes the sum of all forces.
+    pub(crate) fn add_up(&self, total: &mut [f64]) {
+        total.copy_from_slice(&self.conservative);
+        for part in [&self.dissipative, &self.applied] {
+            if !part.is_zero {
+                add(part, total);
+            }
+        }
+    }
+
+    /// Power that is dissipated and power that is supplied (W) at the velocities `v`.
+    pub(crate) fn powers(&self, v: &[f64]) -> (f64, f64) {
+        let (dissipated, supplied) = self.work(v);
+        (dissipated + self.carried_heat, supplied + self.carried_power)
+    }
+
+    /// Energy that is dissipated and energy that is supplied (J) along the displacements `x`.
+    pub(crate) fn work(&self, x: &[f64]) -> (f64, f64) {
+        (-self.dissipative.work(x), self.applied.work(x))
+    }
+}
+
+/// Nodal forces (N) of one kind: a slice that remembers whether anything was added, and costs nothing if not.
+#[derive(Debug, Clone)]
+pub struct ForceVector {
+    values: Vec<f64>,
+    /// Whether nobody could change it since it was cleared.
+    is_zero: bool,
+}
+
+impl ForceVector {
+    fn clear(&mut self) {
+        if !self.is_zero {
+            self.values.fill(0.0);
+            self.is_zero = true;
+        }
+    }
+
+    /// Work (J) along the displacements `x`.
+    fn work(&self, x: &[f64]) -> f64 {
+        if self.is_zero { 0.0 } else { dot(&self.values, x) }
+    }
+}
+
+impl Deref for ForceVector {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+impl DerefMut for ForceVector {
+    fn deref_mut(&mut self) -> &mut [f64] {
+        self.is_zero = false;
+        &mut self.values
+    }
+}
+
+/// Where the potential energy of a force is accounted for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reservoir {
+    /// Strain energy.
+    Strain,
+    /// Gravitational energy.
+    Gravity,
+    /// Energy stored in penalty springs at obstacles.
+    Contact,
+    /// Energy of springs.
+    Springs,
+    /// None: the force has no potential.
+    None,
+}
+
+/// A step that an integrator has taken: the states at both ends.
+pub struct Step<'a> {
+    /// Times (s).
+    pub times: [f64; 2],
+    /// Displacements (m).
+    pub u: [&'a [f64]; 2],
+    /// Velocities (m/s).
+    pub v: [&'a [f64]; 2],
+}
+
+impl Step<'_> {
+    /// A bound (m) on how far any node moves, if each component of a displacement goes by the cubic
+    /// that has its values and velocities at both ends.
+    pub(crate) fn reach(&self, dimension: usize) -> f64 {
+        let third = (self.times[1] - self.times[0]) / 3.0;
+        let ([u0, u1], [v0, v1]) = (self.u, self.v);
+        let largest = u0.iter().zip(u1).zip(v0.iter().zip(v1)).fold(
+            0.0_f64,
+            |largest, ((u0, u1), (v0, v1))| {
+                let (first, last) = (third * v0, third * v1);
+                largest.max(first.abs() + (u1 - u0 - first - last).abs() + last.abs())
+            },
+        );
+        largest * (dimension as f64).sqrt()
+    }
+}
+
+/// Where the tangents of a force come from: the answer of [`Force::add_tangents`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tangents {
+    /// The force has added them.
+    Added,
+    /// Finite differences of [`Force::add_forces`] stand in for them.
+    ByDifferences,
+}
+
+/// A force that depends on time t (s), displacements u (m) and velocities v (m/s) of the nodes.
+///
+/// [`Scene::force`](crate::Scene::force) adds one of any crate to a scene. It has to implement
+/// [`add_forces`](Self::add_forces), and with a conservative part [`potential`](Self::potential) and
+/// [`reservoir`](Self::reservoir); the rest is for forces that couple distant nodes, have kinks or should cost less.
+///
+/// # What a force may rely on, and what it has to keep
+///
+/// - `u` and `v` have dimension components for each node of the body, node after node.
+/// - Integrators ask at trial points: in any order, back and forth in time, off the motion, more than once.
+///   The force is a function of (t, u, v) (and of held switches) alone, without a memory of earlier calls. What is not finite
+///   is refused like [`Failure::Recoverable`].
+/// - One simulation calls from one thread at a time, though not always the same. Clones of a scene and forks of a simulation
+///   share their forces, so those that run on several threads call at once. As they share held switches, too, a force with
+///   switches is for one simulation at a time.
+/// - The conservative part is -dU/du of the [`potential`](Self::potential) U: [`NodalForces`] says which part counts as
+///   heat and which as supplied. The energy balance of the report shows what a force does not account for.
+/// - [`hold_switches`](Self::hold_switches) is called with `None` at the start of a phase and after each change of the
+///   integrator; where contact events are located, with the switches as they are then, and anew after each event.
+/// - A panic passes through all integrators, those in C included, to the caller of
+///   [`Scene::simulate`](crate::Scene::simulate). A [`Simulation`](crate::Simulation) makes an error of it, and can go on from
+///   the step before.
+pub trait Force: Send + Sync {
+    /// Adds the force at (t, u, v).
+    ///
+    /// # Errors
+    /// [`Failure::Recoverable`] where the force has no meaning (an inverted cell, a spring without
+    /// length): the integrator retries with a smaller step, and reports the message if that does
+    /// not help.
+    fn add_forces(
+        &self,
+        t: f64,
+        u: &[f64],
+        v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure>;
+
+    /// Looks back on a step that was taken, to time `t`, from displacements `before` to `after`.
+    ///
+    /// # Errors
+    /// A step that leapt over states in which the force has no meaning.
+    fn check_step(&self, _t: f64, _before: &[f64], _after: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Adds -df/du to `stiffness` and -df/dv to `damping`. They need not be symmetric: the Newton
+    /// matrix takes their symmetric part.
+    ///
+    /// A force that leaves this out (and answers [`Tangents::ByDifferences`], without adding anything) gets finite differences
+    /// of [`add_forces`](Self::add_forces). They cost one evaluation at the state itself, and for each of the two matrices
+    /// one if the force does not depend on u or v, else one more than the dimension of space if it acts on each node by
+    /// itself, and some times as many if it couples nodes. The report tells how many there were. A force whose [`is_nonlinear`](Self::is_nonlinear) is false has no tangents.
+    fn add_tangents(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        _stiffness: &mut BlockMatrix,
+        _damping: &mut BlockMatrix,
+    ) -> Tangents {
+        Tangents::ByDifferences
+    }
+
+    /// Adds, node by node, bounds on what -df/du (to `stiffness`, N/m) and -df/dv (to `damping`,
+    /// N s/m) may grow by from one moment to the next: contacts that do not touch yet, and what slides and
+    /// may stick.
+    fn add_reserves(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        _stiffness: &mut [f64],
+        _damping: &mut [f64],
+    ) {
+    }
+
+    /// Whether the force depends on u or v, so that the Newton matrix must follow it. One that changes with time alone saves
+    /// the search for its tangents by `false`.
+    fn is_nonlinear(&self) -> bool {
+        true
+    }
+
+    /// Potential energy (J) of the conservative part.
+    fn potential(&self, _t: f64, _u: &[f64]) -> f64 {
+        0.0
+    }
+
+    /// Where that energy belongs.
+    fn reservoir(&self) -> Reservoir {
+        Reservoir::None
+    }
+
+    /// Velocity (m/s) at time `t` (s) of what the force comes from, if that moves by itself: an obstacle.
+    fn velocity(&self, _t: f64) -> Option<[f64; 3]> {
+        None
+    }
+
+    /// Number of switches: functions whose change of sign is a kink or a jump of the force.
+    fn switches(&self) -> usize {
+        0
+    }
+
+    /// Writes the values of the switches: above 0 where a part of the force is off.
+    fn switch_values(&self, _t: f64, _u: &[f64], _v: &[f64], _values: &mut [f64]) {}
+
+    /// Keeps each switch on or off, whatever its value, so that the force is smooth; `None` lets all
+    /// of them act by their values again.
+    fn hold_switches(&self, _on: Option<&[bool]>) {}
+
+    /// The name of what the body rubs against, and whether all points that press there slide, or none does, if it
+    /// is one of these: by the switches as they are held. `None` if they are not, without contact or friction.
+    fn slides(&self) -> Option<(&str, Option<bool>)> {
+        None
+    }
+
+    /// A time (s) within a step at which a part of the force acts that the ends of the step do not
+    /// show, as they lie before and behind an obstacle. Depths below `tolerance` (m) do not matter.
+    ///
+    /// `clearances` has a number for each switch: a bound (m) on how far the body can still move
+    /// without a change of that switch. 0 is always right; the search renews it.
+    fn passage(&self, _step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
+        None
+    }
+
+    /// Pairs of nodes (counted from 0) that the force couples, u or v of one acting on the other: the tangents have no
+    /// room for others, but for nodes that share a cell, which need not be named.
+    ///
+    /// Finite differences look for couplings of the named pairs alone first, which is cheap, and of
+    /// nodes that share a cell if those do not explain how the force changes.
+    fn couplings(&self) -> Vec<[usize; 2]> {
+        Vec::new()
+    }
+}
+
+impl fmt::Debug for dyn Force {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("Force")
+    }
+}
+
+/// The forces that act in one phase.
+pub(crate) type Forces = Vec<Arc<dyn Force>>;

@@ -1,0 +1,264 @@
+//! Maxwell branches: springs that relax, beside the elasticity of a substance.
+
+use super::deformation::Deformation;
+use super::flow::{Components, Flowing, Step, components, trace};
+use super::hooke::{Hooke, Lame, Spread};
+use super::law::{Block, Blocks};
+use super::response::axes;
+use super::{Material, Plane, Strain};
+use crate::base::input::{InputError, not_negative, positive};
+use crate::base::tensor::{Matrix, dot, product, times};
+
+/// A spring and a damper in a row, beside the elasticity of a [`Substance`](crate::Substance): what is strained at once and
+/// kept so pulls by the spring, less and less, as exp(-t/tau).
+///
+/// Its energy is Hooke's, with g times the material's Young's modulus and the same Poisson's ratio, of the strain E - G: E
+/// is that of the body (Green's, or Cauchy's with Cauchy strain), and G, an unknown at each point of a cell where stress is
+/// computed, goes after it by G' = (E - G)/tau (finite viscoelasticity by internal variables: J. C. Simo, T. J. R. Hughes,
+/// *Computational Inelasticity*, chapter 10). So it is not felt by rigid rotation under Green's strain, and dissipates
+/// S : G' >= 0.
+///
+/// With a yield stress Y the damper holds up to it, as dough does and tissue: pressed, held and let go, it keeps part of its shape. With the
+/// von Mises stress q of the spring, G' = max(0, 1 - Y/q) dev(E - G)/tau (P. Perzyna, Advances in Applied Mechanics 9 (1966)
+/// 243-377, with a linear overstress): what shears relaxes to q = Y and no further, and a change of volume not at all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaxwellBranch {
+    /// Share g of stiffness (1), above 0: Young's modulus of the spring over that of the material, which is what is left
+    /// when all has relaxed.
+    pub share: f64,
+    /// Relaxation time tau (s), above 0.
+    pub time: f64,
+    /// Yield stress Y (Pa), 0 or above, of second Piola stress; 0 is a Maxwell branch without one.
+    pub yield_stress: f64,
+}
+
+impl MaxwellBranch {
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
+        positive("material.branch.share", self.share, "1")?;
+        positive("material.branch.time", self.time, "s")?;
+        not_negative("material.branch.yield_stress", self.yield_stress, "Pa").map(drop)
+    }
+}
+
+/// A branch in cells of one dimension.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Relaxing {
+    hooke: Hooke,
+    /// tau (s)
+    pub(crate) time: f64,
+    strain: Strain,
+    dimension: usize,
+    flowing: Option<Flowing>,
+}
+
+/// The strain of a point, and the shape in which stress acts there.
+pub(crate) struct Strained<const M: usize, const D: usize> {
+    /// 2 E
+    twice: Matrix<f64, M, M>,
+    /// As it is deformed, or not at all under small strains.
+    shape: Deformation<f64, M, D>,
+}
+
+/// A strain of the spring of a branch.
+#[derive(Clone, Copy)]
+pub(crate) struct Stretch {
+    pub(crate) strain: Components,
+    /// What resists a change of volume takes this trace: its own, or the mean of that over the cell.
+    pub(crate) trace: f64,
+}
+
+impl Relaxing {
+    /// That of cells of `dimension`.
+    pub(crate) fn new(
+        branch: &MaxwellBranch,
+        material: &Material,
+        strain: Strain,
+        dimension: usize,
+        plane: Plane,
+    ) -> Self {
+        let spring = Material { young: branch.share * material.young, ..*material };
+        let hooke = Hooke::new(spring.elastic(), dimension, plane);
+        let flowing = (branch.yield_stress > 0.0)
+            .then(|| Flowing::new(&hooke, dimension, branch.yield_stress));
+        Self { hooke, time: branch.time, strain, dimension, flowing }
+    }
+
+    /// Components of G.
+    pub(crate) fn components(&self) -> usize {
+        let across = self.flowing.is_some_and(|flowing| flowing.strains_across(self.dimension));
+        components(self.dimension) + usize::from(across)
+    }
+
+    /// Whether it holds up to a stress.
+    pub(crate) fn yields(&self) -> bool {
+        self.flowing.is_some()
+    }
+
+    /// G' (1/s), where E - G is `apart`.
+    pub(crate) fn rate<const M: usize>(&self, apart: &Components) -> Components {
+        match &self.flowing {
+            None => apart.map(|apart| apart / self.time),
+            Some(flowing) => flowing.towards::<M>(apart).map(|flow| flow / self.time),
+        }
+    }
+
+    /// The heat S : G' of the time tau (J/m^3).
+    pub(crate) fn loss<const M: usize>(&self, apart: &Stretch) -> f64 {
+        match &self.flowing {
+            None => self.twice_energy::<M>(apart),
+            Some(flowing) => flowing.loss::<M>(&apart.strain),
+        }
+    }
+
+    /// How that changes `from` one strain `to` another: with a yield stress to first order.
+    pub(crate) fn loss_change<const M: usize>(&self, from: &Stretch, to: &Stretch) -> f64 {
+        match &self.flowing {
+            None => self.twice_energy::<M>(to) - self.twice_energy::<M>(from),
+            Some(flowing) => {
+                let change = std::array::from_fn(|v| to.strain[v] - from.strain[v]);
+                flowing.loss_change::<M>(&from.strain, &change)
+            }
+        }
+    }
+
+    /// What passes to E - G in a step of the parameter `gamma` (s), where it is `apart` now.
+    pub(crate) fn step<const M: usize>(&self, gamma: f64, apart: &Components) -> Step {
+        match &self.flowing {
+            None => Step::of_all(1.0 / (1.0 + gamma / self.time)),
+            Some(flowing) => flowing.step::<M>(gamma / self.time, apart),
+        }
+    }
+
+    /// The strain at a point with the displacement gradient `h`.
+    pub(crate) fn at<const M: usize, const D: usize>(
+        &self,
+        frame: Matrix<f64, D, M>,
+        h: Matrix<f64, D, M>,
+    ) -> Strained<M, D> {
+        let at = Deformation::new(frame, h);
+        match self.strain {
+            Strain::Cauchy => {
+                Strained { twice: at.twice_cauchy(), shape: Deformation::new(frame, [[0.0; D]; M]) }
+            }
+            Strain::Green => Strained { twice: at.twice_green(), shape: at },
+        }
+    }
+
+    /// What it resists a change of volume with (Pa).
+    pub(crate) fn lambda(&self) -> f64 {
+        self.hooke.lame.lambda
+    }
+
+    /// 2 W (J/m^3) of the strain E - G.
+    pub(crate) fn twice_energy<const M: usize>(&self, apart: &Stretch) -> f64 {
+        let of_volume = apart.trace * (0.5 * self.lambda()) * trace::<M>(&apart.strain);
+        let across = if M == 2 { apart.strain[3] } else { 0.0 };
+        let of_shape = self.hooke.of_shear().energy(&doubled::<M>(&apart.strain));
+        2.0 * (of_volume + (of_shape + self.hooke.lame.mu * across * across))
+    }
+
+    /// Second Piola stress (Pa) of the strain E - G, times `weight`.
+    fn second<const M: usize>(&self, apart: &Stretch, weight: f64) -> Matrix<f64, M, M> {
+        let pull = self.lambda() * apart.trace;
+        self.hooke.stress(&doubled::<M>(&apart.strain), Some(pull), weight)
+    }
+
+    /// First Piola stress (Pa) of the strain E - G, times `weight`.
+    pub(crate) fn stress<const M: usize, const D: usize>(
+        &self,
+        at: &Strained<M, D>,
+        apart: &Stretch,
+        weight: f64,
+    ) -> Matrix<f64, D, M> {
+        product(&at.shape.gradient(), &self.second(apart, weight))
+    }
+
+    /// The stiffness between nodes, as of [`ElasticLaw::tangent`](super::ElasticLaw::tangent), times `weight`: what a `step`
+    /// feels of that of the spring with `lambda` (Pa) for its own, and what the turning of the stress of E - G adds.
+    pub(crate) fn tangent<'a, const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: &Strained<M, D>,
+        apart: &Stretch,
+        (step, lambda): (&Step, f64),
+        gradients: &'a [[f64; M]; N],
+        weight: f64,
+    ) -> Tangent<'a, N, M, D> {
+        let Lame { mu, .. } = self.hooke.lame;
+        let lame = Lame { lambda: lambda + step.swelling * (lambda + step.of_mean(2.0 * mu)), mu };
+        let (f, part) = (at.shape.gradient(), step.part * weight);
+        let spread = Spread::new(&f, gradients, lame, part);
+        let turning = match self.strain {
+            Strain::Cauchy => 0.0,
+            Strain::Green => weight,
+        };
+        let pulls = product(&self.second(apart, turning), gradients);
+        let along = product(&product(&f, &times(doubled::<M>(&step.along), 0.5)), gradients);
+        Tangent { spread, pulls, along, drop: 2.0 * mu * step.drop * part }
+    }
+}
+
+impl<const M: usize, const D: usize> Strained<M, D> {
+    /// E
+    pub(crate) fn strain(&self) -> Components {
+        halved(&self.twice)
+    }
+
+    /// How E changes with the displacements, whose change has the gradient `h`.
+    pub(crate) fn change(&self, h: &Matrix<f64, D, M>) -> Components {
+        halved(&self.shape.twice_green_rate(h))
+    }
+
+    /// How the trace of E follows the nodes, times `weight`.
+    pub(crate) fn swelling<const N: usize>(
+        &self,
+        gradients: &[[f64; M]; N],
+        weight: f64,
+    ) -> [[f64; D]; N] {
+        times(product(&self.shape.gradient(), gradients), weight)
+    }
+}
+
+fn halved<const M: usize>(twice: &Matrix<f64, M, M>) -> Components {
+    let mut strain = Components::default();
+    for (v, component) in strain[..components(M)].iter_mut().enumerate() {
+        let (j, k) = axes::<M>(v);
+        *component = 0.5 * twice[j][k];
+    }
+    strain
+}
+
+fn doubled<const M: usize>(strain: &Components) -> Matrix<f64, M, M> {
+    let mut twice = [[0.0; M]; M];
+    for (v, component) in strain[..components(M)].iter().enumerate() {
+        let (j, k) = axes::<M>(v);
+        twice[j][k] = 2.0 * component;
+        twice[k][j] = twice[j][k];
+    }
+    twice
+}
+
+pub(crate) struct Tangent<'a, const N: usize, const M: usize, const D: usize> {
+    spread: Spread<'a, f64, N, M, D>,
+    /// S g_a, times the weight
+    pulls: [[f64; M]; N],
+    /// What the direction of a flow takes off: `drop` times the products of these vectors.
+    along: [[f64; D]; N],
+    drop: f64,
+}
+
+impl<const N: usize, const M: usize, const D: usize> Blocks<f64, D> for Tangent<'_, N, M, D> {
+    fn block(&self, a: usize, b: usize) -> Block<f64, D> {
+        let mut block = times(self.spread.material(a, b), self.spread.weight);
+        let geometric = dot(&self.spread.gradients[a], &self.pulls[b]);
+        (0..D).for_each(|i| block[i][i] += geometric);
+        if self.drop > 0.0 {
+            for (row, along) in block.iter_mut().zip(&self.along[a]) {
+                let taken = self.drop * along;
+                row.iter_mut()
+                    .zip(&self.along[b])
+                    .for_each(|(entry, other)| *entry -= taken * other);
+            }
+        }
+        block
+    }
+}

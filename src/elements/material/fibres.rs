@@ -1,0 +1,168 @@
+//! Fibres in a material, and which way they run.
+
+use crate::base::input::{InputError, finite, not_negative, positive};
+use crate::base::vector::norm;
+
+/// A family of fibres that stiffens the material it lies in along its course.
+///
+/// With the stretch l of a fibre and E = (l^2 - 1) / 2 it adds the strain energy per natural volume
+///
+/// ```text
+/// W = (young / (8 k2)) (exp(4 k2 E^2) - 1) if l > 1, else 0
+/// ```
+///
+/// k2 being `stiffening`, or young E^2 / 2 if that is 0: fibres take tension, and buckle under compression (G. A. Holzapfel, T. C.
+/// Gasser, R. W. Ogden, Journal of Elasticity 61 (2000) 1-48, with k1 = young / 4). Around its undeformed shape a body is as stiff as
+/// with fibres that are stretched. The stress of fields is that of the material between fibres.
+///
+/// ```
+/// use pliant::{Body, Fibres, Law, Material, Mesh, SolidCells};
+///
+/// // a finger wound with threads around its axis: under pressure it grows longer, not thicker
+/// let silicone = Material { density: 1070.0, young: 2.6e5, poisson: 0.49, viscosity: 200.0 };
+/// let threads = Fibres::around([0.0, 0.015, 0.015], [1.0, 0.0, 0.0], 2e7).pitch(0.05);
+/// let mesh = Mesh::cuboid([0.1, 0.03, 0.03], [5, 3, 3], SolidCells::Hexahedra20)?;
+/// let body = Body::new(mesh, silicone.law(Law::NeoHookean).fibres(threads)).build()?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fibres {
+    /// Which way they run.
+    pub course: Course,
+    /// Young's modulus (Pa, above 0) that they add along their course when they are slightly stretched: that of a fibre, times
+    /// its share of the section.
+    pub young: f64,
+    /// k2 (1, 0 or above): how fast they stiffen.
+    pub stiffening: f64,
+}
+
+/// Which way fibres run in the undeformed shape.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Course {
+    /// Along this vector, of any length above 0. In membranes it counts as its part along them.
+    Along(Vec<f64>),
+    /// Around an axis.
+    Around {
+        /// A point of the axis (m).
+        centre: Vec<f64>,
+        /// Its direction, of any length above 0; empty in the plane, where it is across.
+        axis: Vec<f64>,
+        /// Angle (rad) by which they climb along the axis: 0 are rings, others helices.
+        pitch: f64,
+    },
+}
+
+impl Fibres {
+    /// Fibres along a `direction` with Young's modulus `young` (Pa).
+    pub fn along(direction: impl Into<Vec<f64>>, young: f64) -> Self {
+        Self { course: Course::Along(direction.into()), young, stiffening: 0.0 }
+    }
+
+    /// Rings around the axis through `centre` (m), in the direction of `axis`, with Young's modulus `young` (Pa).
+    pub fn around(centre: impl Into<Vec<f64>>, axis: impl Into<Vec<f64>>, young: f64) -> Self {
+        let course = Course::Around { centre: centre.into(), axis: axis.into(), pitch: 0.0 };
+        Self { course, young, stiffening: 0.0 }
+    }
+
+    /// The same as helices, which climb along the axis by the angle `pitch` (rad); nothing changes along a vector.
+    pub fn pitch(mut self, angle: f64) -> Self {
+        if let Course::Around { pitch, .. } = &mut self.course {
+            *pitch = angle;
+        }
+        self
+    }
+
+    /// The same, stiffening as they stretch with k2 = `stiffening` (1).
+    pub fn stiffening(self, stiffening: f64) -> Self {
+        Self { stiffening, ..self }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
+        positive("fibres.young", self.young, "Pa")?;
+        not_negative("fibres.stiffening", self.stiffening, "")?;
+        match &self.course {
+            Course::Along(direction) => has_length("fibres.along", direction),
+            Course::Around { centre, axis, pitch } => {
+                finite("fibres.centre", centre)?;
+                finite("fibres.pitch", &[*pitch])?;
+                match axis.is_empty() {
+                    true => Ok(()),
+                    false => has_length("fibres.axis", axis),
+                }
+            }
+        }
+    }
+}
+
+impl Course {
+    /// Checks that it is one of a space of `dimension`.
+    pub(crate) fn validate_in(&self, dimension: usize) -> Result<(), InputError> {
+        let is = |name: &str, vector: &[f64], expected: usize| match vector.len() == expected {
+            true => Ok(()),
+            false => {
+                let mend =
+                    format!("it needs {expected} numbers in a body of {dimension} dimensions");
+                Err(InputError::new(name, format!("{vector:?}"), mend))
+            }
+        };
+        match self {
+            Self::Along(direction) => is("fibres.along", direction, dimension),
+            Self::Around { centre, .. } if dimension == 1 => Err(InputError::new(
+                "fibres.centre",
+                format!("{centre:?}"),
+                "a line has no way around",
+            )),
+            Self::Around { centre, axis, pitch } => {
+                is("fibres.centre", centre, dimension)?;
+                is("fibres.axis", axis, if dimension == 3 { 3 } else { 0 })?;
+                match dimension == 2 && *pitch != 0.0 {
+                    true => Err(InputError::new(
+                        "fibres.pitch",
+                        pitch,
+                        "a plane body has rings alone: leave it out",
+                    )),
+                    false => Ok(()),
+                }
+            }
+        }
+    }
+
+    /// The vector along them at a `position` (m), of some length; 0 on their axis.
+    pub(crate) fn at(&self, position: &[f64]) -> Vec<f64> {
+        match self {
+            Self::Along(direction) => {
+                let length = norm(direction);
+                direction.iter().map(|x| x / length).collect()
+            }
+            Self::Around { centre, axis, pitch } => {
+                let arm: Vec<f64> = position.iter().zip(centre).map(|(x, c)| x - c).collect();
+                let [[x, y, z], [a, b, c]] = [&arm, axis].map(|v| match v[..] {
+                    [x, y, z] => [x, y, z],
+                    [x, y] => [x, y, 0.0],
+                    _ => [0.0, 0.0, 1.0],
+                });
+                let length = norm(&[a, b, c]);
+                let around = [b * z - c * y, c * x - a * z, a * y - b * x];
+                let radius = norm(&around);
+                if radius == 0.0 {
+                    return vec![0.0; position.len()];
+                }
+                let (sin, cos) = pitch.sin_cos();
+                let climb = |around: f64, along: f64| cos * around / radius + sin * along / length;
+                let course = [climb(around[0], a), climb(around[1], b), climb(around[2], c)];
+                course[..position.len()].to_vec()
+            }
+        }
+    }
+}
+
+fn has_length(name: &str, vector: &[f64]) -> Result<(), InputError> {
+    finite(name, vector)?;
+    match norm(vector) > 0.0 {
+        true => Ok(()),
+        false => {
+            let mend = "a direction needs a length above 0: give a vector along the fibres";
+            Err(InputError::new(name, format!("{vector:?}"), mend))
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! What a body, or a region of it, is made of: a material, the law that it keeps to when strains are large, and its damping.
+
+use super::{Fibres, Material, MaxwellBranch, laws::Law};
+use crate::base::input::{InputError, not_negative};
+
+/// A material with the law of its elasticity, damping in proportion to its mass, and springs that relax.
+///
+/// [`Material::law`], [`Material::mass_damping`] and [`Material::maxwell`] make it. A [`Material`] alone counts as one with the
+/// law that the body's [`Strain`](crate::Strain) stands for, without the others.
+///
+/// ```
+/// use pliant::{Body, Law, Material, Mesh, SolidCells};
+///
+/// let silicone = Material { density: 1070.0, young: 2.6e5, poisson: 0.49, viscosity: 200.0 };
+/// let mesh = Mesh::cuboid([0.1, 0.03, 0.03], [5, 3, 3], SolidCells::Hexahedra20)?;
+/// let body = Body::new(mesh, silicone.law(Law::NeoHookean)).build()?;
+/// assert!((body.mass() - 0.0963).abs() < 1e-12); // kg
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Substance {
+    /// Density, moduli at small strains, viscosity.
+    pub material: Material,
+    /// What becomes of the moduli at large strains; `None` is as the body's [`Strain`](crate::Strain) says.
+    pub law: Option<Law>,
+    /// Rate a of the force -a M v (1/s), 0 or above.
+    pub mass_damping: f64,
+    /// Maxwell branches beside the elasticity.
+    pub branches: Vec<MaxwellBranch>,
+    /// Families of fibres in it.
+    pub fibres: Vec<Fibres>,
+}
+
+impl From<Material> for Substance {
+    fn from(material: Material) -> Self {
+        Self { material, law: None, mass_damping: 0.0, branches: Vec::new(), fibres: Vec::new() }
+    }
+}
+
+impl Material {
+    /// This material, with `law` for large strains.
+    pub fn law(self, law: Law) -> Substance {
+        Substance::from(self).law(law)
+    }
+
+    /// This material, with the force -a M v at the rate `a` = `rate` (1/s): see [`Substance::mass_damping`].
+    pub fn mass_damping(self, rate: f64) -> Substance {
+        Substance::from(self).mass_damping(rate)
+    }
+
+    /// This material, with the viscosity `time` (s) times Young's modulus: see [`Substance::stiffness_damping`].
+    pub fn stiffness_damping(self, time: f64) -> Substance {
+        Substance::from(self).stiffness_damping(time)
+    }
+
+    /// This material, with a Maxwell branch of the share of stiffness `share` (1) and the relaxation time `time` (s): see
+    /// [`Substance::maxwell`].
+    pub fn maxwell(self, share: f64, time: f64) -> Substance {
+        Substance::from(self).maxwell(share, time)
+    }
+
+    /// This material, with a family of [fibres](Fibres).
+    pub fn fibres(self, fibres: Fibres) -> Substance {
+        Substance::from(self).fibres(fibres)
+    }
+
+    /// This material, with a Maxwell branch that flows above a yield stress (Pa) alone: see [`Substance::yielding`].
+    pub fn yielding(self, share: f64, time: f64, yield_stress: f64) -> Substance {
+        Substance::from(self).yielding(share, time, yield_stress)
+    }
+
+    /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as laws of rubber have them: of
+    /// Mooney-Rivlin's law 2 (c1 + c2), of Yeoh's 2 c1.
+    ///
+    /// ```
+    /// let rubber = pliant::Material::of_moduli(1070.0, 1e5, 5e6, 0.0);
+    /// assert!((rubber.elastic().mu - 1e5).abs() < 1e-9 && (rubber.poisson - 0.490066).abs() < 1e-6);
+    /// ```
+    pub fn of_moduli(density: f64, shear: f64, bulk: f64, viscosity: f64) -> Self {
+        let young = 9.0 * bulk * shear / (3.0 * bulk + shear);
+        let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
+        Self { density, young, poisson, viscosity }
+    }
+}
+
+impl Substance {
+    /// The same, with `law` for large strains.
+    pub fn law(self, law: Law) -> Self {
+        Self { law: Some(law), ..self }
+    }
+
+    /// The same, with the force -a M v at the rate a = `rate` (1/s, 0 or above), M being the inertia of what is made of this,
+    /// consistent or lumped as that of the body; point masses have none of it. It brakes all motion against the ground,
+    /// rigid motion too, which decays as exp(-a t), and damps a vibration of the angular frequency omega with the ratio
+    /// a / (2 omega).
+    ///
+    /// With [`stiffness_damping`](Self::stiffness_damping) this is Rayleigh's damping: the ratio is
+    /// (a / omega + beta omega) / 2, which two numbers fit to the measured ratios of two vibrations.
+    ///
+    /// ```
+    /// use pliant::{Body, Material, Mesh};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
+    /// let damped = rubber.mass_damping(2.1).stiffness_damping(3e-4);
+    /// assert_eq!(damped.material.viscosity, 300.0); // Pa s
+    /// let body = Body::new(Mesh::bar(0.1, 2)?, damped).area(2e-4).build()?;
+    /// assert!(body.damping().get(0, 1) > -2e-4 / 0.1 * 300.0); // less by the part of the mass
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn mass_damping(self, rate: f64) -> Self {
+        Self { mass_damping: rate, ..self }
+    }
+
+    /// The same, with damping in proportion to its stiffness: the viscosity beta E, beta being `time` (s, 0 or above), which
+    /// is natural (the force -beta K v) or objective as the [`Viscosity`](crate::Viscosity) of the body is. A vibration of
+    /// the angular frequency omega is damped with the ratio beta omega / 2.
+    pub fn stiffness_damping(mut self, time: f64) -> Self {
+        self.material.viscosity = time * self.material.young;
+        self
+    }
+
+    /// The same, with one more [Maxwell branch](MaxwellBranch): its share g = `share` (1, above 0) of stiffness beside Young's
+    /// modulus, and its relaxation time tau = `time` (s, above 0). With branches (g_i, tau_i) what is strained at once and
+    /// kept so pulls with E (1 + sum g_i exp(-t/tau_i)), and what swings slowly with the angular frequency omega has the complex
+    /// modulus
+    ///
+    /// ```text
+    /// E (1 + sum g_i i omega tau_i / (1 + i omega tau_i)) + i omega c
+    /// ```
+    ///
+    /// A motion begins relaxed in its first shape, as if it had been in it for long; so is an equilibrium, which branches
+    /// leave as it is. Fields of strain and stress are those of the elasticity alone. A body with branches is integrated by the
+    /// methods `cvode-bdf`, `cvode-adams`, `arkode` and `rk`, of which `auto` chooses.
+    ///
+    /// ```
+    /// use pliant::{Body, Material, Mesh};
+    ///
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
+    /// let relaxing = rubber.maxwell(0.5, 0.01).maxwell(0.2, 0.3);
+    /// assert_eq!(relaxing.branches.len(), 2);
+    /// let body = Body::new(Mesh::bar(0.1, 2)?, relaxing).area(2e-4).build()?;
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn maxwell(mut self, share: f64, time: f64) -> Self {
+        self.branches.push(MaxwellBranch { share, time, yield_stress: 0.0 });
+        self
+    }
+
+    /// The same, with one more [branch](MaxwellBranch) that flows above its `yield_stress` (Pa, 0 or above) alone: below it is a spring,
+    /// and what flowed stays. As dough it keeps part of its shape: where the branch pulls with Y against the elasticity E of
+    /// the material, all that is above a strain of about Y/E springs back.
+    ///
+    /// Stress is measured in the axes of the body as it was made (second Piola stress), by von Mises; what relaxes is its deviator.
+    /// Sheared and held, it is Y + (q - Y) exp(-t/tau); a string takes 1.5/(1 + nu) times as long, as its stretching shears less.
+    /// Motion and equilibria begin as with [`maxwell`](Self::maxwell), in a shape that pulls nowhere.
+    ///
+    /// ```
+    /// use pliant::Material;
+    ///
+    /// let crumb = Material { density: 1100.0, young: 2e3, poisson: 0.4, viscosity: 10.0 };
+    /// let dough = crumb.yielding(4.0, 0.5, 300.0);
+    /// assert_eq!(dough.branches[0].yield_stress, 300.0); // Pa
+    /// ```
+    pub fn yielding(mut self, share: f64, time: f64, yield_stress: f64) -> Self {
+        self.branches.push(MaxwellBranch { share, time, yield_stress });
+        self
+    }
+
+    /// The same, with one more family of [fibres](Fibres).
+    pub fn fibres(mut self, fibres: Fibres) -> Self {
+        self.fibres.push(fibres);
+        self
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), InputError> {
+        self.material.validate()?;
+        not_negative("material.mass_damping", self.mass_damping, "1/s")?;
+        self.branches.iter().try_for_each(MaxwellBranch::validate)?;
+        self.fibres.iter().try_for_each(Fibres::validate)?;
+        self.law.map_or(Ok(()), |law| law.validate())
+    }
+}

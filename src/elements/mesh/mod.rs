@@ -1,0 +1,303 @@
+//! Meshes: nodes, cells, and named sets of nodes.
+//!
+//! Nodes and cells are counted from 0 inside the crate and in slices that it returns. In
+//! selections and messages node numbers count from 1, as in the literature.
+
+mod boundary;
+mod cell;
+mod generate;
+#[cfg(feature = "gmsh")]
+mod gmsh;
+mod select;
+
+use std::collections::BTreeMap;
+
+pub use boundary::Face;
+pub use cell::CellKind;
+pub(crate) use cell::FaceKind;
+pub(crate) use generate::BYTES_PER_NODE;
+pub use generate::{Cells, SolidCells};
+pub use select::Selection;
+
+use crate::base::input::{InputError, finite};
+
+/// A finite element mesh in its undeformed shape: cells of one kind, in a space of their dimension or
+/// of a higher one (a string in the plane or in space, a membrane in space).
+///
+/// Axes are x, y, z in this order. Generators name the sides of a body by them: `left` and `right`
+/// are its ends along x; `bottom` and `top` those along the last axis, y in 2D and z in 3D; `front`
+/// and `back` those along y in 3D.
+#[derive(Debug, Clone)]
+pub struct Mesh {
+    dimension: usize,
+    positions: Vec<f64>,
+    kind: CellKind,
+    connectivity: Vec<usize>,
+    sets: BTreeMap<String, Vec<usize>>,
+    cell_groups: BTreeMap<String, Vec<usize>>,
+}
+
+impl Mesh {
+    /// A mesh from its parts: `positions` holds `dimension` coordinates (m) per node, one node
+    /// after the other; `connectivity` the nodes of one cell after the other, counted from 0.
+    ///
+    /// # Errors
+    /// Coordinates that are not finite, a dimension below that of the cells or above 3, a cell with
+    /// a node that does not exist, two cells of the same nodes. (Inverted and flat cells are found when a body is made of it.)
+    pub fn new(
+        dimension: usize,
+        positions: Vec<f64>,
+        kind: CellKind,
+        connectivity: Vec<usize>,
+    ) -> Result<Self, InputError> {
+        check_dimension(dimension, kind)?;
+        if positions.is_empty() || !positions.len().is_multiple_of(dimension) {
+            return Err(InputError::new(
+                "number of mesh coordinates",
+                positions.len(),
+                format!("it must be {dimension} per node, for one node at least"),
+            ));
+        }
+        finite("mesh.positions", &positions)?;
+        if connectivity.is_empty() || !connectivity.len().is_multiple_of(kind.nodes()) {
+            return Err(InputError::new(
+                "length of mesh.connectivity",
+                connectivity.len(),
+                format!("it must be {} nodes per cell, for one cell at least", kind.nodes()),
+            ));
+        }
+        let nodes = positions.len() / dimension;
+        if let Some(at) = connectivity.iter().position(|&node| node >= nodes) {
+            return Err(InputError::new(
+                format!("node of cell {}", at / kind.nodes() + 1),
+                connectivity[at] + 1,
+                format!("the mesh has the nodes 1 to {nodes}"),
+            ));
+        }
+        if let Some([first, second]) = twice(connectivity.chunks_exact(kind.nodes())) {
+            let nodes = connectivity.chunks_exact(kind.nodes()).nth(second).unwrap_or_default();
+            let nodes: Vec<usize> = nodes.iter().map(|node| node + 1).collect();
+            return Err(InputError::new(
+                format!("nodes of cell {}", second + 1),
+                format!("{nodes:?}"),
+                format!(
+                    "they are those of cell {}, too: it would count twice, leave one of them out",
+                    first + 1
+                ),
+            ));
+        }
+        Ok(Self::named(dimension, positions, kind, connectivity))
+    }
+
+    /// With the sets that every mesh has.
+    fn named(
+        dimension: usize,
+        positions: Vec<f64>,
+        kind: CellKind,
+        connectivity: Vec<usize>,
+    ) -> Self {
+        let all = (0..positions.len() / dimension).collect();
+        let (sets, cell_groups) = (BTreeMap::from([("all".into(), all)]), BTreeMap::new());
+        let mut mesh = Self { dimension, positions, kind, connectivity, sets, cell_groups };
+        mesh.sets.insert("boundary".into(), mesh.find_boundary_nodes());
+        mesh
+    }
+
+    /// Adds a node that belongs to no cell, alone in the node set `name`.
+    pub(crate) fn push_node(&mut self, name: &str, position: &[f64]) -> Result<(), InputError> {
+        if position.len() != self.dimension {
+            let mend = format!("it needs {} coordinates (m)", self.dimension);
+            let input = format!("position of point \"{name}\"");
+            return Err(InputError::new(input, format!("{position:?}"), mend));
+        }
+        finite(&format!("the position of point \"{name}\""), position)?;
+        if self.sets.contains_key(name) {
+            let mend = "a node set has that name already: choose another one";
+            return Err(InputError::new("name of a point", format!("\"{name}\""), mend));
+        }
+        let node = self.node_count();
+        self.positions.extend_from_slice(position);
+        self.sets.insert(name.into(), vec![node]);
+        Ok(())
+    }
+
+    /// The same mesh without its last nodes, which belong to no cell and have these names.
+    pub(crate) fn without_last<'a>(&self, names: impl ExactSizeIterator<Item = &'a str>) -> Self {
+        let mut mesh = self.clone();
+        mesh.positions.truncate(self.positions.len() - names.len() * self.dimension);
+        for name in names {
+            mesh.sets.remove(name);
+        }
+        mesh
+    }
+
+    /// Other cells, with the nodes that they need: sets and groups are those of every mesh.
+    pub(crate) fn with_cells(
+        &self,
+        positions: Vec<f64>,
+        kind: CellKind,
+        connectivity: Vec<usize>,
+    ) -> Self {
+        Self::named(self.dimension, positions, kind, connectivity)
+    }
+
+    /// Names nodes (from 0).
+    pub(crate) fn set_nodes(&mut self, name: &str, nodes: Vec<usize>) {
+        self.sets.insert(name.into(), nodes);
+    }
+
+    /// Names a group of cells (from 0, ascending).
+    pub(crate) fn set_cells(&mut self, name: &str, cells: Vec<usize>) {
+        self.cell_groups.insert(name.into(), cells);
+    }
+
+    /// The same mesh, moved by `offset` (m).
+    ///
+    /// # Errors
+    /// An offset of the wrong length, or not finite.
+    pub fn translated(mut self, offset: &[f64]) -> Result<Self, InputError> {
+        if offset.len() != self.dimension {
+            return Err(InputError::new(
+                "length of the offset",
+                offset.len(),
+                format!("the mesh has dimension {}", self.dimension),
+            ));
+        }
+        finite("offset", offset)?;
+        for position in self.positions.chunks_exact_mut(self.dimension) {
+            position.iter_mut().zip(offset).for_each(|(x, d)| *x += d);
+        }
+        Ok(self)
+    }
+
+    /// The same mesh with the node at x (m) moved to `map(x)` (m): a grid bent into another shape,
+    /// or placed in a space of higher dimension. Cells and node sets stay what they are; the set
+    /// `boundary` is found anew if the dimension changes.
+    ///
+    /// ```
+    /// # use pliant::{Cells, Mesh};
+    /// let square = Mesh::rectangle([1.0, 1.0], [3, 3], Cells::Triangles)?;
+    /// let membrane = square.mapped(|x| [x[0], x[1], 0.1 * x[0] * x[1]])?;
+    /// assert_eq!(membrane.dimension(), 3);
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// A new position that is not finite, a dimension below that of the cells or above 3. (Cells
+    /// that the map turns over are found when a body is made of the mesh.)
+    pub fn mapped<const D: usize>(
+        mut self,
+        mut map: impl FnMut(&[f64]) -> [f64; D],
+    ) -> Result<Self, InputError> {
+        check_dimension(D, self.kind)?;
+        let mut moved = Vec::with_capacity(D * self.node_count());
+        for (node, from) in self.positions.chunks_exact(self.dimension).enumerate() {
+            let to = map(from);
+            if to.iter().any(|x| !x.is_finite()) {
+                let mend = format!("the map must give finite coordinates (m) for {from:?}");
+                let input = format!("mapped position of node {}", node + 1);
+                return Err(InputError::new(input, format!("{to:?}"), mend));
+            }
+            moved.extend(to);
+        }
+        self.positions = moved;
+        if D != self.dimension {
+            self.dimension = D;
+            self.sets.insert("boundary".into(), self.find_boundary_nodes());
+        }
+        Ok(self)
+    }
+
+    /// Dimension of space: coordinates per node.
+    pub fn dimension(&self) -> usize {
+        self.dimension
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.positions.len() / self.dimension
+    }
+
+    /// Natural coordinates (m), `dimension` per node.
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// Natural coordinates (m) of one node, counted from 0.
+    pub fn position(&self, node: usize) -> &[f64] {
+        &self.positions[node * self.dimension..][..self.dimension]
+    }
+
+    /// What the cells are.
+    pub fn kind(&self) -> CellKind {
+        self.kind
+    }
+
+    /// Number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.connectivity.len() / self.kind.nodes()
+    }
+
+    /// The cells: their nodes, counted from 0.
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = &[usize]> {
+        self.connectivity.chunks_exact(self.kind.nodes())
+    }
+
+    /// The named node sets (nodes counted from 0, in the order in which they were named; those of
+    /// the generators run along their side, `all` and `boundary` ascend).
+    pub fn sets(&self) -> &BTreeMap<String, Vec<usize>> {
+        &self.sets
+    }
+
+    /// The named groups of cells (counted from 0, ascending) that the mesh was read with: see
+    /// [`Mesh::read_gmsh`].
+    pub fn cell_groups(&self) -> &BTreeMap<String, Vec<usize>> {
+        &self.cell_groups
+    }
+
+    /// Nodes on the boundary, counted from 0, ascending. In a space of higher dimension than the
+    /// cells these are all nodes of cells.
+    pub fn boundary_nodes(&self) -> &[usize] {
+        &self.sets["boundary"]
+    }
+
+    /// The values of a vector field at all nodes, one node after the other.
+    pub(crate) fn field(&self, field: impl Fn(&[f64]) -> Vec<f64>) -> Vec<f64> {
+        self.positions.chunks_exact(self.dimension).flat_map(field).collect()
+    }
+
+    /// Length of the diagonal of the box around the mesh (m).
+    pub fn size(&self) -> f64 {
+        let extent = |axis: usize| {
+            let along = self.positions.iter().skip(axis).step_by(self.dimension);
+            let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+                (low.min(x), high.max(x))
+            });
+            high - low
+        };
+        (0..self.dimension).map(|axis| extent(axis).powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+/// The first two cells that have the same nodes, in whatever order.
+fn twice<'a>(cells: impl Iterator<Item = &'a [usize]>) -> Option<[usize; 2]> {
+    let sorted = cells.map(|cell| {
+        let mut nodes = cell.to_vec();
+        nodes.sort_unstable();
+        nodes
+    });
+    let mut sorted: Vec<(Vec<usize>, usize)> = sorted.zip(0..).collect();
+    sorted.sort_unstable();
+    let same = sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    same.map(|pair| [pair[0].1, pair[1].1]).min_by_key(|pair| pair[1])
+}
+
+fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {
+    let least = kind.dimension();
+    if (least..=3).contains(&dimension) {
+        return Ok(());
+    }
+    let allowed = if least == 3 { "3".into() } else { format!("{least} to 3") };
+    let mend = format!("{kind:?} cells need a space of dimension {allowed}");
+    Err(InputError::new("mesh.dimension", dimension, mend))
+}

@@ -1,0 +1,135 @@
+//! What every integrator can do.
+
+use super::{error::Error, statistics::Statistics};
+
+/// An integrator at work: it owns a system of equations and a state, and takes steps.
+///
+/// Steps are as long as the tolerances allow. The state between the ends of the last step is known,
+/// too, by interpolation, so output times never change the steps.
+pub trait Integrator {
+    /// What is integrated.
+    type System;
+
+    /// Time of the state [`y`](Self::y).
+    fn t(&self) -> f64;
+
+    /// The state at time [`t`](Self::t). After a failure it is the last one that was good; where numbers overflow,
+    /// that may be the one that the call began with.
+    fn y(&self) -> &[f64];
+
+    /// Integrates to time `t`, or to a root or the stop time if one comes first.
+    ///
+    /// Steps usually pass `t`; the state at `t` is interpolated, so output times do not change the
+    /// solution. In SUNDIALS the estimate of the first step depends on the first `t`; the option
+    /// `initial_step` removes that too.
+    ///
+    /// # Errors
+    /// [`Error::Integration`] if the integration stopped, with the reason; [`Error::Input`] if
+    /// `t` is not finite or lies before the last step.
+    ///
+    /// # Panics
+    /// A panic of the system passes through.
+    fn solve_to(&mut self, t: f64) -> Result<Reached, Error>;
+
+    /// Makes one step in the direction of time `towards`, which the step may pass. If the last call was
+    /// [`solve_to`](Self::solve_to), which rests within its last step, that step's end comes first.
+    ///
+    /// # Errors
+    /// As for [`solve_to`](Self::solve_to).
+    ///
+    /// # Panics
+    /// A panic of the system passes through.
+    fn step(&mut self, towards: f64) -> Result<Reached, Error>;
+
+    /// The times between which [`interpolate`](Self::interpolate) works: start and end of the
+    /// last step; twice the start before the first.
+    fn last_step(&self) -> (f64, f64);
+
+    /// Order of the last step. Before the first it is 0 in methods of variable order.
+    fn last_order(&self) -> u32;
+
+    /// Degree in time of what [`interpolate`](Self::interpolate) gives within the last step.
+    fn interpolant_degree(&self) -> u32;
+
+    /// Writes the `derivative`-th time derivative of the solution at time `t`, within the
+    /// [last step](Self::last_step), into `out`: 0 for the state itself.
+    ///
+    /// Where there is no step to interpolate in, before the first one, only the state itself is known;
+    /// so too after a failure of ARKODE.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `t` lies outside the last step, `derivative` is larger than the method
+    /// allows, or `out` has the wrong length; [`Error::Integration`] if the system had to be
+    /// evaluated and failed.
+    ///
+    /// # Panics
+    /// A panic of the system passes through.
+    fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
+
+    /// Lets the integration stop exactly at time `t`, without evaluating the system beyond
+    /// (`None`: no longer). For discontinuities at known times. It holds once.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `t` is not finite or lies behind the steps already taken.
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error>;
+
+    /// Starts again at time `t` from `y`, with the same options and allocations, as after a jump of the
+    /// state or of the system. Counters start at zero; a stop time is forgotten.
+    ///
+    /// A DAE keeps its present y', which has to fit `y`; [`Ida::reinit_with`] sets both.
+    ///
+    /// [`Ida::reinit_with`]: crate::integrators::sundials::Ida::reinit_with
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
+    fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error>;
+
+    /// Goes on at time `t` from `y`, with the step size, the options and the counters of before, after a change of
+    /// the system that leaves its unknowns what they were. A stop time is forgotten.
+    ///
+    /// `false`, and nothing done, where the method needs a new start, [`reinit`](Self::reinit): multistep methods
+    /// build on steps under the system of before.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
+    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
+        let _ = (t, y);
+        Ok(false)
+    }
+
+    /// After [`Reached::Root`]: for each root function 0, or the sign of its change where it has
+    /// a root at the present time: +1 rising, -1 falling.
+    fn roots_found(&self) -> &[i32];
+
+    /// What the integration has cost so far, and where it is.
+    fn statistics(&self) -> Statistics;
+
+    /// What the integrator noticed about its steps: that stability, not accuracy, bounds them.
+    fn notice(&self) -> Option<String> {
+        None
+    }
+
+    /// The system.
+    fn system(&self) -> &Self::System;
+
+    /// The system, to be changed. After a change that makes the right-hand side jump,
+    /// [`reinit`](Self::reinit) is needed.
+    fn system_mut(&mut self) -> &mut Self::System;
+
+    /// Ends the integration and gives the system back.
+    #[must_use]
+    fn into_system(self) -> Self::System
+    where
+        Self: Sized;
+}
+
+/// Where an integration call came to an end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reached {
+    /// At the requested time, or, for a single step, at the end of the step.
+    Time,
+    /// Where a root function changes sign; [`Integrator::roots_found`] gives which.
+    Root,
+    /// At the stop time, which is then no longer set.
+    StopTime,
+}

@@ -1,0 +1,31 @@
+//! What all integrators have in common: what they can do ([`Integrator`]), how accurate they are to be
+//! ([`Tolerances`]), what they cost ([`Statistics`]) and how they fail ([`Error`]).
+//!
+//! The integrators are those of [`sundials`](crate::integrators::sundials), [`rk`](crate::integrators::rk) and [`rosenbrock`](crate::integrators::rosenbrock); what they integrate is
+//! in [`ode`](crate::integrators::ode).
+
+mod error;
+mod explicit_options;
+mod integrator;
+mod jacobian_check;
+mod march;
+mod one_step;
+mod options;
+mod rootfinding;
+mod roots;
+mod statistics;
+mod tolerances;
+
+pub use error::{Callback, Cause, Error, IntegrationError};
+pub use explicit_options::ExplicitOptions;
+pub(crate) use explicit_options::{check_stop_time, check_target};
+pub use integrator::{Integrator, Reached};
+pub(crate) use jacobian_check::{JacobianCheck, Point};
+pub(crate) use march::{March, StepMethod, not_finite};
+pub use one_step::OneStep;
+pub(crate) use options::{
+    SHORTEST, StepOptions, check_count, check_finite, check_form, check_length, check_start,
+    check_start_time, check_step, check_time, check_whole, step_options,
+};
+pub use statistics::Statistics;
+pub use tolerances::{AbsoluteTolerance, Tolerances};

@@ -1,0 +1,359 @@
+//! Integration by steps that know nothing of each other but their size.
+
+use std::mem::{swap, take};
+
+use super::error::{Callback, Cause, Error};
+use super::explicit_options::{ExplicitOptions, check_stop_time, check_target};
+use super::integrator::{Integrator, Reached};
+use super::march::{March, StepMethod, not_finite};
+use super::options::{check_finite, check_form, check_length, check_start, check_start_time};
+use super::roots::Roots;
+use super::statistics::Statistics;
+use crate::integrators::ode::{Ode, call};
+
+/// Integrates y' = f(t, y) forward in time by the one-step method M.
+///
+/// Asking for output does not change the steps. Stepping allocates nothing.
+#[derive(Debug)]
+pub struct OneStep<S, M> {
+    pub(super) march: March<S>,
+    pub(crate) method: M,
+}
+
+impl<S: Ode, M: StepMethod> OneStep<S, M> {
+    /// Starts at y(t) = `y` by a method, with its name and order.
+    pub(crate) fn start(
+        system: S,
+        t: f64,
+        y: &[f64],
+        options: &ExplicitOptions,
+        (integrator, order, method): (&'static str, u32, M),
+    ) -> Result<Self, Error> {
+        check_start(t, y)?;
+        check_form(&system)?;
+        options.check(y)?;
+        let zeros = || vec![0.0; y.len()];
+        let march = March {
+            integrator,
+            order,
+            options: options.clone(),
+            weight: zeros(),
+            stop_time: None,
+            t,
+            y: y.to_vec(),
+            slope: zeros(),
+            slope_known: false,
+            t_old: t,
+            y_old: zeros(),
+            slope_old: zeros(),
+            argument: zeros(),
+            rest: None,
+            output: zeros(),
+            roots: Roots::new(system.root_count()),
+            next_step: options.steps.initial_step,
+            setback: None,
+            statistics: Statistics::default(),
+            system,
+        };
+        let mut solver = Self { march, method };
+        solver.update_weight();
+        Ok(solver)
+    }
+
+    /// Error weights at the start of the next step.
+    fn update_weight(&mut self) {
+        let March { options, y, weight, .. } = &mut self.march;
+        options.tolerances.weigh(y, weight);
+    }
+
+    fn max_step(&self) -> f64 {
+        self.march.options.steps.max_step.unwrap_or(f64::INFINITY)
+    }
+
+    /// Writes the state at a time within the last step.
+    pub(super) fn interpolate_state(&self, t: f64, out: &mut [f64]) {
+        if t == self.march.t {
+            out.copy_from_slice(&self.march.y);
+        } else {
+            self.method.interpolate(&self.march, t, out);
+        }
+    }
+
+    /// Makes `t()` and `y()` the state at a time within the last step.
+    fn rest_at(&mut self, t: f64) {
+        self.march.rest = (t != self.march.t).then_some(t);
+        if self.march.rest.is_some() {
+            let mut output = take(&mut self.march.output);
+            self.interpolate_state(t, &mut output);
+            self.march.output = output;
+        }
+    }
+
+    /// How a call ended that came to rest without a root.
+    fn reached(&mut self) -> Reached {
+        let t = self.t();
+        match self.march.stop_time.take_if(|stop| *stop == t) {
+            Some(_) => Reached::StopTime,
+            None => Reached::Time,
+        }
+    }
+
+    /// Evaluates f(t, y), where no smaller step can help.
+    fn evaluate_slope(&mut self) -> Result<(), Error> {
+        let march = &mut self.march;
+        march.statistics.evaluations += 1;
+        let outcome = call::rhs(&mut march.system, march.t, &march.y, &mut march.slope);
+        let setback = march.classify(outcome, Callback::Rhs, march.t, 0.0)?;
+        if let Some(cause) = setback.or_else(|| not_finite(march.t, &march.slope)) {
+            return Err(march.stopped(cause, 0.0).into());
+        }
+        march.slope_known = true;
+        Ok(())
+    }
+
+    /// Initial step size after E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed.,
+    /// section II.4, "Starting step size".
+    fn estimate_initial_step(&mut self) -> Result<f64, Error> {
+        let max_step = self.max_step();
+        let Self { march, method } = self;
+        let state_size = method.norm(&march.y, &march.weight);
+        let slope_size = method.norm(&march.slope, &march.weight);
+        let mut h = if state_size < 1e-5 || slope_size < 1e-5 {
+            1e-6
+        } else {
+            0.01 * state_size / slope_size
+        };
+        h = h.min(max_step);
+        let mut t_trial = march.t + h;
+        if let Some(stop) = march.stop_time.filter(|stop| t_trial > *stop) {
+            (t_trial, h) = (stop, stop - march.t);
+        }
+        for (argument, (y, slope)) in
+            march.argument.iter_mut().zip(march.y.iter().zip(&march.slope))
+        {
+            *argument = y + h * slope;
+        }
+        march.statistics.evaluations += 1;
+        let outcome = call::rhs(&mut march.system, t_trial, &march.argument, &mut march.slope_old);
+        if march.classify(outcome, Callback::Rhs, t_trial, h)?.is_some() {
+            return Ok(h);
+        }
+        for (trial, slope) in march.slope_old.iter_mut().zip(&march.slope) {
+            *trial -= slope;
+        }
+        let curvature = method.norm(&march.slope_old, &march.weight) / h;
+        // y' changes on the time scale T = |y'| / |y''|, so that the error of a step of order p is
+        // about (h/T)^p |y'| T; the book has T = 1, which is only right for some unit of time.
+        let time_scale = slope_size / curvature;
+        let exponent = 1.0 / f64::from(march.order);
+        let from_error = time_scale * (0.01 / (slope_size * time_scale)).powf(exponent);
+        // Not a number or zero when the slopes vanish or are not finite: h will do.
+        Ok(if from_error > 0.0 { from_error.min(100.0 * h) } else { h })
+    }
+
+    /// Takes one step.
+    fn advance(&mut self) -> Result<(), Error> {
+        self.march.rest = None;
+        // Until this step succeeds there is nothing to interpolate in: its stages overwrite the
+        // last one's.
+        self.march.t_old = self.march.t;
+        if !self.march.slope_known {
+            self.evaluate_slope()?;
+        }
+        let planned = match self.march.next_step {
+            Some(step) => step,
+            None => self.estimate_initial_step()?,
+        };
+        let mut h = planned.min(self.max_step());
+        self.start_roots(self.march.stop_time.map_or(h, |stop| h.min(stop - self.march.t)))?;
+        let Self { march, method } = self;
+        loop {
+            // A step may stretch by 1 % to hit the stop time rather than leave a sliver.
+            let stop = march.stop_time.filter(|stop| march.t + 1.01 * h >= *stop);
+            if stop.is_none() && march.t + 0.1 * h == march.t {
+                march.next_step = None;
+                let cause = march.setback.take().unwrap_or(Cause::ErrorTest);
+                return Err(march.stopped(cause, h).into());
+            }
+            let t_new = stop.unwrap_or(march.t + h);
+            let step = t_new - march.t;
+            let error = match method.try_step(march, t_new, step)? {
+                Ok(error) => error,
+                Err(reason) => {
+                    march.statistics.refused_steps += 1;
+                    march.setback = Some(reason);
+                    h = method.refuse(step);
+                    continue;
+                }
+            };
+            if error > 1.0 {
+                march.statistics.error_test_failures += 1;
+                h = method.reject(step, error);
+                continue;
+            }
+            let proposed = method.accept(march, t_new, step, error);
+            if proposed > step {
+                march.setback = None;
+            }
+            // A step cut short by the stop time says nothing against the one that was planned.
+            march.next_step = Some(if stop.is_some() { proposed.max(h) } else { proposed });
+            march.statistics.steps += 1;
+            march.statistics.last_step = step;
+            (march.t_old, march.t) = (march.t, t_new);
+            swap(&mut march.y, &mut march.y_old);
+            swap(&mut march.slope, &mut march.slope_old);
+            self.update_weight();
+            return Ok(());
+        }
+    }
+
+    /// Makes `y` at `t` the state, of whose step nothing is known.
+    fn set_state(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+        let march = &mut self.march;
+        check_length("length of y", y.len(), march.y.len())?;
+        check_start_time("t", t)?;
+        check_finite("y", y)?;
+        (march.t, march.t_old) = (t, t);
+        march.y.copy_from_slice(y);
+        (march.rest, march.stop_time, march.slope_known) = (None, None, false);
+        march.roots.restart();
+        self.method.forget();
+        self.update_weight();
+        Ok(())
+    }
+}
+
+impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
+    type System = S;
+
+    fn t(&self) -> f64 {
+        self.march.rest.unwrap_or(self.march.t)
+    }
+
+    fn y(&self) -> &[f64] {
+        if self.march.rest.is_some() { &self.march.output } else { &self.march.y }
+    }
+
+    fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
+        check_target(t, "the last step began at", self.march.t_old)?;
+        if t == self.t() {
+            return Ok(Reached::Time);
+        }
+        self.pass_root()?;
+        let first = self.march.statistics.steps;
+        loop {
+            if let Some(root) = self.find_root(t.min(self.march.t))? {
+                self.rest_at(root);
+                return Ok(Reached::Root);
+            }
+            if self.march.t >= t || self.march.stop_time == Some(self.march.t) {
+                self.rest_at(t.min(self.march.t));
+                return Ok(self.reached());
+            }
+            let steps = self.march.statistics.steps - first;
+            if steps == u64::from(self.march.options.steps.max_steps) {
+                let cause = Cause::TooManySteps { steps, target: t, notice: self.notice() };
+                return Err(self.march.stopped(cause, self.march.statistics.last_step).into());
+            }
+            self.advance()?;
+        }
+    }
+
+    fn step(&mut self, towards: f64) -> Result<Reached, Error> {
+        check_target(towards, "it lies behind", self.t())?;
+        if towards == self.t() {
+            return Ok(Reached::Time);
+        }
+        self.pass_root()?;
+        if self.march.rest.is_none() {
+            self.advance()?;
+        }
+        let root = self.find_root(self.march.t)?;
+        self.rest_at(root.unwrap_or(self.march.t));
+        Ok(if root.is_some() { Reached::Root } else { self.reached() })
+    }
+
+    fn last_step(&self) -> (f64, f64) {
+        (self.march.t_old, self.march.t)
+    }
+
+    fn last_order(&self) -> u32 {
+        self.march.order
+    }
+
+    fn interpolant_degree(&self) -> u32 {
+        self.method.interpolant_degree()
+    }
+
+    /// The state, or, for `derivative` 1, the derivative of what is interpolated.
+    fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        let March { t: end, t_old: start, y, .. } = &self.march;
+        check_length("length of out", out.len(), y.len())?;
+        if !(start <= &t && &t <= end) {
+            let mend = format!("it lies outside the last step, [{start}, {end}]");
+            return Err(Error::input("t", t, mend));
+        }
+        match derivative {
+            0 => self.interpolate_state(t, out),
+            1 if start < end => self.method.interpolate_slope(&self.march, t, out),
+            1 => return Err(Error::input("derivative", 1, "take a step first")),
+            _ => return Err(Error::input("derivative", derivative, "give 0 or 1")),
+        }
+        Ok(())
+    }
+
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
+        if let Some(stop) = t {
+            check_stop_time(stop, self.march.t, self.t())?;
+        }
+        self.march.stop_time = t;
+        Ok(())
+    }
+
+    fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+        self.set_state(t, y)?;
+        self.march.next_step = self.march.options.steps.initial_step;
+        self.march.setback = None;
+        self.march.statistics = Statistics::default();
+        self.method.restart();
+        Ok(())
+    }
+
+    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
+        self.set_state(t, y)?;
+        Ok(true)
+    }
+
+    fn roots_found(&self) -> &[i32] {
+        &self.march.roots.found
+    }
+
+    fn statistics(&self) -> Statistics {
+        Statistics {
+            last_order: self.march.order,
+            current_order: self.march.order,
+            current_step: self.march.next_step.unwrap_or_default(),
+            current_time: self.march.t,
+            ..self.march.statistics.clone()
+        }
+    }
+
+    fn notice(&self) -> Option<String> {
+        self.method.notice()
+    }
+
+    fn system(&self) -> &S {
+        &self.march.system
+    }
+
+    /// The next step evaluates it afresh.
+    fn system_mut(&mut self) -> &mut S {
+        self.march.slope_known = false;
+        self.method.forget();
+        &mut self.march.system
+    }
+
+    fn into_system(self) -> S {
+        self.march.system
+    }
+}

@@ -1,0 +1,39 @@
+//! What an integrator is given: systems of ordinary differential equations (ODE), of
+//! differential-algebraic equations (DAE), and of [second order](SecondOrder).
+//!
+//! The same traits feed [`crate::integrators::sundials`] and the internal Runge-Kutta method `rk`.
+//! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
+//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with parameters,
+//! [`with_mass`] with a mass matrix, [`split`] with a part that is not stiff; a struct implements
+//! the trait when it wants to hand over root functions or a linear solver of its own. An
+//! integrator owns its system; [`Borrowed`] lends it one instead. [`check`] holds supplied derivatives against differences.
+
+mod band;
+mod borrowed;
+pub(crate) mod call;
+pub mod check;
+mod closures;
+mod dae;
+mod delegate;
+mod failure;
+mod first_order;
+mod functional;
+mod mass;
+mod second_order;
+mod split;
+mod with_mass;
+
+pub use band::BandMut;
+pub use borrowed::{Borrowed, Boxed};
+pub use closures::{
+    WithJacobian, WithParameters, WithSparseJacobian, dae_with_parameters, with_jacobian,
+    with_parameters, with_sparse_jacobian,
+};
+pub use dae::Dae;
+pub use failure::Failure;
+pub use first_order::Ode;
+pub use functional::{Functional, Slopes};
+pub use mass::MassKind;
+pub use second_order::{EnergyBalance, Kick, Rates, SecondOrder};
+pub use split::{Split, split};
+pub use with_mass::{MassMatrix, WithMass, with_mass};

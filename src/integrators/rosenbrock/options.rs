@@ -1,0 +1,99 @@
+//! Options of the integrator.
+
+use super::tableau::{RODASP2, ROS34PW2, Tableau};
+use crate::base::input::InputError;
+use crate::integrators::common::{AbsoluteTolerance, ExplicitOptions};
+use crate::integrators::sundials::{Jacobian, LinearSolver};
+
+/// Tolerances, method and limits of a [`Rosenbrock`](super::Rosenbrock).
+///
+/// ```
+/// use pliant::rosenbrock::Options;
+/// use pliant::sundials::{Jacobian, LinearSolver};
+///
+/// let solver = LinearSolver::Band { lower: 1, upper: 1, jacobian: Jacobian::DifferenceQuotients };
+/// let options = Options::new(1e-6, 1e-9).order(3).newton(solver).max_step(0.1);
+/// ```
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct Options {
+    /// Tolerances and step sizes.
+    pub(super) forward: ExplicitOptions,
+    pub(super) order: u32,
+    pub(super) solver: LinearSolver,
+    pub(super) trusts_jacobian: bool,
+    pub(super) linear: bool,
+}
+
+impl Default for Options {
+    /// Tolerances rtol 1e-6 and atol 1e-9.
+    fn default() -> Self {
+        Self::new(1e-6, 1e-9)
+    }
+}
+
+impl Options {
+    /// These tolerances, order 4, a dense matrix of differences.
+    ///
+    /// Local errors are kept below `rtol |y_i| + atol_i` in the root mean square, the norm of CVODE. `rtol` is at
+    /// least 1e-14, `atol` positive.
+    pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
+        let forward = ExplicitOptions::new(rtol, atol);
+        let solver = LinearSolver::Dense(Jacobian::DifferenceQuotients);
+        Self { forward, order: 4, solver, trusts_jacobian: false, linear: false }
+    }
+
+    /// Order of the method: 4 (RODASP2, the default) or 3 (ROS34PW2, which has its order with any matrix).
+    pub fn order(mut self, order: u32) -> Self {
+        self.order = order;
+        self
+    }
+
+    /// How the linear systems with the matrix I - gamma h df/dy are solved, and where df/dy comes from: dense (the default, with difference
+    /// quotients), of band form, sparse, or by the system's own `newton_setup` and `newton_solve`. A Krylov method cannot.
+    pub fn newton(mut self, solver: LinearSolver) -> Self {
+        self.solver = solver;
+        self
+    }
+
+    /// As [`CvodeOptions::check_jacobian`](crate::integrators::sundials::CvodeOptions::check_jacobian): whether a Jacobian that the system supplies is held
+    /// against differences. Default: yes.
+    pub fn check_jacobian(mut self, on: bool) -> Self {
+        self.trusts_jacobian = !on;
+        self
+    }
+
+    /// The Jacobian never changes: it is evaluated once, and factorized only where the step size changes, which
+    /// it does less often.
+    pub fn linear(mut self) -> Self {
+        self.linear = true;
+        self
+    }
+
+    /// Size of the first step. Default: estimated.
+    pub fn initial_step(mut self, h: f64) -> Self {
+        self.forward = self.forward.initial_step(h);
+        self
+    }
+
+    /// Upper bound of the step size. Default: none, which is infinity.
+    pub fn max_step(mut self, h: f64) -> Self {
+        self.forward = self.forward.max_step(h);
+        self
+    }
+
+    /// Steps allowed in one call of `solve_to`. Default: 100,000.
+    pub fn max_steps(mut self, steps: u32) -> Self {
+        self.forward = self.forward.max_steps(steps);
+        self
+    }
+
+    /// The method of that order.
+    pub(super) fn tableau(&self) -> Result<&'static Tableau, InputError> {
+        match self.order {
+            3 => Ok(&ROS34PW2),
+            4 => Ok(&RODASP2),
+            order => Err(InputError::new("order", order, "there are methods of order 3 and 4")),
+        }
+    }
+}

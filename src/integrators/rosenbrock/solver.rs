@@ -1,0 +1,148 @@
+//! The method: what it keeps beside the state, and what is known within the last step.
+
+use super::control::Controller;
+use super::matrix::Matrix;
+use super::options::Options;
+use super::tableau::{MOST_STAGES, Tableau};
+use crate::integrators::common::{Cause, Error, JacobianCheck, March, OneStep, StepMethod};
+use crate::integrators::ode::Ode;
+
+/// Integrates y' = f(t, y) forward in time by a Rosenbrock method.
+///
+/// Steps of automatic size keep the local error within tolerance. Solutions between the ends of a step come from
+/// stages that are there anyway, so asking for output does not change the steps; they are of an order one less than the
+/// method's. df/dt is a difference quotient: one more evaluation a step. Stepping allocates nothing.
+pub type Rosenbrock<S> = OneStep<S, LinearlyImplicit>;
+
+/// A Rosenbrock method at work.
+#[derive(Debug)]
+pub struct LinearlyImplicit {
+    pub(super) tableau: &'static Tableau,
+    /// Looks at the Jacobian that the system supplies, by this method.
+    pub(super) check: Option<(&'static str, JacobianCheck)>,
+    /// Whether the Jacobian never changes.
+    pub(super) is_linear: bool,
+    /// The matrix, unless the system keeps it to itself.
+    pub(super) matrix: Option<Matrix>,
+    /// Unknowns but for the integrals at the end of the state.
+    pub(super) coupled: usize,
+    /// df/dt.
+    pub(super) time_slope: Vec<f64>,
+    /// u_i.
+    pub(super) stages: [Vec<f64>; MOST_STAGES],
+    /// p and q of the dense output.
+    pub(super) bends: [Vec<f64>; 2],
+    /// What is known at (t, y).
+    pub(super) known: Known,
+    /// gamma h of the factors at hand.
+    pub(super) factored: Option<f64>,
+    controller: Controller,
+}
+
+/// What has been evaluated at (t, y), beside f.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Known {
+    pub(super) time_slope: bool,
+    pub(super) jacobian: bool,
+}
+
+impl<S: Ode> Rosenbrock<S> {
+    /// Starts at y(t) = `y`; the length of `y` is the number n of equations.
+    ///
+    /// The system is first called by the first step.
+    ///
+    /// # Errors
+    /// [`Error::Input`] names the option or component that cannot be used.
+    pub fn new(system: S, t: f64, y: &[f64], options: &Options) -> Result<Self, Error> {
+        let (n, tableau) = (y.len(), options.tableau()?);
+        let zeros = || vec![0.0; n];
+        options.forward.check(y)?;
+        let matrix = match n {
+            0 => None,
+            n => Matrix::new(&options.solver, n, &options.forward.tolerances)?,
+        };
+        let method = LinearlyImplicit {
+            tableau,
+            check: options
+                .solver
+                .supplied()
+                .filter(|_| !options.trusts_jacobian)
+                .map(|method| (method, JacobianCheck::new(n, &options.forward.tolerances))),
+            is_linear: options.linear,
+            matrix,
+            coupled: n.saturating_sub(system.integrals()),
+            time_slope: zeros(),
+            stages: std::array::from_fn(|i| if i < tableau.alpha.len() { zeros() } else { vec![] }),
+            bends: [zeros(), zeros()],
+            known: Known::default(),
+            factored: None,
+            controller: Controller::new(tableau.order, options.linear),
+        };
+        Self::start(system, t, y, &options.forward, (tableau.name, tableau.order, method))
+    }
+}
+
+impl StepMethod for LinearlyImplicit {
+    fn restart(&mut self) {
+        self.controller = Controller::new(self.tableau.order, self.is_linear);
+    }
+
+    fn forget(&mut self) {
+        (self.known, self.factored) = (Known::default(), None);
+    }
+
+    /// Root mean square by the error weights, but for the integrals.
+    fn norm(&self, x: &[f64], weight: &[f64]) -> f64 {
+        let terms = x[..self.coupled].iter().zip(weight).map(|(x, weight)| (x * weight).powi(2));
+        (terms.sum::<f64>() / x.len() as f64).sqrt()
+    }
+
+    fn try_step<S: Ode>(
+        &mut self,
+        march: &mut March<S>,
+        t_new: f64,
+        h: f64,
+    ) -> Result<Result<f64, Cause>, Error> {
+        self.attempt(march, t_new, h)
+    }
+
+    fn accept<S: Ode>(&mut self, _: &March<S>, _: f64, h: f64, error: f64) -> f64 {
+        self.known = Known::default();
+        self.controller.accept(h, error)
+    }
+
+    fn reject(&mut self, h: f64, error: f64) -> f64 {
+        self.controller.reject(h, error)
+    }
+
+    fn refuse(&mut self, h: f64) -> f64 {
+        self.controller.refuse(h)
+    }
+
+    fn interpolate<S: Ode>(&self, march: &March<S>, t: f64, y: &mut [f64]) {
+        let theta = (t - march.t_old) / (march.t - march.t_old);
+        interpolate([&march.y_old, &march.y], &self.bends, theta, y);
+    }
+
+    fn interpolate_slope<S: Ode>(&self, march: &March<S>, t: f64, ydot: &mut [f64]) {
+        let h = march.t - march.t_old;
+        let theta = (t - march.t_old) / h;
+        let [p, q] = &self.bends;
+        for (i, slope) in ydot.iter_mut().enumerate() {
+            let bend = (1.0 - 2.0 * theta) * (p[i] + theta * q[i]) + theta * (1.0 - theta) * q[i];
+            *slope = (march.y[i] - march.y_old[i] + bend) / h;
+        }
+    }
+
+    fn interpolant_degree(&self) -> u32 {
+        if self.tableau.order == 4 || self.coupled < self.time_slope.len() { 3 } else { 2 }
+    }
+}
+
+/// The dense output at the part `theta` of a step.
+pub(super) fn interpolate(ends: [&[f64]; 2], bends: &[Vec<f64>; 2], theta: f64, out: &mut [f64]) {
+    let ([start, end], [p, q], rest) = (ends, bends, 1.0 - theta);
+    for (i, out) in out.iter_mut().enumerate() {
+        *out = rest * start[i] + theta * (end[i] + rest * (p[i] + theta * q[i]));
+    }
+}

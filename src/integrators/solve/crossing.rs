@@ -1,0 +1,318 @@
+//! What happens along a run: events, breaks, and the jumps at both.
+
+use std::mem;
+
+use super::{
+    engine::Start,
+    error::Reason,
+    event::{Action, Jump, check_crosses},
+    problem::Break,
+    run::Run,
+    sensitivities::{Carried, Crossing},
+    solution::{End, Occurrence},
+    watch::{Root, Sight, Turn},
+};
+use crate::base::input::InputError;
+use crate::integrators::common::check_finite;
+
+/// A state, and its time derivative, of a DAE.
+struct State {
+    y: Vec<f64>,
+    yp: Vec<f64>,
+}
+
+/// What a step has met.
+pub(super) enum Found {
+    /// Events that stop it, all at one time; or none.
+    Jumps(Vec<(usize, Root)>),
+    /// The event of this number accumulates where the step began.
+    Accumulation(usize, Turn),
+}
+
+impl<'a> Run<'a> {
+    /// Finds the events of the step that has just been made, up to `t`, and notes them. Those that stop the step are returned, the last ones noted.
+    /// `is_last` tells that the next step does not go on from there, but from a break, if at all.
+    pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Found, Reason> {
+        // as SUNDIALS has it
+        let tolerance = 100.0 * f64::EPSILON * (t.abs() + (t - self.t).abs());
+        let count = self.counts.len();
+        let mut roots = Vec::with_capacity(count);
+        for i in 0..count {
+            let sight = self.search(i, (t, is_last), tolerance)?;
+            if let Sight::Passage(turn) = sight {
+                return Ok(Found::Accumulation(i, turn));
+            }
+            roots.push(sight.root());
+        }
+        loop {
+            let times = roots.iter().flatten().map(|root| root.t * self.sign);
+            let first = times.fold(f64::INFINITY, f64::min);
+            if first == f64::INFINITY {
+                return Ok(Found::Jumps(Vec::new()));
+            }
+            let mut met: Vec<(usize, Root)> = Vec::new();
+            for (i, root) in roots.iter().enumerate() {
+                if let Some(root) = root
+                    && root.t * self.sign <= first + 2.0 * tolerance
+                {
+                    met.push((i, *root));
+                }
+            }
+            // all of them at the last of their times, where every one has crossed zero
+            let at =
+                met.iter().map(|(_, root)| root.t * self.sign).fold(first, f64::max) * self.sign;
+            let mut y = vec![0.0; self.y.len()];
+            self.engine.interpolate(at, 0, &mut y)?;
+            let mut stops = false;
+            for (i, root) in &mut met {
+                root.t = at;
+                self.counts[*i] += 1;
+                let event = &self.events[*i];
+                stops |= event.action.is_some() || event.last == Some(self.counts[*i]);
+                let occurrence = Occurrence { event: *i, t: at, sign: root.sign, y: y.clone() };
+                self.occurred.push(occurrence);
+            }
+            if stops {
+                return Ok(Found::Jumps(met));
+            }
+            for (i, _) in met {
+                roots[i] = self.search(i, (t, is_last), tolerance)?.root();
+            }
+        }
+    }
+
+    /// What the watch of event `i` sees next, up to a time in the step that has just been made.
+    fn search(&mut self, i: usize, up_to: (f64, bool), tolerance: f64) -> Result<Sight, Reason> {
+        let Self { engine, events, watches, scratch, parameters, .. } = self;
+        let event = &mut events[i];
+        watches[i].next_root(up_to, tolerance, &mut |at| {
+            engine.interpolate(at, 0, scratch)?;
+            event.value(i, at, scratch, parameters)
+        })
+    }
+
+    /// Whether the slope at the present time leads the function of event `i` back to the side that it came from, by what it does
+    /// over the shortest time in which that is no noise.
+    fn leads_back(&mut self, i: usize, turn: Turn) -> Result<bool, Reason> {
+        // y' of a DAE is that of the step's polynomial, or good enough for a step as short as the last: from zero, the start is
+        // sought on the scale of the span
+        let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
+        let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
+        if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
+            slope.copy_from_slice(&self.yp);
+        }
+        slope.resize(self.y.len(), 0.0);
+        self.engine.slope(self.t, &self.y, &mut slope).map_err(|failure| {
+            let mend = "it is needed to see whether the action of an event turns the solution back";
+            InputError::new("right-hand side behind a jump", failure.into_error(), mend)
+        })?;
+        let unit = self.sign * self.unit_of_time(&self.y, &slope);
+        let Self { events, scratch, parameters, y, t, .. } = self;
+        let mut value = |time: f64| {
+            let moved = y.iter().zip(&slope).map(|(y, slope)| y + time * slope);
+            scratch.iter_mut().zip(moved).for_each(|(scratch, y)| *scratch = y);
+            (events[i].function)(*t + time, scratch, parameters)
+        };
+        let mut part = f64::EPSILON.cbrt();
+        while part < 1.0 {
+            if let Some(back) = turn.leads_back(value(part * unit) - value(-part * unit)) {
+                return Ok(back);
+            }
+            part *= 8.0;
+        }
+        Ok(false)
+    }
+
+    /// Does what is to be done where event `i` accumulates, at the present time.
+    pub(super) fn accumulate(&mut self, i: usize, turn: Turn) -> Result<(), Reason> {
+        let action = self.events[i].at_accumulation.as_mut();
+        let Some(action) = action.filter(|_| self.carried.is_none() && !turn.at_rest) else {
+            return Err(Reason::Accumulation { event: i, t: self.t, count: self.counts[i] });
+        };
+        let before = State { y: self.y.clone(), yp: self.yp.clone() };
+        let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
+        let mut jump = Jump { t: self.t, y, yp, p, ends: false };
+        action(&mut jump);
+        if jump.ends {
+            self.end = Some(End::Event(i));
+        }
+        self.land(&before, &[])?;
+        self.watches[i].expect_rest(turn);
+        Ok(())
+    }
+
+    /// Does what the events at the present time ask for.
+    pub(super) fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
+        for (i, root) in met.iter().filter(|(_, root)| root.sign != 0) {
+            // what the function went through is less than the error of the solution, whose slope leads the other way
+            let turn = Turn::at(root);
+            let hurries = self.events[*i].action.is_some() && self.watches[*i].hurries(self.t);
+            if hurries && self.leads_back(*i, turn)? {
+                self.counts[*i] -= 1;
+                self.occurred.retain(|at| at.event != *i || at.t != self.t);
+                return self.accumulate(*i, turn);
+            }
+        }
+        let mut acting = Vec::new();
+        let before = self.state();
+        for (i, root) in met {
+            let event = &mut self.events[*i];
+            if self.carried.is_some() && event.action.is_some() {
+                check_crosses(*i, self.t, root.sign != 0)?;
+            }
+            let mut ends = event.last == Some(self.counts[*i]);
+            if let Some(action) = &mut event.action {
+                acting.push(*i);
+                let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
+                let mut jump = Jump { t: self.t, y, yp, p, ends };
+                action(&mut jump);
+                ends = jump.ends;
+            }
+            if ends && self.end.is_none() {
+                self.end = Some(End::Event(*i));
+            }
+        }
+        if !acting.is_empty() {
+            self.land(&before, met)?;
+            self.carry_across_event(&before, &acting)?;
+        }
+        Ok(())
+    }
+
+    /// State and time derivative.
+    fn state(&self) -> State {
+        State { y: self.y.clone(), yp: self.yp.clone() }
+    }
+
+    /// Carries the sensitivities across the actions of these events, from the state `before` to the present one.
+    fn carry_across_event(&mut self, before: &State, acting: &[usize]) -> Result<(), Reason> {
+        let function = acting[0];
+        let mut events = mem::take(&mut self.events);
+        let outcome = self.carry(before, |carried, at| {
+            let function = &mut events[function].function;
+            let taus = carried.of_time(at, |t, y, p| function(t, y, p));
+            carried.cross(at, &taus, |jump| {
+                for &i in acting {
+                    events[i].action.iter_mut().for_each(|action| action(jump));
+                }
+            })
+        });
+        self.events = events;
+        outcome
+    }
+
+    /// Carries them across the actions of breaks, whose time depends on nothing.
+    fn carry_across_break(
+        &mut self,
+        before: &State,
+        actions: &mut [Action<'a>],
+    ) -> Result<(), Reason> {
+        self.carry(before, |carried, at| {
+            if actions.is_empty() {
+                carried.before = Some(carried.s.clone());
+                return Ok(());
+            }
+            let taus = vec![0.0; at.p.len()];
+            carried.cross(at, &taus, |jump| actions.iter_mut().for_each(|action| action(jump)))
+        })
+    }
+
+    /// Carries them by `cross` from the state `before` to the present one.
+    fn carry(
+        &mut self,
+        before: &State,
+        cross: impl FnOnce(&mut Carried, &Crossing<'_>) -> Result<(), Reason>,
+    ) -> Result<(), Reason> {
+        let Some(mut carried) = self.carried.take() else { return Ok(()) };
+        let [mut left, mut right] = [before.yp.clone(), self.yp.clone()];
+        let of_dae = !left.is_empty();
+        for (slope, y) in [(&mut left, &before.y), (&mut right, &self.y)] {
+            slope.resize(y.len(), 0.0);
+            self.engine.slope(self.t, y, slope).map_err(|failure| {
+                let mend = "sensitivities need it on both sides of a jump";
+                InputError::new("right-hand side at a jump", failure.into_error(), mend)
+            })?;
+        }
+        let (t, slopes, p) = (self.t, [&left[..], &right], &self.parameters);
+        let unit_of_time = self.unit_of_time(&before.y, &left);
+        let at = Crossing { t, unit_of_time, before: &before.y, slopes, of_dae, p };
+        cross(&mut carried, &at)?;
+        self.correct(Some(&mut carried.s))?;
+        self.carried = Some(carried);
+        Ok(())
+    }
+
+    /// Makes the present state of a DAE, and sensitivities, satisfy the equations.
+    fn correct(&mut self, s: Option<&mut [f64]>) -> Result<(), Reason> {
+        let (t, y, yp) = (self.t, &mut self.y[..], &mut self.yp[..]);
+        match self.engine.correct(Start { t, y, yp, s }, t + (t - self.t_old)) {
+            Err(error) if self.end.is_some() => Err(error.into()),
+            // the next start tells what else is wrong
+            _ => Ok(()),
+        }
+    }
+
+    pub(super) fn jump_at_break(&mut self) -> Result<(), Reason> {
+        let Some(Break { t, .. }) = self.breaks.last() else { return Ok(()) };
+        self.t = *t;
+        self.stale = true;
+        let before = self.state();
+        let mut actions = Vec::new();
+        while let Some(mut next) = self.breaks.pop_if(|next| next.t == self.t) {
+            if let Some(action) = &mut next.action {
+                let (y, yp, p) = (&mut self.y, &mut self.yp, &mut self.parameters);
+                let mut jump = Jump { t: self.t, y, yp, p, ends: false };
+                action(&mut jump);
+                if jump.ends {
+                    self.end = Some(End::Break);
+                }
+            }
+            actions.extend(next.action);
+        }
+        // algebraic unknowns jump with the equations
+        let follows = !self.yp.is_empty() && self.engine.can_be_consistent();
+        if actions.is_empty() && !follows {
+            return Ok(());
+        }
+        self.land(&before, &[])?;
+        self.carry_across_break(&before, &mut actions)
+    }
+
+    /// Takes over what actions have made of the state, which was `before`, and of the parameters.
+    fn land(&mut self, before: &State, met: &[(usize, Root)]) -> Result<(), Reason> {
+        self.stale = true;
+        self.before.get_or_insert_with(|| before.y.clone());
+        check_finite("state after the jump", &self.y)?;
+        check_finite("parameters after the jump", &self.parameters)?;
+        if self.carried.is_some() {
+            check_unchanged(self.engine.parameters(), &self.parameters)?;
+        }
+        self.engine.set_parameters(&self.parameters);
+        self.correct(None)?;
+        for (i, watch) in self.watches.iter_mut().enumerate() {
+            let g = self.events[i].value(i, self.t, &self.y, &self.parameters)?;
+            let noise =
+                met.iter().find(|(event, _)| *event == i).map_or(0.0, |(_, root)| root.noise);
+            watch.restart(self.t, g, noise);
+        }
+        for (i, root) in met {
+            if self.events[*i].action.is_some() && root.sign != 0 {
+                let turn = Turn::at(root);
+                let turns = self.leads_back(*i, turn)?;
+                self.watches[*i].acted(root.t, turns.then_some(turn));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Stops what sensitivities cannot follow.
+fn check_unchanged(before: &[f64], after: &[f64]) -> Result<(), InputError> {
+    match before.iter().zip(after).position(|(before, after)| before != after) {
+        None => Ok(()),
+        Some(i) => {
+            let mend = "with sensitivities an action changes the state alone";
+            Err(InputError::new(format!("parameter {i} after the jump"), after[i], mend))
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! Events: what is looked for along a solution, and what is done where it is found.
+
+use std::fmt;
+
+use super::error::Reason;
+use crate::base::input::InputError;
+use crate::integrators::common::check_finite;
+
+/// Which changes of sign of an event function count.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// Both.
+    #[default]
+    Either,
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+}
+
+/// g(t, y, p), whose roots are the events.
+pub(super) type Function<'a> = Box<dyn FnMut(f64, &[f64], &[f64]) -> f64 + 'a>;
+
+/// What an action does.
+pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
+
+/// Something to look for along the solution: a root of a function g(t, y), and what to do there.
+///
+/// By itself an event is recorded in the [`Solution`](super::Solution) and the integration goes on as if nothing had
+/// been found, with the same steps. It is located on the interpolant of the step, to rounding.
+///
+/// * Between the ends of each step g is looked at in [`samples`](Self::samples) places, and minima of |g| are followed up, so that
+///   two roots within one step are found, too.
+/// * A g that starts at zero is no event. It may become one when g returns to zero after it has left it.
+/// * A g that touches zero without a change of sign is an event only with [`touching`](Self::touching).
+/// * When an action makes g jump across zero, that is no event.
+/// * An action that turns the solution back, as at a floor, may be called ever faster (Zeno's paradox): such events
+///   [accumulate](Self::at_accumulation).
+pub struct Event<'a> {
+    pub(super) function: Function<'a>,
+    pub(super) direction: Direction,
+    pub(super) last: Option<u32>,
+    pub(super) action: Option<Action<'a>>,
+    pub(super) at_accumulation: Option<Action<'a>>,
+    pub(super) samples: u32,
+    pub(super) touching: Option<f64>,
+}
+
+impl fmt::Debug for Event<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Event")
+            .field("direction", &self.direction)
+            .field("last", &self.last)
+            .field("action", &self.action.is_some())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Event<'a> {
+    /// A root of `g(t, y)`.
+    pub fn new(mut g: impl FnMut(f64, &[f64]) -> f64 + 'a) -> Self {
+        Self::with_parameters(move |t, y, _| g(t, y))
+    }
+
+    /// A root of `g(t, y, p)`, with the parameters of the equations.
+    pub fn with_parameters(g: impl FnMut(f64, &[f64], &[f64]) -> f64 + 'a) -> Self {
+        Self {
+            function: Box::new(g),
+            direction: Direction::Either,
+            last: None,
+            action: None,
+            at_accumulation: None,
+            samples: 4,
+            touching: None,
+        }
+    }
+
+    /// Counts roots where g becomes positive alone.
+    #[must_use]
+    pub fn rising(mut self) -> Self {
+        self.direction = Direction::Rising;
+        self
+    }
+
+    /// Counts roots where g becomes negative alone.
+    #[must_use]
+    pub fn falling(mut self) -> Self {
+        self.direction = Direction::Falling;
+        self
+    }
+
+    /// Ends the run at the first event.
+    #[must_use]
+    pub fn terminal(self) -> Self {
+        self.terminal_after(1)
+    }
+
+    /// Ends the run at the event of this number, counted from 1.
+    #[must_use]
+    pub fn terminal_after(mut self, count: u32) -> Self {
+        self.last = Some(count);
+        self
+    }
+
+    /// What to do at the event: change the state or the parameters, or end the run. The integration starts anew from there.
+    ///
+    /// In a DAE whose differential unknowns are known, the algebraic ones and the derivatives are made to fit again.
+    #[must_use]
+    pub fn action(mut self, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+        self.action = Some(Box::new(action));
+        self
+    }
+
+    /// What to do where this event accumulates: where its action turns the solution back ever faster, as a ball bounces that
+    /// loses a part of its speed each time, until what lies between two events is less than the errors of the solution. It brings the solution to rest
+    /// and has it stay there, by a parameter of the equations, say, or [ends](Jump::end) the run. It is called at the time of the last
+    /// event, in the state behind the jump.
+    ///
+    /// Without it, and with sensitivities, which no such time has, the run stops there with
+    /// [`Reason::Accumulation`](super::Reason::Accumulation); and so it does where the solution passes through zero all the same.
+    ///
+    /// ```
+    /// use pliant::{
+    ///     ode::with_parameters,
+    ///     solve::{Event, Method, Options, Problem, solve},
+    /// };
+    ///
+    /// // a ball that falls from 1 m and keeps half of its speed at each impact; p = 0 as long as it flies, 1 on the floor
+    /// let ball = with_parameters(
+    ///     |_t, y, p, ydot| {
+    ///         ydot.copy_from_slice(&[y[1], if p[0] == 0.0 { -8.0 } else { 0.0 }]);
+    ///         Ok(())
+    ///     },
+    ///     [0.0],
+    /// );
+    /// let floor = Event::new(|_t, y| y[0]).falling().action(|jump| jump.y[1] *= -0.5).at_accumulation(|jump| {
+    ///     jump.y.fill(0.0);
+    ///     jump.p[0] = 1.0;
+    /// });
+    /// let problem = Problem::ode(ball, [1.0, 0.0]).event(floor);
+    /// let solution = solve(problem, Method::Bdf, (0.0, 3.0), &Options::new(1e-8, 1e-10))?;
+    /// assert_eq!(solution.last(), [0.0, 0.0]);
+    /// // 0.5 s to the first impact, and then 0.5 + 0.25 + 0.125 + ... s
+    /// let rest = solution.events().last().map_or(0.0, |impact| impact.t);
+    /// assert!((rest - 1.5).abs() < 1e-4);
+    /// # Ok::<(), pliant::solve::Error>(())
+    /// ```
+    #[must_use]
+    pub fn at_accumulation(mut self, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+        self.at_accumulation = Some(Box::new(action));
+        self
+    }
+
+    /// Counts it as an event, too, where |g| has a minimum of at most `tolerance` without a change of sign.
+    #[must_use]
+    pub fn touching(mut self, tolerance: f64) -> Self {
+        self.touching = Some(tolerance);
+        self
+    }
+
+    /// In how many places of a step g is looked at: more for one that changes faster than the solution, such as a
+    /// function of time that the equations do not know. Default: 4.
+    #[must_use]
+    pub fn samples(mut self, samples: u32) -> Self {
+        self.samples = samples;
+        self
+    }
+}
+
+impl Event<'_> {
+    /// The value of the function of this event, the one of number `i`.
+    pub(super) fn value(&mut self, i: usize, t: f64, y: &[f64], p: &[f64]) -> Result<f64, Reason> {
+        match (self.function)(t, y, p) {
+            value if value.is_nan() => Err(Reason::Event { event: i, t, value }),
+            value => Ok(value),
+        }
+    }
+
+    /// Checks the event of number `i`.
+    pub(super) fn check(&self, i: usize) -> Result<(), InputError> {
+        if !(1..=10_000).contains(&self.samples) {
+            let mend = "it lies between 1 and 10,000";
+            return Err(InputError::new(format!("samples of event {i}"), self.samples, mend));
+        }
+        if let Some(most) = self.touching
+            && !(most >= 0.0 && most.is_finite())
+        {
+            let mend = "it is a small number, not negative";
+            return Err(InputError::new(format!("touching of event {i}"), most, mend));
+        }
+        if self.at_accumulation.is_some() && self.action.is_none() {
+            let mend = "it belongs to an action, which turns the solution back";
+            return Err(InputError::new(format!("at_accumulation of event {i}"), "given", mend));
+        }
+        if self.last == Some(0) {
+            let mend = "events are counted from 1";
+            return Err(InputError::new(format!("terminal_after of event {i}"), 0, mend));
+        }
+        Ok(())
+    }
+}
+
+/// The state where the solution jumps: at an event or a break.
+#[derive(Debug)]
+pub struct Jump<'j> {
+    /// Time.
+    pub t: f64,
+    /// State; what is written here, the solution goes on from.
+    pub y: &'j mut [f64],
+    /// Its derivative, of a DAE; empty otherwise.
+    pub yp: &'j mut [f64],
+    /// Parameters of the equations; what is written here, they have from now on.
+    pub p: &'j mut [f64],
+    pub(super) ends: bool,
+}
+
+impl Jump<'_> {
+    /// Ends the run here.
+    pub fn end(&mut self) {
+        self.ends = true;
+    }
+}
+
+/// Stops derivatives at an event whose function only touches zero: its time, and whether it is there at all, depend on parameters without them.
+pub(super) fn check_crosses(event: usize, t: f64, crosses: bool) -> Result<(), InputError> {
+    if crosses {
+        return Ok(());
+    }
+    let mend = "where its function only touches zero, the solution has no derivatives";
+    Err(InputError::new(format!("event {event} at t = {t:?}"), "touching", mend))
+}
+
+/// Stops derivatives that are not finite behind an action: one that reads y', of a DAE, was given NaN for it, as differences
+/// along the state know nothing of how that changes.
+pub(super) fn check_landed(input: &str, slopes: &[f64], of_dae: bool) -> Result<(), InputError> {
+    if of_dae && slopes.iter().any(|slope| slope.is_nan()) {
+        let mend = "with derivatives of a DAE an action reads y, t and p alone, not yp";
+        return Err(InputError::new(input, "NaN", mend));
+    }
+    check_finite(input, slopes)
+}

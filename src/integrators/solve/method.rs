@@ -1,0 +1,238 @@
+//! The methods, and the integrators behind them.
+
+use super::{
+    engine::{DaeEngine, Engine, OdeEngine},
+    options::Options,
+    problem::Equations,
+};
+use crate::base::input::InputError;
+use crate::integrators::{
+    common::{Error, Tolerances},
+    ode::{Boxed, MassKind},
+    rk,
+    rosenbrock::{self, Rosenbrock},
+    sundials::{
+        Arkode, ArkodeOptions, ButcherTable, Cvode, CvodeOptions, Ida, IdaOptions, Jacobian,
+        LinearSolver, MassForm, Multistep,
+    },
+};
+
+// The options of each integrator are types of their own, with builders of the same names.
+
+/// What all integrators have.
+macro_rules! common {
+    ($built:expr, $options:expr, $sign:expr) => {{
+        let mut built = $built;
+        if let Some(h) = $options.initial_step {
+            built = built.initial_step(h.copysign($sign));
+        }
+        if let Some(h) = $options.max_step {
+            built = built.max_step(h);
+        }
+        built
+    }};
+}
+
+/// What those of SUNDIALS have.
+macro_rules! sundials {
+    ($built:expr, $options:expr, $sign:expr) => {{
+        let mut built = common!($built, $options, $sign);
+        if let Some(h) = $options.min_step {
+            built = built.min_step(h);
+        }
+        if let Some(solver) = &$options.linear_solver {
+            built = built.newton(solver.clone());
+        }
+        built
+            .sign_constraints($options.sign_constraints.as_slice())
+            .check_jacobian($options.check_jacobian)
+    }};
+}
+
+/// What multistep methods have.
+macro_rules! ordered {
+    ($built:expr, $options:expr, $sign:expr) => {{
+        let mut built = sundials!($built, $options, $sign);
+        if let Some(order) = $options.max_order {
+            built = built.max_order(order);
+        }
+        if let Some(sensitivities) = &$options.sensitivities {
+            built = built.sensitivities(sensitivities.clone());
+        }
+        built
+    }};
+}
+
+/// An integration method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum Method {
+    /// CVODE, backward differentiation formulas of order 1 to 5: for stiff ODEs.
+    Bdf,
+    /// CVODE, Adams-Moulton formulas of order 1 to 12, with a Newton iteration: for smooth ODEs whose right-hand side is costly.
+    Adams,
+    /// ARKODE, the Runge-Kutta method of this table: diagonally implicit for stiff ODEs, above all those that vibrate; or explicit.
+    RungeKutta(ButcherTable),
+    /// The internal explicit method of Dormand and Prince, order 5(4): for ODEs that are not stiff. Forward in time.
+    DormandPrince,
+    /// The internal Rosenbrock methods of order 4 and, by `max_order`, 3: for stiff ODEs at moderate tolerances, without an iteration that
+    /// could fail. Forward in time.
+    Rosenbrock,
+    /// IDA, backward differentiation formulas of order 1 to 5: for DAEs, and for ODEs whose mass matrix may be singular.
+    Ida,
+}
+
+impl Method {
+    /// What errors call it.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::Bdf => "CVODE's BDF".into(),
+            Self::Adams => "CVODE's Adams methods".into(),
+            Self::RungeKutta(table) => format!("ARKODE's {}", table.name()),
+            Self::DormandPrince => "Dormand-Prince".into(),
+            Self::Rosenbrock => "the Rosenbrock method".into(),
+            Self::Ida => "IDA".into(),
+        }
+    }
+
+    /// Refuses options that the method does not have.
+    fn check(self, options: &Options, equations: &Equations<'_>) -> Result<(), InputError> {
+        let (is_dae, has_mass) = match equations {
+            Equations::Dae { .. } => (true, false),
+            Equations::Ode(system) => (false, system.mass_kind() != MassKind::Identity),
+        };
+        let refused = |input: &str, value: String, mend: &str| {
+            Err(InputError::new(input, value, format!("{} {mend}", self.name())))
+        };
+        if is_dae != (self == Self::Ida) && !has_mass {
+            let mend = match is_dae {
+                true => "integrates ODEs: take Method::Ida for a DAE",
+                false => {
+                    "integrates DAEs, and ODEs with a mass matrix: take another method for this ODE"
+                }
+            };
+            return refused("method", format!("{self:?}"), mend);
+        }
+        let multistep = matches!(self, Self::Bdf | Self::Adams | Self::Ida);
+        // those of Rust
+        let internal = matches!(self, Self::DormandPrince | Self::Rosenbrock);
+        if let (Some(order), false) = (options.max_order, multistep || self == Self::Rosenbrock) {
+            return refused("max_order", order.to_string(), "has one order, which its table tells");
+        }
+        let explicit = match self {
+            Self::RungeKutta(table) => !table.is_implicit(),
+            method => method == Self::DormandPrince,
+        };
+        if let (Some(solver), true) = (&options.linear_solver, explicit) {
+            return refused(
+                "linear_solver",
+                format!("{solver:?}"),
+                "is explicit and solves no linear systems",
+            );
+        }
+        if options.sensitivities.is_some() && !multistep {
+            return refused("sensitivities", "given".into(), "has none: take Bdf, Adams or Ida");
+        }
+        if equations.quadrature_count() > 0 && !multistep {
+            let mend = "computes none: make them unknowns, or take Bdf, Adams or Ida";
+            return refused("integrals", equations.quadrature_count().to_string(), mend);
+        }
+        if let (Some(h), true) = (options.min_step, internal) {
+            return refused("min_step", h.to_string(), "has no such limit");
+        }
+        if !options.sign_constraints.is_empty() && internal {
+            return refused("sign_constraints", "given".into(), "keeps no signs: take another one");
+        }
+        if options.project && self != Self::Bdf {
+            return refused("project", "true".into(), "does not project: take Bdf");
+        }
+        Ok(())
+    }
+
+    /// An integrator for `equations`, at rest at `t` in the state `y`, on its way in the direction `sign` of time.
+    pub(super) fn engine<'a>(
+        self,
+        equations: Equations<'a>,
+        (t, sign): (f64, f64),
+        y: &[f64],
+        options: &Options,
+    ) -> Result<Box<dyn Engine + 'a>, Error> {
+        let Tolerances { rtol, atol } = options.tolerances.clone();
+        let system = match self.take(equations, t, y.len(), options)? {
+            Equations::Dae { system, yp, differential } => {
+                let options = self.ida(options, sign, differential);
+                let integrator = Ida::new(Boxed(system), t, y, &yp, &options)?;
+                return Ok(Box::new(DaeEngine { integrator, options }));
+            }
+            Equations::Ode(system) => Boxed(system),
+        };
+        Ok(match self {
+            Self::RungeKutta(table) => {
+                let built = sundials!(ArkodeOptions::new(rtol, atol).table(table), options, sign);
+                Box::new(OdeEngine { integrator: Arkode::new(system, t, y, &built)? })
+            }
+            Self::DormandPrince => {
+                let built = common!(rk::Options::new(rtol, atol), options, sign);
+                Box::new(OdeEngine { integrator: rk::DormandPrince::new(system, t, y, &built)? })
+            }
+            Self::Rosenbrock => {
+                let mut built = common!(rosenbrock::Options::new(rtol, atol), options, sign)
+                    .check_jacobian(options.check_jacobian);
+                if let Some(solver) = &options.linear_solver {
+                    built = built.newton(solver.clone());
+                }
+                if let Some(order) = options.max_order {
+                    built = built.order(order);
+                }
+                Box::new(OdeEngine { integrator: Rosenbrock::new(system, t, y, &built)? })
+            }
+            _ => {
+                let built = self.cvode(options, sign);
+                Box::new(OdeEngine { integrator: Cvode::new(system, t, y, &built)? })
+            }
+        })
+    }
+
+    /// The options of CVODE.
+    pub(super) fn cvode(self, options: &Options, sign: f64) -> CvodeOptions {
+        let Tolerances { rtol, atol } = options.tolerances.clone();
+        let family = if self == Self::Adams { Multistep::Adams } else { Multistep::Bdf };
+        let built = ordered!(CvodeOptions::new(rtol, atol).method(family), options, sign);
+        if options.project { built.project() } else { built }
+    }
+
+    /// The options of IDA.
+    pub(super) fn ida(
+        self,
+        options: &Options,
+        sign: f64,
+        differential: Option<Vec<bool>>,
+    ) -> IdaOptions {
+        let Tolerances { rtol, atol } = options.tolerances.clone();
+        let built = ordered!(IdaOptions::new(rtol, atol), options, sign);
+        differential.into_iter().fold(built, IdaOptions::differential)
+    }
+    /// The equations as this method takes them, IDA those with a mass matrix as a DAE; refuses what it does not take, and
+    /// options that it does not have.
+    pub(super) fn take<'a>(
+        self,
+        equations: Equations<'a>,
+        t: f64,
+        n: usize,
+        options: &Options,
+    ) -> Result<Equations<'a>, Error> {
+        self.check(options, &equations)?;
+        match equations {
+            Equations::Ode(system) if self == Self::Ida => {
+                let dense = LinearSolver::Dense(Jacobian::DifferenceQuotients);
+                let solver = options.linear_solver.as_ref().unwrap_or(&dense);
+                let mut system = MassForm::new(Boxed(system), n, solver)?;
+                let differential = Some(system.differential(t)?);
+                Ok(Equations::Dae { system: Box::new(system), yp: vec![0.0; n], differential })
+            }
+            equations => Ok(equations),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Initial value problems solved by one call: any method, events, breaks, limits, interpolation.
+//!
+//! A [`Problem`] is the equations and where they start, with the [`Event`]s to look for. [`solve`] integrates it over a
+//! span by a [`Method`] and returns a [`Solution`]: times, states, what lies between them, events, and what it cost.
+//!
+//! ```
+//! use pliant::solve::{Event, Method, Options, Problem, solve};
+//!
+//! // a ball that falls from 10 m and bounces, losing a tenth of its speed each time
+//! let fall = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+//!     ydot[0] = y[1];
+//!     ydot[1] = -9.81;
+//!     Ok(())
+//! };
+//! let floor = Event::new(|_t, y| y[0]).falling().action(|jump| jump.y[1] *= -0.9);
+//! let problem = Problem::ode(fall, [10.0, 0.0]).event(floor);
+//! let solution = solve(problem, Method::Bdf, (0.0, 5.0), &Options::new(1e-8, 1e-10))?;
+//!
+//! let first = &solution.events()[0];
+//! assert!((first.t - (2.0_f64 * 10.0 / 9.81).sqrt()).abs() < 1e-6);
+//! let height = solution.at(2.0)?[0];
+//! # assert!(height > 0.0);
+//! # Ok::<(), pliant::solve::Error>(())
+//! ```
+//!
+//! [`Run`] is the same in the hands of the caller, step by step, and [`ensemble`] solves many problems on all cores.
+//! What a method cannot do is an error before the first step, never replaced by something else.
+
+mod crossing;
+mod engine;
+mod ensemble;
+mod error;
+mod event;
+mod gradient;
+mod history;
+mod method;
+#[cfg(doctest)]
+mod misuse;
+mod options;
+mod problem;
+mod root;
+mod run;
+mod saved;
+mod sensitivities;
+mod solution;
+mod solver;
+mod stepping;
+mod watch;
+
+pub use ensemble::ensemble;
+pub use error::{Error, Reason, Stopped};
+pub use event::{Direction, Event, Jump};
+pub use gradient::gradient;
+pub use method::Method;
+pub use options::{Options, Output};
+pub use problem::{Problem, Progress};
+pub use run::{Run, Step};
+pub use saved::Saved;
+pub use solution::{End, Occurrence, Solution};
+pub use solver::solve;
+
+pub use crate::integrators::common::Statistics;

@@ -1,0 +1,178 @@
+//! What is to be solved: equations, where they start, and what happens along the way.
+
+use std::{
+    fmt,
+    ops::ControlFlow,
+    sync::{Arc, atomic::AtomicBool},
+};
+
+use super::{
+    event::{Action, Event, Jump},
+    saved::Saved,
+};
+use crate::base::input::InputError;
+use crate::integrators::ode::{Dae, Ode};
+
+/// The equations of a problem.
+pub(super) enum Equations<'a> {
+    Ode(Box<dyn Ode + 'a>),
+    Dae { system: Box<dyn Dae + 'a>, yp: Vec<f64>, differential: Option<Vec<bool>> },
+}
+
+impl Equations<'_> {
+    pub(super) fn parameters(&self) -> &[f64] {
+        match self {
+            Self::Ode(system) => system.parameters(),
+            Self::Dae { system, .. } => system.parameters(),
+        }
+    }
+
+    pub(super) fn quadrature_count(&self) -> usize {
+        match self {
+            Self::Ode(system) => system.quadrature_count(),
+            Self::Dae { system, .. } => system.quadrature_count(),
+        }
+    }
+
+    /// Checks that the equations have as many parameters as `values`.
+    pub(super) fn check_parameters(&self, values: &[f64]) -> Result<(), InputError> {
+        let count = self.parameters().len();
+        if count == values.len() {
+            return Ok(());
+        }
+        let mend = format!("the equations have {count} parameters");
+        Err(InputError::new("length of parameters in the saved run", values.len(), mend))
+    }
+
+    pub(super) fn set_parameters(&mut self, values: &[f64]) {
+        match self {
+            Self::Ode(system) => system.set_parameters(values),
+            Self::Dae { system, .. } => system.set_parameters(values),
+        }
+    }
+}
+
+/// A time at which the equations change, and what is done then.
+pub(super) struct Break<'a> {
+    pub(super) t: f64,
+    pub(super) action: Option<Action<'a>>,
+}
+
+/// How far a run has come, for [`Problem::observed_by`].
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'p> {
+    /// Time reached.
+    pub t: f64,
+    /// State there.
+    pub y: &'p [f64],
+    /// Steps taken.
+    pub steps: u64,
+    /// Part of the span that lies behind, from 0 to 1.
+    pub part: f64,
+}
+
+/// What looks on after each step, and may end the run.
+pub(super) type Observer<'a> = Box<dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a>;
+
+/// Equations, the state they start from, and what happens along the way.
+///
+/// Equations are a closure or a struct, see [`crate::integrators::ode`]. They may borrow: the problem lives no longer than what they use.
+#[must_use]
+pub struct Problem<'a> {
+    pub(super) equations: Equations<'a>,
+    pub(super) y: Vec<f64>,
+    pub(super) events: Vec<Event<'a>>,
+    pub(super) breaks: Vec<Break<'a>>,
+    pub(super) observer: Option<Observer<'a>>,
+    pub(super) cancel: Option<Arc<AtomicBool>>,
+    pub(super) saved: Option<Saved>,
+    pub(super) initial_sensitivities: Option<Vec<f64>>,
+}
+
+impl fmt::Debug for Problem<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Problem")
+            .field("y", &self.y)
+            .field("events", &self.events)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Problem<'a> {
+    /// y' = f(t, y), starting from `y`.
+    pub fn ode(system: impl Ode + 'a, y: impl Into<Vec<f64>>) -> Self {
+        Self::new(Equations::Ode(Box::new(system)), y.into())
+    }
+
+    /// F(t, y, y') = 0, starting from `y` and its time derivative `yp`, which have to satisfy the equations unless
+    /// [`differential`](Self::differential) tells which of them may be corrected.
+    pub fn dae(system: impl Dae + 'a, y: impl Into<Vec<f64>>, yp: impl Into<Vec<f64>>) -> Self {
+        let system = Box::new(system);
+        Self::new(Equations::Dae { system, yp: yp.into(), differential: None }, y.into())
+    }
+
+    fn new(equations: Equations<'a>, y: Vec<f64>) -> Self {
+        let (events, breaks) = (Vec::new(), Vec::new());
+        let (observer, cancel, saved, initial_sensitivities) = (None, None, None, None);
+        Self { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities }
+    }
+
+    /// For each unknown of a DAE, whether its derivative occurs in the equations (`true`) or it is algebraic (`false`).
+    /// The algebraic unknowns and the derivatives of the others are then corrected at the start and after each jump, so that
+    /// they satisfy the equations. An ODE has differential unknowns alone, and ignores it.
+    pub fn differential(mut self, differential_unknowns: impl Into<Vec<bool>>) -> Self {
+        if let Equations::Dae { differential, .. } = &mut self.equations {
+            *differential = Some(differential_unknowns.into());
+        }
+        self
+    }
+
+    /// The sensitivities at the start, where the initial state depends on the parameters of
+    /// [`Options::sensitivities`](super::Options::sensitivities): dy/dp, one column after the other. Default: zero. Algebraic unknowns of a DAE
+    /// have theirs corrected with them.
+    pub fn initial_sensitivities(mut self, s: impl Into<Vec<f64>>) -> Self {
+        self.initial_sensitivities = Some(s.into());
+        self
+    }
+
+    /// Looks for an event. Events are numbered in the order in which they are given, from 0.
+    pub fn event(mut self, event: Event<'a>) -> Self {
+        self.events.push(event);
+        self
+    }
+
+    /// Times at which the right-hand side has a jump or a kink: a step ends just before, at the last number below, and the integration starts
+    /// anew there. Equations that ask for `t < break` see the side that they are on.
+    pub fn breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
+        self.breaks.extend(times.into_iter().map(|t| Break { t, action: None }));
+        self
+    }
+
+    /// A [break](Self::breaks) at which the state or the parameters change.
+    pub fn break_with(mut self, t: f64, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
+        self.breaks.push(Break { t, action: Some(Box::new(action)) });
+        self
+    }
+
+    /// Shows each step to `observer`, which may end the run by [`ControlFlow::Break`].
+    pub fn observed_by(
+        mut self,
+        observer: impl FnMut(Progress<'_>) -> ControlFlow<()> + 'a,
+    ) -> Self {
+        self.observer = Some(Box::new(observer));
+        self
+    }
+
+    /// Ends the run after the step in which another thread sets `flag`.
+    pub fn cancelled_by(mut self, flag: Arc<AtomicBool>) -> Self {
+        self.cancel = Some(flag);
+        self
+    }
+
+    /// Goes on where a run of the same problem was [saved](super::Run::save), or [ended](super::Solution::saved): with the state, the
+    /// parameters and the counts of events of then. The span starts at its time; breaks before it are over.
+    pub fn resume(mut self, saved: Saved) -> Self {
+        self.saved = Some(saved);
+        self
+    }
+}

@@ -1,0 +1,376 @@
+//! A run in the hands of the caller, step by step.
+
+use std::{
+    fmt,
+    sync::{Arc, atomic::AtomicBool},
+    time::{Duration, Instant},
+};
+
+use faer::{MatMut, MatRef};
+
+use super::{
+    engine::Engine,
+    error::Reason,
+    event::Event,
+    method::Method,
+    options::Options,
+    problem::{Break, Equations, Observer, Problem},
+    saved::Saved,
+    sensitivities::Carried,
+    solution::{End, Occurrence, Row},
+    watch::Watch,
+};
+use crate::base::input::InputError;
+use crate::integrators::common::{
+    self, SHORTEST, Statistics, Tolerances, check_start_time, check_time,
+};
+
+/// A problem on its way: [`advance`](Self::advance) by a step, look, go on.
+///
+/// ```
+/// use pliant::solve::{Method, Options, Problem, Run};
+///
+/// let decay = |_t: f64, y: &[f64], ydot: &mut [f64]| {
+///     ydot[0] = -y[0];
+///     Ok(())
+/// };
+/// let mut run = Run::new(Problem::ode(decay, [1.0]), Method::Bdf, (0.0, 9.0), &Options::new(1e-6, 1e-9))?;
+/// while let Some(step) = run.advance()? {
+///     if step.y[0] < 0.5 {
+///         break;
+///     }
+/// }
+/// assert!((run.y()[0] - (-run.t()).exp()).abs() < 1e-5);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Run<'a> {
+    pub(super) engine: Box<dyn Engine + 'a>,
+    pub(super) events: Vec<Event<'a>>,
+    pub(super) watches: Vec<Watch>,
+    pub(super) counts: Vec<u32>,
+    /// Those ahead, the next one last.
+    pub(super) breaks: Vec<Break<'a>>,
+    pub(super) observer: Option<Observer<'a>>,
+    pub(super) cancel: Option<Arc<AtomicBool>>,
+    pub(super) limits: Limits,
+    pub(super) tolerances: Tolerances,
+    pub(super) span: (f64, f64),
+    /// +1 forward in time, -1 backward.
+    pub(super) sign: f64,
+    pub(super) t_old: f64,
+    pub(super) t: f64,
+    pub(super) y: Vec<f64>,
+    pub(super) yp: Vec<f64>,
+    pub(super) parameters: Vec<f64>,
+    /// State before the jump at `t`, if there was one.
+    pub(super) before: Option<Vec<f64>>,
+    /// Whether the integrator has to start anew at `t`.
+    pub(super) stale: bool,
+    pub(super) carried: Option<Carried>,
+    /// Integrals since the start of the span, and up to the last start of the integrator.
+    pub(super) quadratures: [Vec<f64>; 2],
+    pub(super) occurred: Vec<Occurrence>,
+    pub(super) scratch: Vec<f64>,
+    /// Of the starts before the last one.
+    pub(super) past: Statistics,
+    pub(super) started: Instant,
+    pub(super) end: Option<End>,
+}
+
+/// Limits of the whole run.
+pub(super) struct Limits {
+    pub(super) steps: u64,
+    pub(super) evaluations: Option<u64>,
+    pub(super) wall_time: Option<Duration>,
+}
+
+/// One step of a [`Run`].
+#[derive(Debug)]
+pub struct Step<'r> {
+    /// Time at its start.
+    pub t_old: f64,
+    /// Time at its end.
+    pub t: f64,
+    /// State at its end, after any jump.
+    pub y: &'r [f64],
+    /// State at its end before the jump, if there is one.
+    pub before: Option<&'r [f64]>,
+    /// Events within the step and at its end.
+    pub events: &'r [Occurrence],
+}
+
+impl fmt::Debug for Run<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Run").field("t", &self.t).field("y", &self.y).finish_non_exhaustive()
+    }
+}
+
+impl<'a> Run<'a> {
+    /// `problem` by `method` from the start to the end of `span`; the end may lie before the start, for methods that can go backward in time.
+    ///
+    /// # Errors
+    /// [`Reason::Input`] for anything that cannot be used: options that the method does not have, too;
+    /// [`Reason::Failed`] if the start of a DAE cannot be made to satisfy its equations.
+    pub fn new(
+        problem: Problem<'a>,
+        method: Method,
+        span: (f64, f64),
+        options: &Options,
+    ) -> Result<Self, Reason> {
+        let (start, end) = span;
+        check_start_time("start of the span", start)?;
+        check_time("end of the span", end)?;
+        if start == end {
+            return Err(InputError::new("end of the span", end, "it differs from the start").into());
+        }
+        if (end - start).abs() < SHORTEST {
+            let mend = format!("it lies at least {SHORTEST:e} from the start, {start:?}");
+            return Err(InputError::new("end of the span", format!("{end:e}"), mend).into());
+        }
+        let sign = (end - start).signum();
+        options.check(span)?;
+        let Problem { mut equations, mut y, mut events, mut breaks, .. } = problem;
+        let Problem { observer, cancel, saved, initial_sensitivities, .. } = problem;
+        for (i, event) in events.iter().enumerate() {
+            event.check(i)?;
+        }
+        if let Some(saved) = &saved {
+            let derivatives = match &mut equations {
+                Equations::Dae { yp, .. } => {
+                    yp.clone_from(&saved.yp);
+                    y.len()
+                }
+                Equations::Ode(_) => 0,
+            };
+            saved.check([y.len(), derivatives, events.len(), equations.quadrature_count()])?;
+            if start != saved.t {
+                let mend = format!("the saved run stands at {:?}", saved.t);
+                return Err(InputError::new("start of the span", start, mend).into());
+            }
+            equations.check_parameters(&saved.parameters)?;
+            equations.set_parameters(&saved.parameters);
+            y.clone_from(&saved.y);
+            breaks.retain(|Break { t, .. }| (t - start) * sign > 0.0);
+        }
+        for Break { t, .. } in &breaks {
+            check_time("break", *t)?;
+            if (t - start) * sign <= 0.0 || (end - t) * sign <= 0.0 {
+                let mend = format!("it lies between {start} and {end}");
+                return Err(InputError::new("break", t, mend).into());
+            }
+        }
+        breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
+        let mut engine = method.engine(equations, (start, sign), &y, options)?;
+        let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
+        if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
+            let mend = "to go on across actions and breaks, Problem::differential tells which unknowns are differential";
+            return Err(InputError::new("sensitivities", "given for a DAE", mend).into());
+        }
+        let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
+        let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
+        match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
+            (Some(carried), Some(s)) => carried.start(s, engine.as_mut())?,
+            (None, Some(_)) if initial_sensitivities.is_some() => {
+                let mend = "Options::sensitivities tells which parameters they belong to";
+                return Err(InputError::new("initial_sensitivities", "given", mend).into());
+            }
+            _ => {}
+        }
+        engine.make_consistent(end)?;
+        let (y, yp) = (engine.y().to_vec(), engine.yp().to_vec());
+        if let Some(carried) = &mut carried {
+            carried.read(engine.as_mut(), start)?;
+        }
+        let parameters = engine.parameters().to_vec();
+        let mut watches = Vec::new();
+        for (i, event) in events.iter_mut().enumerate() {
+            let g = match &saved {
+                Some(saved) => saved.event_values[i],
+                None => event.value(i, start, &y, &parameters)?,
+            };
+            watches.push(Watch::new(event, start, g));
+        }
+        let mut quadratures = vec![0.0; engine.quadrature_count()];
+        if let Some(saved) = &saved {
+            quadratures.clone_from(&saved.quadratures);
+        }
+        let limits = Limits {
+            steps: options.max_steps,
+            evaluations: options.max_evaluations,
+            wall_time: options.max_wall_time,
+        };
+        let mut run = Self {
+            engine,
+            counts: saved.map_or(vec![0; events.len()], |saved| saved.counts),
+            events,
+            watches,
+            breaks,
+            observer,
+            cancel,
+            limits,
+            tolerances: options.tolerances.clone(),
+            span,
+            sign,
+            t_old: start,
+            t: start,
+            scratch: vec![0.0; y.len()],
+            y,
+            yp,
+            parameters,
+            before: None,
+            stale: false,
+            carried,
+            quadratures: [quadratures.clone(), quadratures],
+            occurred: Vec::new(),
+            past: Statistics::default(),
+            started: Instant::now(),
+            end: None,
+        };
+        run.set_stop_time()?;
+        Ok(run)
+    }
+
+    /// Lets the next steps end before the next break, or at the end; there may be no room for one.
+    pub(super) fn set_stop_time(&mut self) -> Result<(), common::Error> {
+        let stop = self.breaks.last().map_or(self.span.1, |next| self.just_before(next.t));
+        if stop == self.t { Ok(()) } else { self.engine.set_stop_time(stop) }
+    }
+
+    /// Whether time `t` is the last number before the next break.
+    pub(super) fn is_before_break(&self, t: f64) -> bool {
+        self.breaks.last().is_some_and(|next| t == self.just_before(next.t))
+    }
+
+    /// The last number before time `t`.
+    pub(super) fn just_before(&self, t: f64) -> f64 {
+        if self.sign > 0.0 { t.next_down() } else { t.next_up() }
+    }
+
+    /// Time reached.
+    #[must_use]
+    pub fn t(&self) -> f64 {
+        self.t
+    }
+
+    /// State there, after any jump.
+    #[must_use]
+    pub fn y(&self) -> &[f64] {
+        &self.y
+    }
+
+    /// Its time derivative, of a DAE; empty otherwise.
+    #[must_use]
+    pub fn yp(&self) -> &[f64] {
+        &self.yp
+    }
+
+    /// The parameters of the equations.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// Why the run is at its end; none before.
+    #[must_use]
+    pub fn end(&self) -> Option<End> {
+        self.end
+    }
+
+    /// Where the run stands, to be taken up later or by another program: [`Problem::resume`].
+    #[must_use]
+    pub fn save(&self) -> Saved {
+        Saved {
+            t: self.t,
+            y: self.y.clone(),
+            yp: self.yp.clone(),
+            parameters: self.parameters.clone(),
+            counts: self.counts.clone(),
+            sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
+            quadratures: self.quadratures().to_vec(),
+            event_values: self.watches.iter().map(Watch::value).collect(),
+        }
+    }
+
+    /// The sensitivities at the present time, after any jump: entry (i, j) is the derivative of unknown i to the j-th parameter of
+    /// [`Options::sensitivities`].
+    #[must_use]
+    pub fn sensitivities(&self) -> MatRef<'_, f64> {
+        let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
+        MatRef::from_column_major_slice(s, self.y.len(), s.len() / self.y.len())
+    }
+
+    /// The integrals of [`Ode::quadratures`](crate::integrators::ode::Ode::quadratures) from the start of the span to the present time; none if
+    /// the equations have none.
+    #[must_use]
+    pub fn quadratures(&self) -> &[f64] {
+        &self.quadratures[0]
+    }
+
+    /// What there is at the present time, after any jump.
+    pub(super) fn row(&self) -> Row<'_> {
+        let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
+        Row { y: &self.y, s, q: self.quadratures() }
+    }
+
+    /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there was none.
+    pub(super) fn sensitivities_before(&self) -> &[f64] {
+        let Some(carried) = &self.carried else { return &[] };
+        carried.before.as_ref().unwrap_or(&carried.s)
+    }
+
+    /// The sensitivities at time `t` within the last step, one column after the other.
+    pub(super) fn sensitivities_at(&mut self, t: f64) -> Result<Vec<f64>, Reason> {
+        let Some(carried) = &self.carried else { return Ok(Vec::new()) };
+        let (n, mut s) = (self.y.len(), vec![0.0; carried.s.len()]);
+        let columns = s.len() / n;
+        let out = MatMut::from_column_major_slice_mut(&mut s, n, columns);
+        self.engine.interpolate_sensitivities(t, out)?;
+        Ok(s)
+    }
+
+    /// The integrals at time `t` within the last step.
+    pub(super) fn quadratures_at(&mut self, t: f64) -> Result<Vec<f64>, common::Error> {
+        let [_, past] = &self.quadratures;
+        let mut q = past.clone();
+        self.engine.interpolate_quadratures(t, &mut q)?;
+        q.iter_mut().zip(past).for_each(|(q, past)| *q += past);
+        Ok(q)
+    }
+
+    /// Writes the state at time `t` within the last step, before any jump at its end, into `out`.
+    ///
+    /// # Errors
+    /// If `t` lies outside the last step, or `out` has another length than the state.
+    pub fn interpolate(&mut self, t: f64, out: &mut [f64]) -> Result<(), common::Error> {
+        let [low, high] = if self.sign > 0.0 { [self.t_old, self.t] } else { [self.t, self.t_old] };
+        if !(low <= t && t <= high) {
+            let mend = format!("the last step is [{low}, {high}]");
+            return Err(InputError::new("t", t, mend).into());
+        }
+        // the number before a break is as far as the integrator went
+        let reached = self.engine.t();
+        let t = if (t - reached) * self.sign > 0.0 { reached } else { t };
+        self.engine.interpolate(t, 0, out)
+    }
+
+    /// The time in which the state `y` changes by its size along `slope`.
+    pub(super) fn unit_of_time(&self, y: &[f64], slope: &[f64]) -> f64 {
+        self.tolerances.reach(y, slope, (self.span.1 - self.span.0).abs())
+    }
+
+    /// +1 forward in time, -1 backward.
+    pub(super) fn direction(&self) -> f64 {
+        self.sign
+    }
+
+    /// Degree of the polynomial of the last step.
+    pub(super) fn interpolant_degree(&self) -> u32 {
+        self.engine.interpolant_degree().max(1)
+    }
+
+    /// What the run has cost so far.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        self.past.followed_by(&self.engine.statistics())
+    }
+}

@@ -1,0 +1,65 @@
+//! A run that is put aside and taken up again.
+
+use crate::base::input::InputError;
+use crate::integrators::common::{check_finite, check_length};
+
+/// Where a run stands, for [`Problem::resume`](super::Problem::resume): all of it is plain numbers.
+///
+/// The run goes on from here with a new start of the integrator, which estimates its first step: to the same solution within the
+/// tolerances, not to the last bit.
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Saved {
+    /// Time.
+    pub t: f64,
+    /// State.
+    pub y: Vec<f64>,
+    /// Its time derivative, of a DAE; empty otherwise.
+    pub yp: Vec<f64>,
+    /// Parameters of the equations.
+    pub parameters: Vec<f64>,
+    /// How often each event was met.
+    pub counts: Vec<u32>,
+    /// The sensitivities, one column after the other; empty if there are none.
+    pub sensitivities: Vec<f64>,
+    /// The integrals since the start; empty if there are none.
+    pub quadratures: Vec<f64>,
+    /// The event functions; 0 for one that is about to leave zero.
+    pub event_values: Vec<f64>,
+}
+
+impl Saved {
+    /// Checks that it fits a problem with so many unknowns, derivatives, events and integrals.
+    pub(super) fn check(
+        &self,
+        [n, derivatives, events, integrals]: [usize; 4],
+    ) -> Result<(), InputError> {
+        check_length("length of y in the saved run", self.y.len(), n)?;
+        check_finite("y of the saved run", &self.y)?;
+        check_finite("yp of the saved run", &self.yp)?;
+        check_finite("parameters of the saved run", &self.parameters)?;
+        check_finite("quadratures of the saved run", &self.quadratures)?;
+        if self.quadratures.len() != integrals {
+            let mend = format!("the equations have {integrals}");
+            let input = "length of quadratures in the saved run";
+            return Err(InputError::new(input, self.quadratures.len(), mend));
+        }
+        if self.yp.len() != derivatives {
+            let mend = "a DAE has as many as unknowns, an ODE none";
+            return Err(InputError::new("length of yp in the saved run", self.yp.len(), mend));
+        }
+        for (what, count) in
+            [("counts", self.counts.len()), ("event_values", self.event_values.len())]
+        {
+            if count != events {
+                let mend = format!("the problem has {events} events");
+                return Err(InputError::new(
+                    format!("length of {what} in the saved run"),
+                    count,
+                    mend,
+                ));
+            }
+        }
+        Ok(())
+    }
+}

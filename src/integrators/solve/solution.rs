@@ -1,0 +1,346 @@
+//! What a run computed.
+
+use std::fmt;
+
+use faer::MatRef;
+
+use super::saved::Saved;
+use crate::base::input::InputError;
+use crate::integrators::common::{Statistics, check_length, check_time};
+
+/// An event that was met.
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Occurrence {
+    /// Which event, in the order of [`Problem::event`](super::Problem::event).
+    pub event: usize,
+    /// Time.
+    pub t: f64,
+    /// +1 where its function rises, -1 where it falls, 0 where it touches zero.
+    pub sign: i32,
+    /// State before any action.
+    pub y: Vec<f64>,
+}
+
+/// Why a run is at its end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum End {
+    /// The end of the span is reached.
+    Span,
+    /// This event was terminal, or its action ended the run.
+    Event(usize),
+    /// The action of a break ended the run.
+    Break,
+    /// It was stopped; [`Stopped`](super::Stopped) says why.
+    Early,
+}
+
+/// Times, states and events of a run; with [`Output::Steps`](super::Output::Steps) also all that lies between.
+///
+/// States are kept one after the other: the one of time `t()[k]` is `y(k)`. Where the solution jumps, a time occurs
+/// twice, with the state before and after.
+#[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(remote = "Self"))]
+pub struct Solution {
+    n: usize,
+    t: Vec<f64>,
+    states: Vec<f64>,
+    /// For each time but the first, where the inner nodes of its step begin, if what lies between is kept.
+    inner: Option<Vec<usize>>,
+    /// Inner nodes: states at the [`nodes`] of each step.
+    nodes: Vec<f64>,
+    /// The sensitivities of each time, one column after the other.
+    sensitivities: Vec<f64>,
+    /// The integrals of each time.
+    quadratures: Vec<f64>,
+    pub(super) events: Vec<Occurrence>,
+    pub(super) statistics: Statistics,
+    pub(super) end: End,
+    pub(super) saved: Saved,
+}
+
+impl fmt::Debug for Solution {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Solution")
+            .field("unknowns", &self.n)
+            .field("times", &self.t.len())
+            .field("t", &self.t.last())
+            .field("events", &self.events.len())
+            .field("end", &self.end)
+            .finish_non_exhaustive()
+    }
+}
+
+/// What is kept of one time: state, sensitivities (one column after the other) and integrals.
+#[derive(Clone, Copy)]
+pub(super) struct Row<'r> {
+    pub(super) y: &'r [f64],
+    pub(super) s: &'r [f64],
+    pub(super) q: &'r [f64],
+}
+
+/// Inner nodes of a step for a polynomial of this degree, as parts of it: the extrema of Chebyshev's polynomial.
+pub(super) fn nodes(degree: usize) -> impl Iterator<Item = f64> {
+    (1..degree).map(move |k| node(k, degree))
+}
+
+fn node(k: usize, degree: usize) -> f64 {
+    0.5 - 0.5 * (std::f64::consts::PI * k as f64 / degree as f64).cos()
+}
+
+impl Solution {
+    pub(super) fn new(t: f64, row: Row<'_>, dense: bool) -> Self {
+        Self {
+            n: row.y.len(),
+            t: vec![t],
+            states: row.y.to_vec(),
+            inner: dense.then(Vec::new),
+            nodes: Vec::new(),
+            sensitivities: row.s.to_vec(),
+            quadratures: row.q.to_vec(),
+            events: Vec::new(),
+            statistics: Statistics::default(),
+            end: End::Early,
+            saved: Saved::default(),
+        }
+    }
+
+    /// Adds the state at `t`; `inner` writes the state at a part of the way from the last time, if that is kept.
+    pub(super) fn push<E>(
+        &mut self,
+        t: f64,
+        row: Row<'_>,
+        degree: u32,
+        mut at: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if let Some(inner) = &mut self.inner {
+            let (start, last) = (self.nodes.len(), self.t[self.t.len() - 1]);
+            inner.push(start);
+            for part in nodes(degree as usize) {
+                let place = self.nodes.len();
+                self.nodes.resize(place + self.n, 0.0);
+                if let Err(error) = at(last + part * (t - last), &mut self.nodes[place..]) {
+                    inner.pop();
+                    self.nodes.truncate(start);
+                    return Err(error);
+                }
+            }
+        }
+        self.add(t, row);
+        Ok(())
+    }
+
+    fn add(&mut self, t: f64, row: Row<'_>) {
+        self.t.push(t);
+        self.states.extend_from_slice(row.y);
+        self.sensitivities.extend_from_slice(row.s);
+        self.quadratures.extend_from_slice(row.q);
+    }
+
+    /// Adds the state after a jump.
+    pub(super) fn push_jump(&mut self, t: f64, row: Row<'_>) {
+        if let Some(inner) = &mut self.inner {
+            inner.push(self.nodes.len());
+        }
+        self.add(t, row);
+    }
+
+    /// The times, in the order of the run.
+    #[must_use]
+    pub fn t(&self) -> &[f64] {
+        &self.t
+    }
+
+    /// The state at time `t()[k]`.
+    ///
+    /// # Panics
+    /// If there is no such time.
+    #[must_use]
+    pub fn y(&self, k: usize) -> &[f64] {
+        &self.states[k * self.n..(k + 1) * self.n]
+    }
+
+    /// The last state.
+    #[must_use]
+    pub fn last(&self) -> &[f64] {
+        &self.states[self.states.len() - self.n..]
+    }
+
+    /// The sensitivities at time `t()[k]`: entry (i, j) is the derivative of unknown i to the j-th parameter of
+    /// [`Options::sensitivities`](super::Options::sensitivities), at that time, whatever it depends on.
+    ///
+    /// # Panics
+    /// If there is no such time.
+    #[must_use]
+    pub fn sensitivities(&self, k: usize) -> MatRef<'_, f64> {
+        let count = self.sensitivities.len() / self.t.len();
+        let s = &self.sensitivities[k * count..(k + 1) * count];
+        MatRef::from_column_major_slice(s, self.n, count / self.n)
+    }
+
+    /// The integrals of [`Ode::quadratures`](crate::integrators::ode::Ode::quadratures) from the start of the span to time `t()[k]`; none if
+    /// the equations have none.
+    ///
+    /// # Panics
+    /// If there is no such time.
+    #[must_use]
+    pub fn quadratures(&self, k: usize) -> &[f64] {
+        let count = self.quadratures.len() / self.t.len();
+        &self.quadratures[k * count..(k + 1) * count]
+    }
+
+    /// The time derivative of the last state, of a DAE; empty otherwise.
+    #[must_use]
+    pub fn last_yp(&self) -> &[f64] {
+        &self.saved.yp
+    }
+
+    /// One unknown at all times.
+    pub fn component(&self, i: usize) -> impl Iterator<Item = f64> {
+        self.states.chunks_exact(self.n).filter_map(move |y| y.get(i).copied())
+    }
+
+    /// All states, one after the other: the columns of a matrix of n rows.
+    #[must_use]
+    pub fn states(&self) -> &[f64] {
+        &self.states
+    }
+
+    /// All states as the columns of a matrix.
+    #[must_use]
+    pub fn as_matrix(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.states, self.n, self.t.len())
+    }
+
+    /// The state at any time of the run, by the polynomials of the integrator; after the jump where there is one.
+    ///
+    /// # Errors
+    /// If `t` lies outside the run, or the solution was not kept between its times ([`Output`](super::Output)).
+    pub fn at(&self, t: f64) -> Result<Vec<f64>, InputError> {
+        let mut y = vec![0.0; self.n];
+        self.at_into(t, &mut y)?;
+        Ok(y)
+    }
+
+    /// As [`at`](Self::at), into `out`.
+    ///
+    /// # Errors
+    /// As there; or if `out` has another length than the state.
+    pub fn at_into(&self, t: f64, out: &mut [f64]) -> Result<(), InputError> {
+        check_length("length of out", out.len(), self.n)?;
+        check_time("t", t)?;
+        let Some(inner) = &self.inner else {
+            let mend = "what lies between the times was not kept: take Output::Steps";
+            return Err(InputError::new("output", "Times or End", mend));
+        };
+        let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
+        let sign = if end < start { -1.0 } else { 1.0 };
+        if (t - start) * sign < 0.0 || (end - t) * sign < 0.0 {
+            return Err(InputError::new("t", t, format!("the run goes from {start} to {end}")));
+        }
+        // the last time that is not behind t: that after a jump
+        let k = self.t.partition_point(|&at| (at - t) * sign <= 0.0) - 1;
+        if self.t[k] == t {
+            out.copy_from_slice(self.y(k));
+            return Ok(());
+        }
+        let last = inner.get(k + 1).copied().unwrap_or(self.nodes.len());
+        let (n, nodes) = (self.n, &self.nodes[inner[k]..last]);
+        let degree = nodes.len() / n + 1;
+        let state = |j: usize| match j {
+            0 => self.y(k),
+            j if j == degree => self.y(k + 1),
+            j => &nodes[(j - 1) * n..j * n],
+        };
+        // the barycentric formula of Chebyshev's second kind (J.-P. Berrut, L. N. Trefethen, SIAM Review 46 (2004) 501-517)
+        let part = (t - self.t[k]) / (self.t[k + 1] - self.t[k]);
+        let weight = |j: usize| {
+            let half = if j == 0 || j == degree { 0.5 } else { 1.0 };
+            let sign = if j.is_multiple_of(2) { 1.0 } else { -1.0 };
+            sign * half / (part - node(j, degree))
+        };
+        if let Some(j) = (0..=degree).find(|&j| part == node(j, degree)) {
+            out.copy_from_slice(state(j));
+            return Ok(());
+        }
+        let total: f64 = (0..=degree).map(weight).sum();
+        out.fill(0.0);
+        for j in 0..=degree {
+            let share = weight(j) / total;
+            out.iter_mut().zip(state(j)).for_each(|(out, y)| *out += share * y);
+        }
+        Ok(())
+    }
+
+    /// The events that were met, in the order of the run.
+    #[must_use]
+    pub fn events(&self) -> &[Occurrence] {
+        &self.events
+    }
+
+    /// Why the run is at its end.
+    #[must_use]
+    pub fn end(&self) -> End {
+        self.end
+    }
+
+    /// What the run has cost.
+    #[must_use]
+    pub fn statistics(&self) -> &Statistics {
+        &self.statistics
+    }
+
+    /// Where the run stood at its end, to go on from there: [`Problem::resume`](super::Problem::resume).
+    #[must_use]
+    pub fn saved(&self) -> &Saved {
+        &self.saved
+    }
+
+    /// The parameters of the equations at the end.
+    #[must_use]
+    pub fn parameters(&self) -> &[f64] {
+        &self.saved.parameters
+    }
+}
+
+#[cfg(feature = "serde")]
+impl serde::Serialize for Solution {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        Self::serialize(self, serializer)
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<'de> serde::Deserialize<'de> for Solution {
+    fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let solution = Self::deserialize(deserializer)?;
+        match solution.fits() {
+            true => Ok(solution),
+            false => {
+                Err(serde::de::Error::custom("the arrays of the solution do not fit together"))
+            }
+        }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl Solution {
+    /// Whether the lengths of the arrays fit together, of a solution that comes from elsewhere.
+    fn fits(&self) -> bool {
+        let (n, times) = (self.n, self.t.len());
+        let nodes = self.nodes.len();
+        let inner = self.inner.as_ref().is_none_or(|inner| {
+            let ends = inner.iter().copied().chain([nodes]);
+            let ordered = ends.clone().zip(ends.clone().skip(1)).all(|(start, end)| start <= end);
+            inner.len() + 1 == times && ordered && ends.into_iter().all(|end| end % n.max(1) == 0)
+        });
+        n > 0
+            && times > 0
+            && self.states.len() == n * times
+            && self.sensitivities.len().is_multiple_of(n * times)
+            && self.quadratures.len().is_multiple_of(times)
+            && inner
+    }
+}

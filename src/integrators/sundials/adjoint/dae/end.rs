@@ -1,0 +1,100 @@
+//! Where the way back starts.
+
+use super::system::{AdjointDae, Point, uneven};
+use crate::integrators::{
+    common::{Error, check_finite},
+    ode::{Dae, Failure, Functional},
+    sundials::{
+        adjoint::{equations::refused, gradient::Gradient},
+        context::Context,
+        linear::Linear,
+        vector::Vector,
+    },
+};
+
+/// Finds lambda and lambda' at the end from `end`, which has the slopes of g, and adds to dG/dp what g gets by the
+/// algebraic unknowns.
+///
+/// With K = dF/dy' in the differential equations and dF/dy in the algebraic ones, which is regular if the index is 1:
+/// K^T (lambda_d, mu) = dg/dy, where mu is what g changes by with the algebraic equations, so that dG/dp gets
+/// -mu^T dF_a/dp; then K^T (lambda'_d, -lambda_a) = (dF_d/dy)^T lambda_d - dh/dy, the equations of the way back.
+pub(super) fn start_of_way_back<S: Dae, F: Functional>(
+    system: &mut AdjointDae<S, F>,
+    (t, y, yp): Point<'_>,
+    end: &mut Gradient,
+    linear: &mut Linear,
+    context: &Context,
+) -> Result<(Vector, Vector), Error> {
+    let failed = |failure| refused("IDA", t, failure);
+    system.update_jacobian((t, y, yp)).map_err(failed)?;
+    system.equations.evaluate_slopes(t, y).map_err(failed)?;
+    check_finite("dF/dy at the end", system.equations.jacobian.values())?;
+    check_finite("dh/dy at the end", &system.equations.slopes_y)?;
+    if !factorize(system, linear, context)? {
+        return Err(failed(singular()));
+    }
+
+    let mut first = Vector::from_slice(&end.initial_state, context)?;
+    solve(linear, &mut first).map_err(failed)?;
+    let (mut lambda, mut mu) = (first.as_slice().to_vec(), first.as_slice().to_vec());
+    for (i, algebraic) in system.algebraic.iter().enumerate() {
+        *(if *algebraic { &mut lambda[i] } else { &mut mu[i] }) = 0.0;
+    }
+    let mut by_p = vec![0.0; end.parameters.len()];
+    system.by_parameters((t, y, yp), &mu, &mut by_p).map_err(failed)?;
+    check_finite("dF/dp at the end", &by_p)?;
+    end.parameters.iter_mut().zip(by_p).for_each(|(slope, by_p)| *slope -= by_p);
+
+    let mut rhs: Vec<f64> = system.equations.slopes_y.iter().map(|slope| -slope).collect();
+    system.equations.jacobian.add_transposed_times(1.0, &lambda, &mut rhs);
+    let mut second = Vector::from_slice(&rhs, context)?;
+    solve(linear, &mut second).map_err(failed)?;
+    let mut slope = second.as_slice().to_vec();
+    for (i, _) in system.algebraic.iter().enumerate().filter(|(_, algebraic)| **algebraic) {
+        (lambda[i], slope[i]) = (-slope[i], 0.0);
+    }
+    Ok((Vector::from_slice(&lambda, context)?, Vector::from_slice(&slope, context)?))
+}
+
+/// Factorizes K^T; whether it is regular beyond rounding, as a known solution tells.
+fn factorize<S, F: Functional>(
+    system: &AdjointDae<S, F>,
+    linear: &mut Linear,
+    context: &Context,
+) -> Result<bool, Error> {
+    let AdjointDae { equations, mass, algebraic, .. } = system;
+    let (jacobian, n) = (&equations.jacobian, algebraic.len());
+    let (by_slope, by_state) = (mass.values(), jacobian.values());
+    let value = |i: usize, place: usize| match algebraic[i] {
+        true => by_state[place],
+        false => by_slope[place],
+    };
+    // SAFETY: the linear solver was made for that of the way back.
+    let factorized = unsafe {
+        linear.factorize(&equations.backward, n, |entries| {
+            jacobian.write_transposed(&equations.backward, entries, value);
+        })
+    };
+    // a number for each equation, in its units
+    let mut known = vec![0.0; n];
+    jacobian.each_place(|i, _, place| known[i] = value(i, place).abs().max(known[i]));
+    known.iter_mut().enumerate().for_each(|(i, largest)| *largest = uneven(i) / *largest);
+    let mut vector = Vector::from_slice(&vec![0.0; n], context)?;
+    let rhs = vector.as_mut_slice();
+    jacobian.each_place(|i, j, place| rhs[j] += value(i, place) * known[i]);
+    let solved = factorized && solve(linear, &mut vector).is_ok();
+    let found = vector.as_slice().iter().zip(known);
+    let mut errors = found.map(|(x, known)| (x / known - 1.0).abs());
+    Ok(solved && errors.all(|error| error < 1e-6))
+}
+
+fn solve(linear: &mut Linear, b: &mut Vector) -> Result<(), Failure> {
+    let is_solved = linear.solve(b) && b.as_slice().iter().all(|x| x.is_finite());
+    if is_solved { Ok(()) } else { Err(singular()) }
+}
+
+fn singular() -> Failure {
+    let why = "the equations with derivatives do not determine those of the differential unknowns, or the equations \
+               without do not determine the algebraic unknowns (index 2 or higher): an adjoint gradient needs both";
+    Failure::Fatal(why.into())
+}

@@ -1,0 +1,162 @@
+//! Building an adjoint gradient.
+
+use std::fmt;
+
+use super::{
+    run::{Run, Start},
+    system::AdjointDae,
+};
+use crate::integrators::{
+    common::{Error, check_finite, check_length, check_start, check_time},
+    ode::{Dae, Functional},
+    sundials::{
+        IdaOptions,
+        adjoint::{gradient::Gradient, options::AdjointOptions},
+    },
+};
+
+/// Gradients of a [`Functional`] of the solution of F(t, y, y', p) = 0, with respect to any number of parameters and to
+/// the differential unknowns of the initial state, as [`Adjoint`](crate::integrators::sundials::Adjoint) has them of an ODE: a run forward
+/// with checkpoints, and one of the adjoint lambda back in time, (dF/dy')^T lambda' = (dF/dy)^T lambda - dh/dy. For
+/// F = y' - f this lambda is dG/dy(t).
+///
+/// The equations have to be of index 1 with a constant dF/dy' (which may depend on parameters), and separate: some of them
+/// without derivatives, as many as there are algebraic unknowns, and the others with derivatives of differential
+/// unknowns alone. Rows may stand in any order.
+///
+/// ```
+/// use pliant::{
+///     ode::{Failure, Functional, Slopes, dae_with_parameters},
+///     sundials::{AdjointOptions, DaeAdjoint, IdaOptions},
+/// };
+///
+/// /// The algebraic unknown at the end.
+/// struct End;
+///
+/// impl Functional for End {
+///     fn terminal(
+///         &mut self,
+///         _t: f64,
+///         y: &[f64],
+///         _p: &[f64],
+///         slopes: Option<Slopes<'_>>,
+///     ) -> Result<f64, Failure> {
+///         if let Some(slopes) = slopes {
+///             slopes.y[1] = 1.0;
+///         }
+///         Ok(y[1])
+///     }
+/// }
+///
+/// // y' = -z, 0 = z - p y: z = p exp(-p t)
+/// let decay = dae_with_parameters(
+///     |_t, y, yp, p, residual| {
+///         residual[0] = yp[0] + y[1];
+///         residual[1] = y[1] - p[0] * y[0];
+///         Ok(())
+///     },
+///     [2.0],
+/// );
+/// let forward = IdaOptions::new(1e-8, 1e-10).differential([true, false]);
+/// let back = AdjointOptions::new(1e-8, 1e-10);
+/// let (y0, yp0) = ([1.0, 0.0], [0.0, 0.0]);
+/// let gradient = DaeAdjoint::new(decay, End, 0.0, &y0, &yp0, &forward, &back)?.gradient(1.0)?;
+/// let decayed = (-2f64).exp();
+/// assert!((gradient.value - 2.0 * decayed).abs() < 1e-6);
+/// assert!((gradient.parameters[0] - (1.0 - 2.0) * decayed).abs() < 1e-6);
+/// assert!((gradient.initial_state[0] - 2.0 * decayed).abs() < 1e-6);
+/// # Ok::<(), pliant::sundials::Error>(())
+/// ```
+///
+/// User guide: chapter "Using IDAS for Adjoint Sensitivity Analysis".
+pub struct DaeAdjoint<S, F> {
+    system: AdjointDae<S, F>,
+    start: Start,
+    forward: IdaOptions,
+    options: AdjointOptions,
+}
+
+impl<S, F> fmt::Debug for DaeAdjoint<S, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("DaeAdjoint").field("start", &self.start).finish_non_exhaustive()
+    }
+}
+
+impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
+    /// For the solution that starts at time `t0` from the differential unknowns of `y0`, by these options of the run forward,
+    /// which have to say which these [are](IdaOptions::differential), and of the way back. The algebraic unknowns and
+    /// `yp0` are guesses: they follow from the equations and their parameters, as in
+    /// [`InitialCondition::Algebraic`](crate::integrators::sundials::InitialCondition::Algebraic).
+    ///
+    /// # Errors
+    /// [`Error::Input`] for options or initial values that cannot be used, for equations that are not as they have to be,
+    /// and for systems with root functions: at an event lambda jumps. [`Error::Integration`] where the equations fail at
+    /// the start.
+    ///
+    /// # Panics
+    /// A panic of the system passes through.
+    pub fn new(
+        system: S,
+        functional: F,
+        t0: f64,
+        y0: &[f64],
+        yp0: &[f64],
+        forward: &IdaOptions,
+        options: &AdjointOptions,
+    ) -> Result<Self, Error> {
+        check_start(t0, y0)?;
+        check_length("length of yp0", yp0.len(), y0.len())?;
+        check_finite("yp0", yp0)?;
+        options.check(y0.len(), system.parameters().len())?;
+        options.check_for_dae()?;
+        if system.root_count() > 0 {
+            let mend = "an adjoint gradient does not stop at events: leave them out";
+            return Err(Error::input("root_count", system.root_count(), mend));
+        }
+        let equations = forward.for_adjoint(y0)?;
+        let system = AdjointDae::new(system, functional, y0.len(), equations)?;
+        let start = (t0, y0.to_vec(), yp0.to_vec());
+        let (forward, options) = (forward.clone(), options.clone());
+        let mut adjoint = Self { system, start, forward, options };
+        // finds what else can not be used
+        adjoint.run()?;
+        Ok(adjoint)
+    }
+
+    /// Value and gradient of the functional at the end time T = `t`. Each call runs anew, with the present parameters of the
+    /// [system](Self::system_mut).
+    ///
+    /// # Errors
+    /// [`Error::Integration`] if the integration stopped, forward or on the way back, with the reason, such as a dF/dy'
+    /// that is not constant; [`Error::Input`] if `t` is not finite or not later than the start.
+    ///
+    /// # Panics
+    /// A panic of the system or the functional passes through.
+    pub fn gradient(&mut self, t: f64) -> Result<Gradient, Error> {
+        check_time("end time", t)?;
+        let t0 = self.start.0;
+        if t <= t0 {
+            let mend = format!(
+                "it is later than the start, {t0:?}: IDAS has no way back from an earlier time, for which the equations \
+                 can be written in -t"
+            );
+            return Err(Error::input("end time", t, mend));
+        }
+        self.run()?.gradient(t)
+    }
+
+    fn run(&mut self) -> Result<Run<'_, S, F>, Error> {
+        Run::new(&mut self.system, &self.start, &self.forward, &self.options)
+    }
+
+    /// The system.
+    #[must_use]
+    pub fn system(&self) -> &S {
+        &self.system.equations.system
+    }
+
+    /// The system, to be given other parameters; the next [`gradient`](Self::gradient) is theirs.
+    pub fn system_mut(&mut self) -> &mut S {
+        &mut self.system.equations.system
+    }
+}

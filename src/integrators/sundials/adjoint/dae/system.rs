@@ -1,0 +1,269 @@
+//! A system with a functional: what the run forward integrates, and the equations of the way back.
+
+use faer::MatMut;
+
+use crate::base::input::InputError;
+use crate::integrators::{
+    common::{Error, Tolerances, check_finite},
+    ode::{BandMut, Dae, Failure, Functional, call},
+    sundials::{
+        LinearSolver,
+        adjoint::equations::{Equations, refused},
+        matrix::Entries,
+        sensitivity::Access,
+        stored_jacobian::StoredJacobian,
+    },
+};
+
+/// Time, state and its time derivative.
+pub(super) type Point<'a> = (f64, &'a [f64], &'a [f64]);
+
+/// A [`Dae`] F(t, y, y') = 0 with the integral of a functional beside it. dF/dy' is constant, so that F is linear in y'.
+pub(super) struct AdjointDae<S, F> {
+    pub(super) equations: Equations<S, F>,
+    /// Which unknowns are said to be differential.
+    differential: Vec<bool>,
+    /// dF/dy'
+    pub(super) mass: StoredJacobian,
+    /// Which equations are without y'.
+    pub(super) algebraic: Vec<bool>,
+    /// Two y', and F there.
+    moved: [Vec<f64>; 2],
+    residuals: [Vec<f64>; 2],
+}
+
+impl<S: Dae, F: Functional> AdjointDae<S, F> {
+    pub(super) fn new(
+        system: S,
+        functional: F,
+        n: usize,
+        (solver, tolerances, differential): (&LinearSolver, &Tolerances, &[bool]),
+    ) -> Result<Self, InputError> {
+        let access = Access { get: S::parameters, set: S::set_parameters };
+        let vector = || vec![0.0; n];
+        Ok(Self {
+            equations: Equations::new(system, functional, access, n, (solver, tolerances))?,
+            differential: differential.to_vec(),
+            mass: StoredJacobian::new(solver, n),
+            algebraic: vec![false; n],
+            moved: [vector(), vector()],
+            residuals: [vector(), vector()],
+        })
+    }
+
+    /// Finds dF/dy' at the start, and the algebraic equations, which have to be as many as algebraic unknowns.
+    pub(super) fn start(&mut self, (t, y, yp): Point<'_>) -> Result<(), Error> {
+        // F is linear in y', so that large steps leave nothing but dF/dy' of the difference
+        const LARGE: f64 = 1024.0 * 1024.0;
+        self.equations.forget();
+        let step = |j: usize| LARGE * self.equations.size(j, y[j]).max(yp[j].abs());
+        let steps: Vec<f64> = (0..y.len()).map(step).collect();
+        let system = &mut self.equations.system;
+        let evaluate =
+            |yp: &[f64], residual: &mut [f64]| call::residual(system, t, y, yp, residual);
+        self.mass
+            .quotients(yp, |j| steps[j], evaluate)
+            .map_err(|failure| refused("IDA", t, failure))?;
+        check_finite("dF/dy'", self.mass.values())?;
+        self.algebraic.fill(true);
+        let mut wrong = None;
+        self.mass.each(|i, j, value| {
+            if value != 0.0 {
+                self.algebraic[i] = false;
+                if !self.differential[j] {
+                    wrong = Some((i, j));
+                }
+            }
+        });
+        if let Some((i, j)) = wrong {
+            let mend = format!("its derivative occurs in equation {i}");
+            return Err(Error::input("differential", format!("false of unknown {j}"), mend));
+        }
+        let unknowns = self.differential.iter().filter(|differential| !*differential).count();
+        let equations = self.algebraic.iter().filter(|algebraic| **algebraic).count();
+        if unknowns != equations {
+            let mend = format!(
+                "of the equations {equations} are without derivatives: an adjoint gradient needs as many of them as \
+                 there are algebraic unknowns"
+            );
+            return Err(Error::input("differential", format!("{unknowns} times false"), mend));
+        }
+        Ok(())
+    }
+
+    /// Writes (dF/dy')^T lambda' - (dF/dy)^T lambda + dh/dy.
+    pub(super) fn backward_residual(
+        &mut self,
+        (t, y, yp): Point<'_>,
+        (lambda, slope): (&[f64], &[f64]),
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.update_jacobian((t, y, yp))?;
+        self.equations.evaluate_slopes(t, y)?;
+        out.copy_from_slice(&self.equations.slopes_y);
+        self.mass.add_transposed_times(1.0, slope, out);
+        self.equations.jacobian.add_transposed_times(-1.0, lambda, out);
+        Ok(())
+    }
+
+    /// Writes what, integrated back in time, gives dG/dp: (dF/dp)^T lambda - dh/dp.
+    pub(super) fn backward_quadratures(
+        &mut self,
+        (t, y, yp): Point<'_>,
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.by_parameters((t, y, yp), lambda, out)?;
+        self.equations.evaluate_slopes(t, y)?;
+        out.iter_mut().zip(&self.equations.slopes_p).for_each(|(out, slope)| *out -= slope);
+        Ok(())
+    }
+
+    /// Writes (dF/dp)^T lambda.
+    pub(super) fn by_parameters(
+        &mut self,
+        (t, y, yp): Point<'_>,
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        let evaluate =
+            |system: &mut S, residual: &mut [f64]| call::residual(system, t, y, yp, residual);
+        self.equations.parameter_differences(lambda, out, evaluate)
+    }
+
+    /// Writes the derivative of `backward_residual` by lambda, with lambda' = cj lambda: cj (dF/dy')^T - (dF/dy)^T.
+    pub(super) fn backward_jacobian(
+        &mut self,
+        point: Point<'_>,
+        cj: f64,
+        entries: Entries<'_>,
+    ) -> Result<(), Failure> {
+        self.update_jacobian(point)?;
+        let Equations { jacobian, backward, .. } = &self.equations;
+        let (by_slope, by_state) = (self.mass.values(), jacobian.values());
+        let value = |_, place: usize| cj * by_slope[place] - by_state[place];
+        jacobian.write_transposed(backward, entries, value);
+        Ok(())
+    }
+
+    /// Makes dF/dy that of this point, and checks that dF/dy' is there as it was.
+    pub(super) fn update_jacobian(&mut self, (t, y, yp): Point<'_>) -> Result<(), Failure> {
+        let supplied = |system: &mut S, entries: Entries<'_>, _: &mut [f64]| match entries {
+            Entries::Dense(matrix) => system.dense_jacobian(t, 0.0, y, yp, matrix),
+            Entries::Band(band) => system.banded_jacobian(t, 0.0, y, yp, band),
+            Entries::Sparse(values) => system.sparse_jacobian(t, 0.0, y, yp, values),
+            Entries::Custom => Ok(()),
+        };
+        let evaluate = |system: &mut S, y: &[f64], residual: &mut [f64]| {
+            call::residual(system, t, y, yp, residual)
+        };
+        if self.equations.update_jacobian(t, y, supplied, evaluate)? {
+            let checked = self.check_mass((t, y, yp));
+            if checked.is_err() {
+                self.equations.forget();
+            }
+            checked?;
+        }
+        Ok(())
+    }
+
+    /// Checks that F changes by dF/dy' of the start with all y' at once, each by another amount.
+    fn check_mass(&mut self, (t, y, yp): Point<'_>) -> Result<(), Failure> {
+        // no multiple of the steps that dF/dy' was found with: F may not be linear in y'
+        const LARGE: f64 = 70_000.0;
+        // smaller changes do not matter to gradients
+        const TOLERANCE: f64 = 1e-6;
+        for j in 0..y.len() {
+            let step = LARGE * uneven(j) * self.equations.size(j, y[j]).max(yp[j].abs());
+            (self.moved[0][j], self.moved[1][j]) = (yp[j] + step, yp[j] - step);
+        }
+        let [ahead, behind] = &mut self.residuals;
+        call::residual(&mut self.equations.system, t, y, &self.moved[0], ahead)?;
+        call::residual(&mut self.equations.system, t, y, &self.moved[1], behind)?;
+        ahead.iter_mut().zip(behind.iter()).for_each(|(ahead, behind)| *ahead -= behind);
+        if ahead.iter().any(|difference| !difference.is_finite()) {
+            let message = "F is not finite for large y': it has to be linear in y'";
+            return Err(Failure::Recoverable(message.into()));
+        }
+        behind.fill(0.0);
+        let [from, to] = [&self.moved[1], &self.moved[0]];
+        self.mass.each(|i, j, value| {
+            let change = value * (to[j] - from[j]);
+            ahead[i] -= change;
+            behind[i] += change.abs();
+        });
+        let changed =
+            ahead.iter().zip(behind.iter()).position(|(d, size)| d.abs() > TOLERANCE * size);
+        let Some(i) = changed else { return Ok(()) };
+        let why = format!(
+            "dF/dy' of equation {i} is not that of the start: an adjoint gradient needs it constant; write \
+             0 = F(t, y, z) with y' = z for such equations, and z as more algebraic unknowns"
+        );
+        Err(Failure::Fatal(why.into()))
+    }
+}
+
+/// Numbers between 1 and 2 without a pattern.
+pub(super) fn uneven(j: usize) -> f64 {
+    1.0 + (j as f64 * 0.618_033_988_749_894_9).fract()
+}
+
+impl<S: Dae, F: Functional> Dae for AdjointDae<S, F> {
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        call::residual(&mut self.equations.system, t, y, yp, residual)
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        self.equations.system.dense_jacobian(t, cj, y, yp, jacobian)
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        self.equations.system.banded_jacobian(t, cj, y, yp, jacobian)
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.equations.system.sparse_jacobian(t, cj, y, yp, values)
+    }
+
+    fn quadrature_count(&self) -> usize {
+        1
+    }
+
+    fn quadratures(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _yp: &[f64],
+        qdot: &mut [f64],
+    ) -> Result<(), Failure> {
+        qdot[0] = self.equations.running(t, y)?;
+        Ok(())
+    }
+}

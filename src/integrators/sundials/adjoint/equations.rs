@@ -1,0 +1,171 @@
+//! A system, of any kind, with a functional: their derivatives on the way back.
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+use super::gradient::Gradient;
+use crate::base::{input::InputError, vector::size_or_one};
+use crate::integrators::{
+    common::{Callback, Cause, Error, IntegrationError, Tolerances},
+    ode::{Failure, Functional, Slopes},
+    sundials::{
+        LinearSolver, matrix::Entries, sensitivity::Access, stored_jacobian::StoredJacobian,
+    },
+};
+
+/// A system and a functional, with room for their derivatives.
+pub(super) struct Equations<S, F> {
+    pub(super) system: S,
+    functional: F,
+    access: Access<S>,
+    tolerances: Tolerances,
+    pub(super) jacobian: StoredJacobian,
+    /// The linear solver of the way back.
+    pub(super) backward: LinearSolver,
+    /// Time of the Jacobian: on the way back there is one state at each time.
+    jacobian_time: Option<f64>,
+    /// Those of h, by the unknowns and by the parameters.
+    pub(super) slopes_y: Vec<f64>,
+    pub(super) slopes_p: Vec<f64>,
+    p: Vec<f64>,
+    trial: Vec<f64>,
+    ahead: Vec<f64>,
+    behind: Vec<f64>,
+}
+
+impl<S, F: Functional> Equations<S, F> {
+    /// For `n` unknowns, and the linear solver and tolerances of the run forward.
+    pub(super) fn new(
+        system: S,
+        functional: F,
+        access: Access<S>,
+        n: usize,
+        (forward, tolerances): (&LinearSolver, &Tolerances),
+    ) -> Result<Self, InputError> {
+        let jacobian = StoredJacobian::new(forward, n);
+        let backward = jacobian.backward_solver()?;
+        let p = (access.get)(&system).to_vec();
+        Ok(Self {
+            system,
+            functional,
+            access,
+            tolerances: tolerances.clone(),
+            jacobian,
+            backward,
+            jacobian_time: None,
+            slopes_y: vec![0.0; n],
+            slopes_p: vec![0.0; p.len()],
+            trial: p.clone(),
+            p,
+            ahead: vec![0.0; n],
+            behind: vec![0.0; n],
+        })
+    }
+
+    pub(super) fn parameters(&self) -> &[f64] {
+        (self.access.get)(&self.system)
+    }
+
+    /// Forgets the Jacobian, with a new run or where it was of no use.
+    pub(super) fn forget(&mut self) {
+        self.jacobian_time = None;
+    }
+
+    /// How large unknown `j` is, for difference quotients, where its value is `y`.
+    pub(super) fn size(&self, j: usize, y: f64) -> f64 {
+        self.tolerances.size_of(j, y)
+    }
+
+    /// Makes the Jacobian that of the equations at (t, y), unless it is: by `supplied`, which gets room for n numbers,
+    /// too, or by differences of `evaluate`. Says whether it was evaluated.
+    pub(super) fn update_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        supplied: impl FnOnce(&mut S, Entries<'_>, &mut [f64]) -> Result<(), Failure>,
+        mut evaluate: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
+    ) -> Result<bool, Failure> {
+        if self.jacobian_time == Some(t) {
+            return Ok(false);
+        }
+        self.jacobian_time = None;
+        let Self { system, jacobian, tolerances, ahead, .. } = self;
+        if jacobian.is_supplied() {
+            supplied(system, jacobian.entries(), ahead)?;
+        } else {
+            let step = |j: usize| f64::EPSILON.cbrt() * tolerances.size_of(j, y[j]);
+            jacobian.quotients(y, step, |y, out| evaluate(system, y, out))?;
+        }
+        self.jacobian_time = Some(t);
+        Ok(true)
+    }
+
+    /// h(t, y, p)
+    pub(super) fn running(&mut self, t: f64, y: &[f64]) -> Result<f64, Failure> {
+        self.functional.running(t, y, (self.access.get)(&self.system), None)
+    }
+
+    /// Evaluates the slopes of h.
+    pub(super) fn evaluate_slopes(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.slopes_y.fill(0.0);
+        self.slopes_p.fill(0.0);
+        let slopes = Slopes { y: &mut self.slopes_y, p: &mut self.slopes_p };
+        self.functional.running(t, y, (self.access.get)(&self.system), Some(slopes))?;
+        Ok(())
+    }
+
+    /// g(T, y, p), and its derivatives by p and by y at the end of a run of `integrator`.
+    pub(super) fn terminal(
+        &mut self,
+        integrator: &'static str,
+        t: f64,
+        y: &[f64],
+    ) -> Result<Gradient, Error> {
+        let p = (self.access.get)(&self.system);
+        let end = Gradient::at_end(&mut self.functional, t, y, p);
+        Ok(end.map_err(|failure| refused(integrator, t, failure))?.check()?)
+    }
+
+    /// Writes the product of lambda with the derivatives of `evaluate` by p, by central differences; parameters are put
+    /// back to the last bit, whatever happens.
+    pub(super) fn parameter_differences(
+        &mut self,
+        lambda: &[f64],
+        out: &mut [f64],
+        mut evaluate: impl FnMut(&mut S, &mut [f64]) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        let (get, set) = (self.access.get, self.access.set);
+        self.p.copy_from_slice(get(&self.system));
+        let outcome = catch_unwind(AssertUnwindSafe(|| {
+            for (i, out) in out.iter_mut().enumerate() {
+                let p = self.p[i];
+                let step = f64::EPSILON.cbrt() * size_or_one(p);
+                for (p, result) in [(p + step, &mut self.ahead), (p - step, &mut self.behind)] {
+                    self.trial.copy_from_slice(&self.p);
+                    self.trial[i] = p;
+                    set(&mut self.system, &self.trial);
+                    evaluate(&mut self.system, result)?;
+                }
+                let differences = self.ahead.iter().zip(&self.behind).map(|(a, b)| a - b);
+                let sum: f64 = differences.zip(lambda).map(|(d, lambda)| d * lambda).sum();
+                *out = sum / ((p + step) - (p - step));
+            }
+            Ok(())
+        }));
+        set(&mut self.system, &self.p);
+        outcome.unwrap_or_else(|panic| resume_unwind(panic))
+    }
+}
+
+/// The error of a functional, or of equations, that have no value at time `t`.
+pub(super) fn refused(integrator: &'static str, t: f64, failure: Failure) -> Error {
+    IntegrationError {
+        integrator,
+        cause: Cause::Fatal(Callback::Adjoint),
+        t,
+        step: 0.0,
+        order: 0,
+        message: String::new(),
+        source: Some(failure.into_error()),
+    }
+    .into()
+}

@@ -1,0 +1,42 @@
+//! What an adjoint problem is solved for.
+
+use crate::base::input::InputError;
+use crate::integrators::{
+    common::check_finite,
+    ode::{Failure, Functional, Slopes},
+};
+
+/// A functional G = g(T, y(T), p) + integral of h(t, y, p) and what it changes by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gradient {
+    /// G.
+    pub value: f64,
+    /// dG/dp, for all parameters of the system.
+    pub parameters: Vec<f64>,
+    /// dG/dy0, by the initial state; where that depends on parameters, it adds (dy0/dp)^T dG/dy0 to dG/dp. Of a DAE, by
+    /// the differential unknowns: algebraic ones follow from them, and have zeros.
+    pub initial_state: Vec<f64>,
+}
+
+impl Gradient {
+    /// That of g(T, y, p) by the state and the parameters at the end: where the way back starts.
+    pub(crate) fn at_end(
+        functional: &mut impl Functional,
+        t: f64,
+        y: &[f64],
+        p: &[f64],
+    ) -> Result<Self, Failure> {
+        let (mut initial_state, mut parameters) = (vec![0.0; y.len()], vec![0.0; p.len()]);
+        let slopes = Slopes { y: &mut initial_state, p: &mut parameters };
+        let value = functional.terminal(t, y, p, Some(slopes))?;
+        Ok(Self { value, parameters, initial_state })
+    }
+
+    /// Checks that such numbers are finite.
+    pub(crate) fn check(self) -> Result<Self, InputError> {
+        check_finite("terminal functional", &[self.value])?;
+        check_finite("terminal slopes by y", &self.initial_state)?;
+        check_finite("terminal slopes by p", &self.parameters)?;
+        Ok(self)
+    }
+}

@@ -1,0 +1,133 @@
+//! Building an adjoint gradient.
+
+use std::fmt;
+
+use super::{run::Run, system::AdjointSystem};
+use crate::integrators::{
+    common::{Error, check_start, check_time},
+    ode::{Functional, Ode},
+    sundials::{
+        CvodeOptions,
+        adjoint::{gradient::Gradient, options::AdjointOptions},
+    },
+};
+
+/// Gradients of a [`Functional`] of the solution of y' = f(t, y, p), with respect to any number of parameters and to
+/// the initial state: a run forward with checkpoints, and one of the adjoint lambda back in time,
+/// lambda' = -(df/dy)^T lambda - dh/dy from lambda(T) = dg/dy.
+///
+/// ```
+/// use pliant::{
+///     ode::{Failure, Functional, Slopes, with_parameters},
+///     sundials::{Adjoint, AdjointOptions, CvodeOptions},
+/// };
+///
+/// /// The state at the end.
+/// struct End;
+///
+/// impl Functional for End {
+///     fn terminal(
+///         &mut self,
+///         _t: f64,
+///         y: &[f64],
+///         _p: &[f64],
+///         slopes: Option<Slopes<'_>>,
+///     ) -> Result<f64, Failure> {
+///         if let Some(slopes) = slopes {
+///             slopes.y[0] = 1.0;
+///         }
+///         Ok(y[0])
+///     }
+/// }
+///
+/// let decay = with_parameters(
+///     |_t, y, p, ydot| {
+///         ydot[0] = -p[0] * y[0];
+///         Ok(())
+///     },
+///     [2.0],
+/// );
+/// let (forward, back) = (CvodeOptions::new(1e-8, 1e-10), AdjointOptions::new(1e-8, 1e-10));
+/// let gradient = Adjoint::new(decay, End, 0.0, &[1.0], &forward, &back)?.gradient(1.0)?;
+/// let exact = (-2f64).exp();
+/// assert!((gradient.value - exact).abs() < 1e-6);
+/// assert!((gradient.parameters[0] + exact).abs() < 1e-6);
+/// assert!((gradient.initial_state[0] - exact).abs() < 1e-6);
+/// # Ok::<(), pliant::sundials::Error>(())
+/// ```
+///
+/// User guide: chapter "Using CVODES for Adjoint Sensitivity Analysis".
+pub struct Adjoint<S, F> {
+    system: AdjointSystem<S, F>,
+    start: (f64, Vec<f64>),
+    forward: CvodeOptions,
+    options: AdjointOptions,
+}
+
+impl<S, F> fmt::Debug for Adjoint<S, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Adjoint").field("start", &self.start).finish_non_exhaustive()
+    }
+}
+
+impl<S: Ode, F: Functional> Adjoint<S, F> {
+    /// For the solution that starts at time `t0` from `y0`, by these options of the run forward and of the way back.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for options or initial values that cannot be used, and for systems with root functions: at an
+    /// event lambda jumps.
+    pub fn new(
+        system: S,
+        functional: F,
+        t0: f64,
+        y0: &[f64],
+        forward: &CvodeOptions,
+        options: &AdjointOptions,
+    ) -> Result<Self, Error> {
+        check_start(t0, y0)?;
+        options.check(y0.len(), system.parameters().len())?;
+        if system.root_count() > 0 {
+            let mend = "an adjoint gradient does not stop at events: leave them out";
+            return Err(Error::input("root_count", system.root_count(), mend));
+        }
+        let equations = forward.for_adjoint(y0)?;
+        let system = AdjointSystem::new(system, functional, y0.len(), equations, options)?;
+        let (start, forward, options) = ((t0, y0.to_vec()), forward.clone(), options.clone());
+        let mut adjoint = Self { system, start, forward, options };
+        // finds what else can not be used
+        adjoint.run()?;
+        Ok(adjoint)
+    }
+
+    /// Value and gradient of the functional at the end time T = `t`. Each call runs anew, with the present parameters of the
+    /// [system](Self::system_mut).
+    ///
+    /// # Errors
+    /// [`Error::Integration`] if the integration stopped, forward or on the way back, with the reason; [`Error::Input`] if
+    /// `t` is not finite or is the start.
+    ///
+    /// # Panics
+    /// A panic of the system or the functional passes through.
+    pub fn gradient(&mut self, t: f64) -> Result<Gradient, Error> {
+        check_time("end time", t)?;
+        if t == self.start.0 {
+            return Err(Error::input("end time", t, "it is another than the start"));
+        }
+        self.run()?.gradient(t)
+    }
+
+    fn run(&mut self) -> Result<Run<'_, S, F>, Error> {
+        Run::new(&mut self.system, &self.start, &self.forward, &self.options)
+    }
+
+    /// The system.
+    #[must_use]
+    pub fn system(&self) -> &S {
+        &self.system.equations.system
+    }
+
+    /// The system, to be given other parameters; the next [`gradient`](Self::gradient) is theirs.
+    pub fn system_mut(&mut self) -> &mut S {
+        &mut self.system.equations.system
+    }
+}

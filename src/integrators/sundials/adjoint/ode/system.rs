@@ -1,0 +1,151 @@
+//! A system with a functional: what the run forward integrates, and the right-hand sides of the way back.
+
+use faer::MatMut;
+
+use crate::base::input::InputError;
+use crate::integrators::{
+    common::Tolerances,
+    ode::{BandMut, Failure, Functional, Ode, call},
+    sundials::{
+        LinearSolver,
+        adjoint::{equations::Equations, options::AdjointOptions},
+        matrix::Entries,
+        sensitivity::Access,
+    },
+};
+
+/// An [`Ode`] with the integral of a functional beside it.
+pub(super) struct AdjointSystem<S, F> {
+    pub(super) equations: Equations<S, F>,
+    supplied_rhs: bool,
+    supplied_parameters: bool,
+}
+
+impl<S: Ode, F: Functional> AdjointSystem<S, F> {
+    pub(super) fn new(
+        system: S,
+        functional: F,
+        n: usize,
+        forward: (&LinearSolver, &Tolerances),
+        options: &AdjointOptions,
+    ) -> Result<Self, InputError> {
+        let access = Access { get: S::parameters, set: S::set_parameters };
+        Ok(Self {
+            equations: Equations::new(system, functional, access, n, forward)?,
+            supplied_rhs: options.supplied_rhs,
+            supplied_parameters: options.supplied_parameters,
+        })
+    }
+
+    /// Writes lambda' = -(df/dy)^T lambda - dh/dy.
+    pub(super) fn backward_rhs(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        if self.supplied_rhs {
+            call::adjoint_rhs(&mut self.equations.system, t, y, lambda, out)?;
+        } else {
+            self.update_jacobian(t, y)?;
+            out.fill(0.0);
+            self.equations.jacobian.add_transposed_times(1.0, lambda, out);
+        }
+        self.equations.evaluate_slopes(t, y)?;
+        out.iter_mut().zip(&self.equations.slopes_y).for_each(|(out, slope)| *out = -*out - slope);
+        Ok(())
+    }
+
+    /// Writes what, integrated back in time, gives dG/dp: -(df/dp)^T lambda - dh/dp.
+    pub(super) fn backward_quadratures(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        lambda: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Failure> {
+        if self.supplied_parameters {
+            call::adjoint_parameters(&mut self.equations.system, t, y, lambda, out)?;
+        } else {
+            let evaluate = |system: &mut S, f: &mut [f64]| call::rhs(system, t, y, f);
+            self.equations.parameter_differences(lambda, out, evaluate)?;
+        }
+        self.equations.evaluate_slopes(t, y)?;
+        out.iter_mut().zip(&self.equations.slopes_p).for_each(|(out, slope)| *out = -*out - slope);
+        Ok(())
+    }
+
+    /// Writes the derivative of `backward_rhs` by lambda: -(df/dy)^T.
+    pub(super) fn backward_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        entries: Entries<'_>,
+    ) -> Result<(), Failure> {
+        self.update_jacobian(t, y)?;
+        let Equations { jacobian, backward, .. } = &self.equations;
+        jacobian.write_transposed(backward, entries, |_, place| -jacobian.values()[place]);
+        Ok(())
+    }
+
+    fn update_jacobian(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        let supplied = |system: &mut S, entries: Entries<'_>, ydot: &mut [f64]| {
+            call::rhs(system, t, y, ydot)?;
+            match entries {
+                Entries::Dense(matrix) => system.dense_jacobian(t, y, ydot, matrix),
+                Entries::Band(band) => system.banded_jacobian(t, y, ydot, band),
+                Entries::Sparse(values) => system.sparse_jacobian(t, y, ydot, values),
+                Entries::Custom => Ok(()),
+            }
+        };
+        let evaluate = |system: &mut S, y: &[f64], f: &mut [f64]| call::rhs(system, t, y, f);
+        self.equations.update_jacobian(t, y, supplied, evaluate)?;
+        Ok(())
+    }
+}
+
+impl<S: Ode, F: Functional> Ode for AdjointSystem<S, F> {
+    fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
+        call::rhs(&mut self.equations.system, t, y, ydot)
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        self.equations.system.dense_jacobian(t, y, ydot, jacobian)
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        self.equations.system.banded_jacobian(t, y, ydot, jacobian)
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        ydot: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.equations.system.sparse_jacobian(t, y, ydot, values)
+    }
+
+    fn quadrature_count(&self) -> usize {
+        1
+    }
+
+    fn quadratures(&mut self, t: f64, y: &[f64], qdot: &mut [f64]) -> Result<(), Failure> {
+        qdot[0] = self.equations.running(t, y)?;
+        Ok(())
+    }
+}

@@ -1,0 +1,94 @@
+//! How an adjoint gradient is computed.
+
+use crate::base::{input::InputError, vector::size_or_one};
+use crate::integrators::common::{AbsoluteTolerance, Tolerances, check_count};
+
+/// Options of the way back of an [`Adjoint`](super::Adjoint) or a [`DaeAdjoint`](super::DaeAdjoint).
+#[derive(Clone, Debug)]
+#[must_use]
+pub struct AdjointOptions {
+    pub(super) tolerances: Tolerances,
+    pub(super) gradient_tolerances: Option<Tolerances>,
+    pub(super) checkpoint_steps: u32,
+    pub(super) supplied_rhs: bool,
+    pub(super) supplied_parameters: bool,
+}
+
+impl AdjointOptions {
+    /// These tolerances for the adjoint lambda, which is dG/dy(t) of an ODE. Its linear solver is that of the run forward, transposed.
+    pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
+        Self {
+            tolerances: Tolerances::new(rtol, atol),
+            gradient_tolerances: None,
+            checkpoint_steps: 150,
+            supplied_rhs: false,
+            supplied_parameters: false,
+        }
+    }
+
+    /// Tolerances of dG/dp, whose errors, too, decide on the step size on the way back (`CVodeQuadSVtolerancesB`, `IDAQuadSVtolerancesB`). Default:
+    /// `rtol` of lambda, and its smallest `atol` divided by the size of the parameter, or by 1 for one that is zero.
+    pub fn gradient_tolerances(mut self, rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
+        self.gradient_tolerances = Some(Tolerances::new(rtol, atol));
+        self
+    }
+
+    /// Steps between two checkpoints: the states of so many steps are kept at once, and computed again between
+    /// two checkpoints (`CVodeAdjInit`, `IDAAdjInit`). Default: 150.
+    pub fn checkpoint_steps(mut self, steps: u32) -> Self {
+        self.checkpoint_steps = steps;
+        self
+    }
+
+    /// (df/dy)^T lambda comes from [`Ode::adjoint_rhs`](crate::integrators::ode::Ode::adjoint_rhs). Default: from the Jacobian, supplied or by
+    /// difference quotients as the linear solver of the run forward has it. Of an ODE alone.
+    pub fn supplied_rhs(mut self) -> Self {
+        self.supplied_rhs = true;
+        self
+    }
+
+    /// (df/dp)^T lambda comes from [`Ode::adjoint_parameters`](crate::integrators::ode::Ode::adjoint_parameters). Default: by central
+    /// differences, two evaluations for each parameter. Of an ODE alone.
+    pub fn supplied_parameters(mut self) -> Self {
+        self.supplied_parameters = true;
+        self
+    }
+
+    /// Checks them for `n` unknowns and so many parameters.
+    pub(super) fn check(&self, n: usize, parameters: usize) -> Result<(), InputError> {
+        check_count("checkpoint_steps", self.checkpoint_steps)?;
+        self.tolerances.check(&vec![0.0; n])?;
+        if let Some(tolerances) = &self.gradient_tolerances {
+            if parameters == 0 {
+                let mend = "the system has no parameters";
+                return Err(InputError::new("gradient_tolerances", "given", mend));
+            }
+            tolerances.check(&vec![0.0; parameters])?;
+        }
+        Ok(())
+    }
+
+    /// Refuses what only an ODE can supply.
+    pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
+        let supplied = [
+            ("supplied_rhs", self.supplied_rhs),
+            ("supplied_parameters", self.supplied_parameters),
+        ];
+        match supplied.into_iter().find(|(_, on)| *on) {
+            Some((name, _)) => Err(InputError::new(name, true, "an Ode has it, a Dae has not")),
+            None => Ok(()),
+        }
+    }
+
+    /// The tolerances of dG/dp, for these parameters.
+    pub(super) fn tolerances_for(&self, parameters: &[f64]) -> Tolerances {
+        if let Some(tolerances) = &self.gradient_tolerances {
+            return tolerances.clone();
+        }
+        let (rtol, least) = (self.tolerances.rtol, self.tolerances.least_atol());
+        Tolerances::new(
+            rtol,
+            parameters.iter().map(|p| least / size_or_one(*p)).collect::<Vec<_>>(),
+        )
+    }
+}

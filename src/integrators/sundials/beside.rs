@@ -1,0 +1,90 @@
+//! What CVODES and IDAS carry beside the state.
+
+use std::ptr;
+
+use super::{context::Context, ffi, functions::BackwardFunctions, linear::Linear, vector::Vector};
+use crate::integrators::common::Error;
+
+/// Integrals at the present time.
+pub(super) struct Quadratures {
+    pub(super) values: Vector,
+    /// As many numbers, for others than the present ones.
+    pub(super) scratch: Vector,
+}
+
+/// Sensitivities at the present time, one vector for each parameter.
+pub(super) struct Sensitivity {
+    pub(super) s: Vectors,
+    /// Time derivatives of those of a DAE, at the start.
+    pub(super) sp: Option<Vectors>,
+    /// One sensitivity at another time.
+    pub(super) scratch: Vector,
+    /// The present ones, one after the other.
+    pub(super) values: Vec<f64>,
+    /// What C calls the method.
+    pub(super) method: i32,
+}
+
+/// Vectors of equal length, and the array of them that C wants.
+pub(super) struct Vectors {
+    owned: Vec<Vector>,
+    raw: Vec<ffi::N_Vector>,
+}
+
+impl Vectors {
+    /// `count` vectors of `n` zeros.
+    pub(super) fn zeros(n: usize, count: usize, context: &Context) -> Result<Self, Error> {
+        let zeros = vec![0.0; n];
+        let owned: Vec<_> =
+            (0..count).map(|_| Vector::from_slice(&zeros, context)).collect::<Result<_, _>>()?;
+        let raw = owned.iter().map(Vector::raw).collect();
+        Ok(Self { owned, raw })
+    }
+
+    pub(super) fn raw(&mut self) -> *mut ffi::N_Vector {
+        self.raw.as_mut_ptr()
+    }
+
+    /// Writes `values`, one vector after the other, into them.
+    pub(super) fn set(&mut self, values: &[f64]) {
+        for (vector, values) in
+            self.owned.iter_mut().zip(values.chunks(values.len() / self.raw.len()))
+        {
+            vector.as_mut_slice().copy_from_slice(values);
+        }
+    }
+
+    pub(super) fn fill(&mut self, value: f64) {
+        self.owned.iter_mut().for_each(|vector| vector.as_mut_slice().fill(value));
+    }
+
+    /// Writes them into `values`, one after the other.
+    pub(super) fn copy_to(&self, values: &mut [f64]) {
+        let n = values.len() / self.raw.len();
+        for (vector, values) in self.owned.iter().zip(values.chunks_mut(n)) {
+            values.copy_from_slice(vector.as_slice());
+        }
+    }
+}
+
+/// The backward problem of an adjoint gradient, which C frees with the forward one, and what it uses.
+pub(super) struct Backward {
+    pub(super) functions: &'static BackwardFunctions,
+    /// What C calls it.
+    pub(super) which: i32,
+    /// C uses it; here it is kept, and freed after the memory.
+    pub(super) linear: Linear,
+    /// Where it starts, then where it ends.
+    pub(super) lambda: Vector,
+    /// The time derivative of `lambda`, of a DAE only.
+    pub(super) slope: Option<Vector>,
+    /// Integrals, if there are parameters.
+    pub(super) gradient: Option<Vector>,
+}
+
+impl Backward {
+    /// The C vector of the time derivative; null for an ODE.
+    pub(super) fn raw_slope(&self) -> ffi::N_Vector {
+        self.slope.as_ref().map_or(ptr::null_mut(), Vector::raw)
+    }
+}

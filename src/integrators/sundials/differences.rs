@@ -1,0 +1,276 @@
+//! Jacobians by difference quotients: columns that share no row are shifted at once.
+
+use std::ffi::c_void;
+
+use super::{
+    colouring::Colouring, context::Context, functions::Functions, linear_solver::LinearSolver,
+    pattern::Pattern, shape::Shape, signs::Sign, vector::Vector,
+};
+use crate::integrators::common::{Error, Tolerances};
+
+/// Difference quotients for the matrix of a linear solver.
+pub(crate) struct Differences {
+    shape: Shape,
+    colouring: Colouring,
+    /// Of an ODE; those of a DAE are IDA's.
+    increments: Option<Increments>,
+    /// Which signs the unknowns keep, if any.
+    signs: Vec<Sign>,
+    /// The point that the function is evaluated at. An ODE has no `yp`.
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    /// The function there.
+    value: Vec<f64>,
+    /// How often the function was evaluated.
+    pub(crate) evaluations: u64,
+}
+
+/// How far the unknowns of an ODE are shifted.
+struct Increments {
+    tolerances: Tolerances,
+    /// The increment of each unknown in parts of its size.
+    parts: Vec<f64>,
+    /// What the last shift of each unknown has changed.
+    changes: Vec<Change>,
+}
+
+/// The largest change of the function along a column, and the size of the function there.
+#[derive(Clone, Copy, Default)]
+struct Change {
+    largest: f64,
+    size: f64,
+}
+
+/// Parts of its size by which an unknown may be shifted. Salane's parts fall below the root of the rounding error, 2^-26, where a shift
+/// changes much; but in stiff equations near equilibrium, the terms of which cancel, any shift does, and shorter ones give noise.
+const LEAST_PART: f64 = 1.490_116_119_384_765_6e-8;
+const LARGEST_PART: f64 = 0.1;
+/// 2^-52 to the powers of 7/8, 3/4 and 1/4. Changes below the first, in parts of the function, are rounding: such a column is shifted once
+/// more, ten times as far. Below the second, its next shift is ten times as far; above the third, a tenth.
+const ROUNDING: f64 = 2.01e-14;
+const SMALL: f64 = 1.82e-12;
+const LARGE: f64 = 1.22e-4;
+
+impl Change {
+    /// Whether it is lost in rounding.
+    fn is_lost(self) -> bool {
+        self.largest < ROUNDING * self.size
+    }
+
+    /// The part for the next shift, after one by `part`.
+    fn next(self, part: f64) -> f64 {
+        let factor = match self {
+            Self { largest, size } if largest < SMALL * size => 10.0,
+            Self { largest, size } if largest > LARGE * size => 0.1,
+            _ => 1.0,
+        };
+        (factor * part).clamp(LEAST_PART, LARGEST_PART)
+    }
+}
+
+impl Differences {
+    /// df/dy of an ODE, whose unknowns keep these signs, if any; none where there is no matrix to write it in.
+    pub(crate) fn of_ode(
+        solver: &LinearSolver,
+        n: usize,
+        tolerances: &Tolerances,
+        signs: &[Sign],
+    ) -> Option<Self> {
+        let increments = Increments {
+            tolerances: tolerances.clone(),
+            parts: vec![LEAST_PART; n],
+            changes: vec![Change::default(); n],
+        };
+        Some(Self::new(Shape::of(solver)?, n, Some(increments), signs))
+    }
+
+    /// dF/dy + cj dF/dy' of a DAE on a pattern.
+    pub(super) fn of_dae(pattern: &Pattern, signs: &[Sign]) -> Self {
+        let n = pattern.dimension();
+        let differences = Self::new(Shape::Sparse(pattern.clone()), n, None, signs);
+        Self { yp: vec![0.0; n], ..differences }
+    }
+
+    /// Begins anew.
+    pub(super) fn restart(&mut self) {
+        self.evaluations = 0;
+        if let Some(increments) = &mut self.increments {
+            increments.parts.fill(LEAST_PART);
+        }
+    }
+
+    fn new(shape: Shape, n: usize, increments: Option<Increments>, signs: &[Sign]) -> Self {
+        Self {
+            colouring: shape.colouring(n),
+            shape,
+            increments,
+            signs: signs.to_vec(),
+            y: vec![0.0; n],
+            yp: Vec::new(),
+            value: vec![0.0; n],
+            evaluations: 0,
+        }
+    }
+
+    /// Writes df/dy into `values`, which has the layout of the linear solver's matrix; `ydot` is f(t, y), and `evaluate` writes it
+    /// at another y.
+    ///
+    /// Increments are parts of the size of each unknown, in the direction in which it goes, that follow what they change: so far that it is not lost in
+    /// rounding, and no farther than needed (D. E. Salane, "Adaptive routines for forming Jacobians numerically", Sandia
+    /// report SAND86-1319, 1986). A colour with a column that was lost takes a second evaluation.
+    pub(crate) fn of_rhs<E>(
+        &mut self,
+        y: &[f64],
+        ydot: &[f64],
+        values: &mut [f64],
+        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let Self { shape, colouring, signs, y: shifted, value, evaluations, .. } = self;
+        let Some(Increments { tolerances, parts, changes }) = &mut self.increments else {
+            return Ok(());
+        };
+        let (n, stored) = (y.len(), values.len());
+        let shift = |j: usize, part: f64| {
+            let forward = if ydot[j] < 0.0 { -1.0 } else { 1.0 };
+            let step = forward * part * tolerances.size_of(j, y[j]);
+            let is_allowed = signs.get(j).is_none_or(|sign| sign.allows(y[j] + step));
+            y[j] + if is_allowed { step } else { -step }
+        };
+        shifted.copy_from_slice(y);
+        for colour in 0..colouring.count() {
+            let columns = colouring.columns(colour);
+            columns.iter().for_each(|&j| shifted[j] = shift(j, parts[j]));
+            *evaluations += 1;
+            evaluate(shifted, value)?;
+            let mut again = false;
+            for &j in columns {
+                let column = &mut values[shape.places(j, n, stored)];
+                let rows = |k: usize| shape.row(j, k);
+                changes[j] = difference(column, rows, [value, ydot], shifted[j] - y[j]);
+                let is_lost = changes[j].is_lost() && parts[j] < LARGEST_PART;
+                again |= is_lost;
+                shifted[j] = if is_lost { shift(j, 10.0 * parts[j]) } else { y[j] };
+            }
+            if again {
+                *evaluations += 1;
+                evaluate(shifted, value)?;
+            }
+            for &j in columns {
+                if shifted[j] != y[j] {
+                    let rows = |k: usize| shape.row(j, k);
+                    let places = shape.places(j, n, stored);
+                    let farther = change(places.len(), rows, [value, ydot]);
+                    if changes[j].largest * farther.size < farther.largest * changes[j].size {
+                        let column = &mut values[places];
+                        changes[j] = difference(column, rows, [value, ydot], shifted[j] - y[j]);
+                        parts[j] *= 10.0;
+                    }
+                    shifted[j] = y[j];
+                }
+                parts[j] = changes[j].next(parts[j]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes dF/dy + cj dF/dy' into `values`; `residual` is F(t, y, y'), and `evaluate` writes it at another y and
+    /// y' or gives the code with which to return to C.
+    ///
+    /// The increments are those of the dense quotients (`idaLsDenseDQJac`), by the step size and the error weights.
+    pub(super) fn of_residual(
+        &mut self,
+        (cj, y, yp): (f64, &[f64], &[f64]),
+        (h, weights): (f64, &[f64]),
+        residual: &[f64],
+        values: &mut [f64],
+        mut evaluate: impl FnMut(&[f64], &[f64], &mut [f64]) -> i32,
+    ) -> i32 {
+        let root = f64::EPSILON.sqrt();
+        let increment = |j: usize| {
+            let change = h * yp[j];
+            let size = (root * y[j].abs().max(change.abs())).max(1.0 / weights[j]);
+            if change < 0.0 { -size } else { size }
+        };
+        self.y.copy_from_slice(y);
+        self.yp.copy_from_slice(yp);
+        let (n, stored) = (y.len(), values.len());
+        for colour in 0..self.colouring.count() {
+            let columns = self.colouring.columns(colour);
+            for &j in columns {
+                let step = increment(j);
+                let is_allowed = self.signs.get(j).is_none_or(|sign| sign.allows(y[j] + step));
+                self.y[j] += if is_allowed { step } else { -step };
+                self.yp[j] += cj * (self.y[j] - y[j]);
+            }
+            self.evaluations += 1;
+            let outcome = evaluate(&self.y, &self.yp, &mut self.value);
+            if outcome != 0 {
+                return outcome;
+            }
+            for &j in columns {
+                let column = &mut values[self.shape.places(j, n, stored)];
+                let rows = |k: usize| self.shape.row(j, k);
+                difference(column, rows, [&self.value, residual], self.y[j] - y[j]);
+                (self.y[j], self.yp[j]) = (y[j], yp[j]);
+            }
+        }
+        0
+    }
+}
+
+/// Writes the difference quotients of a column, from the function at both ends of a shift.
+fn difference(
+    column: &mut [f64],
+    rows: impl Fn(usize) -> usize,
+    [ahead, base]: [&[f64]; 2],
+    shift: f64,
+) -> Change {
+    for (k, entry) in column.iter_mut().enumerate() {
+        let i = rows(k);
+        *entry = (ahead[i] - base[i]) / shift;
+    }
+    change(column.len(), rows, [ahead, base])
+}
+
+/// What has changed in the rows of a column.
+fn change(count: usize, rows: impl Fn(usize) -> usize, [ahead, base]: [&[f64]; 2]) -> Change {
+    let mut most = Change::default();
+    for i in (0..count).map(rows) {
+        let largest = (ahead[i] - base[i]).abs();
+        if largest > most.largest || most.size == 0.0 {
+            most = Change { largest, size: ahead[i].abs().max(base[i].abs()) };
+        }
+    }
+    most
+}
+
+/// The step size and the error weights of an integrator, which its callbacks ask for.
+pub(super) struct Scales {
+    memory: *mut c_void,
+    functions: &'static Functions,
+    weights: Vector,
+}
+
+impl Scales {
+    /// # Safety
+    /// `memory` belongs to the integrator of `functions`, of `n` equations, and is alive whenever it is read.
+    pub(super) unsafe fn new(
+        (memory, functions): (*mut c_void, &'static Functions),
+        n: usize,
+        context: &Context,
+    ) -> Result<Self, Error> {
+        Ok(Self { memory, functions, weights: Vector::from_slice(&vec![0.0; n], context)? })
+    }
+
+    pub(super) fn read(&mut self) -> (f64, &[f64]) {
+        let (_, get_weights) = self.functions.get_error_weights;
+        let mut h = f64::NAN;
+        // SAFETY: the memory is that of the integrator that is calling; it fills a vector of its length, and the result has a
+        // place.
+        unsafe {
+            get_weights(self.memory, self.weights.raw());
+            (self.functions.get_current_step)(self.memory, &raw mut h);
+        }
+        (h, self.weights.as_slice())
+    }
+}

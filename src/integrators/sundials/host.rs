@@ -1,0 +1,390 @@
+//! What every C callback gets as its user data: the user's system, and a place for its troubles.
+//!
+//! A callback must not unwind into C. [`Host::guard`] runs the user's code, keeps whatever went
+//! wrong, and the return value stops SUNDIALS; the integrator takes the error up after C has
+//! returned.
+
+use std::{
+    any::Any,
+    error,
+    ffi::{CStr, c_char, c_void},
+    panic::{AssertUnwindSafe, catch_unwind, resume_unwind},
+    ptr::NonNull,
+};
+
+use super::{
+    differences::{Differences, Scales},
+    functions::Get,
+    ilu::IncompleteLu,
+    index::Index,
+    linear_solver::LinearSolver,
+    sensitivity::SensitivityRhs,
+    shape::Shape,
+    signs::Violation,
+};
+use crate::integrators::{
+    common::{Callback, Cause, Error, JacobianCheck, Point},
+    ode::Failure,
+};
+
+/// Return value of a callback that asks for a smaller step.
+pub(super) const RETRY: i32 = 1;
+/// Return value of a callback that asks SUNDIALS to stop.
+pub(super) const STOP: i32 = -1;
+
+/// `newton_solve` of an `Ode` or a `Dae`: (system, step parameter, right-hand side and solution).
+pub(super) type NewtonSolve<S> = fn(&mut S, f64, &mut [f64]) -> Result<(), Failure>;
+
+/// Finds the index of a `Dae`: (system, t, y, y').
+pub(super) type FindIndex<S> = fn(&mut S, f64, &[f64], &[f64]) -> Result<Index, Failure>;
+
+/// How a user-supplied linear solver is called.
+pub(super) struct CustomSolve<S> {
+    pub(super) solve: NewtonSolve<S>,
+    /// Reads the step parameter of the integrator that `memory` belongs to.
+    pub(super) step_parameter: Get<f64>,
+    pub(super) memory: *mut c_void,
+}
+
+/// The user's system and what happened in its callbacks.
+pub(super) struct Host<S> {
+    pub(super) system: S,
+    /// Number of unknowns: the length of every vector.
+    pub(super) n: usize,
+    pub(super) root_count: usize,
+    pub(super) quadrature_count: usize,
+    pub(super) sensitivity: Option<Box<SensitivityRhs>>,
+    /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
+    pub(super) linear_solver: Option<LinearSolver>,
+    /// None for a fixed-point iteration.
+    pub(super) custom_solve: Option<CustomSolve<S>>,
+    /// For sparse Jacobians that the system does not supply.
+    pub(super) differences: Option<Differences>,
+    /// What the differences of a DAE need to know.
+    pub(super) scales: Option<Scales>,
+    /// Looks at the Jacobian that the system supplies, with its shape if it is a matrix.
+    pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
+    /// To find out whether a DAE failed for its index; none if the user knows it.
+    pub(super) find_index: Option<FindIndex<S>>,
+    /// The preconditioner of a Krylov method, if it is not the system itself.
+    pub(super) ilu: Option<IncompleteLu>,
+    /// Time of the last `newton_setup`.
+    pub(super) setup_time: f64,
+    /// Time that whole steps have reached, noted for ARKODE: it gives that of a stage after a failure.
+    pub(super) step_end: Option<f64>,
+    pub(super) troubles: Troubles,
+}
+
+/// What callbacks and the SUNDIALS error handler reported since the last call of the integrator.
+#[derive(Default)]
+pub(super) struct Troubles {
+    panic: Option<Box<dyn Any + Send>>,
+    fatal: Option<(Callback, Box<dyn error::Error + Send + Sync>)>,
+    /// That a supplied Jacobian is wrong.
+    wrong: Option<Cause>,
+    /// Time and reason of the last request for a smaller step.
+    retry: Option<(f64, Cause)>,
+    /// How many such requests came in a row for the same time, to rounding.
+    stuck: u32,
+    /// The unknown that was last found beyond its bound.
+    violation: Option<Violation>,
+    message: String,
+}
+
+/// The error of the user's system, for the integrator's own error.
+pub(super) type Source = Option<Box<dyn error::Error + Send + Sync>>;
+
+impl Troubles {
+    /// Notes a request for a smaller step, and gives it up where it does not help any more: near
+    /// a time that can not be passed, SUNDIALS would make steps that are lost in rounding forever.
+    fn retry(&mut self, t: f64, cause: Cause) -> i32 {
+        const MOST: u32 = 30;
+        let same_time = |at: f64| (t - at).abs() <= 4.0 * f64::EPSILON * t.abs();
+        let again = self.retry.as_ref().is_some_and(|(at, _)| same_time(*at));
+        self.stuck = if again { self.stuck + 1 } else { 0 };
+        self.retry = Some((t, cause));
+        if self.stuck < MOST { RETRY } else { STOP }
+    }
+
+    /// Forgets everything, keeping allocations.
+    pub(super) fn clear(&mut self) {
+        self.retry = None;
+        self.stuck = 0;
+        self.begin(0.0);
+    }
+
+    /// Forgets what earlier calls reported, before one that goes on at time `t`: but for a time just ahead that kept them
+    /// from passing.
+    pub(super) fn begin(&mut self, t: f64) {
+        let near = |at: f64| (at - t).abs() <= 1e3 * f64::EPSILON * t.abs();
+        if !self.retry.as_ref().is_some_and(|(at, _)| near(*at)) {
+            self.retry = None;
+            self.stuck = 0;
+        }
+        self.panic = None;
+        self.fatal = None;
+        self.wrong = None;
+        self.violation = None;
+        self.message.clear();
+    }
+
+    /// Lets a panic of a callback go on, now that no C function is on the stack.
+    pub(super) fn resume_panic(&mut self) {
+        if let Some(panic) = self.panic.take() {
+            resume_unwind(panic);
+        }
+    }
+
+    /// Why the integrator stopped at `t` with step `h`: the fatal error of the user's system;
+    /// else, if `blame_retries`, its last complaint about a point that was not passed since;
+    /// else `otherwise`.
+    pub(super) fn cause(
+        &mut self,
+        (t, h): (f64, f64),
+        blame_retries: bool,
+        otherwise: Cause,
+    ) -> (Cause, Source) {
+        if let Some((callback, source)) = self.fatal.take() {
+            return (Cause::Fatal(callback), Some(source));
+        }
+        if let Some(wrong) = self.wrong.take() {
+            return (wrong, None);
+        }
+        match self.retry.take() {
+            Some((at, cause)) if blame_retries && (at - t) * h >= 0.0 => (cause, None),
+            _ => (otherwise, None),
+        }
+    }
+
+    pub(super) fn recent_violation(&self) -> Option<Violation> {
+        self.violation.filter(Violation::is_recent)
+    }
+
+    pub(super) fn message(&self) -> &str {
+        &self.message
+    }
+}
+
+impl<S> Host<S> {
+    pub(super) fn new(
+        system: S,
+        n: usize,
+        root_count: usize,
+        linear_solver: Option<LinearSolver>,
+    ) -> Self {
+        let troubles = Troubles::default();
+        Self {
+            system,
+            n,
+            root_count,
+            quadrature_count: 0,
+            sensitivity: None,
+            linear_solver,
+            custom_solve: None,
+            differences: None,
+            scales: None,
+            check: None,
+            find_index: None,
+            ilu: None,
+            setup_time: f64::NAN,
+            step_end: None,
+            troubles,
+        }
+    }
+
+    /// Runs user code of a callback and translates its outcome for SUNDIALS.
+    pub(super) fn guard(
+        &mut self,
+        callback: Callback,
+        t: f64,
+        call: impl FnOnce(&mut S) -> Result<(), Failure>,
+    ) -> i32 {
+        // The system is not used again after a panic unless its owner, who gets the panic, does.
+        match catch_unwind(AssertUnwindSafe(|| call(&mut self.system))) {
+            Ok(Ok(())) => 0,
+            Ok(Err(Failure::Recoverable(message))) => {
+                self.troubles.retry(t, Cause::Rejected { callback, t, message })
+            }
+            Ok(Err(Failure::Fatal(error))) => {
+                self.troubles.fatal = Some((callback, error));
+                STOP
+            }
+            Err(panic) => {
+                self.troubles.panic = Some(panic);
+                STOP
+            }
+        }
+    }
+
+    /// As [`guard`](Self::guard), for user code that fills `output`: NaN and infinity count as
+    /// recoverable failures.
+    pub(super) fn guard_output(
+        &mut self,
+        callback: Callback,
+        t: f64,
+        output: &mut [f64],
+        call: impl FnOnce(&mut S, &mut [f64]) -> Result<(), Failure>,
+    ) -> i32 {
+        let outcome = self.guard(callback, t, |system| call(system, &mut *output));
+        if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
+    }
+
+    /// Looks at a Jacobian that the system has just supplied, if it is due: its numbers, or the products that `times` writes.
+    pub(super) fn check_jacobian(
+        &mut self,
+        t: f64,
+        point: Point<'_>,
+        values: &[f64],
+        mut times: impl FnMut(&mut S, &[f64], &mut [f64]) -> Result<(), Failure>,
+        mut evaluate: impl FnMut(&mut S, [&[f64]; 2], &mut [f64]) -> Result<(), Failure>,
+    ) -> i32 {
+        let method = self.linear_solver.as_ref().and_then(LinearSolver::supplied);
+        // Out of the host, which calls the system meanwhile.
+        let (Some(method), Some((mut check, shape))) = (method, self.check.take()) else {
+            return 0;
+        };
+        let mut wrong = None;
+        let mut outcome = 0;
+        if check.is_due() {
+            let multiply = |system: &mut S, v: &[f64], out: &mut [f64]| match &shape {
+                Some(shape) => {
+                    shape.multiply(values, v, out);
+                    true
+                }
+                None => times(system, v, out).is_ok(),
+            };
+            let evaluate = |system: &mut S, [y, yp]: [&[f64]; 2], out: &mut [f64]| {
+                evaluate(system, [y, yp], out).is_ok()
+            };
+            outcome = self.guard(Callback::Jacobian, t, |system| {
+                wrong = check.find(system, method, point, multiply, evaluate);
+                Ok(())
+            });
+        }
+        self.check = Some((check, shape));
+        if wrong.is_none() {
+            return outcome;
+        }
+        self.troubles.wrong = wrong;
+        STOP
+    }
+
+    /// Solves with the preconditioner of a Krylov method, in place: the incomplete factorization, or `own` of the system.
+    pub(super) fn precondition(
+        &mut self,
+        t: f64,
+        z: &mut [f64],
+        own: impl FnOnce(&mut S, &mut [f64]) -> Result<(), Failure>,
+    ) -> i32 {
+        match &self.ilu {
+            Some(ilu) => {
+                ilu.solve(z);
+                self.check_finite(Callback::Preconditioner, t, z)
+            }
+            None => self.guard_output(Callback::NewtonSolve, t, z, own),
+        }
+    }
+
+    /// Asks for a smaller step where an incomplete factorization has no pivot.
+    pub(super) fn check_pivots(&mut self, t: f64, factorized: Result<(), usize>) -> i32 {
+        let Err(row) = factorized else { return 0 };
+        let message = format!(
+            "the incomplete LU factorization, which takes each unknown from the equation of its own row, has no \
+             pivot in row {row}"
+        );
+        let callback = Callback::Preconditioner;
+        self.troubles.retry(t, Cause::Rejected { callback, t, message })
+    }
+
+    /// Asks for a smaller step if `output` has a NaN or infinity.
+    pub(super) fn check_finite(&mut self, callback: Callback, t: f64, output: &[f64]) -> i32 {
+        // A fold without early exit, which the compiler turns into vector instructions.
+        if output.iter().fold(true, |finite, x| finite & x.is_finite()) {
+            return 0;
+        }
+        let component = output.iter().position(|x| !x.is_finite()).unwrap_or_default();
+        let value = output[component];
+        self.troubles.retry(t, Cause::NotFinite { callback, t, component, value })
+    }
+}
+
+/// Owns a [`Host`] at a fixed address which C may keep.
+///
+/// It is a raw pointer and not a `Box`, since C's copy of the pointer would not survive the
+/// uniqueness that moving a `Box` asserts.
+pub(super) struct HostBox<S>(NonNull<Host<S>>);
+
+impl<S> HostBox<S> {
+    pub(super) fn new(host: Host<S>) -> Self {
+        Self(NonNull::from(Box::leak(Box::new(host))))
+    }
+
+    pub(super) fn as_ptr(&self) -> *mut c_void {
+        self.0.as_ptr().cast()
+    }
+
+    /// Where vectors of signs note what was found beyond its bound, during calls of C.
+    pub(super) fn violation(&self) -> *mut Option<Violation> {
+        // SAFETY: the host lives as long as `self`; no reference is made.
+        unsafe { &raw mut (*self.0.as_ptr()).troubles.violation }
+    }
+
+    pub(super) fn get(&self) -> &Host<S> {
+        // SAFETY: the host lives as long as `self`; callbacks, which make a `&mut Host`, only run
+        // within calls that hold the integrator by `&mut`, when this reference is gone.
+        unsafe { self.0.as_ref() }
+    }
+
+    pub(super) fn get_mut(&mut self) -> &mut Host<S> {
+        // SAFETY: as in `get`, and `&mut self` makes the access unique.
+        unsafe { self.0.as_mut() }
+    }
+
+    /// Turns the return code of a C function that does not integrate into a result.
+    pub(super) fn accept(&mut self, function: &'static str, code: i32) -> Result<(), Error> {
+        if code >= 0 {
+            return Ok(());
+        }
+        let troubles = &mut self.get_mut().troubles;
+        let message = std::mem::take(&mut troubles.message);
+        Err(Error::Call { function, code, message })
+    }
+
+    /// Gives the user's system back. Whatever C object holds the pointer has to be gone.
+    pub(super) fn into_system(self) -> S {
+        let pointer = self.0;
+        std::mem::forget(self);
+        // SAFETY: leaked from a Box in `new`; `self` is forgotten, so it is freed only here.
+        unsafe { Box::from_raw(pointer.as_ptr()) }.system
+    }
+}
+
+impl<S> Drop for HostBox<S> {
+    fn drop(&mut self) {
+        // SAFETY: leaked from a Box in `new` and freed once; owners drop the C objects first.
+        drop(unsafe { Box::from_raw(self.0.as_ptr()) });
+    }
+}
+
+/// Error handler of SUNDIALS: keeps the last message instead of printing it.
+///
+/// # Safety
+/// `data` points to a live [`Host<S>`] that nobody else uses; `message` is null or a C string.
+pub(super) unsafe extern "C" fn keep_message<S>(
+    code: i32,
+    _module: *const c_char,
+    _function: *const c_char,
+    message: *mut c_char,
+    data: *mut c_void,
+) {
+    // Warnings have positive codes; they do not stop the integration.
+    if code >= 0 || message.is_null() {
+        return;
+    }
+    // SAFETY: SUNDIALS passes the data pointer that was registered with this handler, and a
+    // terminated message; the callbacks that also use the host have returned.
+    let (troubles, message) =
+        unsafe { (&mut (*data.cast::<Host<S>>()).troubles, CStr::from_ptr(message)) };
+    troubles.message.clear();
+    troubles.message.push_str(message.to_string_lossy().trim());
+}

@@ -1,0 +1,218 @@
+//! Where IDA starts: states and their time derivatives, and how they are made to fit.
+
+use std::ptr;
+
+use faer::MatRef;
+
+use super::setup::IdaKind;
+use crate::integrators::{
+    common::{
+        Callback, Cause, Error, IntegrationError, Integrator, check_finite, check_length,
+        check_time,
+    },
+    ode::{Dae, Failure},
+    sundials::{
+        beside::Vectors,
+        ffi,
+        index::{Index, index},
+        sensitivity::CarriesSensitivities,
+        session::Session,
+        stepping::apart,
+        vector::Vector,
+    },
+};
+
+/// Which initial values [`Ida::consistent_start`](super::Ida::consistent_start) may change.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InitialCondition {
+    /// The algebraic unknowns and the derivatives of the differential ones; differential unknowns
+    /// stay (`IDA_YA_YDP_INIT`). Needs [`IdaOptions::differential`](super::IdaOptions::differential).
+    Algebraic,
+    /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`). Not with sensitivities.
+    State,
+}
+
+/// C looks for a start by implicit steps of five sizes, each a tenth of the one before, from this part of the time to the first
+/// output on.
+const LONGEST_STEP: f64 = 1e-3;
+/// What that time is shortened by where none of them led to a start, and how often.
+const NEXT: f64 = 1e-5;
+const RETRIES: usize = 6;
+
+/// What a session of IDA can do, as described at [`Ida`](super::Ida).
+pub trait StartsDae: CarriesSensitivities {
+    fn consistent_start(
+        &mut self,
+        unknown: InitialCondition,
+        first_output: f64,
+    ) -> Result<(), Error>;
+    fn check_index(&mut self) -> Result<(), Error>;
+    fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error>;
+    fn set_sensitivities_with(
+        &mut self,
+        s: MatRef<'_, f64>,
+        sp: MatRef<'_, f64>,
+    ) -> Result<(), Error>;
+    fn knows_algebraic(&self) -> bool;
+    fn diagnose_index(&mut self) -> Result<(), Error>;
+    fn yp(&self) -> &[f64];
+}
+
+impl<S: Dae> StartsDae for Session<IdaKind, S> {
+    fn consistent_start(
+        &mut self,
+        unknown: InitialCondition,
+        first_output: f64,
+    ) -> Result<(), Error> {
+        check_time("first_output", first_output)?;
+        if first_output == self.t {
+            let mend = "it is a later time than the start";
+            return Err(Error::input("first_output", first_output, mend));
+        }
+        if unknown == InitialCondition::Algebraic && !self.kind.knows_algebraic {
+            let mend = "the option `differential` has to say which unknowns are algebraic";
+            return Err(Error::input("unknown", "InitialCondition::Algebraic", mend));
+        }
+        if unknown == InitialCondition::State && self.sensitivities.is_some() {
+            let mend =
+                "with sensitivities it is Algebraic: IDAS 6.4.1 reads numbers that it never wrote";
+            return Err(Error::input("unknown", "InitialCondition::State", mend));
+        }
+        if self.statistics().steps > 0 {
+            let mend = "initial values can only be corrected before the first step";
+            return Err(Error::input("steps taken", self.statistics().steps, mend));
+        }
+        let task = match unknown {
+            InitialCondition::Algebraic => ffi::IDA_YA_YDP_INIT,
+            InitialCondition::State => ffi::IDA_Y_INIT,
+        };
+        let mut towards = first_output;
+        let mut retries = if task == ffi::IDA_YA_YDP_INIT { RETRIES } else { 0 };
+        let code = loop {
+            self.host.get_mut().troubles.clear();
+            // SAFETY: the memory and everything registered with it are alive; `&mut self` keeps
+            // others away while callbacks use the host.
+            let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, apart(self.t, towards)) };
+            self.host.get_mut().troubles.resume_panic();
+            let unfound = [ffi::IDA_CONV_FAIL, ffi::IDA_LINESEARCH_FAIL, ffi::IDA_NO_RECOVERY];
+            // C refuses less than that
+            let scale = NEXT * (towards - self.t);
+            let moves = scale.abs() > 8.0 * f64::EPSILON * self.t.abs();
+            if retries == 0 || !moves || !unfound.contains(&code) {
+                break code;
+            }
+            if retries == RETRIES && self.higher_index(&Cause::InconsistentStart).is_some() {
+                break code;
+            }
+            (towards, retries) = (self.t + scale, retries - 1);
+        };
+        if code < 0 {
+            let longest = LONGEST_STEP * (first_output - self.t).abs();
+            let shortest = 1e-4 * LONGEST_STEP * (towards - self.t).abs();
+            return Err(self.unfound(code, first_output, [longest, shortest]));
+        }
+        // SAFETY: memory and vectors are alive.
+        let code = unsafe { ffi::IDAGetConsistentIC(self.memory.raw, self.y.raw(), self.raw_yp()) };
+        self.host.accept("IDAGetConsistentIC", code)?;
+        self.read_consistent_sensitivities()
+    }
+
+    fn check_index(&mut self) -> Result<(), Error> {
+        const MOST_UNKNOWNS: usize = 1000;
+        let n = self.y().len();
+        if n > MOST_UNKNOWNS {
+            let mend = format!("the index is checked in dense matrices: at most {MOST_UNKNOWNS}");
+            return Err(Error::input("number of unknowns", n, mend));
+        }
+        let (host, y) = (self.host.get_mut(), self.y.as_slice());
+        let yp = self.yp.as_ref().map_or(&[][..], Vector::as_slice);
+        let (callback, t) = (Callback::Residual, self.t);
+        let (cause, source) = match index(&mut host.system, t, y, yp) {
+            Ok(Index::AtMostOne) => return Ok(()),
+            Ok(Index::Higher(unknown)) => (Cause::HigherIndex { unknown }, None),
+            Ok(Index::Singular) => (Cause::LinearSolver, None),
+            Err(Failure::Recoverable(message)) => (Cause::Rejected { callback, t, message }, None),
+            Err(Failure::Fatal(error)) => (Cause::Fatal(callback), Some(error)),
+        };
+        let statistics = self.step_statistics();
+        Err(IntegrationError {
+            integrator: self.memory.functions.integrator,
+            cause,
+            t,
+            step: statistics.current_step,
+            order: statistics.current_order,
+            message: String::new(),
+            source,
+        }
+        .into())
+    }
+
+    fn reinit_with(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error> {
+        check_length("length of yp", yp.len(), self.y().len())?;
+        check_finite("yp", yp)?;
+        let before = self.yp().to_vec();
+        if let Some(vector) = &mut self.yp {
+            vector.as_mut_slice().copy_from_slice(yp);
+        }
+        let outcome = self.reinit(t, y);
+        if let (Err(_), Some(vector)) = (&outcome, &mut self.yp) {
+            vector.as_mut_slice().copy_from_slice(&before);
+        }
+        outcome
+    }
+
+    fn set_sensitivities_with(
+        &mut self,
+        s: MatRef<'_, f64>,
+        sp: MatRef<'_, f64>,
+    ) -> Result<(), Error> {
+        self.check_shape("shape of sp", sp.nrows(), sp.ncols())?;
+        self.start_sensitivities(s, Some(sp))
+    }
+
+    fn knows_algebraic(&self) -> bool {
+        self.kind.knows_algebraic
+    }
+
+    fn diagnose_index(&mut self) -> Result<(), Error> {
+        match self.higher_index(&Cause::Other) {
+            Some(cause) => Err(self.error(&self.step_statistics(), cause, String::new(), None)),
+            None => Ok(()),
+        }
+    }
+
+    fn yp(&self) -> &[f64] {
+        self.yp.as_ref().map_or(&[], Vector::as_slice)
+    }
+}
+
+impl<S> Session<IdaKind, S> {
+    /// The error for a start that was not found by steps of these sizes.
+    fn unfound(&mut self, code: i32, first_output: f64, [longest, shortest]: [f64; 2]) -> Error {
+        let mut error = self.stopped(code, first_output);
+        if let Error::Integration(stopped) = &mut error
+            && stopped.cause == Cause::InconsistentStart
+        {
+            let tried = format!(
+                "no start was found by steps from {longest:.0e} to {shortest:.0e}: try one that is closer to the equations"
+            );
+            let said = std::mem::replace(&mut stopped.message, tried);
+            if !said.is_empty() {
+                stopped.message.push_str("; ");
+                stopped.message.push_str(&said);
+            }
+        }
+        error
+    }
+
+    /// Reads the sensitivities after `IDACalcIC`, which corrects them, too.
+    fn read_consistent_sensitivities(&mut self) -> Result<(), Error> {
+        let Some(sensitivities) = &mut self.sensitivities else { return Ok(()) };
+        let s = sensitivities.s.raw();
+        let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
+        // SAFETY: memory and vectors are alive; null asks for nothing.
+        let code = unsafe { ffi::IDAGetSensConsistentIC(self.memory.raw, s, sp) };
+        sensitivities.s.copy_to(&mut sensitivities.values);
+        self.host.accept("IDAGetSensConsistentIC", code)
+    }
+}

@@ -1,0 +1,162 @@
+//! Krylov methods: linear systems of the Newton iteration solved without their matrix.
+
+use super::{jacobian::Jacobian, pattern::Pattern};
+use crate::base::input::InputError;
+
+/// A Krylov method, which asks for nothing but products of the Newton matrix with vectors; for systems
+/// with more unknowns than a factorization can bear.
+///
+/// ```
+/// use pliant::sundials::{
+///     CvodeOptions, Jacobian, Krylov, KrylovMethod, LinearSolver, Pattern, Preconditioner, Side,
+/// };
+///
+/// let ilu = Preconditioner::Ilu {
+///     pattern: Pattern::band(1000, 1, 1)?,
+///     jacobian: Jacobian::DifferenceQuotients,
+/// };
+/// let gmres = Krylov::new(KrylovMethod::Gmres { dimension: 10, restarts: 2 })
+///     .preconditioner(Side::Left, ilu);
+/// let options = CvodeOptions::new(1e-6, 1e-9).newton(LinearSolver::Krylov(gmres));
+/// # Ok::<(), pliant::InputError>(())
+/// ```
+///
+/// User guide: chapter "Linear Algebraic Solvers", `SUNLinSol_SPGMR` and `SUNLinSol_SPBCGS`.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[must_use]
+pub struct Krylov {
+    pub(super) method: KrylovMethod,
+    pub(super) products: Jacobian,
+    pub(super) preconditioner: Option<(Side, Preconditioner)>,
+    pub(super) tolerance_factor: Option<f64>,
+}
+
+/// The Krylov methods.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum KrylovMethod {
+    /// The smallest residual in a subspace (`SUNLinSol_SPGMR`): one product for each of its dimensions, whose
+    /// vectors are all kept.
+    Gmres {
+        /// Dimensions of the subspace, 1 to 1000; C has 5.
+        dimension: u32,
+        /// How often it may start again from where it has come to, at most 1000; 0: not at all.
+        restarts: u32,
+    },
+    /// The stabilized method of biconjugate gradients (`SUNLinSol_SPBCGS`): two products for each iteration, and
+    /// six vectors.
+    BiCgStab {
+        /// Iterations allowed, 1 to 1000; C has 5.
+        iterations: u32,
+    },
+}
+
+/// The side of the matrix A at which a preconditioner P stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Side {
+    /// P^-1 A x = P^-1 b: the residual is measured after P^-1.
+    Left,
+    /// A P^-1 (P x) = b: the residual is that of the equations. CVODE and ARKODE alone.
+    Right,
+}
+
+/// What a Krylov method solves instead of its systems, to know roughly where to go.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Preconditioner {
+    /// The system's own `newton_setup` and `newton_solve`, which may be approximate here. A `newton_rhs` of its
+    /// own is not called: its part has to be in `rhs`.
+    Custom,
+    /// Incomplete LU factorization without fill, ILU(0), of the Newton matrix on a sparsity pattern: exact where
+    /// factors have no fill, as on a full band ([`Pattern::band`]).
+    ///
+    /// There is no pivoting. A zero on the diagonal makes the step be tried again with another size: the equations of
+    /// a DAE have to be in an order where each contains its unknown.
+    Ilu {
+        /// The entries taken; the Jacobian may have others if it supplies the values itself.
+        pattern: Pattern,
+        /// Where the values come from.
+        jacobian: Jacobian,
+    },
+}
+
+impl Krylov {
+    /// A method with products by difference quotients and without a preconditioner.
+    pub fn new(method: KrylovMethod) -> Self {
+        let products = Jacobian::DifferenceQuotients;
+        Self { method, products, preconditioner: None, tolerance_factor: None }
+    }
+
+    /// Where the products of the Jacobian with vectors come from (`CVodeSetJacTimes`). Default: difference
+    /// quotients; supplied ones are `jacobian_times`.
+    pub fn products(mut self, products: Jacobian) -> Self {
+        self.products = products;
+        self
+    }
+
+    /// The preconditioner (`CVodeSetPreconditioner`). Default: none, which suffices where steps are hardly
+    /// longer than the fastest time scale.
+    pub fn preconditioner(mut self, side: Side, preconditioner: Preconditioner) -> Self {
+        self.preconditioner = Some((side, preconditioner));
+        self
+    }
+
+    /// How much smaller than the error allowed to Newton's iteration that of a linear system has to be
+    /// (`CVodeSetEpsLin`). Default: 0.05.
+    pub fn tolerance_factor(mut self, factor: f64) -> Self {
+        self.tolerance_factor = Some(factor);
+        self
+    }
+
+    /// Checks that `n` equations can be solved so.
+    pub(super) fn check(&self, n: usize) -> Result<(), InputError> {
+        const MOST: u32 = 1000;
+        let (input, size, restarts) = match self.method {
+            KrylovMethod::Gmres { dimension, restarts } => ("dimension", dimension, restarts),
+            KrylovMethod::BiCgStab { iterations } => ("iterations", iterations, 0),
+        };
+        if !(1..=MOST).contains(&size) {
+            return Err(InputError::new(input, size, format!("it lies between 1 and {MOST}")));
+        }
+        if restarts > MOST {
+            return Err(InputError::new("restarts", restarts, format!("it is at most {MOST}")));
+        }
+        if let Some(factor) = self.tolerance_factor
+            && !(factor > 0.0 && factor.is_finite())
+        {
+            return Err(InputError::new(
+                "tolerance_factor",
+                factor,
+                "it is positive, such as 0.05",
+            ));
+        }
+        match self.ilu() {
+            Some((pattern, _)) => pattern.check(n),
+            None => Ok(()),
+        }
+    }
+
+    /// IDA takes the preconditioned residual for a solution that needs no iteration.
+    pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
+        match &self.preconditioner {
+            Some((Side::Right, _)) => {
+                let mend = "IDA has preconditioners on the left alone";
+                Err(InputError::new("side of the preconditioner", "Side::Right", mend))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Pattern and entries of an incomplete factorization.
+    // Inlined, its test is made before the one whether there is a Krylov method at all, and its value dropped: valgrind
+    // takes that for an error.
+    #[inline(never)]
+    pub(super) fn ilu(&self) -> Option<(&Pattern, Jacobian)> {
+        match &self.preconditioner {
+            Some((_, Preconditioner::Ilu { pattern, jacobian })) => Some((pattern, *jacobian)),
+            _ => None,
+        }
+    }
+}

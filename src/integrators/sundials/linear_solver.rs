@@ -1,0 +1,143 @@
+//! How the linear systems of the Newton iteration are solved.
+
+use super::{jacobian::Jacobian, krylov::Krylov, pattern::Pattern};
+use crate::base::input::InputError;
+
+/// How the linear systems of the Newton iteration are solved.
+///
+/// User guide: chapter "Linear Algebraic Solvers", SUNLinearSolver.
+#[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum LinearSolver {
+    /// LU factorization of a dense matrix: n^2 numbers, n^3 work. For small systems.
+    Dense(Jacobian),
+    /// LU factorization of a band matrix; entry (i, j) may be nonzero where
+    /// `j - upper <= i <= j + lower`.
+    Band {
+        /// Diagonals below the main one.
+        lower: usize,
+        /// Diagonals above the main one.
+        upper: usize,
+        /// Where the entries come from.
+        jacobian: Jacobian,
+    },
+    /// Sparse LU factorization by KLU.
+    Klu {
+        /// Where the nonzeros are. Difference quotients are wrong where the Jacobian has others.
+        pattern: Pattern,
+        /// Where the entries come from.
+        jacobian: Jacobian,
+    },
+    /// A Krylov method: no matrix, but products with vectors.
+    Krylov(Krylov),
+    /// The system's own `newton_setup` and `newton_solve`: the way to exploit structure that
+    /// a matrix of entries hides.
+    Custom,
+}
+
+impl LinearSolver {
+    /// Stops what C would crash on.
+    pub(crate) fn check(&self, n: usize) -> Result<(), InputError> {
+        match self {
+            Self::Dense(_) if !is_addressable(n, n) => Err(InputError::new(
+                "number of unknowns",
+                n,
+                "a dense matrix of that size does not fit into any memory: choose a band, a sparse \
+                 or a custom linear solver",
+            )),
+            Self::Band { lower, upper, .. } if *lower >= n || *upper >= n => Err(InputError::new(
+                "bandwidths (lower, upper)",
+                format!("({lower}, {upper})"),
+                format!("both have to be smaller than the number of unknowns, {n}"),
+            )),
+            Self::Band { lower, upper, .. } if !is_addressable(n, band_rows(*lower, *upper)) => {
+                Err(InputError::new(
+                    "bandwidths (lower, upper)",
+                    format!("({lower}, {upper})"),
+                    format!("with {n} unknowns the band does not fit into any memory"),
+                ))
+            }
+            Self::Klu { pattern, .. } => pattern.check(n),
+            Self::Krylov(krylov) => krylov.check(n),
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the matrix of a DAE is filled by a callback (and not by SUNDIALS' difference quotients).
+    pub(super) fn has_jacobian_callback(&self) -> bool {
+        match self {
+            Self::Dense(jacobian) | Self::Band { jacobian, .. } => *jacobian == Jacobian::Supplied,
+            Self::Klu { .. } | Self::Custom => true,
+            Self::Krylov(_) => false,
+        }
+    }
+
+    /// The method by which the system supplies a Jacobian that the iteration relies on.
+    pub(crate) fn supplied(&self) -> Option<&'static str> {
+        match self {
+            Self::Dense(Jacobian::Supplied) => Some("dense_jacobian"),
+            Self::Band { jacobian: Jacobian::Supplied, .. } => Some("banded_jacobian"),
+            Self::Klu { jacobian: Jacobian::Supplied, .. } => Some("sparse_jacobian"),
+            Self::Krylov(krylov) if krylov.products == Jacobian::Supplied => Some("jacobian_times"),
+            _ => None,
+        }
+    }
+
+    /// Whether entries, of the matrix or of its preconditioner, are difference quotients.
+    pub(super) fn takes_quotients(&self) -> bool {
+        let entries = match self {
+            Self::Dense(jacobian) | Self::Band { jacobian, .. } | Self::Klu { jacobian, .. } => {
+                Some(*jacobian)
+            }
+            _ => self.ilu().map(|(_, jacobian)| jacobian),
+        };
+        entries == Some(Jacobian::DifferenceQuotients)
+    }
+
+    /// The pattern on which the layer itself takes difference quotients.
+    pub(super) fn pattern_of_differences(&self) -> Option<&Pattern> {
+        match (self, self.ilu()) {
+            (Self::Klu { pattern, jacobian: Jacobian::DifferenceQuotients }, _)
+            | (_, Some((pattern, Jacobian::DifferenceQuotients))) => Some(pattern),
+            _ => None,
+        }
+    }
+
+    /// Pattern and entries of an incomplete factorization that preconditions.
+    pub(super) fn ilu(&self) -> Option<(&Pattern, Jacobian)> {
+        match self {
+            Self::Krylov(krylov) => krylov.ilu(),
+            _ => None,
+        }
+    }
+}
+
+/// Rows of the stored band: as many diagonals as LU factorization with pivoting needs.
+fn band_rows(lower: usize, upper: usize) -> usize {
+    lower.saturating_mul(2).saturating_add(upper).saturating_add(1)
+}
+
+/// Whether C can count the bytes of a matrix of `n` columns of `rows` numbers.
+fn is_addressable(n: usize, rows: usize) -> bool {
+    let bytes = n.checked_mul(rows).and_then(|count| count.checked_mul(size_of::<f64>()));
+    bytes.is_some_and(|bytes| isize::try_from(bytes).is_ok())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Jacobian, LinearSolver};
+
+    /// n^2 numbers of 8 bytes are more than 2^63 from n = 2^30 on: products that C would not notice.
+    #[test]
+    fn matrices_whose_size_overflows_are_refused() {
+        let dense = LinearSolver::Dense(Jacobian::Supplied);
+        assert!(dense.check(1 << 29).is_ok());
+        assert!(dense.check(1 << 30).is_err());
+        let band =
+            |half| LinearSolver::Band { lower: half, upper: half, jacobian: Jacobian::Supplied };
+        assert!(band(1).check(1 << 40).is_ok());
+        assert!(band((1 << 40) - 1).check(1 << 40).is_err());
+        assert!(band(usize::MAX / 2).check(usize::MAX).is_err());
+    }
+}

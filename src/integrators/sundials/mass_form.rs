@@ -1,0 +1,291 @@
+//! M y' = f(t, y) as a DAE, for mass matrices that may be singular.
+
+use faer::{Mat, MatMut};
+
+use super::{linear_solver::LinearSolver, pattern::Pattern};
+use crate::base::input::InputError;
+use crate::integrators::{
+    common::{Error, check_whole},
+    ode::{BandMut, Dae, Failure, MassKind, Ode, call},
+};
+
+/// The DAE M y' - f(t, y) = 0 of an [`Ode`] with a mass matrix, for [`Ida`](super::Ida).
+///
+/// M may be singular: M = diag(1, 1, 0) makes the third equation a constraint, 0 = f3(t, y). The equations
+/// have to be of index 1, that is, M with the derivatives of the constraints has to be regular.
+///
+/// Its Jacobians dF/dy + cj dF/dy' = cj M - df/dy are made of those of the system.
+///
+/// ```
+/// use pliant::{
+///     ode::with_mass,
+///     sundials::{Ida, IdaOptions, InitialCondition, Integrator, Jacobian, LinearSolver, MassForm},
+/// };
+///
+/// // y1' = -y2 with 0 = y1 - y2
+/// let rhs = |_t: f64, y: &[f64], f: &mut [f64]| {
+///     f[0] = -y[1];
+///     f[1] = y[0] - y[1];
+///     Ok(())
+/// };
+/// let solver = LinearSolver::Dense(Jacobian::DifferenceQuotients);
+/// let mut system = MassForm::new(with_mass(rhs, [1.0, 0.0]), 2, &solver)?;
+/// let differential = system.differential(0.0)?;
+/// let options = IdaOptions::new(1e-8, 1e-10).newton(solver).differential(differential);
+/// let mut ida = Ida::new(system, 0.0, &[1.0, 0.0], &[0.0, 0.0], &options)?;
+/// ida.consistent_start(InitialCondition::Algebraic, 1.0)?;
+/// ida.solve_to(1.0)?;
+/// assert!((ida.y()[0] - (-1f64).exp()).abs() < 1e-6);
+/// # Ok::<(), pliant::sundials::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct MassForm<S> {
+    system: S,
+    mass: Mass,
+    /// Whether `mass` is that of the system; one that depends on time never is.
+    known: bool,
+    /// f(t, y)
+    f: Vec<f64>,
+}
+
+/// The mass matrix, in the form of the Newton matrix.
+#[derive(Clone, Debug)]
+enum Mass {
+    Dense(Mat<f64>),
+    /// Columns of `lower + upper + 1` numbers each.
+    Band {
+        data: Vec<f64>,
+        lower: usize,
+        upper: usize,
+    },
+    Sparse {
+        pattern: Pattern,
+        values: Vec<f64>,
+    },
+}
+
+impl Mass {
+    /// A matrix of zeros.
+    fn new(n: usize, solver: &LinearSolver) -> Result<Self, InputError> {
+        solver.check(n)?;
+        match solver {
+            LinearSolver::Dense(_) => Ok(Self::Dense(Mat::zeros(n, n))),
+            LinearSolver::Band { lower, upper, .. } => {
+                let (lower, upper) = (*lower, *upper);
+                Ok(Self::Band { data: vec![0.0; n * (lower + upper + 1)], lower, upper })
+            }
+            LinearSolver::Klu { pattern, .. } => {
+                let values = vec![0.0; pattern.entry_count()];
+                Ok(Self::Sparse { pattern: pattern.clone(), values })
+            }
+            other => {
+                let mend = "with a mass matrix it is dense, of band form or sparse (KLU)";
+                Err(InputError::new("linear solver", format!("{other:?}"), mend))
+            }
+        }
+    }
+
+    /// Takes the matrix of the system at time `t`.
+    fn read<S: Ode>(&mut self, t: f64, system: &mut S) -> Result<(), Failure> {
+        match self {
+            Self::Dense(matrix) => {
+                matrix.fill(0.0);
+                system.dense_mass(t, matrix.as_mut())
+            }
+            Self::Band { data, lower, upper } => {
+                data.fill(0.0);
+                let band = BandMut::new(data, *lower + *upper + 1, *upper, *lower, *upper);
+                system.banded_mass(t, band)
+            }
+            Self::Sparse { values, .. } => {
+                values.fill(0.0);
+                system.sparse_mass(t, values)
+            }
+        }
+    }
+
+    /// Calls `visit` with row, column and value of each entry that is stored.
+    fn visit(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        match self {
+            Self::Dense(matrix) => {
+                for (j, column) in matrix.col_iter().enumerate() {
+                    column.iter().enumerate().for_each(|(i, value)| visit(i, j, *value));
+                }
+            }
+            Self::Band { data, lower, upper } => {
+                let n = data.len() / (lower + upper + 1);
+                for (j, column) in data.chunks_exact(lower + upper + 1).enumerate() {
+                    for i in j.saturating_sub(*upper)..n.min(j + lower + 1) {
+                        visit(i, j, column[upper + i - j]);
+                    }
+                }
+            }
+            Self::Sparse { pattern, values } => {
+                let mut entries = pattern.row_indices().iter().zip(values);
+                for (j, ends) in pattern.column_pointers().windows(2).enumerate() {
+                    let column = entries.by_ref().take((ends[1] - ends[0]) as usize);
+                    column.for_each(|(i, value)| visit(*i as usize, j, *value));
+                }
+            }
+        }
+    }
+}
+
+impl<S: Ode> MassForm<S> {
+    /// The DAE of `system`, which has `n` unknowns, for the linear solver that
+    /// [`IdaOptions::newton`](super::IdaOptions::newton) is given: M has the form of the matrix it works on.
+    ///
+    /// # Errors
+    /// If the system has no [mass matrix](Ode::mass_kind), or the linear solver works on no matrix that is stored.
+    pub fn new(system: S, n: usize, solver: &LinearSolver) -> Result<Self, Error> {
+        if system.mass_kind() == MassKind::Identity {
+            let mend = "the system has to give one: see `mass_kind` and `with_mass`";
+            return Err(Error::input("mass matrix", "none", mend));
+        }
+        check_whole(&system)?;
+        let mass = Mass::new(n, solver)?;
+        Ok(Self { system, mass, known: false, f: vec![0.0; n] })
+    }
+
+    /// For each unknown, whether it is differential, for
+    /// [`IdaOptions::differential`](super::IdaOptions::differential): whether its column of M at time `t`
+    /// has a nonzero.
+    ///
+    /// That is exact where each differential unknown has mass of its own, as with a diagonal M. Where M couples
+    /// unknowns so that only combinations of them have mass, as a capacitor between two nodes does, all of them
+    /// count as differential: [`consistent_start`](super::Ida::consistent_start) cannot tell which to change then, and
+    /// the start has to satisfy the constraints.
+    ///
+    /// # Errors
+    /// If the system does not give its mass matrix.
+    pub fn differential(&mut self, t: f64) -> Result<Vec<bool>, Error> {
+        self.update(t).map_err(|failure| {
+            let mend = "the system has to give it in the form of the linear solver";
+            Error::input("mass matrix", failure.into_error(), mend)
+        })?;
+        let mut differential = vec![false; self.f.len()];
+        self.mass.visit(|_, j, value| differential[j] |= value != 0.0);
+        Ok(differential)
+    }
+
+    /// The system.
+    #[must_use]
+    pub fn system(&self) -> &S {
+        &self.system
+    }
+
+    /// The system, to be changed.
+    pub fn system_mut(&mut self) -> &mut S {
+        self.known = false;
+        &mut self.system
+    }
+
+    /// Makes the matrix that of time `t`.
+    fn update(&mut self, t: f64) -> Result<(), Failure> {
+        if !self.known {
+            self.mass.read(t, &mut self.system)?;
+            self.known = self.system.mass_kind() == MassKind::Constant;
+        }
+        Ok(())
+    }
+
+    /// Prepares a Jacobian at (t, y): evaluates the matrix and f there.
+    fn prepare(&mut self, t: f64, y: &[f64]) -> Result<(), Failure> {
+        self.update(t)?;
+        call::rhs(&mut self.system, t, y, &mut self.f)
+    }
+}
+
+impl<S: Ode> Dae for MassForm<S> {
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        residual: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.update(t)?;
+        call::rhs(&mut self.system, t, y, residual)?;
+        residual.iter_mut().for_each(|r| *r = -*r);
+        self.mass.visit(|i, j, value| residual[i] += value * yp[j]);
+        Ok(())
+    }
+
+    fn dense_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        _yp: &[f64],
+        mut jacobian: MatMut<'_, f64>,
+    ) -> Result<(), Failure> {
+        self.prepare(t, y)?;
+        self.system.dense_jacobian(t, y, &self.f, jacobian.as_mut())?;
+        self.mass.visit(|i, j, value| jacobian[(i, j)] = cj * value - jacobian[(i, j)]);
+        Ok(())
+    }
+
+    fn banded_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        _yp: &[f64],
+        mut jacobian: BandMut<'_>,
+    ) -> Result<(), Failure> {
+        self.prepare(t, y)?;
+        self.system.banded_jacobian(t, y, &self.f, jacobian.reborrow())?;
+        self.mass.visit(|i, j, value| jacobian[(i, j)] = cj * value - jacobian[(i, j)]);
+        Ok(())
+    }
+
+    fn sparse_jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        _yp: &[f64],
+        jacobian: &mut [f64],
+    ) -> Result<(), Failure> {
+        self.prepare(t, y)?;
+        self.system.sparse_jacobian(t, y, &self.f, jacobian)?;
+        let mut places = jacobian.iter_mut();
+        self.mass.visit(|_, _, value| {
+            if let Some(place) = places.next() {
+                *place = cj * value - *place;
+            }
+        });
+        Ok(())
+    }
+
+    fn root_count(&self) -> usize {
+        self.system.root_count()
+    }
+
+    fn roots(&mut self, t: f64, y: &[f64], _yp: &[f64], g: &mut [f64]) -> Result<(), Failure> {
+        call::roots(&mut self.system, t, y, g)
+    }
+
+    fn quadrature_count(&self) -> usize {
+        self.system.quadrature_count()
+    }
+
+    fn quadratures(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        _yp: &[f64],
+        qdot: &mut [f64],
+    ) -> Result<(), Failure> {
+        call::quadratures(&mut self.system, t, y, qdot)
+    }
+
+    fn parameters(&self) -> &[f64] {
+        self.system.parameters()
+    }
+
+    fn set_parameters(&mut self, values: &[f64]) {
+        self.known = false;
+        self.system.set_parameters(values);
+    }
+}

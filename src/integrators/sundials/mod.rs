@@ -1,0 +1,106 @@
+//! A safe, general layer over SUNDIALS: any system of ordinary differential equations (CVODE) or
+//! differential-algebraic equations (IDA), nothing about bodies.
+//!
+//! The system is a closure or a struct, see [`crate::integrators::ode`]; the solver owns it, chooses its steps
+//! by the tolerances, and answers failures with a typed [`Error`] that names time, step size,
+//! order, cause and what to try. Panics of the system pass through C unharmed.
+//!
+//! ```
+//! use pliant::sundials::{Cvode, CvodeOptions, Integrator};
+//!
+//! // y' = -1000 (y - cos t): the solution is pulled to cos t within milliseconds.
+//! let system = |t: f64, y: &[f64], ydot: &mut [f64]| {
+//!     ydot[0] = -1000.0 * (y[0] - t.cos());
+//!     Ok(())
+//! };
+//! let mut solver = Cvode::new(system, 0.0, &[0.0], &CvodeOptions::new(1e-6, 1e-9))?;
+//! for t in [0.5, 1.0, 1.5] {
+//!     solver.solve_to(t)?;
+//!     assert!((solver.y()[0] - t.cos()).abs() < 2e-3);
+//! }
+//! println!("{} steps", solver.statistics().steps);
+//! # Ok::<(), pliant::sundials::Error>(())
+//! ```
+//!
+//! [`Cvode`], [`Arkode`] and [`Ida`] are used by the methods of [`Integrator`]:
+//! [`solve_to`](Integrator::solve_to) a time or a single [`step`](Integrator::step), output between
+//! the steps by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and
+//! [`Statistics`]. [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU),
+//! without a matrix ([`Krylov`]) or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
+//!
+//! | equations | integrators |
+//! | --- | --- |
+//! | y' = f(t, y) | [`Cvode`], [`Arkode`] |
+//! | M y' = f(t, y) with a [mass matrix](crate::integrators::ode::Ode::mass_kind) | [`Arkode`]; [`Ida`] by [`MassForm`], where M may be singular |
+//! | y' = f(t, y) + g(t, y), f alone [stiff](crate::integrators::ode::Ode::is_split) | [`Arkode`] by [`ButcherTable::imex`] |
+//! | y' = f(t, y) with invariants | [`Cvode`] by [`CvodeOptions::project`] |
+//! | F(t, y, y') = 0 of index 1 | [`Ida`], see [`Ida::check_index`] |
+//!
+//! In all of them unknowns may have to keep their [`Sign`].
+//!
+//! Beside the state, [`Cvode`] and [`Ida`] carry integrals and [`Sensitivities`] along; [`Adjoint`] and
+//! [`DaeAdjoint`] have gradients with respect to many parameters.
+
+mod adjoint;
+mod arkode;
+mod beside;
+mod colouring;
+mod context;
+mod cvode;
+mod dae_callbacks;
+mod dae_krylov;
+mod differences;
+mod factored;
+mod ffi;
+mod functions;
+mod host;
+mod ida;
+mod ilu;
+mod index;
+mod jacobian;
+mod kernels;
+mod krylov;
+mod linear;
+mod linear_solver;
+mod mass_form;
+mod matrix;
+mod newton_matrix;
+mod nonlinear;
+mod ode_callbacks;
+mod ode_krylov;
+mod options;
+mod pattern;
+mod pattern_search;
+mod progress;
+mod quadratures;
+mod report;
+mod sensitivity;
+mod session;
+mod shape;
+mod signs;
+mod solver;
+mod stepping;
+mod stop_time;
+mod stored_jacobian;
+mod vector;
+mod version;
+
+pub use adjoint::{Adjoint, AdjointOptions, DaeAdjoint, Gradient};
+pub use arkode::{Arkode, ArkodeOptions, ButcherTable, Predictor};
+pub use cvode::{Cvode, CvodeOptions, Multistep};
+pub(crate) use differences::Differences;
+pub use ida::{Ida, IdaOptions, InitialCondition};
+pub use jacobian::Jacobian;
+pub use krylov::{Krylov, KrylovMethod, Preconditioner, Side};
+pub use linear_solver::LinearSolver;
+pub use mass_form::MassForm;
+pub(crate) use newton_matrix::NewtonMatrix;
+pub use pattern::Pattern;
+pub use sensitivity::{Sensitivities, SensitivityMethod, SensitivitySource};
+pub use signs::Sign;
+pub use solver::{Kind, Solver, WithSensitivities};
+pub use version::{suitesparse_version, version};
+
+pub use crate::integrators::common::{
+    AbsoluteTolerance, Callback, Cause, Error, IntegrationError, Integrator, Reached, Statistics,
+};

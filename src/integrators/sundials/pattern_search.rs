@@ -1,0 +1,206 @@
+//! Sparsity patterns that are found by asking the equations.
+
+use super::pattern::Pattern;
+use crate::base::input::InputError;
+use crate::integrators::{
+    common::{check_count, check_finite, check_length},
+    ode::{Dae, Failure, Ode, call},
+};
+
+/// Where the nonzeros of a Jacobian are, asked of the equations. Both ways know only the branches that are
+/// taken while they ask: where the equations switch, give points on both sides, or write the pattern down.
+impl Pattern {
+    /// The pattern of df/dy: component i of f depends on y_j if it becomes NaN when y_j is NaN.
+    ///
+    /// n + 1 evaluations, at any y where f has values: terms that are zero there count, too. What swallows NaN
+    /// hides what it depends on, and its entries are missing: `f64::max`, `f64::min`, `clamp` on the
+    /// bounds, comparisons (`if y[0] > 1.0`), conversions to integers.
+    /// [`ode_by_sampling`](Self::ode_by_sampling) does not mind them.
+    ///
+    /// # Errors
+    /// If f fails, at `y` or with a NaN, or has a component that is not finite at `y`, which is named.
+    pub fn ode_by_nan<S>(system: &mut S, t: f64, y: &[f64]) -> Result<Self, InputError>
+    where
+        S: Ode + ?Sized,
+    {
+        Search::new(y, &[], |y, _, f| call::rhs(system, t, y, f))?.by_nan()
+    }
+
+    /// As [`ode_by_nan`](Self::ode_by_nan), the pattern of dF/dy + cj dF/dy': y_j and y'_j are NaN together.
+    ///
+    /// # Errors
+    /// As `ode_by_nan`.
+    pub fn dae_by_nan<S>(system: &mut S, t: f64, y: &[f64], yp: &[f64]) -> Result<Self, InputError>
+    where
+        S: Dae + ?Sized,
+    {
+        check_length("length of yp", yp.len(), y.len())?;
+        Search::new(y, yp, |y, yp, f| call::residual(system, t, y, yp, f))?.by_nan()
+    }
+
+    /// The pattern of df/dy: component i of f depends on y_j if it changes with y_j alone, at one of `points`
+    /// random points, the same ones in each run.
+    ///
+    /// (n + 1) evaluations for each point. Component k of the points and of the changes lies within
+    /// `spread[k]` of y_k: what changes less than the rounding of f, or in no branch that a
+    /// point comes to, is missing.
+    ///
+    /// # Errors
+    /// If f fails at a point or has a component there that is not finite, which is named; if `spread`
+    /// has not n positive numbers; if `points` is 0.
+    pub fn ode_by_sampling<S>(
+        system: &mut S,
+        t: f64,
+        y: &[f64],
+        spread: &[f64],
+        points: u32,
+    ) -> Result<Self, InputError>
+    where
+        S: Ode + ?Sized,
+    {
+        Search::new(y, &[], |y, _, f| call::rhs(system, t, y, f))?.by_sampling(spread, &[], points)
+    }
+
+    /// As [`ode_by_sampling`](Self::ode_by_sampling), the pattern of dF/dy + cj dF/dy': y_j and y'_j change
+    /// together, y'_j within `yp_spread[j]`.
+    ///
+    /// # Errors
+    /// As `ode_by_sampling`.
+    pub fn dae_by_sampling<S>(
+        system: &mut S,
+        t: f64,
+        (y, yp): (&[f64], &[f64]),
+        (spread, yp_spread): (&[f64], &[f64]),
+        points: u32,
+    ) -> Result<Self, InputError>
+    where
+        S: Dae + ?Sized,
+    {
+        check_length("length of yp", yp.len(), y.len())?;
+        Search::new(y, yp, |y, yp, f| call::residual(system, t, y, yp, f))?
+            .by_sampling(spread, yp_spread, points)
+    }
+}
+
+/// A function of y and y' (empty for an ODE) around a point, and the entries found so far.
+struct Search<'a, F> {
+    y: &'a [f64],
+    yp: &'a [f64],
+    evaluate: F,
+    entries: Vec<(usize, usize)>,
+}
+
+impl<'a, F> Search<'a, F>
+where
+    F: FnMut(&[f64], &[f64], &mut [f64]) -> Result<(), Failure>,
+{
+    fn new(y: &'a [f64], yp: &'a [f64], evaluate: F) -> Result<Self, InputError> {
+        check_finite("y", y)?;
+        check_finite("yp", yp)?;
+        Ok(Self { y, yp, evaluate, entries: Vec::new() })
+    }
+
+    fn by_nan(mut self) -> Result<Pattern, InputError> {
+        let n = self.y.len();
+        let (mut y, mut yp) = (self.y.to_vec(), self.yp.to_vec());
+        let mut f = vec![0.0; n];
+        self.finite_value(&y, &yp, &mut f, "choose a point where the equations have values")?;
+        for j in 0..n {
+            set(&mut y, &mut yp, j, (f64::NAN, f64::NAN));
+            (self.evaluate)(&y, &yp, &mut f).map_err(|failure| {
+                let mend = "equations that refuse NaN are asked by sampling";
+                let input = format!("equations with NaN for unknown {j}");
+                InputError::new(input, failure.into_error(), mend)
+            })?;
+            set(&mut y, &mut yp, j, (self.y[j], self.yp.get(j).copied().unwrap_or_default()));
+            self.entries.extend((0..n).filter(|&i| f[i].is_nan()).map(|i| (i, j)));
+        }
+        Pattern::from_entries(n, self.entries)
+    }
+
+    fn by_sampling(
+        mut self,
+        spread: &[f64],
+        yp_spread: &[f64],
+        points: u32,
+    ) -> Result<Pattern, InputError> {
+        let n = self.y.len();
+        check_spread("spread", spread, n)?;
+        check_spread("yp_spread", yp_spread, self.yp.len())?;
+        check_count("points", points)?;
+        let mut random = Random(0);
+        let mut near = |centre: &[f64], spread: &[f64], j: usize| {
+            centre.get(j).map_or(0.0, |centre| centre + spread[j] * random.next())
+        };
+        let (mut y, mut yp) = (self.y.to_vec(), self.yp.to_vec());
+        let [mut before, mut after] = [vec![0.0; n], vec![0.0; n]];
+        let mend = "choose a smaller spread, or another point";
+        for _ in 0..points {
+            for j in 0..n {
+                let to = (near(self.y, spread, j), near(self.yp, yp_spread, j));
+                set(&mut y, &mut yp, j, to);
+            }
+            self.finite_value(&y, &yp, &mut before, mend)?;
+            for j in 0..n {
+                let old = (y[j], yp.get(j).copied().unwrap_or_default());
+                let new = (near(self.y, spread, j), near(self.yp, yp_spread, j));
+                set(&mut y, &mut yp, j, new);
+                self.finite_value(&y, &yp, &mut after, mend)?;
+                set(&mut y, &mut yp, j, old);
+                self.entries.extend((0..n).filter(|&i| before[i] != after[i]).map(|i| (i, j)));
+            }
+        }
+        Pattern::from_entries(n, self.entries)
+    }
+
+    /// Evaluates the equations where each component has to be finite.
+    fn finite_value(
+        &mut self,
+        y: &[f64],
+        yp: &[f64],
+        f: &mut [f64],
+        mend: &str,
+    ) -> Result<(), InputError> {
+        (self.evaluate)(y, yp, f).map_err(|failure| {
+            InputError::new("equations at the point", failure.into_error(), mend)
+        })?;
+        match f.iter().position(|f| !f.is_finite()) {
+            Some(i) => {
+                let input = format!("component {i} of the equations at the point");
+                Err(InputError::new(input, f[i], mend))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+/// Gives unknown `j` another value and slope.
+fn set(y: &mut [f64], yp: &mut [f64], j: usize, (value, slope): (f64, f64)) {
+    y[j] = value;
+    if let Some(yp) = yp.get_mut(j) {
+        *yp = slope;
+    }
+}
+
+fn check_spread(input: &str, spread: &[f64], n: usize) -> Result<(), InputError> {
+    check_length(&format!("length of {input}"), spread.len(), n)?;
+    match spread.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
+        Some(s) => Err(InputError::new(input, s, "each is positive and finite")),
+        None => Ok(()),
+    }
+}
+
+/// Random numbers, the same ones in each run (SplitMix64: Steele, Lea and Flood, OOPSLA 2014).
+struct Random(u64);
+
+impl Random {
+    /// A number between -1 and 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        (z >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}

@@ -1,0 +1,363 @@
+//! A session of an integrator of SUNDIALS and everything it uses: how it is put together.
+
+use std::{ffi::c_void, ptr};
+
+use super::{
+    beside::{Backward, Quadratures, Sensitivity},
+    context::Context,
+    differences::{Differences, Scales},
+    ffi,
+    functions::{Functions, Set, SetTwo},
+    host::{CustomSolve, Host, HostBox, NewtonSolve, keep_message},
+    ilu::IncompleteLu,
+    jacobian::Jacobian,
+    krylov::Krylov,
+    linear::Linear,
+    linear_solver::LinearSolver,
+    nonlinear::FixedPoint,
+    options::Limits,
+    progress::Progress,
+    shape::Shape,
+    signs::{self, Sign},
+    stop_time::StopTime,
+    vector::Vector,
+};
+use crate::integrators::common::{
+    AbsoluteTolerance, Error, JacobianCheck, StepOptions, Tolerances,
+};
+
+/// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and ARKODE
+/// end runs at jumps that follow a long smooth stretch (the Oregonator); 20 lead from any step to the smallest there is.
+/// IDA keeps its 10: it gets over such jumps, and more of them hide that equations are of higher index.
+const ERROR_TEST_FAILURES: i32 = 20;
+
+/// What C has of an integrator, with the system that it calls. What users see of it is a [`Solver`](super::Solver).
+pub(super) struct Session<K, S> {
+    // Fields are dropped in this order: first what uses the others.
+    pub(super) memory: Memory,
+    fixed_point: Option<FixedPoint>,
+    linear: Option<Linear>,
+    /// Mass matrix and its linear solver, if there is one.
+    pub(super) mass: Option<Linear>,
+    pub(super) backward: Option<Backward>,
+    pub(super) y: Vector,
+    /// The time derivative of `y`, of a DAE only.
+    pub(super) yp: Option<Vector>,
+    pub(super) scratch: Vector,
+    /// As `scratch` is to `y`, to `yp`.
+    pub(super) slope_scratch: Option<Vector>,
+    pub(super) quadratures: Option<Quadratures>,
+    pub(super) sensitivities: Option<Sensitivity>,
+    pub(super) host: HostBox<S>,
+    pub(super) context: Context,
+    pub(super) t: f64,
+    pub(super) max_steps: u32,
+    pub(super) stop_time: StopTime,
+    pub(super) progress: Progress,
+    /// Size of the first step, if it is not estimated.
+    pub(super) initial_step: Option<f64>,
+    /// Whether there is a step to interpolate in. C does not ask, and gives NaN or what the run
+    /// before has left.
+    pub(super) has_step: bool,
+    /// Whether the last call failed in an integrator that gives the time of a stage then.
+    pub(super) failed_within: bool,
+    /// Whether C has to be told the present state before it goes on: after a first step of IDA that failed, or where
+    /// numbers overflowed.
+    pub(super) history_lost: bool,
+    /// Degree of the polynomials between the steps, if it is not the order of the last step.
+    pub(super) interpolant_degree: Option<u32>,
+    pub(super) roots_found: Vec<i32>,
+    /// Which signs the unknowns keep, if any.
+    pub(super) signs: Vec<Sign>,
+    pub(super) kind: K,
+}
+
+/// Owns the memory block of an integrator.
+pub(super) struct Memory {
+    pub(super) raw: *mut c_void,
+    pub(super) functions: &'static Functions,
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        // SAFETY: made by the integrator of this table and freed once, before everything it
+        // refers to.
+        unsafe { (self.functions.free)(&raw mut self.raw) };
+    }
+}
+
+/// Where an integration starts.
+pub(super) struct InitialState<'a> {
+    pub(super) t: f64,
+    pub(super) y: &'a [f64],
+    /// Of a DAE only.
+    pub(super) yp: Option<&'a [f64]>,
+    pub(super) root_count: usize,
+}
+
+impl<K, S> Session<K, S> {
+    /// Makes an integrator by the C function `create`, which gets a vector with the start; it is
+    /// not yet initialised.
+    ///
+    /// # Safety
+    /// `create` makes the memory block of the integrator that `functions` belong to, or null.
+    pub(super) unsafe fn create(
+        functions: &'static Functions,
+        (function, create): (
+            &'static str,
+            impl FnOnce(ffi::N_Vector, ffi::SUNContext) -> *mut c_void,
+        ),
+        kind: K,
+        system: S,
+        start: &InitialState<'_>,
+        solver: Option<LinearSolver>,
+    ) -> Result<Self, Error> {
+        let root_count = start.root_count;
+        if i32::try_from(root_count).is_err() {
+            return Err(Error::input("root_count", root_count, "it is at most 2^31 - 1"));
+        }
+        let context = Context::new()?;
+        let y = Vector::from_slice(start.y, &context)?;
+        let yp = start.yp.map(|yp| Vector::from_slice(yp, &context)).transpose()?;
+        let scratch = Vector::from_slice(start.y, &context)?;
+        let slope_scratch = start.yp.map(|yp| Vector::from_slice(yp, &context)).transpose()?;
+        let mut host = HostBox::new(Host::new(system, start.y.len(), root_count, solver));
+        // Locals are dropped in reverse order, so on an error below the memory goes first.
+        let memory = Memory { raw: create(y.raw(), context.raw()), functions };
+        if memory.raw.is_null() {
+            return Err(Error::out_of_memory(function));
+        }
+        let (function, set) = functions.set_error_handler;
+        // SAFETY: the memory is alive, and the handler fits the host registered as its data.
+        let code = unsafe { set(memory.raw, Some(keep_message::<S>), host.as_ptr()) };
+        host.accept(function, code)?;
+        Ok(Self {
+            memory,
+            fixed_point: None,
+            linear: None,
+            mass: None,
+            backward: None,
+            y,
+            yp,
+            scratch,
+            slope_scratch,
+            quadratures: None,
+            sensitivities: None,
+            host,
+            context,
+            t: start.t,
+            max_steps: 0,
+            stop_time: StopTime::default(),
+            progress: Progress::new(start.t),
+            initial_step: None,
+            has_step: false,
+            failed_within: false,
+            history_lost: false,
+            interpolant_degree: None,
+            roots_found: vec![0; root_count],
+            signs: Vec::new(),
+            kind,
+        })
+    }
+
+    /// The C vector of the time derivative; null for an ODE.
+    pub(super) fn raw_yp(&self) -> ffi::N_Vector {
+        self.yp.as_ref().map_or(ptr::null_mut(), Vector::raw)
+    }
+
+    /// Calls a function that sets one option.
+    ///
+    /// # Safety
+    /// The function belongs to this integrator and may be called with this value.
+    pub(super) unsafe fn set<T>(
+        &mut self,
+        (name, function): Set<T>,
+        value: T,
+    ) -> Result<(), Error> {
+        // SAFETY: the memory is alive; the caller vouches for the value.
+        let code = unsafe { function(self.memory.raw, value) };
+        self.host.accept(name, code)
+    }
+
+    /// Registers the host, after the integrator was initialised with the callbacks for it, and
+    /// sets tolerances and the options of the step size control.
+    pub(super) fn configure(
+        &mut self,
+        tolerances: &Tolerances,
+        steps: &StepOptions,
+        limits: &Limits,
+    ) -> Result<(), Error> {
+        self.max_steps = steps.max_steps;
+        self.initial_step = steps.initial_step;
+        let functions = self.memory.functions;
+        let (memory, rtol) = (self.memory.raw, tolerances.rtol);
+        let (name, code) = match &tolerances.atol {
+            AbsoluteTolerance::Scalar(atol) => {
+                let (name, set) = functions.scalar_tolerances;
+                // SAFETY: the memory is alive.
+                (name, unsafe { set(memory, rtol, *atol) })
+            }
+            AbsoluteTolerance::Vector(atol) => {
+                let atol = Vector::from_slice(atol, &self.context)?;
+                let (name, set) = functions.vector_tolerances;
+                // SAFETY: the memory is alive; it keeps a copy of the vector, whose length was
+                // checked.
+                (name, unsafe { set(memory, rtol, atol.raw()) })
+            }
+        };
+        self.host.accept(name, code)?;
+        // SAFETY: the host outlives the memory; the other values are plain numbers.
+        unsafe {
+            self.set(functions.set_user_data, self.host.as_ptr())?;
+            self.set(functions.set_max_steps, i64::from(steps.max_steps))?;
+            if let Some(set) = functions.set_max_error_test_failures {
+                self.set(set, ERROR_TEST_FAILURES)?;
+            }
+            for (function, value) in [
+                (functions.set_initial_step, steps.initial_step),
+                (functions.set_max_step, steps.max_step),
+                (functions.set_min_step, limits.min_step),
+                (functions.set_convergence_coefficient, limits.convergence_coefficient),
+            ] {
+                if let Some(value) = value {
+                    self.set(function, value)?;
+                }
+            }
+            if let (Some(set), Some(order)) = (functions.set_max_order, limits.max_order) {
+                self.set(set, order as i32)?;
+            }
+        }
+        self.set_signs(&limits.signs)
+    }
+
+    /// After a failure: the matrix of Newton's iteration may be half written.
+    pub(super) fn forget_factors(&mut self) {
+        if let Some(linear) = &mut self.linear {
+            linear.forget_factors();
+        }
+    }
+
+    /// Has the unknowns keep these signs.
+    fn set_signs(&mut self, signs: &[Sign]) -> Result<(), Error> {
+        // C takes a vector without any constraint for a mistake
+        if signs.iter().all(|sign| *sign == Sign::Free) {
+            return Ok(());
+        }
+        let values: Vec<f64> = signs.iter().map(|sign| f64::from(*sign as i8)).collect();
+        let values = Vector::from_slice(&values, &self.context)?;
+        self.signs = signs.to_vec();
+        // SAFETY: C keeps a clone of the vector, whose length was checked, and it notes what it finds in the host, which
+        // outlives the memory.
+        unsafe {
+            signs::note_in(values.raw(), self.host.violation())?;
+            self.set(self.memory.functions.set_constraints, values.raw())
+        }
+    }
+
+    /// Registers the root functions by `init`, if there are any.
+    ///
+    /// # Safety
+    /// `init` belongs to this integrator, and `callback` fits the host.
+    pub(super) unsafe fn set_root_functions<F>(
+        &mut self,
+        (name, init): (&'static str, unsafe extern "C" fn(*mut c_void, i32, F) -> i32),
+        callback: F,
+    ) -> Result<(), Error> {
+        let count = self.roots_found.len() as i32;
+        if count == 0 {
+            return Ok(());
+        }
+        // SAFETY: the memory is alive; the caller vouches for the callback.
+        let code = unsafe { init(self.memory.raw, count, callback) };
+        self.host.accept(name, code)?;
+        let (name, allow) = self.memory.functions.allow_inactive_roots;
+        // SAFETY: the memory is alive.
+        let code = unsafe { allow(self.memory.raw) };
+        self.host.accept(name, code)
+    }
+
+    /// Gives the Newton iteration its linear solver.
+    pub(super) fn set_newton(
+        &mut self,
+        solver: &LinearSolver,
+        solve: NewtonSolve<S>,
+        (tolerances, limits): (&Tolerances, &Limits),
+    ) -> Result<(), Error> {
+        let Memory { raw: memory, functions } = self.memory;
+        let step_parameter = functions.get_step_parameter;
+        self.host.get_mut().custom_solve = Some(CustomSolve { solve, step_parameter, memory });
+        let n = self.y.as_slice().len();
+        let is_dae = self.yp.is_some();
+        if let (true, Some(pattern)) = (is_dae, solver.pattern_of_differences()) {
+            // SAFETY: the memory belongs to these functions; its callbacks alone read them.
+            let scales = unsafe { Scales::new((memory, functions), n, &self.context)? };
+            self.host.get_mut().scales = Some(scales);
+            self.host.get_mut().differences = Some(Differences::of_dae(pattern, &self.signs));
+        } else if !is_dae && solver.takes_quotients() {
+            let differences = Differences::of_ode(solver, n, tolerances, &self.signs);
+            self.host.get_mut().differences = differences;
+        }
+        if !limits.trusts_jacobian && solver.supplied().is_some() {
+            let check = JacobianCheck::new(n, tolerances);
+            let is_matrix = !matches!(solver, LinearSolver::Krylov(_));
+            let shape = Shape::of(solver).filter(|_| is_matrix);
+            self.host.get_mut().check = Some((check, shape));
+        }
+        self.host.get_mut().ilu = solver.ilu().map(|(pattern, _)| IncompleteLu::new(pattern));
+        let data = self.host.as_ptr();
+        // SAFETY: the data is the host, which outlives the solver.
+        let linear = unsafe { Linear::new::<S>(solver, &self.y, &self.context, data)? };
+        let linear = self.linear.insert(linear);
+        let (name, set) = self.memory.functions.set_linear_solver;
+        // SAFETY: memory, solver and matrix are alive, and the memory is dropped first.
+        let code = unsafe { set(self.memory.raw, linear.solver(), linear.matrix()) };
+        self.host.accept(name, code)?;
+        if let LinearSolver::Krylov(Krylov { tolerance_factor: Some(factor), .. }) = solver {
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_tolerance_factor, *factor)? };
+        }
+        Ok(())
+    }
+
+    /// Gives a Krylov method its callbacks: `set_products` gets none for the setup and `times`,
+    /// `set_preconditioner` both of `preconditioner`.
+    ///
+    /// # Safety
+    /// The functions belong to this integrator, and the callbacks fit the host.
+    pub(super) unsafe fn set_krylov<A, B, P, Q>(
+        &mut self,
+        krylov: &Krylov,
+        (set_products, times): (SetTwo<Option<A>, B>, B),
+        (set_preconditioner, setup, solve): (SetTwo<P, Q>, P, Q),
+    ) -> Result<(), Error> {
+        let memory = self.memory.raw;
+        if krylov.products == Jacobian::Supplied {
+            let (name, set) = set_products;
+            // SAFETY: the memory is alive; the caller vouches for the callback.
+            let code = unsafe { set(memory, None, times) };
+            self.host.accept(name, code)?;
+        }
+        if krylov.preconditioner.is_some() {
+            let (name, set) = set_preconditioner;
+            // SAFETY: as above.
+            let code = unsafe { set(memory, setup, solve) };
+            self.host.accept(name, code)?;
+        }
+        Ok(())
+    }
+
+    /// Replaces the Newton iteration by a fixed-point iteration, by the function `set`.
+    ///
+    /// # Safety
+    /// The function belongs to this integrator and attaches a nonlinear solver.
+    pub(super) unsafe fn set_fixed_point(
+        &mut self,
+        set: Set<ffi::SUNNonlinearSolver>,
+        acceleration: u32,
+    ) -> Result<(), Error> {
+        let made = FixedPoint::new(&self.y, acceleration, &self.context)?;
+        let solver = self.fixed_point.insert(made).raw();
+        // SAFETY: the caller vouches for the function; the solver is dropped after the memory.
+        unsafe { self.set(set, solver) }
+    }
+}

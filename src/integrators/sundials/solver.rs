@@ -1,0 +1,247 @@
+//! An integrator of SUNDIALS as its users have it: a session, and the system that it was lent.
+
+use std::{fmt, marker::PhantomData, mem, ptr, ptr::NonNull};
+
+use faer::{MatMut, MatRef};
+
+use super::{quadratures::CarriesIntegrals, sensitivity::CarriesSensitivities};
+use crate::integrators::{
+    common::{Error, Integrator, Reached, Statistics},
+    ode::{Borrowed, Dae, Ode},
+};
+
+/// What makes a [`Solver`] one of CVODE, ARKODE or IDA.
+pub trait Kind {
+    /// Its systems, whatever their type.
+    #[doc(hidden)]
+    type System: ?Sized + 'static;
+
+    /// What it does. Sessions see systems behind a pointer, so that they are compiled once and not for each type of system.
+    #[doc(hidden)]
+    type Session: Integrator<System = Borrowed<'static, Self::System>> + ?Sized;
+
+    #[doc(hidden)]
+    const NAME: &'static str;
+}
+
+/// What makes it one of CVODE or IDA, which carry integrals and sensitivities along.
+pub trait WithSensitivities: Kind<Session: CarriesSensitivities> {}
+
+/// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or
+/// [`Ida`](super::Ida), by the parameter `K`. What all of them can do is in
+/// [`Integrator`].
+///
+/// It owns the system `S`; [`Borrowed`] lends it one. It can be sent to another
+/// thread if the system can.
+pub struct Solver<K: Kind, S> {
+    // Fields are dropped in this order: the session ends before its system.
+    pub(super) session: Box<K::Session>,
+    system: Owner<S>,
+    kind: PhantomData<K>,
+}
+
+// SAFETY: the session is that of a system that is `Send`; the raw pointers in it lead to objects that it alone owns, among
+// them its SUNContext; SUNDIALS keeps no thread-local state. Troubles that wait in its host are `Send`.
+unsafe impl<K: Kind, S: Send> Send for Solver<K, S> {}
+
+impl<K: Kind, S> fmt::Debug for Solver<K, S> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (t, y) = (self.t(), self.y());
+        f.debug_struct(K::NAME).field("t", &t).field("y", &y).finish_non_exhaustive()
+    }
+}
+
+/// Owns a system at a fixed address.
+pub(super) struct Owner<S>(NonNull<S>);
+
+impl<S> Owner<S> {
+    pub(super) fn new(system: S) -> Self {
+        Self(NonNull::from(Box::leak(Box::new(system))))
+    }
+
+    /// Lends the system to a session.
+    ///
+    /// # Safety
+    /// The session ends before `self`, and whoever wants the system until then asks the session for it.
+    pub(super) unsafe fn lend_ode(&mut self) -> Borrowed<'static, dyn Ode>
+    where
+        S: Ode,
+    {
+        // SAFETY: the system lives as long as `self`; the caller vouches for the rest.
+        let system: &mut dyn Ode = unsafe { self.0.as_mut() };
+        // SAFETY: as above: it is used no longer than it lives.
+        Borrowed(unsafe {
+            mem::transmute::<&mut dyn Ode, &'static mut (dyn Ode + 'static)>(system)
+        })
+    }
+
+    /// The same.
+    ///
+    /// # Safety
+    /// As for [`lend_ode`](Self::lend_ode).
+    pub(super) unsafe fn lend_dae(&mut self) -> Borrowed<'static, dyn Dae>
+    where
+        S: Dae,
+    {
+        // SAFETY: as in `lend_ode`.
+        let system: &mut dyn Dae = unsafe { self.0.as_mut() };
+        // SAFETY: as above.
+        Borrowed(unsafe {
+            mem::transmute::<&mut dyn Dae, &'static mut (dyn Dae + 'static)>(system)
+        })
+    }
+
+    fn into_system(self) -> S {
+        let pointer = self.0;
+        mem::forget(self);
+        // SAFETY: leaked from a Box in `new`; `self` is forgotten, so it is freed only here.
+        *unsafe { Box::from_raw(pointer.as_ptr()) }
+    }
+}
+
+impl<S> Drop for Owner<S> {
+    fn drop(&mut self) {
+        // SAFETY: leaked from a Box in `new` and freed once.
+        drop(unsafe { Box::from_raw(self.0.as_ptr()) });
+    }
+}
+
+impl<K: Kind, S> Solver<K, S> {
+    /// # Safety
+    /// The session is one of `system`, which was lent to it.
+    pub(super) unsafe fn new_within(session: Box<K::Session>, system: Owner<S>) -> Self {
+        Self { session, system, kind: PhantomData }
+    }
+}
+
+impl<K: Kind, S> Integrator for Solver<K, S> {
+    type System = S;
+
+    fn t(&self) -> f64 {
+        self.session.t()
+    }
+
+    fn y(&self) -> &[f64] {
+        self.session.y()
+    }
+
+    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_NORMAL`.
+    fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
+        self.session.solve_to(t)
+    }
+
+    /// `CVode`, `ARKStepEvolve` or `IDASolve` with the task `CV_ONE_STEP`.
+    fn step(&mut self, towards: f64) -> Result<Reached, Error> {
+        self.session.step(towards)
+    }
+
+    fn last_step(&self) -> (f64, f64) {
+        self.session.last_step()
+    }
+
+    fn last_order(&self) -> u32 {
+        self.session.last_order()
+    }
+
+    fn interpolant_degree(&self) -> u32 {
+        self.session.interpolant_degree()
+    }
+
+    /// `CVodeGetDky`, `ARKStepGetDky` or `IDAGetDky`.
+    fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        self.session.interpolate(t, derivative, out)
+    }
+
+    /// `CVodeSetStopTime`, `ARKStepSetStopTime` or `IDASetStopTime`, with the next step.
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
+        self.session.set_stop_time(t)
+    }
+
+    /// `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
+    fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+        self.session.reinit(t, y)
+    }
+
+    /// `ARKStepReset` for ARKODE; the others need a new start.
+    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
+        self.session.resume(t, y)
+    }
+
+    fn roots_found(&self) -> &[i32] {
+        self.session.roots_found()
+    }
+
+    fn statistics(&self) -> Statistics {
+        self.session.statistics()
+    }
+
+    fn system(&self) -> &S {
+        let system = ptr::from_ref::<K::System>(self.session.system().0);
+        // SAFETY: the session was lent this system, of type `S`, and gives it no longer than it is borrowed itself.
+        unsafe { &*system.cast() }
+    }
+
+    fn system_mut(&mut self) -> &mut S {
+        let system = ptr::from_mut::<K::System>(self.session.system_mut().0);
+        // SAFETY: as above.
+        unsafe { &mut *system.cast() }
+    }
+
+    fn into_system(self) -> S {
+        drop(self.session);
+        self.system.into_system()
+    }
+}
+
+impl<K: WithSensitivities, S> Solver<K, S> {
+    /// The integrals of [`quadratures`](crate::integrators::ode::Ode::quadratures) from the start to time [`t`](Integrator::t). A new start
+    /// sets them to zero. (`CVodeGetQuad`, `IDAGetQuad`)
+    #[must_use]
+    pub fn quadratures(&self) -> &[f64] {
+        self.session.quadratures()
+    }
+
+    /// As [`interpolate`](Integrator::interpolate), of the integrals: their first derivative is the integrand.
+    /// (`CVodeGetQuadDky`, `IDAGetQuadDky`)
+    ///
+    /// # Errors
+    /// As for [`interpolate`](Integrator::interpolate).
+    pub fn interpolate_quadratures(
+        &mut self,
+        t: f64,
+        derivative: u32,
+        out: &mut [f64],
+    ) -> Result<(), Error> {
+        self.session.interpolate_quadratures(t, derivative, out)
+    }
+
+    /// The sensitivities at time [`t`](Integrator::t): entry (i, j) is the derivative of unknown i with respect to the j-th
+    /// parameter of [`Sensitivities::of`](super::Sensitivities::of). (`CVodeGetSens`, `IDAGetSens`)
+    #[must_use]
+    pub fn sensitivities(&self) -> MatRef<'_, f64> {
+        self.session.sensitivities()
+    }
+
+    /// As [`interpolate`](Integrator::interpolate), of the sensitivities. (`CVodeGetSensDky1`, `IDAGetSensDky1`)
+    ///
+    /// # Errors
+    /// As for [`interpolate`](Integrator::interpolate).
+    pub fn interpolate_sensitivities(
+        &mut self,
+        t: f64,
+        derivative: u32,
+        out: MatMut<'_, f64>,
+    ) -> Result<(), Error> {
+        self.session.interpolate_sensitivities(t, derivative, out)
+    }
+
+    /// Lets the sensitivities start from `s` (as [`sensitivities`](Self::sensitivities) has them) in place of zero, after the
+    /// solver was made or started again: where initial values depend on parameters, or jump.
+    /// (`CVodeSensReInit`, `IDASensReInit`)
+    ///
+    /// # Errors
+    /// [`Error::Input`] if steps were taken already, the shape is wrong or a number is not finite.
+    pub fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error> {
+        self.session.set_sensitivities(s)
+    }
+}

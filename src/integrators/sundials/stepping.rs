@@ -1,0 +1,419 @@
+//! An integrator of SUNDIALS at work.
+
+use std::{ffi::c_void, mem, ptr};
+
+use super::{
+    differences::Differences,
+    ffi,
+    progress::{Progress, STRETCH},
+    session::Session,
+    signs::check_state,
+    vector::Vector,
+};
+use crate::integrators::common::{
+    Cause, Error, Integrator, Reached, SHORTEST, Statistics, check_finite, check_length,
+    check_start_time, check_time,
+};
+
+/// Code of a call that did what was asked for.
+const DONE: i32 = 0;
+
+impl<K, S> Integrator for Session<K, S> {
+    type System = S;
+
+    fn t(&self) -> f64 {
+        self.t
+    }
+
+    fn y(&self) -> &[f64] {
+        self.y.as_slice()
+    }
+
+    fn solve_to(&mut self, t: f64) -> Result<Reached, Error> {
+        self.integrate(t, ffi::CV_NORMAL)
+    }
+
+    fn step(&mut self, towards: f64) -> Result<Reached, Error> {
+        self.integrate(towards, ffi::CV_ONE_STEP)
+    }
+
+    fn last_step(&self) -> (f64, f64) {
+        let statistics = self.step_statistics();
+        (statistics.current_time - statistics.last_step, statistics.current_time)
+    }
+
+    fn last_order(&self) -> u32 {
+        self.step_statistics().last_order
+    }
+
+    fn interpolant_degree(&self) -> u32 {
+        self.interpolant_degree.unwrap_or_else(|| self.last_order())
+    }
+
+    fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
+        check_length("length of out", out.len(), self.y().len())?;
+        check_time("t", t)?;
+        if !self.has_step {
+            self.check_start_only(t, derivative)?;
+            out.copy_from_slice(self.y());
+            return Ok(());
+        }
+        if let Some(degree) = self.interpolant_degree.filter(|degree| derivative > *degree) {
+            let mend = format!("the polynomials between the steps are of degree {degree}");
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        let (name, get_dky) = self.memory.functions.get_dky;
+        let scratch = self.scratch.raw();
+        // SAFETY: memory and vector are alive; `&mut self` keeps others away while ARKODE evaluates
+        // the right-hand side.
+        self.look_back(name, t, derivative, |memory, t, order| unsafe {
+            get_dky(memory, t, order, scratch)
+        })?;
+        out.copy_from_slice(self.scratch.as_slice());
+        Ok(())
+    }
+
+    fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
+        if let Some(t) = t {
+            check_time("stop time", t)?;
+            let statistics = self.step_statistics();
+            if (t - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
+                let mend = format!("the steps have reached {} already", statistics.current_time);
+                return Err(Error::input("stop time", t, mend));
+            }
+        }
+        self.stop_time.set(t);
+        Ok(())
+    }
+
+    fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
+        check_length("length of y", y.len(), self.y().len())?;
+        check_start_time("t", t)?;
+        check_finite("y", y)?;
+        check_state(&self.signs, "y", y)?;
+        self.y.as_mut_slice().copy_from_slice(y);
+        self.start_c(t)?;
+        self.restart_quadratures()?;
+        self.restart_sensitivities()?;
+        self.t = t;
+        self.progress = Progress::new(t);
+        (self.has_step, self.failed_within, self.history_lost) = (false, false, false);
+        let host = self.host.get_mut();
+        host.troubles.clear();
+        host.step_end = host.step_end.and(Some(t));
+        host.differences.iter_mut().for_each(Differences::restart);
+        match self.memory.functions.reinit_forgets_stop_time {
+            true => self.stop_time.forget(),
+            false => self.stop_time.set(None),
+        }
+        self.roots_found.fill(0);
+        Ok(())
+    }
+
+    fn resume(&mut self, t: f64, y: &[f64]) -> Result<bool, Error> {
+        check_length("length of y", y.len(), self.y().len())?;
+        check_start_time("t", t)?;
+        check_finite("y", y)?;
+        check_state(&self.signs, "y", y)?;
+        let Some((name, reset)) = self.memory.functions.reset else { return Ok(false) };
+        self.y.as_mut_slice().copy_from_slice(y);
+        // SAFETY: memory and vector are alive; the integrator copies the vector.
+        let code = unsafe { reset(self.memory.raw, t, self.y.raw()) };
+        self.host.accept(name, code)?;
+        self.t = t;
+        (self.has_step, self.failed_within) = (false, false);
+        let step_end = &mut self.host.get_mut().step_end;
+        *step_end = step_end.and(Some(t));
+        self.stop_time.forget();
+        self.roots_found.fill(0);
+        Ok(true)
+    }
+
+    fn roots_found(&self) -> &[i32] {
+        &self.roots_found
+    }
+
+    fn statistics(&self) -> Statistics {
+        self.all_statistics()
+    }
+
+    fn system(&self) -> &S {
+        &self.host.get().system
+    }
+
+    fn system_mut(&mut self) -> &mut S {
+        &mut self.host.get_mut().system
+    }
+
+    fn into_system(self) -> S {
+        drop(self.memory);
+        self.host.into_system()
+    }
+}
+
+impl<K, S> Session<K, S> {
+    /// Integrates to `target` (`CV_NORMAL`) or by one step (`CV_ONE_STEP`).
+    fn integrate(&mut self, target: f64, task: i32) -> Result<Reached, Error> {
+        check_time("target time", target)?;
+        if target == self.t {
+            return Ok(Reached::Time);
+        }
+        self.check_target(target, task)?;
+        let functions = self.memory.functions;
+        if self.history_lost {
+            self.start_c_again(self.t)?;
+            self.history_lost = false;
+        }
+        if let Some(time) = self.stop_time.take_update(self.t, target) {
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_stop_time, time)? };
+        }
+        let steps = self.step_statistics().steps;
+        let far = if steps == 0 { apart(self.t, target) } else { target };
+        // C would refuse the target: steps that stop there
+        let stops = task == ffi::CV_NORMAL && far != target;
+        let mut stop = self.stop_time.time();
+        if stops {
+            let ends = stop.filter(|stop| (target - stop) * (far - self.t) >= 0.0);
+            stop = ends.or(Some(target));
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_stop_time, ends.unwrap_or(target))? };
+        }
+        // nor does it estimate a step where it has to stop so soon
+        let whole = stop.filter(|stop| steps == 0 && apart(self.t, *stop) != *stop);
+        let whole = whole.filter(|_| self.initial_step.is_none());
+        if let Some(stop) = whole {
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_initial_step, stop - self.t)? };
+        }
+        let (name, solve) = functions.solve;
+        // C writes beside the present state, which is kept where it fails to give another
+        let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
+        let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
+        self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
+        self.host.get_mut().troubles.begin(self.t);
+        self.failed_within = false;
+        let (single, mut taken) = (if stops { ffi::CV_ONE_STEP } else { task }, 0);
+        let mut shortened = 0;
+        let code = loop {
+            let most = STRETCH.min(u64::from(self.max_steps) - taken);
+            // SAFETY: the value is a plain number.
+            unsafe { self.set(functions.set_max_steps, most as i64)? };
+            // SAFETY: memory, vectors and everything registered with the memory are alive; `&mut self`
+            // keeps others away while callbacks use the host.
+            let code = unsafe { solve(memory, far, &raw mut self.t, y, yp, single) };
+            let now = self.step_statistics();
+            self.progress.note(now.steps, now.current_time);
+            taken = now.steps.saturating_sub(steps);
+            // six decades each; where a lower bound of the step size holds, no more than that
+            if shortened < 5 && self.shortens_first_step(code, before, target)? {
+                shortened += 1;
+                self.host.get_mut().troubles.clear();
+                continue;
+            }
+            let goes_on = code == ffi::CV_TOO_MUCH_WORK || stops && code == DONE;
+            if !goes_on || self.progress.stands || taken >= u64::from(self.max_steps) {
+                break code;
+            }
+        };
+        if shortened > 0 || whole.is_some() {
+            // SAFETY: the value is a plain number, which asks for an estimate.
+            unsafe { self.set(functions.set_initial_step, 0.0)? };
+        }
+        if stops {
+            // C has forgotten that of the caller
+            self.stop_time.set(self.stop_time.time());
+        }
+        self.has_step = code >= 0 || self.step_statistics().steps > 0;
+        if code < 0 {
+            self.forget_factors();
+        }
+        if code >= 0 || self.has_step && self.is_finite_beside() {
+            mem::swap(&mut self.y, &mut self.scratch);
+            mem::swap(&mut self.yp, &mut self.slope_scratch);
+        } else if !self.has_step {
+            // IDA takes y' times the step for y' now
+            self.history_lost = self.yp.is_some();
+        } else if self.host.get().step_end.is_none() && !self.has_finite_history() {
+            self.t = before;
+            (self.has_step, self.failed_within, self.history_lost) = (false, true, true);
+        }
+        if let Some(end) = self.host.get().step_end.filter(|_| code < 0) {
+            // the time of `y`; C has that of a stage, and would interpolate as if the step ended there
+            self.t = end;
+            (self.has_step, self.failed_within) = (false, true);
+        }
+        let read = match self.has_step {
+            true => self.read_quadratures().and_then(|()| self.read_sensitivities()),
+            false => Ok(()),
+        };
+        self.host.get_mut().troubles.resume_panic();
+        if code >= 0 {
+            read?;
+            if !self.signs.is_empty() {
+                self.read_corrected()?;
+            }
+        }
+        match code {
+            ffi::CV_ROOT_RETURN => {
+                let roots = self.roots_found.as_mut_ptr();
+                // SAFETY: there are as many places as root functions.
+                unsafe { self.set(functions.get_root_info, roots)? };
+                Ok(Reached::Root)
+            }
+            // a step that ends before the target is the last that may be made
+            code if code >= 0 && (self.progress.stands || stops && code == DONE) => {
+                Err(self.stopped(ffi::CV_TOO_MUCH_WORK, target))
+            }
+            code if code >= 0 => {
+                let stopped = self.stop_time.time() == Some(self.t);
+                if stopped {
+                    self.stop_time.set(None);
+                }
+                Ok(if stopped { Reached::StopTime } else { Reached::Time })
+            }
+            code if functions.refusals.contains(&code) => {
+                self.host.accept(name, code).map(|()| Reached::Time)
+            }
+            code => Err(self.stopped(code, target)),
+        }
+    }
+
+    /// After a first step of IDA that failed, from `before` towards `target`: has C start with a smaller one, if that may help.
+    ///
+    /// The first step is a thousandth of the way to `target` where y' does not tell less, and C gives up after ten failures, six
+    /// decades below. A stiff problem may need less than that.
+    fn shortens_first_step(&mut self, code: i32, before: f64, target: f64) -> Result<bool, Error> {
+        // of the way to the target
+        const LEAST: f64 = 1e-30;
+        let failed = [ffi::CV_ERR_FAILURE, ffi::CV_CONV_FAILURE].contains(&code);
+        let is_dae = self.yp.is_some() && self.host.get().find_index.is_some();
+        if !failed || !is_dae || self.initial_step.is_some() {
+            return Ok(false);
+        }
+        let statistics = self.step_statistics();
+        let h = 0.25 * statistics.current_step;
+        let moves = before + h != before && h.abs() > LEAST * (target - before).abs();
+        if statistics.steps > 0 || !moves || self.higher_index(&Cause::ErrorTest).is_some() {
+            return Ok(false);
+        }
+        self.t = before;
+        self.forget_factors();
+        self.start_c_again(before)?;
+        // SAFETY: the value is a plain number.
+        unsafe { self.set(self.memory.functions.set_initial_step, h)? };
+        Ok(true)
+    }
+
+    /// Has C start at time `t` from the present state, integrals and sensitivities.
+    fn start_c_again(&mut self, t: f64) -> Result<(), Error> {
+        self.start_c(t)?;
+        self.hand_over_quadratures()?;
+        self.hand_over_sensitivities()
+    }
+
+    /// Has C start at time `t` from the present state: `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
+    fn start_c(&mut self, t: f64) -> Result<(), Error> {
+        let (name, reinit) = self.memory.functions.reinit;
+        // SAFETY: memory and vectors are alive; the integrator copies the vectors.
+        let code = unsafe { reinit(self.memory.raw, t, self.y.raw(), self.raw_yp()) };
+        self.host.accept(name, code)
+    }
+
+    /// Whether the state that C has written is one.
+    fn is_finite_beside(&self) -> bool {
+        let vectors = [Some(&self.scratch), self.slope_scratch.as_ref()];
+        vectors.into_iter().flatten().all(|vector| vector.as_slice().iter().all(|y| y.is_finite()))
+    }
+
+    /// Whether C still has a state to go on from. It predicts by sums of its history, in place, and takes them back after a
+    /// failure: sums that overflowed leave NaN.
+    fn has_finite_history(&mut self) -> bool {
+        let (_, get_dky) = self.memory.functions.get_dky;
+        let t = self.step_statistics().current_time;
+        // SAFETY: memory and vector are alive; CVODE and IDA call no callback here.
+        let code = unsafe { get_dky(self.memory.raw, t, 0, self.scratch.raw()) };
+        code >= 0 && self.scratch.as_slice().iter().all(|y| y.is_finite())
+    }
+
+    /// Reads y and y' of a DAE anew: single steps of IDA return them as they were before unknowns were put
+    /// to their bounds.
+    fn read_corrected(&mut self) -> Result<(), Error> {
+        let Some(yp) = self.yp.as_ref().map(Vector::raw) else { return Ok(()) };
+        let (name, get_dky) = self.memory.functions.get_dky;
+        for (order, vector) in [(0, self.y.raw()), (1, yp)] {
+            // SAFETY: memory and vector are alive; IDA calls no callback here.
+            let code = unsafe { get_dky(self.memory.raw, self.t, order, vector) };
+            self.host.accept(name, code)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses targets that C would refuse less clearly: `solve_to` can go back within the last
+    /// step, `step` cannot.
+    fn check_target(&self, target: f64, task: i32) -> Result<(), Error> {
+        let statistics = self.step_statistics();
+        let earliest = match task {
+            ffi::CV_ONE_STEP => self.t,
+            _ => statistics.current_time - statistics.last_step,
+        };
+        if statistics.steps == 0 && (target - self.t).abs() < SHORTEST {
+            let mend = format!("it lies at least {SHORTEST:e} from the start, {:?}", self.t);
+            return Err(Error::input("target time", target, mend));
+        }
+        if (target - earliest) * statistics.last_step < 0.0 {
+            let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
+            return Err(Error::input("target time", target, mend));
+        }
+        Ok(())
+    }
+
+    /// Calls a function `get_dky` of C, of the name `name`, that interpolates within the last step.
+    pub(super) fn look_back(
+        &mut self,
+        name: &'static str,
+        t: f64,
+        derivative: u32,
+        get_dky: impl FnOnce(*mut c_void, f64, i32) -> i32,
+    ) -> Result<(), Error> {
+        let order = derivative.min(i32::MAX as u32) as i32;
+        let functions = self.memory.functions;
+        self.host.get_mut().troubles.begin(self.t);
+        let code = get_dky(self.memory.raw, t, order);
+        self.host.get_mut().troubles.resume_panic();
+        if code == functions.bad_time {
+            let (start, end) = self.last_step();
+            return Err(Error::input("t", t, format!("the last step is [{start}, {end}]")));
+        }
+        if code == functions.bad_derivative {
+            let mend = format!("the last step was of order {}", self.last_order());
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        if code == ffi::CV_RHSFUNC_FAIL {
+            return Err(self.stopped(code, t));
+        }
+        self.host.accept(name, code)
+    }
+
+    /// Checks that nothing but the present values is asked for, where there is no step to look into.
+    pub(super) fn check_start_only(&self, t: f64, derivative: u32) -> Result<(), Error> {
+        if t != self.t {
+            let mend =
+                format!("without a step to look into only the state at {:?} is known", self.t);
+            return Err(Error::input("t", t, mend));
+        }
+        if derivative > 0 {
+            let mend = "it takes a step: without one only the state itself is known";
+            return Err(Error::input("derivative", derivative, mend));
+        }
+        Ok(())
+    }
+}
+
+/// `target`, or a time beyond it that C takes for another one than `t`. (It takes 100 units of rounding for none when it looks for a
+/// stop time, and some more in its first step.)
+pub(super) fn apart(t: f64, target: f64) -> f64 {
+    let size = t.abs().max(target.abs());
+    let (distance, least) = (target - t, (256.0 * f64::EPSILON * size).max(1e-97));
+    if distance.abs() >= least { target } else { t + (1e6 * least).copysign(distance) }
+}

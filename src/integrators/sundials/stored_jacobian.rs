@@ -1,0 +1,204 @@
+//! Jacobians of their own, beside the matrix that a linear solver factorizes.
+
+use faer::MatMut;
+
+use crate::base::input::InputError;
+use crate::integrators::{
+    ode::{BandMut, Failure},
+    sundials::{
+        Jacobian, LinearSolver, Pattern, colouring::Colouring, matrix::Entries, shape::Shape,
+    },
+};
+
+/// A Jacobian at one point, stored as the linear solver of the run forward has it.
+pub(in crate::integrators::sundials) struct StoredJacobian {
+    forward: LinearSolver,
+    shape: Shape,
+    n: usize,
+    values: Vec<f64>,
+    colouring: Colouring,
+    /// Unknowns moved for difference quotients, and two results.
+    moved: Vec<f64>,
+    ahead: Vec<f64>,
+    behind: Vec<f64>,
+}
+
+impl StoredJacobian {
+    pub(in crate::integrators::sundials) fn new(forward: &LinearSolver, n: usize) -> Self {
+        let count = match forward {
+            LinearSolver::Dense(_) => n * n,
+            LinearSolver::Band { lower, upper, .. } => n * (lower + upper + 1),
+            LinearSolver::Klu { pattern, .. } => pattern.entry_count(),
+            _ => 0,
+        };
+        let vector = || vec![0.0; n];
+        let (moved, ahead, behind) = (vector(), vector(), vector());
+        let shape = Shape::of(forward).unwrap_or(Shape::Dense);
+        let colouring = shape.colouring(n);
+        let (forward, values) = (forward.clone(), vec![0.0; count]);
+        Self { forward, shape, n, values, colouring, moved, ahead, behind }
+    }
+
+    /// The linear solver for transposed matrices.
+    pub(in crate::integrators::sundials) fn backward_solver(
+        &self,
+    ) -> Result<LinearSolver, InputError> {
+        match &self.forward {
+            LinearSolver::Dense(_) => Ok(LinearSolver::Dense(Jacobian::Supplied)),
+            LinearSolver::Band { lower, upper, .. } => Ok(LinearSolver::Band {
+                lower: *upper,
+                upper: *lower,
+                jacobian: Jacobian::Supplied,
+            }),
+            LinearSolver::Klu { .. } => {
+                let mut entries = Vec::new();
+                self.each_place(|i, j, _| entries.push((j, i)));
+                let pattern = Pattern::from_entries(self.n, entries)?;
+                Ok(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
+            }
+            other => {
+                let mend = "an adjoint gradient needs entries of the Jacobian: choose a dense, a band or a \
+                            sparse linear solver";
+                Err(InputError::new("linear solver", format!("{other:?}"), mend))
+            }
+        }
+    }
+
+    /// Whether the system supplies it.
+    pub(in crate::integrators::sundials) fn is_supplied(&self) -> bool {
+        match &self.forward {
+            LinearSolver::Dense(jacobian)
+            | LinearSolver::Band { jacobian, .. }
+            | LinearSolver::Klu { jacobian, .. } => *jacobian == Jacobian::Supplied,
+            _ => false,
+        }
+    }
+
+    /// Its entries, to be filled; zeros.
+    pub(in crate::integrators::sundials) fn entries(&mut self) -> Entries<'_> {
+        self.values.fill(0.0);
+        let values = &mut self.values;
+        match &self.forward {
+            LinearSolver::Dense(_) => {
+                Entries::Dense(MatMut::from_column_major_slice_mut(values, self.n, self.n))
+            }
+            LinearSolver::Band { lower, upper, .. } => {
+                let stride = lower + upper + 1;
+                Entries::Band(BandMut::new(values, stride, *upper, *lower, *upper))
+            }
+            _ => Entries::Sparse(values),
+        }
+    }
+
+    /// Makes it that of `evaluate` at `x` by central differences with these steps, of as many columns at once as do not
+    /// meet in any row.
+    pub(in crate::integrators::sundials) fn quotients(
+        &mut self,
+        x: &[f64],
+        step: impl Fn(usize) -> f64,
+        mut evaluate: impl FnMut(&[f64], &mut [f64]) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        self.values.fill(0.0);
+        let (n, stored) = (self.n, self.values.len());
+        for colour in 0..self.colouring.count() {
+            let columns = self.colouring.columns(colour);
+            for (sign, result) in [(1.0, &mut self.ahead), (-1.0, &mut self.behind)] {
+                self.moved.copy_from_slice(x);
+                columns.iter().for_each(|&j| self.moved[j] += sign * step(j));
+                evaluate(&self.moved, result)?;
+            }
+            for &j in columns {
+                let distance = (x[j] + step(j)) - (x[j] - step(j));
+                for (k, place) in self.shape.places(j, n, stored).enumerate() {
+                    let i = self.shape.row(j, k);
+                    self.values[place] = (self.ahead[i] - self.behind[i]) / distance;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The numbers that are stored.
+    pub(in crate::integrators::sundials) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The same, to be written.
+    pub(in crate::integrators::sundials) fn values_mut(&mut self) -> &mut [f64] {
+        &mut self.values
+    }
+
+    /// Writes its product with `v`.
+    pub(in crate::integrators::sundials) fn multiply(&self, v: &[f64], out: &mut [f64]) {
+        self.shape.multiply(&self.values, v, out);
+    }
+
+    /// Writes I - gamma J into the matrix of its own linear solver, which is zero.
+    pub(in crate::integrators::sundials) fn write_shifted(&self, gamma: f64, entries: Entries<'_>) {
+        let value = |i: usize, j: usize, place: usize| {
+            let unit = if i == j { 1.0 } else { 0.0 };
+            unit - gamma * self.values[place]
+        };
+        match entries {
+            Entries::Dense(mut matrix) => {
+                self.each_place(|i, j, place| matrix[(i, j)] = value(i, j, place));
+            }
+            Entries::Band(mut band) => {
+                self.each_place(|i, j, place| band[(i, j)] = value(i, j, place));
+            }
+            Entries::Sparse(values) => {
+                self.each_place(|i, j, place| values[place] = value(i, j, place));
+            }
+            Entries::Custom => {}
+        }
+    }
+
+    /// Calls `visit` with row, column and value of each entry.
+    pub(in crate::integrators::sundials) fn each(&self, mut visit: impl FnMut(usize, usize, f64)) {
+        self.each_place(|i, j, place| visit(i, j, self.values[place]));
+    }
+
+    /// Calls `visit` with row, column and place among the values of each entry.
+    pub(in crate::integrators::sundials) fn each_place(
+        &self,
+        visit: impl FnMut(usize, usize, usize),
+    ) {
+        self.shape.each(self.n, self.values.len(), visit);
+    }
+
+    /// Adds `factor` J^T lambda.
+    pub(in crate::integrators::sundials) fn add_transposed_times(
+        &self,
+        factor: f64,
+        lambda: &[f64],
+        out: &mut [f64],
+    ) {
+        self.each(|i, j, value| out[j] += factor * value * lambda[i]);
+    }
+
+    /// Writes the transpose of another matrix, which has `value` in a row and at a place of this one, into that of
+    /// `backward`, which is this solver's.
+    pub(in crate::integrators::sundials) fn write_transposed(
+        &self,
+        backward: &LinearSolver,
+        entries: Entries<'_>,
+        value: impl Fn(usize, usize) -> f64,
+    ) {
+        match (entries, backward) {
+            (Entries::Dense(mut matrix), _) => {
+                self.each_place(|i, j, place| matrix[(j, i)] = value(i, place));
+            }
+            (Entries::Band(mut band), _) => {
+                self.each_place(|i, j, place| band[(j, i)] = value(i, place));
+            }
+            (Entries::Sparse(values), LinearSolver::Klu { pattern, .. }) => {
+                self.each_place(|i, j, place| {
+                    if let Some(to) = pattern.position(j, i) {
+                        values[to] = value(i, place);
+                    }
+                });
+            }
+            _ => {}
+        }
+    }
+}

@@ -1,0 +1,390 @@
+//! The phase in force, as commands have changed it: what are numbers and names as they are, and functions by
+//! where the scene has them.
+
+use std::fmt::Display;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+
+use crate::base::formula::Formula;
+use crate::base::input::InputError;
+use crate::elements::mesh::Selection;
+use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline, Turn};
+use crate::scene::forces::{Course, Signal, TimeTable, VectorSignal};
+use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
+
+/// What is in force.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct InForce {
+    constraints: Vec<(What, How)>,
+    /// Nodes, word of the kind of load, value.
+    loads: Vec<(Nodes, String, Vector)>,
+    /// Names of springs, force.
+    actuations: Vec<(Vec<String>, Number)>,
+    /// Name of a chamber, pressure.
+    pressures: Vec<(String, Number)>,
+    /// Names of the obstacles that act; without: all.
+    #[serde(deserialize_with = "Option::deserialize")]
+    contact: Option<Vec<String>>,
+    /// Obstacles that commands have set in motion: name, how far it is from where its velocity or path would have
+    /// brought it, and velocity; without: its path in the scene.
+    moving: Vec<(String, [f64; 3], Option<[f64; 3]>)>,
+}
+
+/// A [`Selection`]; corners of boxes that lie nowhere are `null`.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Nodes {
+    Set(String),
+    Numbers(Vec<usize>),
+    Box { min: Vec<Option<f64>>, max: Vec<Option<f64>> },
+}
+
+/// A [`Constrained`]; without axes: all.
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum What {
+    Nodes(Nodes, Option<Vec<char>>),
+    Row(Vec<(usize, char, f64)>),
+    Along(Nodes, Vec<f64>),
+}
+
+/// A [`Motion`].
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum How {
+    Hold,
+    Velocity(Vec<f64>),
+    Path {
+        times: Vec<f64>,
+        displacements: Vec<f64>,
+    },
+    Formula(String),
+    Turn {
+        centre: Vec<f64>,
+        axis: Vec<f64>,
+        /// Times and angles of its path.
+        #[serde(deserialize_with = "Option::deserialize")]
+        path: Option<[Vec<f64>; 2]>,
+    },
+    /// That of a constraint of the phase as the scene has it, from 0.
+    OfScene(usize),
+}
+
+/// A [`VectorSignal`].
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Vector {
+    Constant(Vec<f64>),
+    Table {
+        times: Vec<f64>,
+        values: Vec<Vec<f64>>,
+    },
+    Formulas(Vec<String>),
+    /// A load of the phase as the scene has it, from 0.
+    OfScene(usize),
+}
+
+/// A [`Signal`].
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Number {
+    Constant(f64),
+    Table {
+        times: Vec<f64>,
+        values: Vec<Vec<f64>>,
+    },
+    Formula(String),
+    /// An actuation or pressure of the phase as the scene has it, from 0.
+    OfScene(usize),
+}
+
+impl InForce {
+    /// `phase`, which is `own` of the scene, changed by commands.
+    ///
+    /// # Errors
+    /// A function that `own` does not have.
+    pub(super) fn of(phase: &Phase, own: &Phase) -> Result<Self, InputError> {
+        let constraints = phase.constraints.iter().map(|Constraint { what, how }| {
+            let how = How::of(how, own).ok_or_else(|| is_function(format!("path of {what:?}")))?;
+            Ok((What::of(what), how))
+        });
+        let loads = phase.loads.iter().map(|(nodes, load)| {
+            let value = Vector::of(&load.value, own);
+            let value = value.ok_or_else(|| is_function(format!("load on {nodes}")))?;
+            Ok((Nodes::of(nodes), load.kind.word().into(), value))
+        });
+        let actuations = phase.actuations.iter().map(|(springs, force)| {
+            let force = Number::of(force, own.actuations.iter().map(|(_, force)| force));
+            let names = || springs.join("\", \"");
+            let force =
+                force.ok_or_else(|| is_function(format!("actuation of spring \"{}\"", names())))?;
+            Ok((springs.clone(), force))
+        });
+        let pressures = phase.pressures.iter().map(|(chamber, pressure)| {
+            let pressure = Number::of(pressure, own.pressures.iter().map(|(_, own)| own));
+            let pressure = pressure
+                .ok_or_else(|| is_function(format!("pressure of chamber \"{chamber}\"")))?;
+            Ok((chamber.clone(), pressure))
+        });
+        Ok(Self {
+            constraints: constraints.collect::<Result<_, InputError>>()?,
+            loads: loads.collect::<Result<_, InputError>>()?,
+            actuations: actuations.collect::<Result<_, InputError>>()?,
+            pressures: pressures.collect::<Result<_, InputError>>()?,
+            contact: match &phase.contact {
+                ContactWith::All => None,
+                ContactWith::These(names) => Some(names.clone()),
+            },
+            moving: phase
+                .turned
+                .iter()
+                .map(|obstacle| {
+                    (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
+                })
+                .collect(),
+        })
+    }
+
+    /// The phase in force; `own` is what the scene has.
+    ///
+    /// # Errors
+    /// Axes and functions that do not exist. All else the scene [checks](Phase).
+    pub(super) fn read(self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
+        let constraints = self.constraints.into_iter();
+        let constraints = constraints
+            .map(|(what, how)| Ok(Constraint { what: what.read()?, how: how.read(own)? }));
+        let loads = self.loads.into_iter();
+        let loads = loads.map(|(nodes, word, value)| {
+            let kind = LoadKind::ALL.into_iter().find(|kind| kind.word() == word);
+            let kind = kind.ok_or_else(|| format!("no load is a \"{word}\": write it anew"))?;
+            Ok((nodes.read(), Load { kind, value: value.read(own)? }))
+        });
+        let actuations = self.actuations.into_iter().map(|(springs, force)| {
+            let own = own.actuations.iter().map(|(_, force)| force);
+            Ok((springs, force.read("actuation", own)?))
+        });
+        let pressures = self.pressures.into_iter().map(|(chamber, pressure)| {
+            let own = own.pressures.iter().map(|(_, pressure)| pressure);
+            Ok((chamber, pressure.read("pressure", own)?))
+        });
+        let moving = self.moving.into_iter().map(|(name, offset, velocity)| {
+            let obstacle = scene.obstacles().iter().find(|obstacle| obstacle.name() == name);
+            let obstacle =
+                obstacle.ok_or_else(|| format!("the scene has no obstacle \"{name}\""))?;
+            let obstacle = obstacle.clone().with_offset(offset);
+            Ok(match velocity {
+                Some(velocity) => obstacle.velocity(&velocity[..scene.body().dimension()]),
+                None => obstacle,
+            })
+        });
+        Ok(Phase {
+            constraints: constraints.collect::<Result<_, String>>()?,
+            loads: loads.collect::<Result<_, String>>()?,
+            actuations: actuations.collect::<Result<_, String>>()?,
+            pressures: pressures.collect::<Result<_, String>>()?,
+            contact: self.contact.map_or(ContactWith::All, ContactWith::These),
+            turned: moving.collect::<Result<_, String>>()?,
+            ..own.clone()
+        })
+    }
+}
+
+fn is_function(input: String) -> InputError {
+    let mend = "a file cannot hold it; command a constant or a table before";
+    InputError::new(input, "a function of time", mend)
+}
+
+/// The item that the scene has at a place.
+fn own<T: Clone>(
+    what: &str,
+    place: usize,
+    mut items: impl Iterator<Item = T>,
+) -> Result<T, String> {
+    let item = items.nth(place);
+    item.ok_or_else(|| format!("{what} {place} is none of the phase in the scene: write it anew"))
+}
+
+impl Nodes {
+    fn of(selection: &Selection) -> Self {
+        let corner = |corner: &[f64]| {
+            corner.iter().map(|x| Some(*x).filter(|x| x.is_finite())).collect::<Vec<_>>()
+        };
+        match selection {
+            Selection::Set(name) => Self::Set(name.clone()),
+            Selection::Numbers(numbers) => Self::Numbers(numbers.clone()),
+            Selection::Box { min, max } => Self::Box { min: corner(min), max: corner(max) },
+        }
+    }
+
+    fn read(self) -> Selection {
+        let corner = |corner: Vec<Option<f64>>, nowhere: f64| {
+            corner.into_iter().map(|x| x.unwrap_or(nowhere)).collect()
+        };
+        match self {
+            Self::Set(name) => Selection::Set(name),
+            Self::Numbers(numbers) => Selection::Numbers(numbers),
+            Self::Box { min, max } => Selection::Box {
+                min: corner(min, f64::NEG_INFINITY),
+                max: corner(max, f64::INFINITY),
+            },
+        }
+    }
+}
+
+const AXES: [(char, Axis); 3] = [('x', Axis::X), ('y', Axis::Y), ('z', Axis::Z)];
+
+fn letter(axis: Axis) -> char {
+    AXES[axis.index()].0
+}
+
+fn axis(letter: char) -> Result<Axis, String> {
+    let found = AXES.into_iter().find(|(known, _)| *known == letter);
+    found.map(|(_, axis)| axis).ok_or_else(|| unknown("axis", letter))
+}
+
+fn unknown(what: &str, name: impl Display) -> String {
+    format!("{what} \"{name}\" is none of x, y, z: write it anew")
+}
+
+impl What {
+    fn of(what: &Constrained) -> Self {
+        match what {
+            Constrained::Nodes(nodes, Axes::All) => Self::Nodes(Nodes::of(nodes), None),
+            Constrained::Nodes(nodes, Axes::These(axes)) => {
+                Self::Nodes(Nodes::of(nodes), Some(axes.iter().map(|axis| letter(*axis)).collect()))
+            }
+            Constrained::Row(terms) => {
+                Self::Row(terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect())
+            }
+            Constrained::Along(nodes, normal) => Self::Along(Nodes::of(nodes), normal.clone()),
+        }
+    }
+
+    fn read(self) -> Result<Constrained, String> {
+        Ok(match self {
+            Self::Nodes(nodes, None) => Constrained::Nodes(nodes.read(), Axes::All),
+            Self::Nodes(nodes, Some(letters)) => {
+                let axes = letters.into_iter().map(axis).collect::<Result<_, _>>()?;
+                Constrained::Nodes(nodes.read(), Axes::These(axes))
+            }
+            Self::Row(terms) => {
+                let terms = terms.into_iter();
+                let terms = terms.map(|(node, letter, x)| Ok((node, axis(letter)?, x)));
+                Constrained::Row(terms.collect::<Result<_, String>>()?)
+            }
+            Self::Along(nodes, normal) => Constrained::Along(nodes.read(), normal),
+        })
+    }
+}
+
+impl How {
+    fn of(motion: &Motion, own: &Phase) -> Option<Self> {
+        Some(match motion {
+            Motion::Hold => Self::Hold,
+            Motion::Velocity(velocity) => Self::Velocity(velocity.clone()),
+            Motion::Spline(spline) => Self::Path {
+                times: spline.times().into(),
+                displacements: spline.displacements().into(),
+            },
+            Motion::Formula(formula) => Self::Formula(formula.text().into()),
+            Motion::Turn(turn) => {
+                let numbers = |path: &Spline| [path.times().into(), path.displacements().into()];
+                let path = turn.angles.as_ref().map(numbers);
+                Self::Turn { centre: turn.centre.clone(), axis: turn.axis.clone(), path }
+            }
+            Motion::Path(path) => Self::OfScene(own.constraints.iter().position(
+                |constraint| matches!(&constraint.how, Motion::Path(own) if Arc::ptr_eq(own, path)),
+            )?),
+        })
+    }
+
+    fn read(self, phase: &Phase) -> Result<Motion, String> {
+        Ok(match self {
+            Self::Hold => Motion::Hold,
+            Self::Velocity(velocity) => Motion::Velocity(velocity),
+            Self::Path { times, displacements } => {
+                Motion::Spline(Arc::new(Spline::new(times, displacements)))
+            }
+            Self::Formula(text) => Motion::Formula(Arc::new(Formula::parse(&text)?)),
+            Self::Turn { centre, axis, path } => {
+                let angles = path.map(|[times, angles]| Spline::new(times, angles));
+                Motion::Turn(Arc::new(Turn { centre, axis, angles }))
+            }
+            Self::OfScene(place) => {
+                own("constraint", place, phase.constraints.iter().map(|own| own.how.clone()))?
+            }
+        })
+    }
+}
+
+impl Vector {
+    fn of(value: &VectorSignal, own: &Phase) -> Option<Self> {
+        Some(match value {
+            VectorSignal::Constant(vector) => Self::Constant(vector.clone()),
+            VectorSignal::Live(live) => Self::Constant(live.get()),
+            VectorSignal::TimeTable(TimeTable { times, values }) => {
+                Self::Table { times: times.clone(), values: values.clone() }
+            }
+            VectorSignal::Formulas(formulas) => {
+                Self::Formulas(formulas.iter().map(|formula| formula.text().into()).collect())
+            }
+            VectorSignal::Function { write, .. } => {
+                Self::OfScene(own.loads.iter().position(|(_, own)| match &own.value {
+                    VectorSignal::Function { write: own, .. } => Arc::ptr_eq(own, write),
+                    _ => false,
+                })?)
+            }
+        })
+    }
+
+    fn read(self, phase: &Phase) -> Result<VectorSignal, String> {
+        Ok(match self {
+            Self::Constant(vector) => VectorSignal::Constant(vector),
+            Self::Table { times, values } => VectorSignal::TimeTable(TimeTable::new(times, values)),
+            Self::Formulas(texts) => {
+                let formulas = texts.iter().map(|text| Formula::parse(text));
+                VectorSignal::Formulas(formulas.collect::<Result<_, _>>()?)
+            }
+            Self::OfScene(place) => {
+                own("load", place, phase.loads.iter().map(|(_, load)| load.value.clone()))?
+            }
+        })
+    }
+}
+
+impl Number {
+    fn of<'a>(signal: &Signal, mut own: impl Iterator<Item = &'a Signal>) -> Option<Self> {
+        Some(match &signal.0 {
+            Course::Constant(_) | Course::Live(_) => Self::Constant(signal.at(0.0)),
+            Course::TimeTable(TimeTable { times, values }) => {
+                Self::Table { times: times.clone(), values: values.clone() }
+            }
+            Course::Formula(formula) => Self::Formula(formula.text().into()),
+            Course::Function { function, breaks } => {
+                Self::OfScene(own.position(|own| match &own.0 {
+                    Course::Function { function: own, breaks: theirs } => {
+                        Arc::ptr_eq(own, function) && theirs == breaks
+                    }
+                    _ => false,
+                })?)
+            }
+        })
+    }
+
+    fn read<'a>(
+        self,
+        what: &str,
+        signals: impl Iterator<Item = &'a Signal>,
+    ) -> Result<Signal, String> {
+        Ok(match self {
+            Self::Constant(value) => Signal::constant(value),
+            Self::Table { times, values } => {
+                Signal(Course::TimeTable(TimeTable::new(times, values)))
+            }
+            Self::Formula(text) => Signal(Course::Formula(Arc::new(Formula::parse(&text)?))),
+            Self::OfScene(place) => own(what, place, signals.cloned())?,
+        })
+    }
+}

@@ -1,0 +1,129 @@
+//! What a scene is known by in a file: numbers and names, and hashes of its parts.
+
+use std::fmt::Debug;
+use std::hash::Hasher;
+
+use serde::{Deserialize, Serialize};
+use siphasher::sip::SipHasher13;
+
+use crate::scene::timeline::{Phase, Scene};
+
+/// What a scene is known by.
+///
+/// Functions cannot be compared: of those in phases, obstacles and other forces it is known only that they are there.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Identity {
+    nodes: usize,
+    cells: usize,
+    dimension: usize,
+    /// Names of the parts, and their hashes.
+    parts: Vec<(String, String)>,
+    phases: Vec<PhaseIdentity>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PhaseIdentity {
+    name: String,
+    until: f64,
+    hash: String,
+}
+
+const MEND: &str = "read it by a simulation of the scene that it was written for";
+
+impl Identity {
+    pub(super) fn of(scene: &Scene) -> Self {
+        let (body, mesh) = (scene.body(), scene.body().mesh());
+        let matrices =
+            [body.inertia().values(), body.stiffness().values(), body.damping().values()];
+        let cells: Vec<&[usize]> = mesh.cells().collect();
+        // a simulation has begun with them: there are no errors
+        let start = scene.initial_velocities().unwrap_or_default();
+        let parts = [
+            ("positions of the nodes", of_numbers([mesh.positions()])),
+            ("cells", of_text(&(mesh.kind(), cells))),
+            ("sets of nodes", of_text(mesh.sets())),
+            ("materials", of_numbers(matrices) ^ of_text(&body)),
+            ("accelerations of gravity", of_text(&scene.acceleration())),
+            ("springs", of_text(scene.springs())),
+            ("chambers", of_text(scene.chambers())),
+            (
+                "displacements and velocities at the start",
+                of_numbers([scene.initial_displacements(), &start]),
+            ),
+            ("obstacles", of_text(scene.obstacles())),
+            ("other forces", of_text(scene.other_forces())),
+        ];
+        Self {
+            nodes: mesh.node_count(),
+            cells: mesh.cell_count(),
+            dimension: mesh.dimension(),
+            parts: parts.map(|(name, hash)| (name.into(), text(hash))).into(),
+            phases: scene.phases().iter().map(PhaseIdentity::of).collect(),
+        }
+    }
+
+    /// # Errors
+    /// The first of these that is another one in `scene`.
+    pub(super) fn check(&self, scene: &Self) -> Result<(), String> {
+        let counts = [
+            ("nodes", self.nodes, scene.nodes),
+            ("dimensions", self.dimension, scene.dimension),
+            ("cells", self.cells, scene.cells),
+            ("parts", self.parts.len(), scene.parts.len()),
+            ("phases", self.phases.len(), scene.phases.len()),
+        ];
+        if let Some((what, ours, theirs)) = counts.iter().find(|(_, ours, theirs)| ours != theirs) {
+            return Err(format!(
+                "{what}: it is of a scene with {ours}, this one has {theirs}; {MEND}"
+            ));
+        }
+        let mut parts = self.parts.iter().zip(&scene.parts);
+        if let Some((_, (part, _))) = parts.find(|(ours, theirs)| ours != theirs) {
+            return Err(format!("{part}: they differ from those of the scene in the file; {MEND}"));
+        }
+        for (number, (ours, theirs)) in (1..).zip(self.phases.iter().zip(&scene.phases)) {
+            if (&ours.name, ours.until) != (&theirs.name, theirs.until) {
+                let [file, here] = [ours, theirs].map(PhaseIdentity::label);
+                return Err(format!(
+                    "phases: number {number} is {file}, here it is {here}; {MEND}"
+                ));
+            }
+            if ours.hash != theirs.hash {
+                let name = &ours.name;
+                return Err(format!(
+                    "phases: what \"{name}\" holds, moves, loads or touches differs from the scene in \
+                     the file; {MEND}"
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+impl PhaseIdentity {
+    fn of(phase: &Phase) -> Self {
+        Self { name: phase.name.clone(), until: phase.until, hash: text(of_text(phase)) }
+    }
+
+    fn label(&self) -> String {
+        format!("\"{}\" until {} s", self.name, self.until)
+    }
+}
+
+fn of_text(part: &(impl Debug + ?Sized)) -> u64 {
+    let mut hasher = SipHasher13::new();
+    hasher.write(format!("{part:?}").as_bytes());
+    hasher.finish()
+}
+
+fn of_numbers<const N: usize>(parts: [&[f64]; N]) -> u64 {
+    let mut hasher = SipHasher13::new();
+    parts.into_iter().flatten().for_each(|number| hasher.write(&number.to_le_bytes()));
+    hasher.finish()
+}
+
+fn text(hash: u64) -> String {
+    format!("{hash:016x}")
+}

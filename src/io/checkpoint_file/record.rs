@@ -1,0 +1,228 @@
+//! What a file holds.
+
+use serde::{Deserialize, Serialize};
+
+use super::commands::InForce;
+use super::identity::Identity;
+use crate::base::input::{InputError, finite};
+use crate::dynamics::simulate::{Angles, Checkpoint, Choice, Kept};
+use crate::dynamics::state::State;
+use crate::scene::settings::Method;
+use crate::scene::timeline::Scene;
+
+/// Format of the files that this version writes and reads.
+const FORMAT: u32 = 4;
+
+/// What a file says that it is.
+pub(super) const WHAT: &str = "pliant checkpoint";
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Whole numbers above this are none that a simulation counts to.
+const MOST: u64 = 1 << 53;
+
+/// What a file begins with, whatever its format.
+#[derive(Deserialize)]
+pub(super) struct Head {
+    what: String,
+    format: u32,
+    version: String,
+}
+
+/// A checkpoint, in SI units.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Record {
+    what: String,
+    format: u32,
+    /// Version of pliant that wrote the file.
+    version: String,
+    scene: Identity,
+    time: f64,
+    /// Number of the phase in force, from 0.
+    phase: usize,
+    in_force: InForce,
+    #[serde(deserialize_with = "Option::deserialize")]
+    chosen: Option<Chosen>,
+    #[serde(deserialize_with = "Option::deserialize")]
+    next_step: Option<f64>,
+    steps: u64,
+    load_commands: u64,
+    energy_balance: f64,
+    /// Error, rise and scale of the energy balance.
+    energies_noted: [f64; 3],
+    dissipated: f64,
+    supplied: f64,
+    /// Where each constraint starts: displacement and time.
+    constraint_starts: Vec<[f64; 4]>,
+    displacements: Vec<f64>,
+    velocities: Vec<f64>,
+    /// Of Maxwell branches.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    internal_strains: Vec<f64>,
+    /// Where angles that sensors read are, in turns.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    angles: Vec<(String, f64)>,
+}
+
+/// A [`Choice`]; a step without a bound is `null`.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Chosen {
+    method: String,
+    max_order: Option<u32>,
+    tolerance_part: f64,
+    reason: String,
+    explicit_step: Option<f64>,
+    central_step: Option<f64>,
+    patience: u64,
+    #[serde(default)]
+    implicit_step: f64,
+}
+
+impl Head {
+    /// # Errors
+    /// Another kind of file, another format.
+    pub(super) fn check(&self) -> Result<(), String> {
+        let Self { what, format, version } = self;
+        if what != WHAT {
+            return Err(format!("it does not say \"{WHAT}\": name a file of `Checkpoint::write`"));
+        }
+        if *format != FORMAT {
+            let mend = format!("this version, {VERSION}, reads format {FORMAT}");
+            return Err(format!("it has format {format} of pliant {version}: {mend}"));
+        }
+        Ok(())
+    }
+}
+
+impl Record {
+    pub(super) fn new(checkpoint: &Checkpoint) -> Result<Self, InputError> {
+        let (scene, kept) = (checkpoint.scene(), checkpoint.kept());
+        finite("the state", &kept.state)?;
+        finite("the energy balance", &[&kept.energies[..], &[kept.balance]].concat())?;
+        let state = State::of(&kept.state, scene.body().dofs());
+        Ok(Self {
+            what: WHAT.into(),
+            format: FORMAT,
+            version: VERSION.into(),
+            scene: Identity::of(scene),
+            time: kept.time,
+            phase: kept.number,
+            in_force: InForce::of(&kept.phase, &scene.phases()[kept.number])?,
+            chosen: checkpoint.choice().map(Chosen::from),
+            next_step: kept.first_step,
+            steps: kept.steps as u64,
+            load_commands: kept.commands as u64,
+            energy_balance: kept.balance,
+            energies_noted: kept.energies,
+            dissipated: state.dissipated,
+            supplied: state.supplied,
+            constraint_starts: kept.origins.clone(),
+            displacements: state.u.into(),
+            velocities: state.v.into(),
+            internal_strains: state.others.into(),
+            angles: kept.angles.0.clone(),
+        })
+    }
+
+    /// What it holds for `scene`.
+    ///
+    /// # Errors
+    /// Another scene, numbers out of range, names that the scene does not have.
+    pub(super) fn read(self, scene: &Scene) -> Result<(Kept, Option<Choice>), String> {
+        self.scene.check(&Identity::of(scene)).map_err(|differs| match self.version.as_str() {
+            VERSION => differs,
+            other => format!("{differs} (written by pliant {other}, read by {VERSION})"),
+        })?;
+        let dofs = scene.body().dofs();
+        let internal = scene.body().branches().map_or(0, |branches| branches.unknowns());
+        for (what, numbers, needed) in [
+            ("displacements", &self.displacements, dofs),
+            ("velocities", &self.velocities, dofs),
+            ("internal strains", &self.internal_strains, internal),
+        ] {
+            if numbers.len() != needed {
+                let found = numbers.len();
+                return Err(format!("it has {found} {what}, the body has {needed}: write it anew"));
+            }
+        }
+        let phases = scene.phases();
+        let Some(phase) = phases.get(self.phase) else {
+            let (number, count) = (self.phase, phases.len());
+            return Err(format!("phase {number} is none of 0 to {}: write it anew", count - 1));
+        };
+        let begin = self.phase.checked_sub(1).map_or(0.0, |before| phases[before].until);
+        if !(begin..=phase.until).contains(&self.time) {
+            let (name, until, time) = (&phase.name, phase.until, self.time);
+            return Err(format!(
+                "time {time} s is not in phase \"{name}\", from {begin} s to {until} s: write it anew"
+            ));
+        }
+        if let Some(step) = self.next_step.filter(|step| *step <= 0.0) {
+            return Err(format!("next_step {step} s is not above 0: write it anew"));
+        }
+        let energies = vec![self.dissipated, self.supplied];
+        let kept = Kept {
+            time: self.time,
+            state: [self.displacements, self.velocities, energies, self.internal_strains].concat(),
+            phase: self.in_force.read(phase, scene)?.into(),
+            number: self.phase,
+            is_commanded: true,
+            origins: self.constraint_starts,
+            first_step: self.next_step,
+            steps: count("steps", self.steps)?,
+            commands: count("load_commands", self.load_commands)?,
+            balance: self.energy_balance,
+            energies: self.energies_noted,
+            angles: Angles(self.angles),
+        };
+        Ok((kept, self.chosen.map(Chosen::read).transpose()?))
+    }
+}
+
+impl From<Choice> for Chosen {
+    fn from(choice: Choice) -> Self {
+        let Choice {
+            method,
+            max_order,
+            part,
+            reason,
+            explicit_step,
+            central_step,
+            patience,
+            implicit_step,
+        } = choice;
+        let bounded = |step: f64| Some(step).filter(|step| step.is_finite());
+        Self {
+            method: method.name().into(),
+            max_order,
+            tolerance_part: part,
+            reason,
+            explicit_step: bounded(explicit_step),
+            central_step: bounded(central_step),
+            patience: patience as u64,
+            implicit_step,
+        }
+    }
+}
+
+impl Chosen {
+    fn read(self) -> Result<Choice, String> {
+        Ok(Choice {
+            method: self.method.parse::<Method>().map_err(|error| error.to_string())?,
+            max_order: self.max_order,
+            part: self.tolerance_part,
+            reason: self.reason,
+            explicit_step: self.explicit_step.unwrap_or(f64::INFINITY),
+            central_step: self.central_step.unwrap_or(f64::INFINITY),
+            patience: count("patience", self.patience)?,
+            implicit_step: self.implicit_step,
+        })
+    }
+}
+
+fn count(what: &str, number: u64) -> Result<usize, String> {
+    let counted = usize::try_from(number).ok().filter(|_| number <= MOST);
+    counted.ok_or_else(|| format!("{what} {number} is above {MOST}: write it anew"))
+}

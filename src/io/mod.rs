@@ -1,0 +1,12 @@
+//! Files: scenes and states that are read, checkpoints, and what is written of a motion.
+
+#[cfg(feature = "checkpoint")]
+pub(crate) mod checkpoint_file;
+#[cfg(any(feature = "checkpoint", feature = "output"))]
+pub(crate) mod file;
+#[cfg(feature = "output")]
+pub mod output;
+#[cfg(feature = "scene-file")]
+pub mod scene_file;
+#[cfg(feature = "checkpoint")]
+pub(crate) mod state_file;

@@ -1,0 +1,149 @@
+//! What of the mesh is drawn: its nodes, its faces, its outline.
+
+use serde_json::{Value, json};
+
+use crate::elements::mesh::Mesh;
+use crate::io::output::svg::{BAR_WIDTH, around, drawn, through_middle};
+use crate::scene::forces::Joint;
+
+/// The drawn part of a mesh.
+pub(super) struct Geometry {
+    /// How the page draws it.
+    look: &'static str,
+    /// The drawn nodes.
+    pub(super) nodes: Vec<usize>,
+    /// The points of space that springs are joined to, drawn after the nodes.
+    anchors: Vec<[f64; 3]>,
+    /// The cell of each face.
+    pub(super) cells: Vec<usize>,
+    /// The nodes of each face in their order around it, as places among the drawn nodes.
+    faces: Vec<Vec<usize>>,
+    /// The nodes of each edge of the outline in the plane, likewise.
+    outline: Vec<Vec<usize>>,
+    /// Place of each node of the mesh among the drawn ones.
+    places: Vec<Option<usize>>,
+    /// Width of a bar as drawn (m).
+    width: f64,
+    quadratic: bool,
+}
+
+impl Geometry {
+    /// What is drawn of `mesh`: of a solid its surface, of other bodies all cells, and besides what springs are
+    /// joined to and the nodes `points`.
+    pub(super) fn new(
+        mesh: &Mesh,
+        joints: impl Iterator<Item = Joint> + Clone,
+        points: &[usize],
+    ) -> Self {
+        let joined = joints.clone().filter_map(|joint| match joint {
+            Joint::Node(node) => Some(node),
+            Joint::Point(_) => None,
+        });
+        let besides = joined.chain(points.iter().copied());
+        let mut anchors = Vec::new();
+        for joint in joints {
+            match joint {
+                Joint::Point(x) if !anchors.contains(&x) => anchors.push(x),
+                _ => {}
+            }
+        }
+        let kind = mesh.kind();
+        let (look, faces) = match (kind.dimension(), mesh.dimension()) {
+            (1, 1) => ("bar", segments(mesh)),
+            (1, _) => ("string", segments(mesh)),
+            (_, 2) => ("area", cells(mesh)),
+            (2, _) => ("membrane", cells(mesh)),
+            _ => ("solid", surface(mesh)),
+        };
+        let mut places = vec![None; mesh.node_count()];
+        let mut nodes = Vec::new();
+        let drawn = faces.iter().flat_map(|(_, face)| face).copied();
+        for node in drawn.chain(besides).collect::<Vec<_>>() {
+            places[node].get_or_insert_with(|| {
+                nodes.push(node);
+                nodes.len() - 1
+            });
+        }
+        let mut geometry = Self {
+            look,
+            nodes,
+            anchors,
+            cells: faces.iter().map(|&(cell, _)| cell).collect(),
+            faces: Vec::new(),
+            outline: Vec::new(),
+            places,
+            width: BAR_WIDTH * mesh.size(),
+            quadratic: kind.is_quadratic(),
+        };
+        geometry.faces = faces.iter().map(|(_, face)| geometry.places(face)).collect();
+        if look == "area" {
+            let edges = mesh.boundary_faces();
+            let edges = edges.iter().map(|edge| through_middle(edge).collect::<Vec<_>>());
+            geometry.outline = edges.map(|edge| geometry.places(&edge)).collect();
+        }
+        geometry
+    }
+
+    /// The places of those of `nodes` that are drawn.
+    pub(super) fn places(&self, nodes: &[usize]) -> Vec<usize> {
+        nodes.iter().filter_map(|&node| self.places[node]).collect()
+    }
+
+    /// The places of what a spring joins.
+    pub(super) fn ends(&self, joints: &[Joint; 2]) -> Vec<usize> {
+        let place = |joint: &Joint| match joint {
+            Joint::Node(node) => self.places[*node],
+            Joint::Point(x) => {
+                let among = self.anchors.iter().position(|anchor| anchor == x);
+                among.map(|number| self.nodes.len() + number)
+            }
+        };
+        joints.iter().filter_map(place).collect()
+    }
+
+    /// Positions of the anchors in a space of `dimension`, as they are drawn.
+    pub(super) fn anchors(&self, dimension: usize) -> impl Iterator<Item = f64> {
+        let drawn = move |x: &[f64; 3]| match dimension {
+            1 | 2 => drawn(&x[..dimension]).to_vec(),
+            _ => x.to_vec(),
+        };
+        self.anchors.iter().flat_map(drawn)
+    }
+
+    /// Number of drawn nodes and anchors.
+    pub(super) fn count(&self) -> usize {
+        self.nodes.len() + self.anchors.len()
+    }
+
+    pub(super) fn to_json(&self) -> Value {
+        let Self { look, nodes, faces, outline, width, quadratic, .. } = self;
+        json!({
+            "look": look,
+            "nodes": nodes.len(),
+            "faces": faces,
+            "outline": outline,
+            "width": width,
+            "quadratic": quadratic,
+        })
+    }
+}
+
+type Faces = Vec<(usize, Vec<usize>)>;
+
+fn segments(mesh: &Mesh) -> Faces {
+    mesh.cells().map(<[usize]>::to_vec).enumerate().collect()
+}
+
+fn cells(mesh: &Mesh) -> Faces {
+    mesh.cells().map(|cell| around(mesh.kind(), cell).collect()).enumerate().collect()
+}
+
+fn surface(mesh: &Mesh) -> Faces {
+    let faces = mesh.boundary_faces_of_cells().into_iter();
+    faces.map(|(cell, face)| (cell, around(mesh.kind(), &face).collect())).collect()
+}
+
+/// A vector as the page draws it: upright in one dimension.
+pub(super) fn in_view(x: &[f64]) -> Vec<f64> {
+    if x.len() < 3 { drawn(x).to_vec() } else { x.to_vec() }
+}

@@ -1,0 +1,125 @@
+//! A motion as it happens, for pages that show it with the means of the animation.
+
+use serde_json::{Value, json};
+
+use super::colours::Quantity;
+use super::geometry::Geometry;
+use super::{STYLE, data, filled, pack};
+use crate::dynamics::error::Error;
+use crate::dynamics::system::Energy;
+use crate::elements::body::Body;
+use crate::elements::mesh::Mesh;
+use crate::io::output::svg::drawn;
+use crate::scene::timeline::Scene;
+
+/// The scripts that such a page shares with the animation: how it decodes and draws.
+const DRAWING: &str = concat!(
+    include_str!("page/format.js"),
+    include_str!("page/paint.js"),
+    include_str!("page/view.js"),
+    include_str!("page/colour.js"),
+    include_str!("page/plane.js"),
+    include_str!("page/space.js"),
+    include_str!("page/stage.js"),
+    include_str!("page/chart.js"),
+    include_str!("page/sensors.js"),
+    include_str!("page/controls.js"),
+);
+
+/// What is drawn of a scene.
+pub(crate) struct Picture {
+    geometry: Geometry,
+}
+
+impl Picture {
+    /// What is drawn of `scene`, and all that stays as it is.
+    ///
+    /// # Errors
+    /// Springs or constraints on nodes that do not exist.
+    pub(crate) fn new(scene: &Scene) -> Result<(Self, Value), Error> {
+        let mesh = scene.body().mesh();
+        let points = data::point_masses(mesh);
+        let ends = data::spring_ends(scene)?;
+        let geometry = Geometry::new(mesh, ends.iter().flatten().copied(), &points);
+        let quantities: Vec<Value> =
+            Quantity::all(scene.body().strain()).iter().map(Quantity::to_json).collect();
+        let springs = scene.springs().iter().zip(&ends);
+        let springs = springs
+            .map(|(spring, ends)| json!({ "name": spring.name(), "ends": geometry.ends(ends) }));
+        let fixed = json!({
+            "axes": axes(mesh),
+            "phases": data::phases(scene, &geometry)?,
+            "body": geometry.to_json(),
+            "quantities": quantities,
+            "energies": data::ENERGIES,
+            "absent": absent(scene),
+            "obstacles": data::obstacles(scene),
+            "springs": springs.collect::<Vec<_>>(),
+            "points": geometry.places(&points),
+        });
+        Ok((Self { geometry }, fixed))
+    }
+
+    /// The page with its own `style`, and with its own scripts before and after those that draw.
+    pub(crate) fn page(
+        page: &str,
+        style: &str,
+        [before, after]: [&str; 2],
+        data: &Value,
+    ) -> String {
+        let script = [include_str!("page/decode.js"), before, DRAWING, after].concat();
+        filled(page, &[STYLE, style].concat(), &script, data)
+    }
+
+    /// The node (from 0) that is drawn at a place among the drawn ones.
+    pub(crate) fn node(&self, place: usize) -> Option<usize> {
+        self.geometry.nodes.get(place).copied()
+    }
+
+    /// Positions of the drawn nodes and anchors for displacements `u` (m).
+    pub(crate) fn places(&self, mesh: &Mesh, u: &[f64]) -> Value {
+        let d = mesh.dimension();
+        let mut numbers = Vec::with_capacity(self.geometry.count() * axes(mesh));
+        for &node in &self.geometry.nodes {
+            let moved = mesh.position(node).iter().zip(&u[node * d..]).map(|(x, u)| x + u);
+            let moved: Vec<f64> = moved.collect();
+            match d {
+                1 | 2 => numbers.extend(drawn(&moved)),
+                _ => numbers.extend(moved),
+            }
+        }
+        numbers.extend(self.geometry.anchors(d));
+        pack::singles(numbers)
+    }
+
+    /// The values of a quantity in the cell of each face, and the end of their scale; none for a number that no
+    /// quantity has.
+    pub(crate) fn colours(&self, body: &Body, u: &[f64], quantity: usize) -> Option<Value> {
+        let shown = Quantity::all(body.strain()).get(quantity)?;
+        let fields = body.cell_fields(u);
+        let value = |&cell: &usize| (shown.value)(&fields[cell], body.strain()) as f32;
+        let values: Vec<f32> = self.geometry.cells.iter().map(value).collect();
+        let (values, scale, _) = shown.packed(&values);
+        Some(json!({ "quantity": quantity, "scale": scale, "values": values }))
+    }
+
+    /// Energies (J), in the order of their names.
+    pub(crate) fn energies(energy: &Energy) -> [f64; 8] {
+        data::energy_values(energy)
+    }
+}
+
+/// The energies that a scene has not, by name.
+fn absent(scene: &Scene) -> Vec<&'static str> {
+    let has = [
+        ("gravity", scene.phases().iter().any(|phase| scene.gravity_in(phase).is_some())),
+        ("contact", !scene.obstacles().is_empty()),
+        ("springs", !scene.springs().is_empty()),
+    ];
+    has.iter().filter(|(_, has)| !has).map(|(name, _)| *name).collect()
+}
+
+/// Coordinates of a drawn node: a body in one dimension is drawn in the plane.
+fn axes(mesh: &Mesh) -> usize {
+    mesh.dimension().max(2)
+}

@@ -1,0 +1,158 @@
+//! Linear axes: which numbers stand on them, and in which unit.
+
+use crate::io::output::power_text;
+
+/// Units that take a prefix.
+const PREFIXED: [&str; 7] = ["m", "s", "m/s", "N", "J", "Pa", "rad"];
+const PREFIXES: [(f64, &str); 8] = [
+    (1e9, "G"),
+    (1e6, "M"),
+    (1e3, "k"),
+    (1.0, ""),
+    (1e-3, "m"),
+    (1e-6, "\u{b5}"),
+    (1e-9, "n"),
+    (1e-12, "p"),
+];
+/// Sizes between which numbers read well without a power of ten beside the unit.
+const PLAIN: [f64; 2] = [1e-3, 1e4];
+/// Beyond this numbers have no room between them and the largest there is.
+const LARGEST: f64 = 1e300;
+/// What is smaller is 0.
+const LEAST: f64 = 1e-290;
+
+/// A range of numbers with the lines across it.
+pub(super) struct Axis {
+    low: f64,
+    high: f64,
+    /// Places of the lines, and what stands beside them.
+    pub(super) ticks: Vec<(f64, String)>,
+    /// Unit of the labels.
+    pub(super) unit: String,
+}
+
+impl Axis {
+    /// From the least to the largest of the finite `values` and `margin` of that more at both ends, with about `count`
+    /// lines.
+    pub(super) fn new(
+        values: impl Iterator<Item = f64>,
+        margin: f64,
+        count: usize,
+        unit: &str,
+    ) -> Self {
+        let finite = values.filter(|value| value.is_finite());
+        let finite = finite.map(|value| value.clamp(-LARGEST, LARGEST));
+        let [low, high] =
+            finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+        let [low, high] = if low > high { [0.0, 1.0] } else { [low, high] };
+        let largest = Some(low.abs().max(high.abs())).filter(|size| *size > LEAST).unwrap_or(0.0);
+        let [low, high] = match high - low {
+            // all alike, but for round-off
+            width if width <= (1e-12 * largest).max(LEAST) => {
+                let half = if largest == 0.0 { 1.0 } else { 0.1 * largest };
+                [low - half, high + half]
+            }
+            width => [low - margin * width, high + margin * width],
+        };
+        let (factor, unit) = scaled(largest, unit);
+        let ticks = ticks(low / factor, high / factor, count);
+        let ticks = ticks.into_iter().map(|(value, label)| (value * factor, label)).collect();
+        Self { low, high, ticks, unit }
+    }
+
+    /// Where a value lies: 0 at the lower end, 1 at the upper.
+    pub(super) fn place(&self, value: f64) -> f64 {
+        (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
+    }
+}
+
+/// A factor with which numbers up to `largest` read well, and the unit with it.
+fn scaled(largest: f64, unit: &str) -> (f64, String) {
+    if PREFIXED.contains(&unit) && largest > 0.0 {
+        let found = PREFIXES.iter().find(|(factor, _)| largest >= 0.9999 * factor);
+        if let Some((factor, prefix)) = found.filter(|(factor, _)| largest < 1e6 * factor) {
+            return (*factor, format!("{prefix}{unit}"));
+        }
+    }
+    let name = unit.replace("^2", "\u{b2}").replace("^3", "\u{b3}");
+    if largest == 0.0 || (PLAIN[0]..PLAIN[1]).contains(&largest) {
+        return (1.0, name);
+    }
+    let power = 3 * (largest.log10() / 3.0).floor() as i32;
+    // what powi gives is not the nearest number
+    let factor = format!("1e{power}").parse().unwrap_or(1.0);
+    (factor, format!("{} {name}", power_text(factor)).trim_end().to_owned())
+}
+
+/// Round numbers from `low` to `high`, about `count` of them, as they are written.
+fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
+    let rough = (high - low) / count as f64;
+    let power = 10_f64.powi(rough.log10().floor() as i32);
+    let step = [1.0, 2.0, 5.0, 10.0].into_iter().find(|digit| digit * power >= 0.999 * rough);
+    let step = step.unwrap_or(10.0) * power;
+    let decimals = (-(step * 1.001).log10().floor()).max(0.0) as usize;
+    let [first, last] = [(low / step - 1e-9).ceil(), (high / step + 1e-9).floor()];
+    let number = (last - first).clamp(0.0, 100.0) as usize;
+    let label = |value: f64| {
+        let text = format!("{value:.decimals$}");
+        // no minus before zero, and a real one before others
+        match text.parse() {
+            Ok(0.0) => text.replace('-', ""),
+            _ => text.replace('-', "\u{2212}"),
+        }
+    };
+    (0..=number).map(|k| (first + k as f64) * step).map(|value| (value, label(value))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Axis, ticks};
+
+    fn labels(low: f64, high: f64, count: usize) -> Vec<String> {
+        ticks(low, high, count).into_iter().map(|(_, label)| label).collect()
+    }
+
+    #[test]
+    fn ticks_are_round() {
+        assert_eq!(labels(-0.31, 0.72, 6), ["\u{2212}0.2", "0.0", "0.2", "0.4", "0.6"]);
+        assert_eq!(labels(0.0, 1.0, 4), ["0.0", "0.5", "1.0"]);
+        assert_eq!(labels(990.0, 1010.5, 4), ["990", "1000", "1010"]);
+        assert_eq!(labels(0.0, 1e-7, 2), ["0.00000000", "0.00000005", "0.00000010"]);
+    }
+
+    #[test]
+    fn units_fit_the_numbers() {
+        let unit =
+            |largest: f64, unit: &str| Axis::new([0.0, largest].into_iter(), 0.0, 4, unit).unit;
+        assert_eq!(unit(0.03, "m"), "mm");
+        assert_eq!(unit(2.5e5, "Pa"), "kPa");
+        assert_eq!(unit(3.0, "N"), "N");
+        assert_eq!(unit(2e-5, "m^3"), "10\u{207b}\u{2076} m\u{b3}");
+        assert_eq!(unit(0.2, "kg m/s"), "kg m/s");
+        assert_eq!(unit(3e12, "N"), "GN");
+        assert_eq!(unit(3e20, "N"), "10\u{b9}\u{2078} N");
+    }
+
+    /// Whatever the values, all of them lie on the axis and its lines, too.
+    #[test]
+    fn any_values_have_an_axis() {
+        for values in [
+            vec![],
+            vec![f64::NAN],
+            vec![0.0],
+            vec![-3.0, -3.0],
+            vec![1.0, 1.0 + 1e-15],
+            vec![f64::MAX, f64::MIN],
+            vec![5e-324, 0.0],
+            vec![f64::INFINITY, 1.0],
+            vec![1e-300, 2e-300],
+        ] {
+            let axis = Axis::new(values.iter().copied(), 0.05, 5, "m");
+            for value in values.iter().filter(|value| value.is_finite()) {
+                assert!((0.0..=1.0).contains(&axis.place(*value)), "{values:?}");
+            }
+            assert!(axis.ticks.len() <= 12, "{values:?}: {:?}", axis.ticks);
+            assert!(axis.ticks.iter().all(|tick| tick.0.is_finite()), "{values:?}");
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Plots: what a motion was in numbers, over time.
+
+mod axis;
+mod line;
+mod page;
+mod table;
+
+use std::io;
+use std::path::Path;
+
+use page::Page;
+pub use table::Table;
+
+use super::write_file;
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::dynamics::trajectory::Trajectory;
+
+/// Sensors and energies over time: a panel for each unit, with a legend; thin lines at the ends of the phases.
+///
+/// ```
+/// use pliant::output::Plot;
+/// use pliant::simulate::{Component, Reading};
+/// use pliant::{Sampling, Settings, samples};
+///
+/// # let directory = tempfile::tempdir().unwrap();
+/// # let path = directory.path().join("plot.svg");
+/// let sampling = Sampling::every(0.01).read("height", Reading::position("top").component(Component::Y));
+/// let motion = samples::square_jump(4)?.simulate(&Settings::default(), &sampling)?;
+/// Plot::new().title("A square jumps").write(&motion, path)?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct Plot {
+    title: String,
+    columns: Option<Vec<String>>,
+}
+
+impl Plot {
+    /// A plot of all sensors, and of the energies that there are.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// What stands above. Default: the title of the scene, if its file has one.
+    pub fn title(mut self, title: impl Into<String>) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// Draws these columns of the [table](crate::io::output::write_csv) instead, in this order.
+    pub fn columns<N: Into<String>>(mut self, names: impl IntoIterator<Item = N>) -> Self {
+        self.columns = Some(names.into_iter().map(Into::into).collect());
+        self
+    }
+
+    /// Draws a motion to an SVG file, or, with the feature `png`, a PNG file.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that no column has, and another ending of `path`; [`Error::Output`] if the file
+    /// cannot be written, or this machine has no fonts for a PNG file.
+    pub fn write(&self, trajectory: &Trajectory, path: impl AsRef<Path>) -> Result<(), Error> {
+        self.write_table(&Table::of(trajectory, None)?, path)
+    }
+
+    /// As [`write`](Self::write), of a table, such as one that a run [has left](Table::read).
+    ///
+    /// # Errors
+    /// As [`write`](Self::write).
+    pub fn write_table(&self, table: &Table, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        let title = if self.title.is_empty() { &table.title } else { &self.title };
+        let drawing = Page::new(title, table, &table.chosen(self.columns.as_deref())?).draw();
+        let picture = match path.extension().and_then(|ending| ending.to_str()) {
+            Some("svg") => Ok(drawing.into_bytes()),
+            #[cfg(feature = "png")]
+            Some("png") => super::png::png(&drawing).map_err(io::Error::other),
+            _ => {
+                let known = if cfg!(feature = "png") { ".svg or .png" } else { ".svg" };
+                let mend = format!("its name must end in {known}");
+                return Err(InputError::new("file of a plot", path.display(), mend).into());
+            }
+        };
+        let picture =
+            picture.map_err(|source: io::Error| Error::Output { path: path.into(), source })?;
+        write_file(path, |file| file.write_all(&picture))
+    }
+}

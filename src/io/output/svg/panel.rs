@@ -1,0 +1,267 @@
+//! One panel: the body at one time.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use svg::node::element::{Group, Path};
+
+use super::layout::{BAR_WIDTH, Layout, View};
+use super::mark::{Mark, text};
+use super::obstacle::Outline;
+use super::projection::{Point, depths, drawn, positions};
+use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::elements::mesh::{CellKind, Mesh};
+use crate::io::output::INK;
+use crate::scene::forces::Joint;
+
+const EDGE: &str = "#35618f";
+const FILL: &str = "#a9cbe8";
+/// Thickness of the hatched band along the surface of a half-plane (px).
+const BAND: f64 = 14.0;
+
+pub(super) struct Panel<'a> {
+    pub(super) number: usize,
+    pub(super) caption: &'a str,
+    pub(super) trajectory: &'a Trajectory,
+    pub(super) sample: &'a Sample,
+    pub(super) view: &'a View,
+    pub(super) layout: &'a Layout,
+    pub(super) marks: &'a BTreeMap<usize, Mark>,
+}
+
+impl Panel<'_> {
+    pub(super) fn draw(&self) -> Group {
+        let [x, y] = self.layout.origin(self.number);
+        let mut panel = Group::new()
+            .set("class", "panel")
+            .set("transform", format!("translate({x:.2} {y:.2})"));
+        for outline in &self.view.obstacles[self.number] {
+            panel = panel.add(self.obstacle(outline));
+        }
+        let points = positions(self.trajectory, self.sample);
+        let points: Vec<Point> =
+            points.iter().map(|&x| self.layout.place(self.number, x)).collect();
+        let mesh = self.trajectory.body().mesh();
+        panel = match (mesh.kind(), mesh.dimension()) {
+            (CellKind::Segment, 1) => panel.add(self.bar(mesh, &points)),
+            (CellKind::Segment, _) => panel.add(string(mesh, &points)),
+            (_, 2) => panel.add(cells(mesh, &points)),
+            _ => panel.add(surface(mesh, &points, &depths(self.trajectory, self.sample))),
+        };
+        if !self.trajectory.scene().springs().is_empty() {
+            panel = panel.add(self.springs(&points));
+        }
+        for (&node, mark) in self.marks {
+            panel = panel.add(mark.draw(points[node][0], points[node][1]));
+        }
+        let [x, y] = self.layout.caption(self.number);
+        panel.add(text(self.caption, x, y).set("text-anchor", "middle").set("fill", INK))
+    }
+
+    /// An obstacle: a half-plane as a hatched band along its surface, others by their outline.
+    fn obstacle(&self, outline: &Outline) -> Group {
+        let (view, top) = (self.view, self.layout.top(self.number));
+        let mut group = Group::new().set("class", "obstacle");
+        let (inside, surface) = match outline {
+            Outline::HalfPlane(plane) => {
+                let band = view.band(top, *plane, self.layout.metres(BAND));
+                let [point, normal] = plane;
+                let on_surface = |x: &&Point| {
+                    let distance: f64 = (0..2).map(|i| (x[i] - point[i]) * normal[i]).sum();
+                    distance.abs() < 1e-9 * view.width()
+                };
+                let surface = band.iter().filter(on_surface).copied().collect();
+                (band, vec![surface])
+            }
+            Outline::Solid(points) => (view.clip(points, top), self.edges(points)),
+            Outline::Cavity(points) => (Vec::new(), self.edges(points)),
+        };
+        let mut hatched = Data::default();
+        hatched.polyline(&self.placed(&inside), true);
+        let mut line = Data::default();
+        for part in surface.iter().filter(|part| part.len() > 1) {
+            line.polyline(&self.placed(part), false);
+        }
+        for (data, fill, stroke) in [(hatched, "url(#hatch)", "none"), (line, "none", "#555555")] {
+            if data.0.len() > 1 {
+                let path = Path::new().set("d", data.0).set("fill", fill);
+                group = group.add(path.set("stroke", stroke).set("stroke-width", 1.5));
+            }
+        }
+        group
+    }
+
+    /// The edges of a polygon, as far as they are in the view.
+    fn edges(&self, polygon: &[Point]) -> Vec<Vec<Point>> {
+        let ends = polygon.iter().zip(polygon.iter().cycle().skip(1));
+        let top = self.layout.top(self.number);
+        ends.map(|(&p, &q)| self.view.clip(&[p, q], top)).collect()
+    }
+
+    fn placed(&self, points: &[Point]) -> Vec<Point> {
+        points.iter().map(|&x| self.layout.place(self.number, x)).collect()
+    }
+
+    /// The springs, as straight lines.
+    fn springs(&self, points: &[Point]) -> Path {
+        let mesh = self.trajectory.body().mesh();
+        let mut data = Data::default();
+        for spring in self.trajectory.scene().springs() {
+            let Ok(joints) = spring.joints(mesh) else { continue };
+            let ends = joints.map(|joint| match joint {
+                Joint::Node(node) => points[node],
+                Joint::Point(x) => self.layout.place(self.number, drawn(&x[..mesh.dimension()])),
+            });
+            data.polyline(&ends, false);
+        }
+        let path = Path::new().set("class", "springs").set("d", data.0).set("fill", "none");
+        path.set("stroke", "#8a5a2b").set("stroke-width", 1.2)
+    }
+
+    /// A one-dimensional body, with a width for the eye, its nodes as lines across.
+    fn bar(&self, mesh: &Mesh, points: &[Point]) -> Group {
+        let half = self.layout.pixels(BAR_WIDTH * mesh.size()) / 2.0;
+        let mut data = Data::default();
+        for cell in mesh.cells() {
+            let [[x, p], [_, q]] = [points[cell[0]], points[cell[1]]];
+            data.polyline(&[[x - half, p], [x + half, p], [x + half, q], [x - half, q]], true);
+        }
+        Group::new().add(body("cells", data, 1.2).set("fill", FILL))
+    }
+}
+
+/// A one-dimensional body in a plane or in space.
+fn string(mesh: &Mesh, points: &[Point]) -> Group {
+    let mut data = Data::default();
+    for cell in mesh.cells() {
+        data.polyline(&[points[cell[0]], points[cell[1]]], false);
+    }
+    Group::new().add(body("cells", data, 1.8).set("fill", "none").set("stroke-linecap", "round"))
+}
+
+/// A body that fills an area of the plane: its cells, and its outline stronger.
+fn cells(mesh: &Mesh, points: &[Point]) -> Group {
+    let mut data = Data::default();
+    for cell in mesh.cells() {
+        let around = around(mesh.kind(), cell).map(|node| points[node]);
+        data.polyline(&around.collect::<Vec<_>>(), true);
+    }
+    let mut outline = Data::default();
+    for face in mesh.boundary_faces() {
+        let along: Vec<Point> = through_middle(&face).map(|node| points[node]).collect();
+        outline.polyline(&along, false);
+    }
+    let fine = line_width(mesh, points);
+    Group::new()
+        .add(body("cells", data, fine).set("fill", FILL).set("fill-opacity", 0.75))
+        .add(body("outline", outline, 1.5).set("fill", "none").set("stroke-linecap", "round"))
+}
+
+/// A body in space: its surface, what is far away first. A solid shows the faces that look at the
+/// viewer only.
+fn surface(mesh: &Mesh, points: &[Point], depths: &[f64]) -> Group {
+    let solid = mesh.kind().dimension() == 3;
+    let mut faces: Vec<(f64, Vec<Point>)> = Vec::new();
+    for face in mesh.boundary_faces() {
+        let around: Vec<Point> = around(mesh.kind(), &face).map(|node| points[node]).collect();
+        if !solid || looks_at_viewer(&around) {
+            let depth: f64 = face.iter().map(|&node| depths[node]).sum();
+            faces.push((depth / face.len() as f64, around));
+        }
+    }
+    faces.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let mut group = Group::new()
+        .set("class", "cells")
+        .set("fill", FILL)
+        .set("stroke", EDGE)
+        .set("stroke-width", format!("{:.2}", line_width(mesh, points)))
+        .set("stroke-linejoin", "round");
+    for (_, around) in faces {
+        let mut data = Data::default();
+        data.polyline(&around, true);
+        group = group.add(Path::new().set("d", data.0));
+    }
+    group
+}
+
+/// Whether a polygon runs counter-clockwise on the page, whose second axis points down.
+fn looks_at_viewer(polygon: &[Point]) -> bool {
+    let next = polygon.iter().cycle().skip(1);
+    polygon.iter().zip(next).map(|(p, q)| p[0] * q[1] - p[1] * q[0]).sum::<f64>() < 0.0
+}
+
+/// The nodes of a face of a solid, or of a two-dimensional cell, in the order in which they stand around it:
+/// each corner, then the mid node of the edge that begins there, in cells of `kind` that have some.
+pub(in crate::io::output) fn around(kind: CellKind, face: &[usize]) -> impl Iterator<Item = usize> {
+    let (corners, middles) = match kind.is_quadratic() {
+        true => face.split_at(face.len() / 2),
+        false => (face, &face[..0]),
+    };
+    let middles = middles.iter().map(Some).chain(std::iter::repeat(None));
+    corners
+        .iter()
+        .zip(middles)
+        .flat_map(|(corner, middle)| [Some(corner), middle])
+        .flatten()
+        .copied()
+}
+
+/// The nodes of an edge from end to end: through the mid node, where there is one.
+pub(in crate::io::output) fn through_middle(edge: &[usize]) -> impl Iterator<Item = usize> {
+    edge.first().into_iter().chain(edge.get(2)).chain(edge.get(1)).copied()
+}
+
+/// Finer lines for finer meshes.
+fn line_width(mesh: &Mesh, points: &[Point]) -> f64 {
+    let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
+    for point in points {
+        low = [low[0].min(point[0]), low[1].min(point[1])];
+        high = [high[0].max(point[0]), high[1].max(point[1])];
+    }
+    let area = (high[0] - low[0]) * (high[1] - low[1]);
+    (0.05 * (area / mesh.cell_count() as f64).sqrt()).clamp(0.15, 0.8)
+}
+
+fn body(class: &str, data: Data, stroke_width: f64) -> Path {
+    Path::new()
+        .set("class", class)
+        .set("d", data.0)
+        .set("stroke", EDGE)
+        .set("stroke-width", format!("{stroke_width:.2}"))
+        .set("stroke-linejoin", "round")
+}
+
+/// The data of a path, in hundredths of a pixel and relative steps, for short files.
+#[derive(Default)]
+pub(super) struct Data(pub(super) String);
+
+impl Data {
+    pub(super) fn polyline(&mut self, points: &[Point], close: bool) {
+        let mut pen: Option<[i64; 2]> = None;
+        for point in points {
+            let at = point.map(|x| (100.0 * x).round() as i64);
+            match pen {
+                None => self.step('M', at),
+                Some([x, y]) => self.step('l', [at[0] - x, at[1] - y]),
+            }
+            pen = Some(at);
+        }
+        if close {
+            self.0.push('z');
+        }
+    }
+
+    fn step(&mut self, command: char, [x, y]: [i64; 2]) {
+        self.0.push(command);
+        self.hundredths(x);
+        if y >= 0 {
+            self.0.push(' ');
+        }
+        self.hundredths(y);
+    }
+
+    fn hundredths(&mut self, x: i64) {
+        // writing to a string cannot fail
+        let _ = write!(self.0, "{}", x as f64 / 100.0);
+    }
+}

@@ -1,0 +1,40 @@
+//! What was chosen where a scene file leaves it to `pliant`, and why.
+
+use super::contents::{AutoRequest, SceneFile};
+use crate::base::input::{percent, short};
+use crate::dynamics::indicators::largest_turn;
+use crate::dynamics::trajectory::Trajectory;
+use crate::elements::body::Strain;
+
+/// Degrees below which cells turn so little that Cauchy strain would do: they count as a strain of 0.01 %.
+const FEW_DEGREES: f64 = 0.8;
+
+impl SceneFile {
+    /// Puts the title, and what was chosen where the file says `auto`, and why, into the report of a motion of its scene: see
+    /// [`Report::chosen`](crate::Report::chosen). What `accuracy` and `method = "auto"` have chosen stands there already.
+    pub fn explain(&self, motion: &mut Trajectory) {
+        let AutoRequest { strain, cells } = self.auto;
+        let mut chosen = Vec::new();
+        if strain && motion.body().strain() == Strain::Green {
+            let turn = largest_turn(motion);
+            let (degrees, false_strain) = (turn.to_degrees(), 1.0 - turn.cos());
+            let why = match degrees < FEW_DEGREES {
+                true => "Cauchy strain would do as well, at less cost per step",
+                false => "pliant advise measures what that changes",
+            };
+            chosen.push(format!(
+                "strain: Green; cells turn by up to {} degrees, which Cauchy strain would take for a strain of {}: {why}",
+                short(degrees),
+                percent(false_strain)
+            ));
+        }
+        if cells {
+            let kind = motion.body().mesh().kind().name();
+            chosen.push(format!(
+                "cells: {kind}, for linear ones lock or are too stiff in bending; pliant advise measures whether they are fine enough"
+            ));
+        }
+        motion.report.chosen = chosen;
+        motion.report.title.clone_from(&self.title);
+    }
+}

@@ -1,0 +1,221 @@
+//! `[body]`, `[[body.region]]` and `[[point]]`.
+
+use toml::de::DeValue;
+
+use super::absent::ONE_BODY;
+use super::contents::AutoRequest;
+use super::keys::{AUTO, Holds, Key, TableKeys};
+use super::material::{MATERIAL, substance};
+use super::mesh::{self, MESH};
+use super::selection::{CORNERS, corners};
+use super::value::Value;
+use crate::base::input::positive;
+use crate::dynamics::error::Error;
+use crate::elements::body::{
+    Body, BodyBuilder, CellSelection, Dilatation, Inertia, Strain, Viscosity,
+};
+use crate::elements::material::{Plane, Substance};
+use crate::elements::mesh::Mesh;
+use crate::scene::timeline::Scene;
+
+pub(super) const BODY: TableKeys = TableKeys::new(
+    "[body]",
+    "What moves: a mesh made of a material.",
+    &[
+        Key::new("mesh", Holds::Table(&MESH), "the mesh").required(),
+        Key::number("thickness", "the thickness of a body in the plane", "m")
+            .default("required in two dimensions"),
+        Key::number("area", "the cross section of a string", "m^2")
+            .default("required in one dimension"),
+        Key::new(
+            "strain",
+            Holds::Word(|| STRAINS.map(|(word, _)| word).into()),
+            "the measure of strain",
+        )
+        .law(
+            "Cauchy's is linear, right while no cell turns by more than some degrees; Green's follows any rotation, \
+             with the law of the material; `auto` is Green's, and the report tells whether Cauchy's would do.",
+        )
+        .default("auto"),
+        Key::new(
+            "viscous",
+            Holds::Word(|| VISCOUS.map(|(word, _)| word).into()),
+            "the law of viscosity",
+        )
+        .law("Natural viscosity, -B v, brakes rotations, too; objective viscosity takes the rate of Green's strain.")
+        .default("natural with Cauchy strain, objective with Green strain"),
+        Key::new(
+            "inertia",
+            Holds::Word(|| INERTIA.map(|(word, _)| word).into()),
+            "how inertia is shared out",
+        )
+        .law("Consistent with the shape functions, or lumped at the nodes.")
+        .default("consistent"),
+        Key::new(
+            "plane",
+            Holds::Word(|| PLANE.map(|(word, _)| word).into()),
+            "what is 0 across the plane",
+        )
+        .default("strain"),
+        Key::new(
+            "dilatation",
+            Holds::Word(|| DILATATION.map(|(word, _)| word).into()),
+            "where the body resists a change of its volume",
+        )
+        .law("In the mean over each cell, nearly incompressible bodies do not lock: for quadrilaterals, hexahedra and quadratic cells.")
+        .default("points"),
+        Key::new("material", Holds::Table(&MATERIAL), "what the body is made of").required(),
+        Key::new("region", Holds::Tables(&REGION), "parts with a material of their own"),
+    ],
+    "[body]\n\
+     mesh = { kind = \"rectangle\", size = [0.1, 0.02], nodes = [11, 3], cells = \"triangles6\" }\n\
+     thickness = 0.01\n\
+     strain = \"green\"\n\
+     material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
+);
+
+/// `auto` is Green: it is right however far a body turns, at a small cost.
+const STRAINS: [(&str, Strain); 3] =
+    [("cauchy", Strain::Cauchy), ("green", Strain::Green), (AUTO, Strain::Green)];
+const VISCOUS: [(&str, Viscosity); 2] =
+    [("natural", Viscosity::Natural), ("objective", Viscosity::Objective)];
+const INERTIA: [(&str, Inertia); 2] =
+    [("consistent", Inertia::Consistent), ("lumped", Inertia::Lumped)];
+const DILATATION: [(&str, Dilatation); 2] =
+    [("points", Dilatation::AtPoints), ("mean", Dilatation::Mean)];
+const PLANE: [(&str, Plane); 2] = [("strain", Plane::Strain), ("stress", Plane::Stress)];
+
+const REGION: TableKeys = TableKeys::new(
+    "[[body.region]]",
+    "A part of the body with a material of its own.",
+    &[
+        Key::new("name", Holds::Text, "the name of the region, for who reads the file"),
+        Key::new("box", Holds::Corners, CORNERS).in_unit("m"),
+        Key::new("group", Holds::Text, "the name of a group of cells")
+            .law("A physical group of Gmsh."),
+        Key::new("cells", Holds::List(&Holds::Count), "numbers of cells, from 1"),
+        Key::new("material", Holds::Table(&MATERIAL), "the keys of the material that differ")
+            .required(),
+    ],
+    "[[body.region]]\n\
+     name = \"tough half\"\n\
+     box = [[0.0, 0.0], [0.05, 0.02]] # cells whose centroid lies in it\n\
+     material = { young = 2.0e5 }",
+)
+.one_of(&[&["box"], &["group"], &["cells"]]);
+
+pub(super) const POINT: TableKeys = TableKeys::new(
+    "[[point]]",
+    "A point mass: a node that belongs to no cell. Its name is a node set.",
+    &[
+        Key::new("name", Holds::Text, "the name of the point").required(),
+        Key::new("position", Holds::Vector, "its undeformed position").in_unit("m").required(),
+        Key::number("mass", "its mass", "kg").required(),
+    ],
+    "[[point]]\nname = \"hub\"\nposition = [0.05, 0.05]\nmass = 0.001",
+);
+
+/// The body that `value`, the table `[body]`, describes, with the point masses of `points`.
+pub(super) fn body(
+    value: &Value,
+    dimension: Option<&Value>,
+    points: Option<&Value>,
+) -> Result<Body, Error> {
+    if let DeValue::Array(_) = value.value {
+        return Err(
+            value.error(format!("expected [body], once; found a list, [[body]]: {ONE_BODY}"))
+        );
+    }
+    let table = value.table(&BODY)?;
+    let mut mesh = table.required("mesh", |value| mesh::mesh(value, dimension))?;
+    let material = table.required("material", |value| substance(value, None))?;
+    let mut body = Body::new(mesh.clone(), material.clone());
+    if let Some(thickness) = table.optional("thickness", Value::number)? {
+        body = body.thickness(thickness);
+    }
+    if let Some(area) = table.optional("area", Value::number)? {
+        body = body.area(area);
+    }
+    if let Some(strain) = table.optional("strain", |value| value.word(&STRAINS))? {
+        body = body.strain(strain);
+    }
+    if let Some(viscosity) = table.optional("viscous", |value| value.word(&VISCOUS))? {
+        body = body.viscosity(viscosity);
+    }
+    if let Some(inertia) = table.optional("inertia", |value| value.word(&INERTIA))? {
+        body = body.inertia(inertia);
+    }
+    if let Some(plane) = table.optional("plane", |value| value.word(&PLANE))? {
+        body = body.plane(plane);
+    }
+    if let Some(dilatation) = table.optional("dilatation", |value| value.word(&DILATATION))? {
+        body = body.dilatation(dilatation);
+    }
+    if let Some(regions) = table.get("region") {
+        body = add_regions(body, &regions, &mesh, &material)?;
+    }
+    if let Some(points) = points {
+        body = add_points(body, points, &mut mesh)?;
+    }
+    body.build().map_err(|error| table.blame(error))
+}
+
+/// What the table `[body]` leaves to be chosen.
+pub(super) fn auto(value: &Value) -> Result<AutoRequest, Error> {
+    let table = value.table(&BODY)?;
+    let strain = table.optional("strain", Value::string)? == Some(AUTO);
+    Ok(AutoRequest { strain, cells: table.required("mesh", mesh::has_auto_cells)? })
+}
+
+/// The scene on the mesh that is finer than the one its numbers are of, if the table `[body]` asks for that.
+pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = value.table(&BODY)?;
+    table.required("mesh", |value| mesh::on_finer_mesh(scene, value))
+}
+
+fn add_regions(
+    mut body: BodyBuilder,
+    regions: &Value,
+    mesh: &Mesh,
+    base: &Substance,
+) -> Result<BodyBuilder, Error> {
+    for table in regions.tables(&REGION)? {
+        table.optional("name", Value::string)?;
+        let checked = |value: &Value, cells: CellSelection| match cells.cells(mesh) {
+            Ok(_) => Ok(cells),
+            Err(error) => Err(value.error(error)),
+        };
+        let group = table.optional("group", |value| checked(value, value.string()?.into()))?;
+        let numbers = table.optional("cells", |value| {
+            let numbers = value.list_of("cell numbers", Value::count)?;
+            checked(value, CellSelection::Numbers(numbers))
+        })?;
+        let cells = match group.or(numbers) {
+            Some(cells) => cells,
+            None => table.required("box", |value| {
+                let [min, max] = corners(value, mesh)?;
+                checked(value, CellSelection::Box { min, max })
+            })?,
+        };
+        let material = table.required("material", |value| substance(value, Some(base)))?;
+        body = body.region(cells, material);
+    }
+    Ok(body)
+}
+
+/// Adds the point masses, to `mesh` too.
+fn add_points(
+    mut body: BodyBuilder,
+    points: &Value,
+    mesh: &mut Mesh,
+) -> Result<BodyBuilder, Error> {
+    for table in points.tables(&POINT)? {
+        let name = table.required("name", Value::string)?;
+        let position = table.required("position", |value| value.vector(mesh.dimension()))?;
+        let mass = table.required("mass", Value::number)?;
+        positive("mass", mass, "kg").map_err(|error| table.blame(error))?;
+        mesh.push_node(name, &position).map_err(|error| table.blame(error))?;
+        body = body.point_mass(name, position, mass);
+    }
+    Ok(body)
+}

@@ -1,0 +1,154 @@
+//! What a scene file says.
+
+use crate::base::input::Fraction;
+use crate::dynamics::equilibrium::Equilibrium;
+use crate::dynamics::error::Error;
+use crate::dynamics::simulate::{Reading, Sampling};
+use crate::dynamics::statics::Statics;
+use crate::elements::mesh::Selection;
+use crate::scene::settings::Settings;
+use crate::scene::timeline::Scene;
+
+/// The contents of a scene file.
+#[derive(Debug, Clone)]
+pub struct SceneFile {
+    /// Title of the scene; empty without one.
+    pub title: String,
+    /// The scene.
+    pub scene: Scene,
+    /// How it is integrated.
+    pub settings: Settings,
+    /// How accurate its motion has to be.
+    pub accuracy: AccuracyRequest,
+    /// What is left to be chosen.
+    pub auto: AutoRequest,
+    /// How its equilibrium is sought.
+    pub statics: StaticsRequest,
+    /// What is to be written.
+    pub output: OutputRequest,
+    /// What `pliant check` says about the text: keys that have another name now.
+    pub notes: Vec<String>,
+}
+
+/// How accurate a motion has to be, if that was asked for: see `study::Verification`.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct AccuracyRequest {
+    /// The relative difference of two runs at most.
+    pub within: Option<Fraction>,
+    /// The text that names a `study::Quantity`; the whole motion without it.
+    pub quantity: Option<String>,
+}
+
+/// What a scene file leaves to be chosen, by the word `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct AutoRequest {
+    /// The measure of strain: Green's.
+    pub strain: bool,
+    /// The cells of a generated mesh: quadratic ones.
+    pub cells: bool,
+}
+
+/// Which equilibrium is sought, and how.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct StaticsRequest {
+    /// Name of the phase; the first one without it.
+    pub phase: Option<String>,
+    /// How it is sought.
+    pub options: Statics,
+}
+
+impl SceneFile {
+    /// The equilibrium that the file asks for, with what its sensors read.
+    ///
+    /// # Errors
+    /// As [`Scene::equilibrium_of`] and [`Equilibrium::read`].
+    pub fn equilibrium(&self) -> Result<Equilibrium, Error> {
+        let StaticsRequest { phase, options } = &self.statics;
+        let mut result = match phase {
+            None => self.scene.equilibrium(options),
+            Some(phase) => self.scene.equilibrium_of(phase, options),
+        };
+        let sensors = self.output.sampling();
+        match &mut result {
+            Ok(found) => found.read(&sensors)?,
+            Err(Error::Statics(failure)) => failure.read(&sensors)?,
+            Err(_) => {}
+        }
+        result
+    }
+}
+
+/// What a run is to write.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputRequest {
+    /// Time between samples (s). Without it and `times`, phases are sampled at their ends only.
+    pub step: Option<f64>,
+    /// Times of samples (s), in place of a step.
+    pub times: Option<Vec<f64>>,
+    /// Nodes whose displacements the table lists.
+    pub track: Option<Selection>,
+    /// Sensors: their names, and what they read.
+    pub sensors: Vec<(String, Reading)>,
+    /// Kinds of files. Default: CSV.
+    pub formats: Vec<Format>,
+}
+
+/// A kind of file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Format {
+    /// A table of the motion.
+    Csv,
+    /// Files for ParaView.
+    Vtk,
+    /// Snapshots.
+    Svg,
+    /// An animation.
+    Html,
+    /// Sensors and energies over time.
+    Plot,
+    /// The same as pixels.
+    Png,
+}
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 6] = [Self::Csv, Self::Vtk, Self::Svg, Self::Html, Self::Plot, Self::Png];
+
+    /// Name: `csv`, `vtk`, `svg`, `html`, `plot`, `png`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Vtk => "vtk",
+            Self::Svg => "svg",
+            Self::Html => "html",
+            Self::Plot => "plot",
+            Self::Png => "png",
+        }
+    }
+}
+
+impl Default for OutputRequest {
+    fn default() -> Self {
+        Self {
+            step: None,
+            times: None,
+            track: None,
+            sensors: Vec::new(),
+            formats: vec![Format::Csv],
+        }
+    }
+}
+
+impl OutputRequest {
+    /// When the motion is sampled, and what is read then.
+    pub fn sampling(&self) -> Sampling {
+        let times = match (&self.times, self.step) {
+            (Some(times), _) => Sampling::at(&**times),
+            (None, Some(step)) => Sampling::every(step),
+            (None, None) => Sampling::phase_ends(),
+        };
+        let sensors = self.sensors.iter();
+        sensors.fold(times, |sampling, (name, reading)| sampling.read(name, reading.clone()))
+    }
+}

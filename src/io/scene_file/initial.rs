@@ -1,0 +1,81 @@
+//! `[initial]`.
+
+use super::keys::{Holds, Key, TableKeys};
+use super::selection::selection;
+use super::value::Value;
+use crate::dynamics::error::Error;
+use crate::scene::timeline::{BodyState, Scene};
+
+pub(super) const INITIAL: TableKeys = TableKeys::new(
+    "[initial]",
+    "How the body moves at first. What the first phase holds or moves takes its part of that, as by an impact. In \
+     statics nothing moves.",
+    &[
+        Key::new(
+            "from",
+            Holds::Text,
+            "what `pliant run` or `pliant static` has left of a body with the same mesh: the directory, or its \
+             `state.json`, relative to the scene file",
+        )
+        .law("It gives displacements and velocities; all else may differ, and time begins anew.")
+        .default("undeformed, at rest"),
+        Key::new("velocity", Holds::Vector, "the velocity of all nodes")
+            .in_unit("m/s")
+            .law("Not beside a state `from` which they move already.")
+            .default("0"),
+        Key::new(
+            "spin",
+            Holds::OneOrMore(&Holds::Number),
+            "the angular velocity about the centre of mass, on top of that",
+        )
+        .in_unit("rad/s")
+        .law("One number in the plane, counter-clockwise; three in space.")
+        .default("0"),
+        Key::new("nodes", Holds::Tables(&OF_NODES), "nodes with velocities of their own instead"),
+    ],
+    "[initial]\nvelocity = [1.0, 5.0]\nspin = 6.3",
+);
+
+const OF_NODES: TableKeys = TableKeys::new(
+    "initial.nodes",
+    "Nodes with a velocity of their own at first.",
+    &[
+        Key::new("nodes", Holds::Nodes, "nodes").required(),
+        Key::new("velocity", Holds::Vector, "their velocity").in_unit("m/s").required(),
+    ],
+    "[initial]\nnodes = [{ nodes = \"top\", velocity = [1.0, 0.0] }]",
+);
+
+/// The scene that starts as `value` says.
+pub(super) fn add_initial(mut scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = value.table(&INITIAL)?;
+    let dimension = scene.body().dimension();
+    let mut moves = false;
+    if let Some(value) = table.get("from") {
+        let state = BodyState::read(value.source.beside(value.string()?));
+        let state = state.map_err(|error| value.error(error))?;
+        moves = state.velocities.iter().any(|&v| v != 0.0);
+        scene = scene.starting_from(&state);
+        scene.initial_velocities().map_err(|error| value.error(error))?;
+    }
+    if let Some(velocity) = table.optional("velocity", |v| match moves {
+        true => Err(v.error("in the state `from` the nodes move already: leave one of both out")),
+        false => v.vector(dimension),
+    })? {
+        scene = scene.initial_velocity(move |_| velocity.clone());
+    }
+    if let Some(spin) = table.optional("spin", |value| {
+        value.one_or_more()?.iter().map(Value::finite).collect::<Result<Vec<f64>, Error>>()
+    })? {
+        scene = scene.spin(spin);
+    }
+    if let Some(value) = table.get("nodes") {
+        for part in value.tables(&OF_NODES)? {
+            let nodes = part.required("nodes", |v| selection(v, scene.body().mesh()))?;
+            let velocity = part.required("velocity", |v| v.vector(dimension))?;
+            scene = scene.initial_velocity_of(nodes, velocity);
+        }
+    }
+    scene.initial_velocities().map_err(|error| table.blame(error))?;
+    Ok(scene)
+}

@@ -1,0 +1,266 @@
+//! `material`, of the body or of a region, and its `law`.
+
+use super::keys::{Holds, Key, Kind, TableKeys};
+use super::table::Table;
+use super::value::Value;
+use crate::dynamics::error::Error;
+use crate::elements::material::{Course, Fibres, Law, Material, MaxwellBranch, Substance};
+
+pub(super) const MATERIAL: TableKeys = TableKeys::new(
+    "material",
+    "An isotropic viscoelastic material: Lamé's parameters follow from `young` and `poisson`, and those of \
+     viscosity from `viscosity` and `poisson` in the same way.",
+    &[
+        Key::number("density", "the density", "kg/m^3").default(OF_BODY),
+        Key::number("young", "Young's modulus at small strains", "Pa")
+            .law("It follows from the constants of a law that has them.")
+            .default(OF_BODY),
+        Key::number("poisson", "Poisson's ratio at small strains, below 0.5", "1")
+            .law("It follows from the law's `bulk`, if that is given.")
+            .default(OF_BODY),
+        Key::number("viscosity", "the viscous modulus", "Pa s").default(OF_BODY),
+        Key::number("mass_damping", "damping in proportion to mass: force -a M v", "1/s")
+            .law("As of air or water around: it brakes motions of the whole body, too. Vibrations of circular frequency omega are damped by \
+                  the ratio a / (2 omega).")
+            .default("0; in a region, that of the body"),
+        Key::new("branch", Holds::Tables(&BRANCH), "Maxwell branches, springs that relax")
+            .default("none; in a region, those of the body"),
+        Key::new("fibres", Holds::Tables(&FIBRES), "families of fibres that stiffen it along their course")
+            .default("none; in a region, those of the body"),
+        Key::new("law", Holds::Table(&LAW), "what becomes of the moduli at large strains").default(
+            "as `strain` says: linear elasticity with Cauchy's, St. Venant-Kirchhoff with Green's",
+        ),
+    ],
+    "material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }",
+);
+const OF_BODY: &str = "required; in a region, that of the body";
+
+const BRANCH: TableKeys = TableKeys::new(
+    "branch",
+    "A spring and a damper in a row, beside the elasticity of the material: what is strained at once and kept so pulls by the spring, less and less, \
+     as exp(-t / `time`). `young` is what is left when all has relaxed. For BDF, Adams, ARKODE and `rk`, and for equilibria. Energies and forces have its part, fields and sensors of \
+     stress do not.",
+    &[
+        Key::number("share", "Young's modulus of the spring by that of the material", "1")
+            .required(),
+        Key::number("time", "the relaxation time", "s").required(),
+        Key::number("yield_stress", "the von Mises stress below which nothing relaxes", "Pa")
+            .law("Above it G' = (1 - `yield_stress` / q) dev(E - G) / `time`, q being the spring's: what shears relaxes down to it, a change of volume does not, and \
+                  what has flowed stays, as in dough.")
+            .default("0"),
+    ],
+    "material = { density = 1070.0, young = 2.0e5, poisson = 0.48, viscosity = 0.0, branch = [{ share = 0.2, time = 0.1 }] }",
+);
+
+const FIBRES: TableKeys = TableKeys::new(
+    "fibres",
+    "Fibres that run through the material and take tension: with their stretch l and E = (l^2 - 1)/2 they add the energy \
+     (`young` / (8 k2)) (exp(4 k2 E^2) - 1) per natural volume where l > 1, k2 being `stiffening`. They lie along a vector, or around an axis: threads \
+     wound around an actuator. For bodies with Green's strain; stresses in results are those of the material between them.",
+    &[
+        Key::number("young", "Young's modulus that they add along their course: of a fibre, times its share of the section", "Pa")
+            .required(),
+        Key::number("stiffening", "how fast they stiffen", "1").default("0"),
+        Key::new("along", Holds::Vector, "a vector along them, of any length"),
+        Key::new("centre", Holds::Vector, "a point of the axis that they run around").in_unit("m"),
+        Key::new("axis", Holds::Vector, "direction of the axis, of any length; none in the plane").default("across the plane"),
+        Key::number("pitch", "angle by which they climb along the axis: 0 are rings, others helices", "rad").default("0"),
+    ],
+    "material = { density = 1070.0, young = 2.0e5, poisson = 0.49, viscosity = 0.0, fibres = [{ along = [1.0, 0.2], young = 2.0e7 }] }",
+)
+.one_of(&[&["along"], &["centre"]]);
+
+pub(super) const LAW: TableKeys = TableKeys::new(
+    "law",
+    "The strain energy W per natural volume of a body with Green's strain. I1 and I2 are the invariants of J^(-2/3) C, J the \
+     change of volume, and U = (kappa/4) (J^2 - 1 - 2 ln J) resists that. Bodies in plane strain, in plane stress, membranes and strings take the \
+     same laws; where there is no stress across a cell, its thickness follows from that.",
+    &[],
+    "material = { density = 1070.0, poisson = 0.49, viscosity = 0.0, law = { kind = \"mooney-rivlin\", c1 = 4.0e4, c2 = 1.0e4 } }",
+)
+.kinds(&[
+    Kind {
+        word: "st-venant-kirchhoff",
+        about: "Hooke's law for Green's strain: for small strains and any rotation; it softens under compression, and collapses",
+        keys: &[],
+    },
+    Kind {
+        word: "neo-hookean",
+        about: "W = c1 (I1 - 3) + U, c1 = mu/2: rubber and silicone up to a strain of a half",
+        keys: &[],
+    },
+    Kind {
+        word: "mooney-rivlin",
+        about: "W = c1 (I1 - 3) + c2 (I2 - 3) + U: rubber up to a strain of one; mu = 2 (c1 + c2)",
+        keys: &[C1, Key::number("c2", "the constant of I2", "Pa").required(), BULK],
+    },
+    Kind {
+        word: "yeoh",
+        about: "W = c1 (I1 - 3) + c2 (I1 - 3)^2 + c3 (I1 - 3)^3 + U: rubber that stiffens before it tears; mu = 2 c1",
+        keys: &[
+            C1,
+            Key::number("c2", "the constant of (I1 - 3)^2", "Pa").required(),
+            Key::number("c3", "the constant of (I1 - 3)^3", "Pa").required(),
+            BULK,
+        ],
+    },
+    Kind {
+        word: "ogden",
+        about: "W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) + U, with the principal stretches l of J^(-2/3) C: rubber over its \
+                whole range; 2 mu = sum of mu_p alpha_p",
+        keys: &[
+            Key::new("moduli", Holds::List(&Holds::Number), "mu_p of one to three terms").in_unit("Pa").required(),
+            Key::new("exponents", Holds::List(&Holds::Number), "alpha_p of the same terms").in_unit("1").required(),
+            BULK,
+        ],
+    },
+    Kind {
+        word: "corotated",
+        about: "W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with the stretch U of each point: Hooke's law in a frame that turns along, for \
+                large rotations and small strains; it does not collapse under compression",
+        keys: &[],
+    },
+]);
+const C1: Key = Key::number("c1", "the constant of I1", "Pa").required();
+const BULK: Key = Key::number("bulk", "the bulk modulus kappa", "Pa").default("that of `poisson`");
+
+/// A law as a file has it, with the moduli (Pa) at small strains that follow from its constants.
+struct Constants {
+    law: Law,
+    shear: Option<f64>,
+    bulk: Option<f64>,
+}
+
+/// What the table `value` describes; keys that are missing are those of `base`, if there is one.
+pub(super) fn substance(value: &Value, base: Option<&Substance>) -> Result<Substance, Error> {
+    let table = value.table(&MATERIAL)?;
+    let number = |key: &str, base: Option<f64>| match base {
+        Some(base) => Ok(table.optional(key, Value::number)?.unwrap_or(base)),
+        None => table.required(key, Value::number),
+    };
+    let known = base.map(|base| base.material);
+    let constants = table.optional("law", law)?;
+    let (shear, bulk) = constants.as_ref().map_or((None, None), |law| (law.shear, law.bulk));
+    for (key, modulus, by) in
+        [("young", shear, "the constants of the law"), ("poisson", bulk, "the `bulk` of the law")]
+    {
+        if let (Some(value), Some(_)) = (table.get(key), modulus) {
+            return Err(value.error(format!("it follows from {by}: leave one of them out")));
+        }
+    }
+    let density = number("density", known.map(|m| m.density))?;
+    let viscosity = number("viscosity", known.map(|m| m.viscosity))?;
+    let material = match (shear, bulk) {
+        (Some(shear), Some(bulk)) => Material::of_moduli(density, shear, bulk, viscosity),
+        _ => {
+            let poisson = number("poisson", known.map(|m| m.poisson))?;
+            let young = match shear {
+                Some(shear) => 2.0 * (1.0 + poisson) * shear,
+                None => number("young", known.map(|m| m.young))?,
+            };
+            Material { density, young, poisson, viscosity }
+        }
+    };
+    let law = constants.map(|law| law.law).or(base.and_then(|base| base.law));
+    let mass_damping = table.optional("mass_damping", Value::number)?;
+    let mass_damping = mass_damping.or(base.map(|base| base.mass_damping)).unwrap_or(0.0);
+    let branches = table.optional("branch", |value| {
+        let tables = value.tables(&BRANCH)?;
+        let read = |table: &Table<'_>| {
+            let number = |key| table.required(key, Value::number);
+            let yield_stress = table.optional("yield_stress", Value::number)?.unwrap_or(0.0);
+            let branch =
+                MaxwellBranch { share: number("share")?, time: number("time")?, yield_stress };
+            branch.validate().map_err(|error| table.blame(error))?;
+            Ok(branch)
+        };
+        tables.iter().map(read).collect::<Result<Vec<_>, Error>>()
+    })?;
+    let branches = branches.or(base.map(|base| base.branches.clone())).unwrap_or_default();
+    let families = table.optional("fibres", |value| {
+        value.tables(&FIBRES)?.iter().map(fibres).collect::<Result<Vec<_>, Error>>()
+    })?;
+    let fibres = families.or(base.map(|base| base.fibres.clone())).unwrap_or_default();
+    let substance = Substance { material, law, mass_damping, branches, fibres };
+    substance.validate().map_err(|error| table.blame(error))?;
+    Ok(substance)
+}
+
+fn law(value: &Value) -> Result<Constants, Error> {
+    let table = value.table(&LAW)?;
+    let number = |key: &str| table.required(key, Value::number);
+    let (law, shear) = match table.kind() {
+        "st-venant-kirchhoff" => (Law::StVenantKirchhoff, None),
+        "neo-hookean" => (Law::NeoHookean, None),
+        "corotated" => (Law::Corotated, None),
+        "ogden" => {
+            let (law, shear) = ogden(&table)?;
+            (law, Some(shear))
+        }
+        "mooney-rivlin" => {
+            let (c1, c2) = (number("c1")?, number("c2")?);
+            positive(&table, "c1 + c2", c1 + c2)?;
+            (Law::MooneyRivlin { second: c2 / (c1 + c2) }, Some(2.0 * (c1 + c2)))
+        }
+        _ => {
+            let c1 = number("c1")?;
+            positive(&table, "c1", c1)?;
+            let law = Law::Yeoh { second: number("c2")? / c1, third: number("c3")? / c1 };
+            (law, Some(2.0 * c1))
+        }
+    };
+    law.validate().map_err(|error| table.error(error))?;
+    let bulk = match shear {
+        Some(_) => table.optional("bulk", Value::number)?,
+        None => None,
+    };
+    if let Some(bulk) = bulk {
+        // Poisson's ratio above -1
+        positive(&table, "bulk", bulk)?;
+    }
+    Ok(Constants { law, shear, bulk })
+}
+
+/// Ogden's law and its shear modulus (Pa).
+fn ogden(table: &Table<'_>) -> Result<(Law, f64), Error> {
+    let moduli = table.required("moduli", Value::numbers)?;
+    let exponents = table.required("exponents", Value::numbers)?;
+    if moduli.len() != exponents.len() || !(1..=3).contains(&moduli.len()) {
+        let (moduli, exponents) = (moduli.len(), exponents.len());
+        let message = format!(
+            "{moduli} `moduli` and {exponents} `exponents`: give one of each for one to three terms"
+        );
+        return Err(table.error(message));
+    }
+    let products = moduli.iter().zip(&exponents).map(|(modulus, exponent)| modulus * exponent);
+    let mut terms = [0.0; 3];
+    terms.iter_mut().zip(products).for_each(|(term, product)| *term = product);
+    let twice: f64 = terms.iter().sum();
+    positive(table, "the sum of moduli times exponents", twice)?;
+    let mut powers = [1.0; 3];
+    powers[..exponents.len()].copy_from_slice(&exponents);
+    Ok((Law::Ogden { exponents: powers, shares: terms.map(|term| term / twice) }, twice / 2.0))
+}
+
+fn fibres(table: &Table<'_>) -> Result<Fibres, Error> {
+    let course = match table.optional("along", Value::numbers)? {
+        Some(direction) => Course::Along(direction),
+        None => Course::Around {
+            centre: table.required("centre", Value::numbers)?,
+            axis: table.optional("axis", Value::numbers)?.unwrap_or_default(),
+            pitch: table.optional("pitch", Value::number)?.unwrap_or(0.0),
+        },
+    };
+    let young = table.required("young", Value::number)?;
+    let stiffening = table.optional("stiffening", Value::number)?.unwrap_or(0.0);
+    let fibres = Fibres { course, young, stiffening };
+    fibres.validate().map_err(|error| table.blame(error))?;
+    Ok(fibres)
+}
+
+fn positive(table: &Table<'_>, name: &str, value: f64) -> Result<(), Error> {
+    match value > 0.0 && value.is_finite() {
+        true => Ok(()),
+        false => Err(table.error(format!("{name} = {value:e} Pa: it has to be above 0"))),
+    }
+}

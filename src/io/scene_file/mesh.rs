@@ -1,0 +1,191 @@
+//! `mesh` of `[body]`: generators and files.
+
+use super::keys::{AUTO, Holds, Key, Kind, TableKeys};
+use super::table::Table;
+use super::value::Value;
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::elements::mesh::{Cells, Mesh, SolidCells};
+use crate::scene::timeline::Scene;
+
+pub(super) const MESH: TableKeys = TableKeys::new(
+    "mesh",
+    "The mesh of the body, made by a generator or read from a file. Generated meshes name the node sets `left`, \
+     `right`, `bottom`, `top` (in space `front` and `back`, too), rings `inner` and `outer`; those of Gmsh have the \
+     names of physical groups.",
+    &[
+        Key::new("origin", Holds::Vector, "the place of the lower corner, or of the centre of a ring")
+            .in_unit("m")
+            .default("the origin"),
+        Key::new("quadratic", Holds::Flag, "whether cells get mid nodes")
+            .law(FINER)
+            .default("false"),
+        Key::new("halved", Holds::Count, "how often each cell is divided at the middles of its edges")
+            .law("After `quadratic`, and like it.")
+            .default("0"),
+    ],
+    "mesh = { kind = \"ring\", inner = 0.04, outer = 0.05, nodes = [32, 3], cells = \"crossed\", origin = [0.0, 0.05] }",
+)
+.kinds(&[
+    Kind {
+        word: "bar",
+        about: "segments along x",
+        keys: &[
+            Key::number("length", "the length", "m").required(),
+            Key::new("nodes", Holds::Count, "the number of nodes").required(),
+        ],
+    },
+    Kind { word: "rectangle", about: "a grid along x and y", keys: &[SIZE, NODES, CELLS, grading(2)] },
+    Kind { word: "ring", about: "a grid around a circle", keys: ROUND },
+    Kind { word: "half-ring", about: "its upper half", keys: ROUND },
+    Kind {
+        word: "cuboid",
+        about: "a grid along x, y and z",
+        keys: &[
+            Key::new("size", Holds::Array(&Holds::Number, 3), "lengths along x, y and z")
+                .in_unit("m")
+                .required(),
+            Key::new("nodes", Holds::Array(&Holds::Count, 3), "corner nodes along x, y and z")
+                .required(),
+            Key::new(
+                "cells",
+                Holds::Word(|| solid_cells().into_iter().map(|(word, _)| word).collect()),
+                "how the grid is divided",
+            )
+            .law("`auto` is `tetrahedra10`, quadratic.")
+            .required(),
+            grading(3),
+        ],
+    },
+    Kind {
+        word: "gmsh",
+        about: "a file of Gmsh; coordinates are metres",
+        keys: &[Key::new("file", Holds::Text, "the path of a Gmsh mesh, relative to the scene file")
+            .required()],
+    },
+]);
+
+const FINER: &str = "Triangles, tetrahedra and hexahedra; quadrilaterals are divided into triangles first. Numbers of nodes in the file are \
+     those of the mesh without this; where several nodes are held, moved or under tractions, those between them are, too. Forces \
+     on each node stay at the nodes that there were, and stiffness and damping of obstacles per node are shared out.";
+
+const SIZE: Key =
+    Key::new("size", Holds::Array(&Holds::Number, 2), "width and height").in_unit("m").required();
+const NODES: Key =
+    Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes along x and y").required();
+const CELLS: Key = Key::new(
+    "cells",
+    Holds::Word(|| plane_cells().into_iter().map(|(word, _)| word).collect()),
+    "how the grid is divided",
+)
+.law("Linear `triangles` are too stiff in bending, `crossed` ones less so; `triangles6`, quadratic, bend well, and \
+      `auto` is those.")
+.required();
+const fn grading(axes: usize) -> Key {
+    let about = "the length of the last cell along each axis by that of the first one";
+    Key::new("grading", Holds::Array(&Holds::Number, axes), about)
+        .in_unit("1")
+        .law("Within 1e-4 and 1e4; each cell is longer than the one before it by the same factor. Put the fine end where \
+              stress is: a clamp on the left asks for a number above 1.")
+        .default("1 along each axis: equal cells")
+}
+const ROUND: &[Key] = &[
+    Key::number("inner", "the inner radius", "m").required(),
+    Key::number("outer", "the outer radius", "m").required(),
+    Key::new("nodes", Holds::Array(&Holds::Count, 2), "corner nodes around and along the radius")
+        .required(),
+    CELLS,
+];
+
+/// Words for cells of the plane, and of space; `auto` stands for quadratic ones, which neither lock nor are too stiff in bending.
+fn plane_cells() -> Vec<(&'static str, Cells)> {
+    let named = Cells::ALL.map(|cells| (cells.name(), cells));
+    named.into_iter().chain([(AUTO, Cells::Triangles6)]).collect()
+}
+fn solid_cells() -> Vec<(&'static str, SolidCells)> {
+    let named = SolidCells::ALL.map(|cells| (cells.name(), cells));
+    named.into_iter().chain([(AUTO, SolidCells::Tetrahedra10)]).collect()
+}
+
+/// The mesh that `value` describes, in a space of `dimension` (default: its own).
+pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Error> {
+    let table = value.table(&MESH)?;
+    let mesh = generate(&table).map_err(|error| table.blame(error))?;
+    let mesh = match dimension {
+        Some(dimension) => placed(mesh, dimension)?,
+        None => mesh,
+    };
+    let origin = table.optional("origin", |value| value.vector(mesh.dimension()))?;
+    match origin {
+        Some(origin) => mesh.translated(&origin).map_err(|error| table.blame(error)),
+        None => Ok(mesh),
+    }
+}
+
+/// The scene on a finer mesh, if `value` asks for one.
+pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = value.table(&MESH)?;
+    let blame = |error: InputError| table.blame(error);
+    let scene = match table.optional("quadratic", Value::flag)? {
+        Some(true) => scene.quadratic().map_err(blame)?,
+        _ => scene,
+    };
+    let times = table.optional("halved", Value::count)?.unwrap_or(0);
+    (0..times).try_fold(scene, |scene, _| scene.halved().map_err(blame))
+}
+
+/// Whether the cells of a generated mesh are left to be chosen.
+pub(super) fn has_auto_cells(value: &Value) -> Result<bool, Error> {
+    let table = value.table(&MESH)?;
+    match table.kind() {
+        "bar" | "gmsh" => Ok(false),
+        _ => Ok(table.optional("cells", Value::string)? == Some(AUTO)),
+    }
+}
+
+fn generate(table: &Table) -> Result<Mesh, Error> {
+    let number = |key: &str| table.required(key, Value::number);
+    let cells = |value: &Value| value.word(&plane_cells());
+    Ok(match table.kind() {
+        "bar" => Mesh::bar(number("length")?, table.required("nodes", Value::count)?)?,
+        "rectangle" => Mesh::graded_rectangle(
+            table.required("size", Value::array)?,
+            table.required("nodes", Value::counts)?,
+            table.optional("grading", Value::array)?.unwrap_or([1.0; 2]),
+            table.required("cells", cells)?,
+        )?,
+        round @ ("ring" | "half-ring") => {
+            let (inner, outer) = (number("inner")?, number("outer")?);
+            let nodes = table.required("nodes", Value::counts)?;
+            let cells = table.required("cells", cells)?;
+            match round {
+                "ring" => Mesh::ring(inner, outer, nodes, cells)?,
+                _ => Mesh::half_ring(inner, outer, nodes, cells)?,
+            }
+        }
+        "cuboid" => Mesh::graded_cuboid(
+            table.required("size", Value::array)?,
+            table.required("nodes", Value::counts)?,
+            table.optional("grading", Value::array)?.unwrap_or([1.0; 3]),
+            table.required("cells", |value| value.word(&solid_cells()))?,
+        )?,
+        _ => table.required("file", |value| {
+            let file = value.source.beside(value.string()?);
+            Mesh::read_gmsh(file).map_err(|error| value.error(error))
+        })?,
+    })
+}
+
+/// The mesh in a space of `dimension`: along its first axes, where the mesh has fewer of its own.
+fn placed(mesh: Mesh, dimension: &Value) -> Result<Mesh, Error> {
+    Ok(match (mesh.dimension(), dimension.count()?) {
+        (own, wanted) if own == wanted => mesh,
+        (1, 2) => mesh.mapped(|x| [x[0], 0.0])?,
+        (1, 3) => mesh.mapped(|x| [x[0], 0.0, 0.0])?,
+        (2, 3) => mesh.mapped(|x| [x[0], x[1], 0.0])?,
+        (own, _) => {
+            let allowed = ["1, 2 or 3", "2 or 3", "3"][own - 1];
+            return Err(dimension.unexpected(format!("{allowed} for this mesh")));
+        }
+    })
+}

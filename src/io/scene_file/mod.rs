@@ -1,0 +1,163 @@
+//! Scene files: a scene, how it is integrated and what is written, in TOML. SI units; the words are
+//! those of the API.
+//!
+//! ```
+//! use std::path::Path;
+//! use pliant::SceneFile;
+//!
+//! let text = r#"
+//!     title = "A rubber square falls on the floor"
+//!     dimension = 2
+//!     gravity = [0.0, -9.8]
+//!
+//!     [body]
+//!     mesh = { kind = "rectangle", size = [0.1, 0.1], nodes = [4, 4], cells = "crossed", origin = [0.0, 0.02] }
+//!     thickness = 0.01
+//!     strain = "green"
+//!     material = { density = 1000.0, young = 1.0e5, poisson = 0.48, viscosity = 40.0 }
+//!
+//!     [[obstacle]]
+//!     name = "floor"
+//!     kind = "half-plane"
+//!     point = [0.0, 0.0]
+//!     normal = [0.0, 1.0]
+//!     stiffness_density = 1.0e7
+//!
+//!     [[phase]]
+//!     until = 0.2
+//! "#;
+//! let file = SceneFile::parse(text, Path::new("fall.toml"))?;
+//! let trajectory = file.scene.simulate(&file.settings, &file.output.sampling())?;
+//! assert_eq!(trajectory.last().time, 0.2);
+//! # Ok::<(), pliant::Error>(())
+//! ```
+//!
+//! All tables and keys, and what else `pliant` reads and writes:
+//!
+#![doc = include_str!("../../../docs/reference.md")]
+
+mod absent;
+mod auto;
+mod body;
+mod contents;
+mod initial;
+mod keys;
+mod material;
+mod mesh;
+mod overrides;
+mod phase;
+mod phase_keys;
+mod reference;
+#[cfg(feature = "play")]
+mod rewrite;
+mod schema;
+mod selection;
+mod sensor;
+mod settings;
+mod source;
+mod surroundings;
+mod table;
+mod top;
+mod value;
+#[cfg(any(feature = "play", feature = "study"))]
+mod written;
+
+use std::cell::RefCell;
+use std::io;
+use std::path::Path;
+
+use toml::de::DeTable;
+
+pub use self::contents::{
+    AccuracyRequest, AutoRequest, Format, OutputRequest, SceneFile, StaticsRequest,
+};
+use self::overrides::{as_toml, merge};
+pub use self::reference::{laws, reference};
+#[cfg(feature = "play")]
+pub(crate) use self::rewrite::{Rewritten, rewritten};
+pub use self::schema::schema;
+use self::source::Source;
+use self::table::Table;
+use self::top::TOP;
+#[cfg(any(feature = "play", feature = "study"))]
+use self::written::written;
+use crate::base::input::read_at_most;
+use crate::dynamics::error::Error;
+
+/// Bytes that a scene file may have.
+const MOST_BYTES: u64 = 16 << 20;
+
+impl SceneFile {
+    /// Reads a scene file. Files that it names are sought relative to it.
+    ///
+    /// # Errors
+    /// A file that cannot be read; [`Error::SceneFile`] with the line for anything that is wrong
+    /// inside.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Self::read_with(path, &[])
+    }
+
+    /// As [`read`](Self::read), with other values: each of `overrides` is as `body.material.young=2e5` or
+    /// `phase.free.until=1.5`, where a list of tables is followed by the name or the number (from 1) of one of them.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read); [`Error::Input`] for an override that is no key and value.
+    pub fn read_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<Self, Error> {
+        let path = path.as_ref();
+        parse(text_of(path)?, path, overrides)
+    }
+
+    /// The text of a scene file, with the values of `overrides`, as those of [`read_with`](Self::read_with), written
+    /// into it: all else stays as it was.
+    ///
+    /// # Errors
+    /// A file that cannot be read; [`Error::Input`] for an override that is no key and value, or for which the text
+    /// has no place.
+    #[cfg(any(feature = "play", feature = "study"))]
+    pub fn text_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<String, Error> {
+        overrides.iter().try_fold(text_of(path.as_ref())?, |text, over| written(&text, over))
+    }
+
+    /// As [`read`](Self::read), from the `text` of a file at `path`.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(text: &str, path: &Path) -> Result<Self, Error> {
+        parse(text.into(), path, &[])
+    }
+}
+
+fn text_of(path: &Path) -> Result<String, Error> {
+    let text = read_at_most(path, MOST_BYTES).and_then(|bytes| {
+        String::from_utf8(bytes)
+            .map_err(|error| io::Error::other(format!("it is no UTF-8 text: {error}")))
+    });
+    text.map_err(|source| Error::Read { path: path.into(), source })
+}
+
+fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFile, Error> {
+    let own = text.len();
+    // overrides follow the text, so that errors have a place to point to
+    let mut padded = Vec::with_capacity(overrides.len());
+    for over in overrides {
+        let toml = as_toml(over)?;
+        text.push('\n');
+        padded.push(" ".repeat(text.len()) + &toml);
+        text.push_str(&toml);
+    }
+    let source = Source { path, text: &text, own, notes: RefCell::default() };
+    let no_toml = |error: toml::de::Error| {
+        let at = error.span().unwrap_or(0..0);
+        let line = source.line(at.start);
+        let written = text.lines().nth(line - 1).unwrap_or_default().trim();
+        source.error(&at, "", format!("this is not TOML ({}): {written}", error.message()))
+    };
+    let document = DeTable::parse(&text[..own]).map_err(no_toml)?;
+    let (at, mut entries) = (document.span(), document.into_inner());
+    for over in &padded {
+        merge(&mut entries, DeTable::parse(over).map_err(no_toml)?.into_inner(), &text)?;
+    }
+    let top = Table::new(&source, String::new(), at, &entries, &TOP)?;
+    let file = top::scene_file(&top)?;
+    Ok(SceneFile { notes: source.notes.take(), ..file })
+}

@@ -1,0 +1,81 @@
+//! Values that take the place of those in the file, as `body.material.young=2e5`.
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::base::input::{InputError, unknown};
+use crate::dynamics::error::Error;
+
+/// The text of an override as TOML: `KEY=VALUE`, in which a text needs no quotes.
+pub(super) fn as_toml(text: &str) -> Result<String, Error> {
+    let mend = "write KEY=VALUE, as in body.material.young=2e5 or phase.2.until=1.5";
+    let bad = || Error::from(InputError::new("--set", text, mend));
+    let (key, value) = text.split_once('=').ok_or_else(bad)?;
+    let quoted = || format!("{key} = {}", serde_json::Value::from(value.trim()));
+    let candidates = [format!("{key} = {value}"), quoted()];
+    let is_one = |toml: &String| DeTable::parse(toml).is_ok_and(|table| table.get_ref().len() == 1);
+    candidates.into_iter().find(is_one).ok_or_else(bad)
+}
+
+/// Puts the values of `over` in the places of those in `table`. In a list of tables a key is the name of one, or its
+/// number (from 1).
+pub(super) fn merge<'a>(
+    table: &mut DeTable<'a>,
+    over: DeTable<'a>,
+    text: &str,
+) -> Result<(), Error> {
+    for (key, value) in over {
+        let (is_whole, span) = (is_whole(&value, text), value.span());
+        match (table.get_mut(key.get_ref().as_ref()), value.into_inner()) {
+            (Some(old), DeValue::Table(new)) if !is_whole => match old.get_mut() {
+                DeValue::Table(old) => merge(old, new, text)?,
+                DeValue::Array(list) => merge_list(key.get_ref(), list, new, text)?,
+                _ => *old = Spanned::new(span, DeValue::Table(new)),
+            },
+            (Some(old), value) => *old = Spanned::new(span, value),
+            (None, value) => _ = table.insert(key, Spanned::new(span, value)),
+        }
+    }
+    Ok(())
+}
+
+/// Whether a value takes the place of all that was there, as tables in braces do.
+pub(super) fn is_whole(value: &Spanned<DeValue>, text: &str) -> bool {
+    text.get(value.span()).is_none_or(|written| written.starts_with('{'))
+}
+
+/// The place of the table in a list that has the name `key`, or else this number (from 1).
+pub(super) fn element(list: &[Spanned<DeValue>], key: &str) -> Option<usize> {
+    let by_name = list.iter().position(|value| name_of(value) == Some(key));
+    let by_number = || key.parse::<usize>().ok()?.checked_sub(1);
+    by_name.or_else(by_number).filter(|at| *at < list.len())
+}
+
+fn name_of<'t>(value: &'t Spanned<DeValue>) -> Option<&'t str> {
+    value.get_ref().as_table()?.get("name")?.get_ref().as_str()
+}
+
+fn merge_list<'a>(
+    of: &str,
+    list: &mut [Spanned<DeValue<'a>>],
+    over: DeTable<'a>,
+    text: &str,
+) -> Result<(), Error> {
+    let mut known: Vec<String> = (1..=list.len()).map(|number| number.to_string()).collect();
+    known.extend(list.iter().filter_map(name_of).map(String::from));
+    for (key, value) in over {
+        let key = key.get_ref();
+        let missing = || {
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            InputError::new("--set", format!("{of}.{key}"), unknown(key, &known))
+        };
+        let at = element(list, key);
+        let element = at.and_then(|at| list.get_mut(at)).ok_or_else(missing)?;
+        let (is_whole, span) = (is_whole(&value, text), value.span());
+        match (element.get_mut(), value.into_inner()) {
+            (DeValue::Table(old), DeValue::Table(new)) if !is_whole => merge(old, new, text)?,
+            (_, value) => *element = Spanned::new(span, value),
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,283 @@
+//! `[[phase]]`.
+
+use toml::de::DeValue;
+
+use super::keys::TableKeys;
+use super::phase_keys::{
+    ACTUATE, HOLD, HOLD_COMBINATION, LOAD, MOVE, PATH, PHASE, PRESSURE, PRESSURE_ON, ROTATE,
+    SYMMETRY, TERMS,
+};
+use super::selection::selection;
+use super::table::Table;
+use super::value::{Value, number_of};
+use crate::base::input::InputError;
+use crate::base::vector::norm;
+use crate::dynamics::error::Error;
+use crate::elements::mesh::Selection;
+use crate::scene::constraint::Axis;
+use crate::scene::forces::{Signal, TimeTable, VectorSignal};
+use crate::scene::timeline::{LoadKind, Phase, Scene};
+
+/// Adds a table inside of a phase.
+type Add = fn(Phase, &Table, &Scene) -> Result<Phase, Error>;
+
+/// The tables inside of a phase: what they add.
+const PARTS: [(&TableKeys, Add); 10] = [
+    (&HOLD, hold),
+    (&MOVE, moving),
+    (&PATH, path),
+    (&ROTATE, rotate),
+    (&SYMMETRY, symmetry),
+    (&HOLD_COMBINATION, hold_combination),
+    (&LOAD, load),
+    (&PRESSURE, pressure),
+    (&PRESSURE_ON, pressure_on),
+    (&ACTUATE, actuate),
+];
+
+/// The scene with the phases that `values` describe at its end.
+pub(super) fn add_phases(scene: Scene, values: &[Value]) -> Result<Scene, Error> {
+    // to check it after each table costs its size each time: that is for the one who looks for a mistake
+    let add = |scene: Scene, check: &Check| {
+        values.iter().try_fold(scene, |scene, value| add_phase(scene, value, check))
+    };
+    match add(scene.clone(), &|_, _| Ok(())) {
+        Ok(complete) if complete.validate().is_ok() => Ok(complete),
+        _ => add(scene, &|scene, phase| scene.clone().phase(phase.clone()).validate()),
+    }
+}
+
+/// Whether a phase may follow those of the scene.
+type Check = dyn Fn(&Scene, &Phase) -> Result<(), InputError>;
+
+/// The scene with the phase that `value` describes at its end, of which each part has passed the `check`.
+fn add_phase(scene: Scene, value: &Value, check: &Check) -> Result<Scene, Error> {
+    let table = value.table(&PHASE)?;
+    let until = table.required("until", |value| {
+        let until = value.number()?;
+        check(&scene, &Phase::until(until)).map_err(|error| value.error(error))?;
+        Ok(until)
+    })?;
+    let mut phase = Phase::until(until);
+    if let Some(name) = table.optional("name", Value::string)? {
+        phase = phase.named(name);
+    }
+    if let Some(value) = table.get("contact") {
+        phase = contact(phase, &value, &scene)?;
+    }
+    let gravity = table.optional("gravity", |value| value.vector(scene.body().dimension()))?;
+    if let Some(gravity) = gravity {
+        phase = phase.gravity(gravity);
+        check(&scene, &phase).map_err(|error| table.blame(error))?;
+    }
+    for (keys, add) in PARTS {
+        let Some(value) = table.get(keys.name) else { continue };
+        for part in value.tables(keys)? {
+            phase = add(phase, &part, &scene)?;
+            check(&scene, &phase).map_err(|error| part.blame(error))?;
+        }
+    }
+    if table.optional("project_velocity", Value::flag)? == Some(true) {
+        phase = phase.project_velocity();
+    }
+    Ok(scene.phase(phase))
+}
+
+fn hold(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let nodes = nodes(table, scene)?;
+    Ok(match axes(table, scene)? {
+        None => phase.hold(nodes),
+        Some(axes) => phase.hold_axes(nodes, axes),
+    })
+}
+
+fn moving(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let (nodes, axes) = (nodes(table, scene)?, axes(table, scene)?);
+    table.required("velocity", |value| {
+        let Some(axes) = axes else {
+            return Ok(phase.move_nodes(nodes, along(value, all_axes(scene), scene)?));
+        };
+        let along = along(value, &axes, scene)?;
+        Ok(axes
+            .into_iter()
+            .zip(along)
+            .fold(phase, |phase, (axis, velocity)| phase.move_axis(nodes.clone(), axis, velocity)))
+    })
+}
+
+fn path(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let nodes = nodes(table, scene)?;
+    let axes = axes(table, scene)?.unwrap_or_else(|| all_axes(scene).into());
+    let formulas = table.optional("displacement", |value| value.formulas(axes.len(), "axis"))?;
+    if let Some(formulas) = formulas {
+        let axes = axes.into_iter().zip(formulas);
+        return Ok(axes.fold(phase, |phase, (axis, formula)| {
+            phase.follow_formula(nodes.clone(), axis, formula)
+        }));
+    }
+    let times = table.required("times", Value::numbers)?;
+    let points = table.required("displacements", |value| {
+        value.list_of("points, one per time", |point| along(point, &axes, scene))
+    })?;
+    let axes = axes.into_iter().enumerate();
+    Ok(axes.fold(phase, |phase, (k, axis)| {
+        let displacements: Vec<f64> = points.iter().map(|point| point[k]).collect();
+        phase.path(nodes.clone(), axis, times.clone(), displacements)
+    }))
+}
+
+fn rotate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let (nodes, dimension) = (nodes(table, scene)?, scene.body().dimension());
+    let centre = table.required("centre", |value| value.vector(dimension))?;
+    let direction = |value: &Value| {
+        let axis = value.vector(3)?;
+        match norm(&axis) {
+            0.0 => Err(value.unexpected("a direction, not all of it 0")),
+            length => Ok(axis.into_iter().map(|x| x / length).collect()),
+        }
+    };
+    let axis = match (dimension, table.get("axis")) {
+        (3, _) => table.required("axis", direction)?,
+        (_, None) => vec![1.0],
+        (_, Some(axis)) => {
+            return Err(axis.unexpected("no axis in the plane, where nodes turn counter-clockwise"));
+        }
+    };
+    if let Some(rate) = table.optional("rate", Value::finite)? {
+        let velocity: Vec<f64> = axis.iter().map(|x| rate * x).collect();
+        return Ok(phase.rotate(nodes, centre, velocity));
+    }
+    let times = table.required("times", Value::numbers)?;
+    let angles = table.required("angles", Value::numbers)?;
+    Ok(phase.rotate_path(nodes, centre, axis, times, angles))
+}
+
+fn symmetry(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let normal = table.required("normal", |value| value.vector(scene.body().dimension()))?;
+    Ok(phase.symmetry(nodes(table, scene)?, normal))
+}
+
+fn hold_combination(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let terms = table.required("terms", |value| value.tables(&TERMS))?;
+    let term = |term: &Table| {
+        let node = term.required("node", |value| {
+            let node = value.count()?;
+            let known = scene.body().mesh().select(&[node].into());
+            known.map(|_| node).map_err(|error| value.error(error))
+        })?;
+        let axis = term.required("axis", |value| value.word(known_axes(scene)))?;
+        let coefficient = term.required("coefficient", |value| match value.finite()? {
+            0.0 => Err(value.unexpected("a number other than 0")),
+            coefficient => Ok(coefficient),
+        })?;
+        Ok((node, axis, coefficient))
+    };
+    Ok(phase.hold_combination(terms.iter().map(term).collect::<Result<Vec<_>, Error>>()?))
+}
+
+fn load(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let dimension = scene.body().dimension();
+    let nodes = nodes(table, scene)?;
+    for kind in LoadKind::ALL {
+        let one = table.optional(kind.word(), |value| value.vector_signal(dimension))?;
+        let many = table.optional(&format!("{}s", kind.word()), |value| {
+            value.list_of("vectors, one per time", |vector| vector.vector(dimension))
+        })?;
+        let value = match (one, many) {
+            (Some(value), _) => value,
+            (None, Some(values)) => {
+                let times = table.required("times", Value::numbers)?;
+                VectorSignal::TimeTable(TimeTable::new(times, values))
+            }
+            (None, None) => continue,
+        };
+        return Ok(phase.loaded(nodes, kind, value));
+    }
+    Ok(phase) // one of them is there: the table's groups say so
+}
+
+fn pressure(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let known: Vec<&str> = scene.chambers().iter().map(|chamber| chamber.name()).collect();
+    let chamber = table.required("chamber", |v| named(v, &known))?;
+    Ok(phase.pressure(chamber, course(table, "value", "values")?))
+}
+
+fn pressure_on(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let nodes = nodes(table, scene)?;
+    Ok(phase.pressure_on(nodes, course(table, "value", "values")?))
+}
+
+fn actuate(phase: Phase, table: &Table, scene: &Scene) -> Result<Phase, Error> {
+    let known: Vec<&str> = scene.springs().iter().map(|spring| spring.name()).collect();
+    let springs = table.required("springs", |value| names(value, &known))?;
+    Ok(phase.actuate(springs, course(table, "force", "forces")?))
+}
+
+fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
+    let known: Vec<&str> = scene.obstacles().iter().map(|obstacle| obstacle.name()).collect();
+    match value.value {
+        DeValue::Boolean(true) => Ok(phase),
+        DeValue::Boolean(false) => Ok(phase.without_contact()),
+        DeValue::String(_) | DeValue::Array(_) => Ok(phase.contact_with(names(value, &known)?)),
+        _ => Err(value.unexpected("true, false, or a list of names")),
+    }
+}
+
+/// `one` number or formula, or `times` and `many` numbers.
+fn course(table: &Table, one: &str, many: &str) -> Result<Signal, Error> {
+    Ok(match table.optional(one, Value::signal)? {
+        Some(signal) => signal,
+        None => Signal::table(
+            table.required("times", Value::numbers)?,
+            table.required(many, Value::numbers)?,
+        ),
+    })
+}
+
+fn nodes(table: &Table, scene: &Scene) -> Result<Selection, Error> {
+    table.required("nodes", |value| selection(value, scene.body().mesh()))
+}
+
+/// The named axes; `None` stands for all.
+fn axes(table: &Table, scene: &Scene) -> Result<Option<Vec<Axis>>, Error> {
+    table.optional("axes", |value| {
+        value.one_or_more()?.iter().map(|axis| axis.word(known_axes(scene))).collect()
+    })
+}
+
+fn known_axes(scene: &Scene) -> &'static [(&'static str, Axis)] {
+    &[("x", Axis::X), ("y", Axis::Y), ("z", Axis::Z)][..scene.body().dimension()]
+}
+
+fn all_axes(scene: &Scene) -> &'static [Axis] {
+    Axis::all(scene.body().dimension())
+}
+
+/// The components along `axes`: one number per named axis (for one axis, a number alone), or one
+/// per dimension, 0 along the axes that are not named.
+fn along(value: &Value, axes: &[Axis], scene: &Scene) -> Result<Vec<f64>, Error> {
+    let dimension = scene.body().dimension();
+    let numbers = value.one_or_more()?;
+    let numbers = numbers.iter().map(Value::finite).collect::<Result<Vec<_>, Error>>()?;
+    if numbers.len() == axes.len() {
+        return Ok(numbers);
+    }
+    let is_free = |i: usize| axes.iter().all(|axis| axis.index() != i);
+    if numbers.len() == dimension && (0..dimension).all(|i| numbers[i] == 0.0 || !is_free(i)) {
+        return Ok(axes.iter().map(|axis| numbers[axis.index()]).collect());
+    }
+    let per = if axes.len() == dimension { "dimension" } else { "named axis" };
+    Err(value.unexpected(format!("{}, one per {per}", number_of(axes.len(), "number"))))
+}
+
+fn named(value: &Value, known: &[&str]) -> Result<String, Error> {
+    let name = value.string()?;
+    match known.contains(&name) {
+        true => Ok(name.into()),
+        false => Err(value.unknown(name, known)),
+    }
+}
+
+fn names(value: &Value, known: &[&str]) -> Result<Vec<String>, Error> {
+    value.one_or_more()?.iter().map(|value| named(value, known)).collect()
+}

@@ -1,0 +1,198 @@
+//! The text of a scene file with other ends of phases, pressures, forces of actuators and loads; all else stays as it was written.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use serde_json::Value;
+use toml::de::{DeTable, DeValue};
+
+use super::written::insertion;
+use crate::elements::mesh::Selection;
+use crate::scene::forces::{Course, Signal, VectorSignal};
+use crate::scene::timeline::{Load, Phase};
+
+/// A phase whose signals are others than in the file.
+pub(crate) struct Rewritten {
+    /// Its number, from 0.
+    pub(crate) number: usize,
+    /// What it is now.
+    pub(crate) phase: Phase,
+    /// The keys that are others: `until`, and of its lists `pressure`, `actuate`, `load`.
+    pub(crate) keys: BTreeSet<&'static str>,
+}
+
+/// Tables as `[[phase.pressure]]` have no place of their own.
+const ELSEWHERE: &str =
+    "write the lists of each phase as pressure = [...], actuate = [...], load = [...]";
+
+/// The `text` of a scene file, in a space of `dimension`, with other signals in the phases `changes`.
+///
+/// # Errors
+/// A text in which there is no place for them.
+pub(crate) fn rewritten(
+    text: &str,
+    dimension: usize,
+    changes: &[Rewritten],
+) -> Result<String, String> {
+    let document = DeTable::parse(text).map_err(|error| error.message().to_owned())?;
+    let phases = document.get_ref().get("phase").ok_or("the file has no phases")?;
+    let mut edits: Vec<(Range<usize>, String)> = Vec::new();
+    for Rewritten { number, phase, keys } in changes {
+        let table = match phases.get_ref() {
+            DeValue::Array(tables) => {
+                tables.get(*number).and_then(|table| table.get_ref().as_table())
+            }
+            DeValue::Table(table) if *number == 0 => Some(table),
+            _ => None,
+        };
+        let missing = || format!("the file has no phase {}", number + 1);
+        let table = table.ok_or_else(missing)?;
+        for &key in keys {
+            if key == "until" {
+                let until = table.get(key).ok_or_else(missing)?.span();
+                edits.push((until, format!("{:?}", phase.until)));
+                continue;
+            }
+            let list = match key {
+                "pressure" => pressures(phase),
+                "actuate" => actuations(phase),
+                _ => loads(phase, dimension),
+            };
+            let edit = match table.get(key) {
+                Some(value) if text.get(value.span()).is_some_and(is_list) => (value.span(), list),
+                Some(_) => return Err(ELSEWHERE.into()),
+                None => {
+                    let until = table.get("until").ok_or_else(missing)?.span();
+                    insertion(text, until.end, &format!("{key} = {list}"))
+                }
+            };
+            edits.push(edit);
+        }
+    }
+    edits.sort_by_key(|(place, _)| place.start);
+    let mut result = String::new();
+    let mut at = 0;
+    for (place, new) in edits {
+        let kept = text.get(at..place.start).ok_or(ELSEWHERE)?;
+        result.push_str(kept);
+        result.push_str(&new);
+        at = place.end;
+    }
+    Ok(result + text.get(at..).unwrap_or_default())
+}
+
+/// Whether this is a list of tables, or one table, as it stands behind a key.
+fn is_list(text: &str) -> bool {
+    let begins = |inner: &str| inner.trim_start().starts_with(['{', ']', '#']);
+    let begins = text.starts_with('{') || text.strip_prefix('[').is_some_and(begins);
+    begins && text.ends_with([']', '}'])
+}
+
+fn pressures(phase: &Phase) -> String {
+    let entry = |(chamber, pressure): &(String, Signal)| {
+        let chamber = quoted(chamber);
+        format!("{{ chamber = {chamber}, {} }}", course(pressure, ["value", "values"]))
+    };
+    list(phase.pressures.iter().map(entry))
+}
+
+fn actuations(phase: &Phase) -> String {
+    let entry = |(springs, force): &(Vec<String>, Signal)| {
+        let springs: Vec<String> = springs.iter().map(|spring| quoted(spring)).collect();
+        let springs = springs.join(", ");
+        format!("{{ springs = [{springs}], {} }}", course(force, ["force", "forces"]))
+    };
+    list(phase.actuations.iter().map(entry))
+}
+
+fn loads(phase: &Phase, dimension: usize) -> String {
+    let entry = |(nodes, load): &(Selection, Load)| {
+        let nodes = match nodes {
+            Selection::Set(name) => quoted(name),
+            Selection::Numbers(numbers) => format!("{numbers:?}"),
+            Selection::Box { min, max } => format!("{{ box = [{min:?}, {max:?}] }}"),
+        };
+        let word = load.kind.word();
+        let load = match &load.value {
+            VectorSignal::Constant(force) => format!("{word} = {force:?}"),
+            VectorSignal::Formulas(formulas) => {
+                let texts: Vec<String> =
+                    formulas.iter().map(|formula| quoted(formula.text())).collect();
+                format!("{word} = [{}]", texts.join(", "))
+            }
+            force => {
+                let times = force.breaks();
+                let forces = times.iter().map(|t| force.components(*t, dimension));
+                format!("times = {times:?}, {word}s = {:?}", forces.collect::<Vec<_>>())
+            }
+        };
+        format!("{{ nodes = {nodes}, {load} }}")
+    };
+    list(phase.loads.iter().map(entry))
+}
+
+fn list(entries: impl Iterator<Item = String>) -> String {
+    let lines: String = entries.map(|entry| format!("    {entry},\n")).collect();
+    format!("[\n{lines}]")
+}
+
+fn course(signal: &Signal, [one, many]: [&str; 2]) -> String {
+    if let Course::Formula(formula) = &signal.0 {
+        return format!("{one} = {}", quoted(formula.text()));
+    }
+    let times = signal.breaks();
+    if times.is_empty() {
+        return format!("{one} = {:?}", signal.at(0.0));
+    }
+    let values: Vec<f64> = times.iter().map(|t| signal.at(*t)).collect();
+    format!("times = {times:?}, {many} = {values:?}")
+}
+
+/// A name in quotes; JSON escapes as TOML does.
+fn quoted(name: &str) -> String {
+    Value::from(name).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_else_changes() {
+        let text = "title = \"a\"\n[[phase]] # one\nuntil = 1.0 # s\nhold = []\n\n[[phase]]\nuntil = 2.0\n\
+                    pressure = { chamber = \"air\", value = 1 } # Pa\n";
+        let change = |number, phase| Rewritten { number, phase, keys: ["pressure"].into() };
+        let changes = [
+            change(1, Phase::until(2.0).pressure_table("a\"b", [0.5, 1.5], [0.0, 2.0])),
+            change(0, Phase::until(1.0).pressure("air", 3.0)),
+        ];
+        let expected = "title = \"a\"\n[[phase]] # one\nuntil = 1.0 # s\n\
+                        pressure = [\n    { chamber = \"air\", value = 3.0 },\n]\n\
+                        hold = []\n\n[[phase]]\nuntil = 2.0\npressure = [\n    \
+                        { chamber = \"a\\\"b\", times = [0.5, 1.5], values = [0.0, 2.0] },\n] # Pa\n";
+        assert_eq!(rewritten(text, 2, &changes).unwrap(), expected);
+        let inline = "phase = [{ until = 1.0, contact = false }]";
+        let expected = "phase = [{ until = 1.0, pressure = [\n    { chamber = \"air\", value = 3.0 },\n], \
+                        contact = false }]";
+        assert_eq!(rewritten(inline, 2, &changes[1..]).unwrap(), expected);
+        let corners = Selection::Box { min: vec![0.0, 1e-9], max: vec![1.0, f64::INFINITY] };
+        let loaded = Phase::until(1.0)
+            .load("right", [1.0, 0.5])
+            .load_total([3, 4], [0.0, -2.0])
+            .load_table(corners, [0.0, 0.5], [[0.0, 0.0], [1.0, 0.25]]);
+        let change = Rewritten { number: 0, phase: loaded, keys: ["load"].into() };
+        let expected = "phase = [{ until = 1.0, load = [\n    { nodes = \"right\", force = [1.0, 0.5] },\n    \
+                        { nodes = [3, 4], total = [0.0, -2.0] },\n    \
+                        { nodes = { box = [[0.0, 1e-9], [1.0, inf]] }, times = [0.0, 0.5], \
+                        forces = [[0.0, 0.0], [1.0, 0.25]] },\n], contact = false }]";
+        assert_eq!(rewritten(inline, 2, &[change]).unwrap(), expected);
+        for nested in [
+            "[[phase]]\nuntil = 1.0\n[[phase.pressure]]\nchamber = \"air\"\nvalue = 1.0\n",
+            "[[phase]]\nuntil = 1.0\n[phase.pressure]\nchamber = \"air\"\nvalue = 1.0\n",
+            "[[phase]]\nuntil = 1.0\npressure.chamber = \"air\"\npressure.value = 1.0\n",
+        ] {
+            let error = rewritten(nested, 2, &changes[1..]).unwrap_err();
+            assert!(error.contains("pressure = [...]"), "{error}");
+        }
+    }
+}

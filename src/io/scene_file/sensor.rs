@@ -1,0 +1,197 @@
+//! `[[sensor]]`.
+
+use super::keys::{Holds, Key, Kind, TableKeys};
+use super::selection::selection;
+use super::table::Table;
+use super::value::{Value, number_of};
+use crate::dynamics::error::Error;
+use crate::dynamics::simulate::{Component, Reading, Sampling};
+use crate::elements::mesh::{Mesh, Selection};
+use crate::scene::timeline::Scene;
+
+pub(super) const SENSOR: TableKeys = TableKeys::new(
+    "[[sensor]]",
+    "A quantity that is read with each sample: a column of `trajectory.csv`, a line of plots. One with several \
+     components has a column for each: `tip.x`, `tip.y`. Of several nodes, positions and the like are means, forces \
+     are sums.",
+    &[
+        Key::new("name", Holds::Text, "the name of the sensor").required(),
+        Key::new("component", Holds::Word(|| Component::WORDS.map(|(word, _)| word).into()), "one component alone")
+            .law("Vectors have `x`, `y`, `z` and their length `norm`; tensors `xx` and so on; stress has `von-mises` besides.")
+            .default("all, each a column"),
+    ],
+    "[[sensor]]\nname = \"bottom\"\nkind = \"constraint-force\"\nnodes = \"all\"\ncomponent = \"y\"",
+)
+.kinds(&[
+    Kind { word: "position", about: "where nodes are (m)", keys: &[NODES] },
+    Kind {
+        word: "displacement",
+        about: "how far nodes are from their undeformed positions (m)",
+        keys: &[NODES],
+    },
+    Kind { word: "velocity", about: "how fast nodes move (m/s)", keys: &[NODES] },
+    Kind {
+        word: "constraint-force",
+        about: "the force of what holds or moves nodes, their reaction (N)",
+        keys: &[NODES],
+    },
+    Kind {
+        word: "constraint-moment",
+        about: "the moment of what holds or moves nodes about a point that stays where it is (N m), counter-clockwise in the plane",
+        keys: &[
+            NODES,
+            Key::new("about", Holds::Vector, "the point").in_unit("m").required(),
+            Key::new("axis", Holds::Vector, "the direction along which it is read, of a body in space")
+                .default("all components, each a column"),
+        ],
+    },
+    Kind {
+        word: "contact-force",
+        about: "the force of an obstacle on the body (N)",
+        keys: &[
+            Key::new("obstacle", Holds::Text, "the name of the obstacle").required(),
+            Key::new("nodes", Holds::Nodes, "the nodes on which it acts").default("all").law(
+                "Those of one finger, say: the forces on both sides of what is gripped cancel each other.",
+            ),
+        ],
+    },
+    Kind {
+        word: "spring-pull",
+        about: "the force with which a spring and its actuator pull its ends together (N)",
+        keys: &[SPRING],
+    },
+    Kind { word: "spring-length", about: "the length of a spring (m)", keys: &[SPRING] },
+    Kind { word: "pressure", about: "the pressure in a chamber (Pa)", keys: &[CHAMBER] },
+    Kind {
+        word: "volume",
+        about: "the volume that the walls of a chamber enclose (m^3)",
+        keys: &[CHAMBER],
+    },
+    Kind {
+        word: "stress",
+        about: "the stress of the elasticity, without Maxwell branches, at nodes or at a point, extrapolated from the cells around (Pa)",
+        keys: &[PLACES, POINT],
+    },
+    Kind {
+        word: "strain",
+        about: "the strain at nodes or at a point, extrapolated from the cells around (no unit)",
+        keys: &[PLACES, POINT],
+    },
+    Kind {
+        word: "distance",
+        about: "the distance between two nodes, or the middles of sets (m)",
+        keys: &[
+            Key::new("from", Holds::Nodes, "where it is measured from").required(),
+            Key::new("to", Holds::Nodes, "where it is measured to").required(),
+        ],
+    },
+    Kind {
+        word: "angle",
+        about: "the angle from one line to another, counter-clockwise in the plane, where it goes on over whole turns; \
+                without sign, from 0 to half a turn, in space",
+        keys: &[
+            Key::new("from", LINE, "the two ends of the one line").required(),
+            Key::new("to", LINE, "the two ends of the other").required(),
+            UNIT,
+        ],
+    },
+    Kind { word: "centre-of-mass", about: "where the centre of mass is (m)", keys: &[] },
+    Kind {
+        word: "rotation",
+        about: "the angle by which a body in the plane has turned as a whole, counter-clockwise; it goes on over whole turns",
+        keys: &[UNIT],
+    },
+]);
+
+const NODES: Key = Key::new("nodes", Holds::Nodes, "the nodes").required();
+const PLACES: Key = Key::new("nodes", Holds::Nodes, "the nodes").default("`point`");
+const POINT: Key =
+    Key::new("point", Holds::Vector, "the undeformed position of a point of the body")
+        .in_unit("m")
+        .default("`nodes`");
+const SPRING: Key = Key::new("spring", Holds::Text, "the name of the spring").required();
+const CHAMBER: Key = Key::new("chamber", Holds::Text, "the name of the chamber").required();
+const UNIT: Key = Key::new("unit", Holds::Word(|| vec!["rad", "deg"]), "the unit").default("rad");
+const LINE: Holds = Holds::Array(&Holds::Nodes, 2);
+
+/// A sensor's name, and what it reads in `scene`.
+pub(super) fn sensor(value: &Value, scene: &Scene) -> Result<(String, Reading), Error> {
+    let table = value.table(&SENSOR)?;
+    let name = table.required("name", Value::string)?;
+    let mesh = scene.body().mesh();
+    let nodes = || table.required("nodes", |value| selection(value, mesh));
+    let named = |key: &str| table.required(key, Value::string);
+    let ends = |key: &str| table.required(key, |value| line(value, mesh));
+    let reading = match table.kind() {
+        "position" => Reading::position(nodes()?),
+        "displacement" => Reading::displacement(nodes()?),
+        "velocity" => Reading::velocity(nodes()?),
+        "constraint-force" => Reading::constraint_force(nodes()?),
+        "constraint-moment" => {
+            let vector = |value: &Value| value.vector(mesh.dimension());
+            let about = table.required("about", vector)?;
+            match table.optional("axis", vector)? {
+                Some(axis) => Reading::constraint_torque(nodes()?, about, axis),
+                None => Reading::constraint_moment(nodes()?, about),
+            }
+        }
+        "contact-force" => {
+            let obstacle = named("obstacle")?;
+            match table.optional("nodes", |value| selection(value, mesh))? {
+                Some(nodes) => Reading::contact_force_on(obstacle, nodes),
+                None => Reading::contact_force(obstacle),
+            }
+        }
+        "spring-pull" => Reading::spring_pull(named("spring")?),
+        "spring-length" => Reading::spring_length(named("spring")?),
+        "pressure" => Reading::pressure(named("chamber")?),
+        "volume" => Reading::chamber_volume(named("chamber")?),
+        "stress" => field(&table, mesh, Reading::stress, Reading::stress_at)?,
+        "strain" => field(&table, mesh, Reading::strain, Reading::strain_at)?,
+        "distance" => {
+            let end = |key: &str| table.required(key, |value| selection(value, mesh));
+            Reading::distance(end("from")?, end("to")?)
+        }
+        "angle" => in_unit(&table, Reading::angle(ends("from")?, ends("to")?))?,
+        "centre-of-mass" => Reading::centre_of_mass(),
+        _ => in_unit(&table, Reading::rotation())?,
+    };
+    let component = table.optional("component", |value| value.word(&Component::WORDS))?;
+    let reading = match component {
+        Some(component) => reading.component(component),
+        None => reading,
+    };
+    let alone = Sampling::phase_ends().read(name, reading.clone());
+    alone.check(scene).map_err(|error| table.blame(error))?;
+    Ok((name.into(), reading))
+}
+
+/// An angle in the unit of the table.
+fn in_unit(table: &Table, angle: Reading) -> Result<Reading, Error> {
+    let in_degrees =
+        table.optional("unit", |value| value.word(&[("rad", false), ("deg", true)]))?;
+    Ok(if in_degrees == Some(true) { angle.in_degrees() } else { angle })
+}
+
+/// The ends of a line.
+fn line(value: &Value, mesh: &Mesh) -> Result<[Selection; 2], Error> {
+    let ends = value.list_of("two ends", |end| selection(end, mesh))?;
+    ends.try_into().map_err(|_| value.unexpected(number_of(2, "end")))
+}
+
+/// Strain or stress at nodes or a point.
+fn field(
+    table: &Table,
+    mesh: &Mesh,
+    at_nodes: fn(Selection) -> Reading,
+    at_point: fn(Vec<f64>) -> Reading,
+) -> Result<Reading, Error> {
+    let nodes = table.optional("nodes", |value| selection(value, mesh))?;
+    let point = table.optional("point", |value| value.vector(mesh.dimension()))?;
+    match (nodes, point) {
+        (Some(nodes), None) => Ok(at_nodes(nodes)),
+        (None, Some(point)) => Ok(at_point(point)),
+        (None, None) => Err(table.missing("nodes", "expected either nodes or point")),
+        (Some(_), Some(_)) => Err(table.error("expected either nodes or point; found both")),
+    }
+}

@@ -1,0 +1,402 @@
+//! `[[spring]]`, `[[chamber]]` and `[[obstacle]]`.
+
+use super::keys::{Holds, Key, Kind, TableKeys};
+use super::selection::selection;
+use super::table::Table;
+use super::value::Value;
+use crate::base::input::InputError;
+use crate::dynamics::error::Error;
+use crate::scene::forces::{Chamber, Contact, Obstacle, Shape, Spring};
+use crate::scene::timeline::Scene;
+
+pub(super) const SPRING: TableKeys = TableKeys::new(
+    "[[spring]]",
+    "A spring with damper and actuator between two nodes, or a node and a fixed point. It acts in all phases; `actuate` in a phase adds a force.",
+    &[
+        Key::new("name", Holds::Text, "the name of the spring").default("spring 1, spring 2, ..."),
+        Key::new(
+            "ends",
+            Holds::Array(&Holds::Either(&[Holds::Nodes, Holds::Table(&END)]), 2),
+            "one node each, by number or name, or a point of space",
+        )
+        .required(),
+        Key::number("stiffness", "the stiffness", "N/m").default("0"),
+        Key::number("length", "the natural length", "m").default("that at the start"),
+        Key::number("damping", "the damping", "N s/m").default("0"),
+    ],
+    "[[spring]]\nname = \"down\"\nends = [1, 3]\nstiffness = 20.0\nlength = 0.04",
+);
+
+const END: TableKeys = TableKeys::new(
+    "ends",
+    "The end of a spring that is a fixed point of space.",
+    &[vector("point", "where it is", "m")],
+    "[[spring]]\nends = [3, { point = [0.0, 0.2] }]\nstiffness = 20.0",
+);
+
+pub(super) const CHAMBER: TableKeys = TableKeys::new(
+    "[[chamber]]",
+    "A closed space that `pressure` in a phase blows up.",
+    &[
+        Key::new("name", Holds::Text, "the name of the chamber").required(),
+        Key::new(
+            "nodes",
+            Holds::Nodes,
+            "the nodes of its walls: part of the boundary, or a closed polygon of numbers",
+        ),
+        Key::new(
+            "triangles",
+            Holds::List(&Holds::Array(&Holds::Count, 3)),
+            "the triangles of its walls in space, by the numbers of their nodes",
+        )
+        .law("A closed surface, all of them counter-clockwise as seen from outside, or all clockwise."),
+        Key::new(
+            "closed_by_line",
+            Holds::Flag,
+            "whether walls in the plane that are open are closed by the straight line between their ends",
+        )
+        .law("Without it a gap is an error.")
+        .default("false"),
+        Key::new(
+            "closed_by_lid",
+            Holds::Flag,
+            "whether walls in space that are open are closed by lids on their rims, from the mean of a rim's nodes to its edges",
+        )
+        .law("Without it a rim is an error. The nodes of the rim feel the pressure on its lid.")
+        .default("false"),
+        Key::number("thickness", "the thickness", "m").default("that of the body"),
+    ],
+    "[[chamber]]\nname = \"inside\"\nnodes = \"inner\"",
+)
+.one_of(&[&["nodes"], &["triangles"]]);
+
+pub(super) const OBSTACLE: TableKeys = TableKeys::new(
+    "[[obstacle]]",
+    "A rigid obstacle, felt by penalty: a node at depth d inside is pushed out by `stiffness` d (N). With \
+     `stiffness_density` (N/m^3) pressure is felt at points of boundary faces, so that no mesh changes the result, and \
+     `damping` and `tangential_damping` are per area as well (N s/m^3). Coulomb's friction is a part of the \
+     normal force, and needs no scaling: what sticks creeps, slower than `sticking_speed`.",
+    &[
+        Key::new("name", Holds::Text, "the name of the obstacle")
+            .default("obstacle 1, ..."),
+        Key::number("stiffness", "the stiffness per node", "N/m"),
+        Key::number("stiffness_density", "the stiffness per area of the body's boundary", "N/m^3"),
+        Key::number("damping", "the damping along the normal", "N s/m").default("0"),
+        Key::number("tangential_damping", "a force against sliding in proportion to its speed", "N s/m")
+            .default("0"),
+        Key::new(
+            "friction_coefficient",
+            Holds::Either(&[Holds::Number, Holds::Table(&COEFFICIENTS)]),
+            "Coulomb's coefficient of friction, or both of them",
+        )
+        .in_unit("1")
+        .default("0"),
+        Key::number("sticking_speed", "the speed below which friction sticks", "m/s")
+            .default("a thousandth of the size of the body per second"),
+        Key::new("adhesion", Holds::Flag, "whether damping may pull at a body that leaves")
+            .default("false"),
+        Key::new("velocity", Holds::Vector, "the velocity of the obstacle").in_unit("m/s").default("0"),
+        Key::new("path", Holds::Table(&WAY), "the path of the obstacle, in place of a velocity"),
+        Key::number(
+            "friction",
+            "a force against sliding in proportion to its speed",
+            "N s/m",
+        )
+        .now("tangential_damping"),
+    ],
+    "[[obstacle]]\n\
+     name = \"floor\"\n\
+     kind = \"half-plane\"\n\
+     point = [0.0, 0.0]\n\
+     normal = [0.0, 1.0]\n\
+     stiffness_density = 1.0e7\n\
+     friction_coefficient = { static = 0.6, kinetic = 0.5 }",
+)
+.one_of(&[&["stiffness"], &["stiffness_density"]])
+.kinds(&[HALF_PLANE, DISC, BOX, CAPSULE, UNION]);
+
+const PARTS: TableKeys = TableKeys::new(
+    "obstacle.parts",
+    "One shape of a union.",
+    &[],
+    "[[obstacle]]\n\
+     kind = \"union\"\n\
+     parts = [\n\
+     \x20   { kind = \"box\", min = [0.0, -0.3], max = [0.1, -0.2] },\n\
+     \x20   { kind = \"disc\", centre = [0.1, -0.25], radius = 0.05 },\n\
+     ]\n\
+     stiffness = 1.0e3",
+)
+.kinds(&[HALF_PLANE, DISC, BOX, CAPSULE]);
+
+const HALF_PLANE: Kind = Kind {
+    word: "half-plane",
+    about: "all that lies beyond an edge (in space, a face)",
+    keys: &[
+        vector("point", "a point on its edge", "m"),
+        vector("normal", "the direction out of it", "1"),
+    ],
+};
+
+const DISC: Kind = Kind {
+    word: "disc",
+    about: "a disc (in space, a ball), or all around one",
+    keys: &[
+        vector("centre", "the centre", "m"),
+        RADIUS,
+        Key::new("cavity", Holds::Flag, "whether bodies are inside of it").default("false"),
+    ],
+};
+
+const BOX: Kind = Kind {
+    word: "box",
+    about: "a box along the axes",
+    keys: &[vector("min", "the lower corner", "m"), vector("max", "the upper corner", "m")],
+};
+
+const CAPSULE: Kind = Kind {
+    word: "capsule",
+    about: "all that is no farther than `radius` from a straight line",
+    keys: &[
+        vector("from", "one end of its axis", "m"),
+        vector("to", "the other end of its axis", "m"),
+        RADIUS,
+    ],
+};
+
+const UNION: Kind = Kind {
+    word: "union",
+    about: "several shapes as one, which move together",
+    keys: &[Key::new("parts", Holds::Tables(&PARTS), "the shapes").required()],
+};
+
+const RADIUS: Key = Key::number("radius", "the radius", "m").required();
+
+const fn vector(name: &'static str, meaning: &'static str, unit: &'static str) -> Key {
+    Key::new(name, Holds::Vector, meaning).in_unit(unit).required()
+}
+
+const WAY: TableKeys = TableKeys::new(
+    "obstacle.path",
+    "The obstacle runs smoothly (a cubic spline) through points, and begins and ends at rest; before and after it stays. Or it \
+     follows formulas without `abs`, `min`, `max` and `step`, which have no velocity at their kinks.",
+    &[
+        Key::new("times", Holds::List(&Holds::Number), "times in ascending order").in_unit("s"),
+        Key::new(
+            "displacements",
+            Holds::List(&Holds::Vector),
+            "displacements, at these times, from where it was said to be",
+        )
+        .in_unit("m"),
+        Key::new(
+            "displacement",
+            Holds::ChangingVector,
+            "the displacement from where it was said to be",
+        )
+        .in_unit("m"),
+    ],
+    "[[obstacle]]\n\
+     kind = \"disc\"\n\
+     centre = [0.05, 0.15]\n\
+     radius = 0.02\n\
+     stiffness = 1.0e3\n\
+     path = { times = [0.0, 0.5, 1.0], displacements = [[0.0, 0.0], [0.0, -0.02], [0.0, 0.0]] }\n\
+     # or: path = { displacement = [0.0, \"0.01*sin(20*t)\"] }",
+)
+.one_of(&[&["times", "displacements"], &["displacement"]]);
+
+const COEFFICIENTS: TableKeys = TableKeys::new(
+    "friction_coefficient",
+    "Two coefficients of friction.",
+    &[
+        Key::number("static", "the friction coefficient at rest", "1").required(),
+        Key::number("kinetic", "the friction coefficient of what slides", "1").required(),
+    ],
+    "friction_coefficient = { static = 0.6, kinetic = 0.5 }",
+);
+
+/// The scene with the spring that `value` describes.
+pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = &value.table(&SPRING)?;
+    let body = scene.body();
+    let name = table.optional("name", Value::string)?;
+    let name = name.map_or_else(|| format!("spring {}", scene.springs().len() + 1), Into::into);
+    unique(table, &name, scene.springs().iter().map(Spring::name))?;
+    let mut spring = table.required("ends", |value| {
+        let list = value.list()?;
+        let [first, second] = &list[..] else { return Err(value.unexpected("two ends")) };
+        let node = |end: &Value| selection(end, body.mesh());
+        let spring = match (anchor(first, body.dimension())?, anchor(second, body.dimension())?) {
+            (None, None) => Spring::between(node(first)?, node(second)?),
+            (None, Some(point)) => Spring::anchored(node(first)?, point),
+            (Some(point), None) => Spring::anchored(node(second)?, point),
+            (Some(_), Some(_)) => return Err(value.unexpected("one node at least")),
+        };
+        let spring = spring.named(name);
+        spring.force(body.mesh()).map_err(|error| value.error(error))?;
+        Ok(spring)
+    })?;
+    if let Some(k) = table.optional("stiffness", Value::number)? {
+        spring = spring.stiffness(k);
+    }
+    if let Some(length) = table.optional("length", Value::number)? {
+        spring = spring.length(length);
+    }
+    if let Some(c) = table.optional("damping", Value::number)? {
+        spring = spring.damping(c);
+    }
+    spring.force(body.mesh()).map_err(|error| table.blame(error))?;
+    Ok(scene.spring(spring))
+}
+
+/// The point of space that an end of a spring is, if it is none of nodes.
+fn anchor(end: &Value, dimension: usize) -> Result<Option<Vec<f64>>, Error> {
+    match end.entries() {
+        Some(entries) if entries.contains_key("point") => {
+            let point = end.table(&END)?.required("point", |value| value.vector(dimension))?;
+            Ok(Some(point))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// The scene with the chamber that `value` describes.
+pub(super) fn add_chamber(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let table = &value.table(&CHAMBER)?;
+    let body = scene.body();
+    let name = table.required("name", Value::string)?;
+    let triangles = table.optional("triangles", |value| {
+        value.list_of("triangles, three node numbers each", Value::counts::<3>)
+    })?;
+    let mut chamber = match triangles {
+        Some(triangles) => Chamber::surface(name, triangles),
+        None => {
+            let nodes = table.required("nodes", |value| selection(value, body.mesh()))?;
+            Chamber::within(name, nodes)
+        }
+    };
+    if table.optional("closed_by_line", Value::flag)? == Some(true) {
+        chamber = chamber.closed_by_line();
+    }
+    if table.optional("closed_by_lid", Value::flag)? == Some(true) {
+        chamber = chamber.closed_by_lid();
+    }
+    if let Some(h) = table.optional("thickness", Value::number)? {
+        chamber = chamber.thickness(h);
+    }
+    unique(table, name, scene.chambers().iter().map(Chamber::name))?;
+    chamber.force(body, Vec::new()).map_err(|error| table.blame(error))?;
+    Ok(scene.chamber(chamber))
+}
+
+/// The scene with the obstacle that `value` describes.
+pub(super) fn add_obstacle(scene: Scene, value: &Value) -> Result<Scene, Error> {
+    let body = scene.body();
+    let table = &value.table(&OBSTACLE)?;
+    let mut obstacle = Obstacle::new(shape(table, body.dimension())?);
+    if let Some(name) = table.optional("name", Value::string)? {
+        obstacle = obstacle.named(name);
+    }
+    obstacle = match table.optional("stiffness_density", Value::number)? {
+        Some(stiffness) => obstacle.stiffness_density(stiffness),
+        None => obstacle.stiffness(table.required("stiffness", Value::number)?),
+    };
+    if let Some(damping) = table.optional("damping", Value::number)? {
+        obstacle = obstacle.damping(damping);
+    }
+    obstacle = friction(obstacle, table)?;
+    if let Some(adhesion) = table.optional("adhesion", Value::flag)? {
+        obstacle = obstacle.adhesion(adhesion);
+    }
+    if let Some(velocity) = table.optional("velocity", |v| v.vector(body.dimension()))? {
+        obstacle = obstacle.velocity(velocity);
+    }
+    if let Some(value) = table.get("path") {
+        if table.get("velocity").is_some() {
+            return Err(value.error("a path has its own velocity: give one of path and velocity"));
+        }
+        let path = value.table(&WAY)?;
+        obstacle = way(obstacle, &path, body.dimension())?;
+    }
+    unique(table, obstacle.name(), scene.obstacles().iter().map(Obstacle::name))?;
+    Contact::new(body, &obstacle).map_err(|error| table.blame(error))?;
+    Ok(scene.obstacle(obstacle))
+}
+
+/// The `obstacle` on the path that `table` describes.
+fn way(obstacle: Obstacle, table: &Table, dimension: usize) -> Result<Obstacle, Error> {
+    let formulas =
+        table.optional("displacement", |value| value.formulas(dimension, "dimension"))?;
+    if let Some(formulas) = formulas {
+        return Ok(obstacle.follow_formulas(formulas));
+    }
+    let times = table.required("times", Value::numbers)?;
+    let displacements = table.required("displacements", |value| {
+        value.list_of("displacements, one per time", |x| x.vector(dimension))
+    })?;
+    Ok(obstacle.path(times, displacements))
+}
+
+/// The `obstacle` with the tangential forces of `table`.
+fn friction(mut obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
+    if let Some(damping) = table.optional("tangential_damping", Value::number)? {
+        obstacle = obstacle.tangential_damping(damping);
+    }
+    let coefficients = table.optional("friction_coefficient", |value| {
+        if value.entries().is_none() {
+            let mu = value.number();
+            let mu = mu.map_err(|_| value.unexpected("a number or { static, kinetic }"))?;
+            return Ok([mu, mu]);
+        }
+        let table = value.table(&COEFFICIENTS)?;
+        let coefficient = |key| table.required(key, Value::number);
+        Ok([coefficient("static")?, coefficient("kinetic")?])
+    })?;
+    if let Some([at_rest, sliding]) = coefficients {
+        obstacle = obstacle.friction_coefficients(at_rest, sliding);
+    }
+    if let Some(speed) = table.optional("sticking_speed", Value::number)? {
+        obstacle = obstacle.sticking_speed(speed);
+    }
+    Ok(obstacle)
+}
+
+/// Checks that no other one of its kind has the `name` of the thing that `table` describes.
+fn unique<'a>(
+    table: &Table,
+    name: &str,
+    mut others: impl Iterator<Item = &'a str>,
+) -> Result<(), Error> {
+    match others.any(|other| other == name) {
+        false => Ok(()),
+        true => {
+            let mend = "another one has it already: give each a name of its own";
+            Err(table.blame(InputError::new("name", format!("\"{name}\""), mend)))
+        }
+    }
+}
+
+fn shape(table: &Table, dimension: usize) -> Result<Shape, Error> {
+    let vector = |key: &str| table.required(key, |value| value.vector(dimension));
+    let radius = || table.required("radius", Value::number);
+    Ok(match table.kind() {
+        "half-plane" => Shape::half_plane(vector("point")?, vector("normal")?),
+        "disc" => {
+            let centre = vector("centre")?;
+            match table.optional("cavity", Value::flag)? {
+                Some(true) => Shape::cavity(centre, radius()?),
+                _ => Shape::disc(centre, radius()?),
+            }
+        }
+        "box" => Shape::box_between(vector("min")?, vector("max")?),
+        "capsule" => Shape::capsule(vector("from")?, vector("to")?, radius()?),
+        _ => {
+            let part = |part: &Table| {
+                let shape = shape(part, dimension)?;
+                shape.validated(dimension, &str::to_owned).map_err(|error| part.blame(error))
+            };
+            let parts = table.required("parts", |value| value.tables(&PARTS))?;
+            Shape::union(parts.iter().map(part).collect::<Result<Vec<_>, _>>()?)
+        }
+    })
+}

@@ -1,0 +1,118 @@
+//! The whole file.
+
+use super::body::{self, BODY, POINT};
+use super::contents::{OutputRequest, SceneFile};
+use super::initial::{self, INITIAL};
+use super::keys::{Holds, Key, TableKeys};
+use super::phase;
+use super::phase_keys::PHASE;
+use super::sensor::{SENSOR, sensor};
+use super::settings::{self, OUTPUT, SOLVER, STATICS};
+use super::surroundings::{self, CHAMBER, OBSTACLE, SPRING};
+use super::table::Table;
+use super::value::Value;
+use crate::dynamics::error::Error;
+use crate::scene::timeline::Scene;
+
+pub(super) const TOP: TableKeys = TableKeys::new(
+    "The file",
+    "The keys before the first table.",
+    &[
+        Key::new("title", Holds::Text, "the title, for pictures and pages"),
+        Key::new("dimension", Holds::Count, "the dimension of space")
+            .law("1, 2 or 3. In a higher one than the mesh has, bars are strings and surfaces membranes.")
+            .default("that of the mesh"),
+        Key::new("gravity", Holds::Vector, "the acceleration of gravity")
+            .in_unit("m/s^2")
+            .default("0"),
+        Key::new("unusual", Holds::List(&Holds::Text), "quantities that are meant as they are, though they look like wrong units")
+            .law("Of `size`, `mass`, `density`, `young`, `wave-speed`, `thickness`, `weight`: they are not [warned of](scene-files.md#warnings).")
+            .default("none"),
+        Key::new("body", Holds::Table(&BODY), "what moves").required(),
+        Key::new("point", Holds::Tables(&POINT), "point masses"),
+        Key::new("initial", Holds::Table(&INITIAL), "how the body moves at first").default("at rest"),
+        Key::new("spring", Holds::Tables(&SPRING), "springs"),
+        Key::new("chamber", Holds::Tables(&CHAMBER), "chambers"),
+        Key::new("obstacle", Holds::Tables(&OBSTACLE), "obstacles"),
+        Key::new("phase", Holds::Tables(&PHASE), "the phases, one after the other").required(),
+        Key::new("sensor", Holds::Tables(&SENSOR), "what is read with each sample"),
+        Key::new("solver", Holds::Table(&SOLVER), "how it is integrated"),
+        Key::new("statics", Holds::Table(&STATICS), "how its equilibrium is sought"),
+        Key::new("output", Holds::Table(&OUTPUT), "what is written"),
+    ],
+    "title = \"A beam sinks\"\ndimension = 2\ngravity = [0.0, -9.8]",
+);
+
+/// Adds a table to a scene.
+type Add = fn(Scene, &Value) -> Result<Scene, Error>;
+
+/// What the file `top` says.
+pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
+    let title = top.optional("title", Value::string)?.unwrap_or_default();
+    let (dimension, points) = (top.get("dimension"), top.get("point"));
+    let body =
+        top.required("body", |value| body::body(value, dimension.as_ref(), points.as_ref()))?;
+    let mut scene = Scene::new(body);
+    if let Some(gravity) = top.get("gravity") {
+        let gravity = gravity.vector(scene.body().dimension())?;
+        scene = scene.gravity(gravity);
+    }
+    if let Some(names) = top.get("unusual") {
+        let names = names.list()?;
+        let names = names.iter().map(|name| name.string().map(str::to_owned));
+        scene = scene.unusual(names.collect::<Result<Vec<String>, Error>>()?);
+    }
+    // a state to start from is of the mesh as it is given, or of the finer one that the scene moves to
+    let initial = top.get("initial");
+    let started = initial.as_ref().map(|initial| initial::add_initial(scene.clone(), initial));
+    let starts_finer = match started {
+        Some(Ok(started)) => {
+            scene = started;
+            None
+        }
+        Some(Err(_)) => initial,
+        None => None,
+    };
+    let parts: [(&str, Add); 3] = [
+        ("spring", surroundings::add_spring),
+        ("chamber", surroundings::add_chamber),
+        ("obstacle", surroundings::add_obstacle),
+    ];
+    for (key, add) in parts {
+        if let Some(values) = top.get(key) {
+            scene = values.one_or_more()?.iter().try_fold(scene, add)?;
+        }
+    }
+    if let Some(values) = top.get("phase") {
+        scene = phase::add_phases(scene, &values.one_or_more()?)?;
+    }
+    if scene.phases().is_empty() {
+        return Err(top.missing("phase", "a scene needs one phase at least: [[phase]]"));
+    }
+    scene = top.required("body", |body| body::on_finer_mesh(scene, body))?;
+    if let Some(initial) = starts_finer {
+        scene = initial::add_initial(scene, &initial)?;
+    }
+    let auto = top.required("body", body::auto)?;
+    let settings = top.optional("solver", settings::solver)?.unwrap_or_default();
+    let accuracy = top.optional("solver", settings::accuracy)?.unwrap_or_default();
+    let statics = top.optional("statics", |value| settings::statics(value, &scene))?;
+    let statics = statics.unwrap_or_default();
+    let output = top.optional("output", |value| settings::output(value, &scene))?;
+    let mut output = output.unwrap_or_else(OutputRequest::default);
+    if let Some(values) = top.get("sensor") {
+        let sensors = values.one_or_more()?.into_iter().map(|value| sensor(&value, &scene));
+        output.sensors = sensors.collect::<Result<_, _>>()?;
+        output.sampling().check(&scene).map_err(|error| values.error(error))?;
+    }
+    Ok(SceneFile {
+        title: title.into(),
+        scene,
+        settings,
+        accuracy,
+        auto,
+        statics,
+        output,
+        notes: Vec::new(),
+    })
+}

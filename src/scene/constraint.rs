@@ -1,0 +1,91 @@
+//! Constraints R = A^T u - b(t) = 0: what is held and what is moved, and how.
+//!
+//! A constraint on one displacement component of one node (a *nodal* row) is the common case; a
+//! general linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0
+//! (Hirai (4.1.3)); the equations are those of `system`.
+
+mod axis;
+mod prescribed;
+mod resolve;
+mod row;
+mod spline;
+mod start;
+mod turn;
+
+use std::fmt;
+use std::sync::Arc;
+
+pub use axis::Axis;
+pub use prescribed::{Path, Prescribed};
+pub(crate) use resolve::rows;
+pub(crate) use row::{Row, prescribe};
+pub(crate) use spline::Spline;
+pub(crate) use start::PhaseStart;
+pub(crate) use turn::{Turn, angular};
+
+use crate::base::formula::Formula;
+use crate::elements::mesh::Selection;
+
+/// A constraint as the user of a phase gives it.
+#[derive(Clone, Debug)]
+pub(crate) struct Constraint {
+    pub(crate) what: Constrained,
+    pub(crate) how: Motion,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Constrained {
+    /// Components of nodes, each a row of its own.
+    Nodes(Selection, Axes),
+    /// One general row: (node number from 1, axis, coefficient).
+    Row(Vec<(usize, Axis, f64)>),
+    /// The displacements of nodes along a direction, a row each.
+    Along(Selection, Vec<f64>),
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Axes {
+    All,
+    These(Vec<Axis>),
+}
+
+#[derive(Clone)]
+pub(crate) enum Motion {
+    /// Stay where the phase begins.
+    Hold,
+    /// Move from there with constant velocity (m/s), one per axis (one in all for a general row).
+    Velocity(Vec<f64>),
+    /// Follow a path (all axes alike).
+    Path(Path),
+    /// Follow a smooth path through points (all axes alike).
+    Spline(Arc<Spline>),
+    /// Follow a formula of time without kinks (m; all axes alike).
+    #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
+    Formula(Arc<Formula>),
+    /// Turn from where the phase begins (all axes).
+    Turn(Arc<Turn>),
+}
+
+impl fmt::Debug for Motion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Hold => f.write_str("Hold"),
+            Self::Velocity(velocity) => f.debug_tuple("Velocity").field(velocity).finish(),
+            Self::Path(_) => f.write_str("Path"),
+            Self::Spline(spline) => spline.fmt(f),
+            Self::Formula(formula) => formula.fmt(f),
+            Self::Turn(turn) => turn.fmt(f),
+        }
+    }
+}
+
+impl Motion {
+    /// Times (s) at which the motion changes its law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        match self {
+            Self::Spline(spline) => spline.times(),
+            Self::Turn(turn) => turn.breaks(),
+            Self::Hold | Self::Velocity(_) | Self::Path(_) | Self::Formula(_) => &[],
+        }
+    }
+}

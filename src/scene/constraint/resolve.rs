@@ -1,0 +1,216 @@
+//! The constraints of a phase as rows.
+
+use std::collections::BTreeMap;
+use std::ptr;
+
+use super::prescribed::Prescribed;
+use super::row::{Row, RowMotion};
+use super::start::PhaseStart;
+use super::turn::Turning;
+use super::{Axes, Axis, Constrained, Constraint, Motion};
+use crate::base::input::{InputError, finite};
+use crate::base::vector::norm;
+use crate::elements::mesh::Mesh;
+
+/// A component of a direction of length 1 that is below this is round-off of a cosine.
+const ROUND_OFF: f64 = 1e-14;
+
+/// Turns the constraints of a phase into rows.
+///
+/// # Errors
+/// Unknown nodes, axes that the body does not have, a velocity of the wrong length, numbers that
+/// are not finite, a path through points out of order, demands that contradict each other.
+pub(crate) fn rows(
+    constraints: &[Constraint],
+    mesh: &Mesh,
+    phase: &str,
+    start: &PhaseStart,
+) -> Result<Vec<Row>, InputError> {
+    let dimension = mesh.dimension();
+    let mut rows: Vec<Row> = Vec::new();
+    for Constraint { what, how } in constraints {
+        match how {
+            Motion::Spline(spline) => spline.validate("displacements of a path", "m")?,
+            Motion::Formula(formula) => formula.check_smooth()?,
+            Motion::Turn(turn) => turn.validate(dimension)?,
+            Motion::Hold | Motion::Velocity(_) | Motion::Path(_) => {}
+        }
+        match what {
+            Constrained::Nodes(selection, axes) => {
+                let axes: &[Axis] = match axes {
+                    Axes::All => Axis::all(dimension),
+                    Axes::These(axes) => axes,
+                };
+                check_axes(axes, dimension)?;
+                check_velocity(how, axes.len())?;
+                for node in mesh.select(selection)? {
+                    for (k, axis) in axes.iter().enumerate() {
+                        let terms = vec![(node * dimension + axis.index(), 1.0)];
+                        rows.push(row(terms, how, k, start, mesh));
+                    }
+                }
+            }
+            Constrained::Row(terms) => {
+                check_velocity(how, 1)?;
+                let terms = general_terms(terms, mesh)?;
+                rows.push(row(terms, how, 0, start, mesh));
+            }
+            Constrained::Along(selection, normal) => {
+                let normal = direction(normal, dimension)?;
+                for node in mesh.select(selection)? {
+                    let terms = normal.iter().map(|&(i, n)| (node * dimension + i, n)).collect();
+                    rows.push(row(terms, how, 0, start, mesh));
+                }
+            }
+        }
+    }
+    for row in &rows {
+        check_path(row, phase, dimension, start.time)?;
+    }
+    without_repetitions(rows, dimension, phase)
+}
+
+fn row(
+    terms: Vec<(usize, f64)>,
+    motion: &Motion,
+    component: usize,
+    start: &PhaseStart,
+    mesh: &Mesh,
+) -> Row {
+    let linear = |velocity: f64| RowMotion::Linear {
+        start: terms.iter().map(|&(dof, coefficient)| coefficient * start.u[dof]).sum(),
+        since: start.time,
+        velocity,
+    };
+    let motion = match motion {
+        Motion::Hold => linear(0.0),
+        Motion::Velocity(velocity) => linear(velocity[component]),
+        Motion::Path(path) => RowMotion::Path(path.clone()),
+        Motion::Spline(spline) => RowMotion::Spline(spline.clone()),
+        Motion::Formula(formula) => RowMotion::Formula(formula.clone()),
+        Motion::Turn(turn) => RowMotion::Turning(Turning::new(turn, terms[0].0, mesh, start)),
+    };
+    Row { terms, motion }
+}
+
+fn check_axes(axes: &[Axis], dimension: usize) -> Result<(), InputError> {
+    match axes.iter().find(|axis| axis.index() >= dimension) {
+        Some(axis) => {
+            let mend = format!("the body has {dimension} dimension(s)");
+            Err(InputError::new("axis of a constraint", format!("{axis:?}"), mend))
+        }
+        None => Ok(()),
+    }
+}
+
+fn check_velocity(motion: &Motion, components: usize) -> Result<(), InputError> {
+    let Motion::Velocity(velocity) = motion else { return Ok(()) };
+    if velocity.len() != components {
+        return Err(InputError::new(
+            "velocity of moved nodes",
+            format!("{velocity:?}"),
+            format!("it needs {components} component(s) (m/s)"),
+        ));
+    }
+    finite("the velocity of moved nodes", velocity)
+}
+
+fn general_terms(
+    terms: &[(usize, Axis, f64)],
+    mesh: &Mesh,
+) -> Result<Vec<(usize, f64)>, InputError> {
+    let dimension = mesh.dimension();
+    let mut resolved: Vec<(usize, f64)> = Vec::new();
+    for &(number, axis, coefficient) in terms {
+        check_axes(&[axis], dimension)?;
+        if !coefficient.is_finite() || coefficient == 0.0 {
+            let mend = "it must be a finite number other than 0";
+            return Err(InputError::new("coefficient of a constraint row", coefficient, mend));
+        }
+        let node = mesh.select(&[number].into())?[0];
+        let dof = node * dimension + axis.index();
+        if resolved.iter().any(|&(other, _)| other == dof) {
+            let mend = "it appears twice in one row; add its coefficients";
+            return Err(InputError::new("node of a constraint row", number, mend));
+        }
+        resolved.push((dof, coefficient));
+    }
+    if resolved.is_empty() {
+        return Err(InputError::new("constraint row", "[]", "it needs one term at least"));
+    }
+    resolved.sort_unstable_by_key(|&(dof, _)| dof);
+    Ok(resolved)
+}
+
+/// The components of the unit vector along `normal` that are not 0, by their axes; the first one is above 0.
+fn direction(normal: &[f64], dimension: usize) -> Result<Vec<(usize, f64)>, InputError> {
+    let input = "normal of a symmetry plane";
+    finite(input, normal)?;
+    let (length, sign) = (norm(normal), normal.iter().find(|n| **n != 0.0).copied());
+    if normal.len() != dimension || !(length > 0.0 && length.is_finite()) {
+        let mend = format!("it needs {dimension} component(s), not all of them 0");
+        return Err(InputError::new(input, format!("{normal:?}"), mend));
+    }
+    let length = sign.map_or(1.0, f64::signum) * length;
+    let unit = normal.iter().map(|n| n / length).enumerate();
+    Ok(unit.filter(|(_, n)| n.abs() > ROUND_OFF).collect())
+}
+
+fn check_path(row: &Row, phase: &str, dimension: usize, t: f64) -> Result<(), InputError> {
+    let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
+    if [displacement, velocity, acceleration].iter().all(|number| number.is_finite()) {
+        return Ok(());
+    }
+    Err(InputError::new(
+        format!("path of {} in phase \"{phase}\"", row.label(dimension)),
+        format!("(b, b', b'') = ({displacement}, {velocity}, {acceleration}) at t = {t} s"),
+        "it must give finite numbers",
+    ))
+}
+
+/// The rows without those that demand what others demand already: where two sets of nodes meet, at the ends of
+/// edges, both may hold them.
+///
+/// # Errors
+/// Demands on the same components that are not known to be the same.
+fn without_repetitions(
+    rows: Vec<Row>,
+    dimension: usize,
+    phase: &str,
+) -> Result<Vec<Row>, InputError> {
+    let contradiction = |row: &Row, first: &str, second: &str| {
+        let input = format!("constraints on {} in phase \"{phase}\"", row.label(dimension));
+        let mend = "they contradict each other: leave one of them out";
+        InputError::new(input, format!("{first}, and {second}"), mend)
+    };
+    // by their degrees of freedom and, of general rows, coefficients
+    let mut known: BTreeMap<Vec<(usize, u64)>, &Row> = BTreeMap::new();
+    let key = |row: &Row| match row.nodal() {
+        Some((dof, _)) => vec![(dof, 0)],
+        None => row.terms.iter().map(|&(dof, x)| (dof, x.to_bits())).collect(),
+    };
+    let mut is_kept = Vec::with_capacity(rows.len());
+    for row in &rows {
+        let first = *known.entry(key(row)).or_insert(row);
+        is_kept.push(ptr::eq(first, row));
+        if !first.motion.is_same(&row.motion) {
+            return Err(contradiction(row, &first.motion.label(), &row.motion.label()));
+        }
+    }
+    for (row, is_kept) in rows.iter().zip(&mut is_kept).filter(|(row, _)| row.nodal().is_none()) {
+        let of_term = |&(dof, x): &(usize, f64)| {
+            let nodal = known.get(&vec![(dof, 0)])?;
+            Some(x * nodal.constant_velocity()? / nodal.nodal()?.1)
+        };
+        let velocities = row.terms.iter().map(of_term).collect::<Option<Vec<f64>>>();
+        let (Some(velocities), Some(own)) = (velocities, row.constant_velocity()) else { continue };
+        let sum: f64 = velocities.iter().sum();
+        if (sum - own).abs() > ROUND_OFF * velocities.iter().map(|v| v.abs()).sum::<f64>() {
+            let first = format!("moved at {sum} m/s in all, one by one");
+            return Err(contradiction(row, &first, &format!("together {}", row.motion.label())));
+        }
+        *is_kept = false;
+    }
+    let kept = rows.iter().zip(is_kept).filter(|(_, is_kept)| *is_kept);
+    Ok(kept.map(|(row, _)| row.clone()).collect())
+}

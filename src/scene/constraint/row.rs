@@ -1,0 +1,144 @@
+//! One row of the constraints.
+
+use std::sync::Arc;
+
+use super::axis::Axis;
+use super::prescribed::{Path, Prescribed};
+use super::spline::Spline;
+use super::turn::Turning;
+use crate::base::formula::Formula;
+
+/// One row of A^T with its b(t), resolved for one phase.
+#[derive(Clone)]
+pub(crate) struct Row {
+    /// Degrees of freedom, ascending, and coefficients; a single one makes a nodal row.
+    pub(crate) terms: Vec<(usize, f64)>,
+    pub(super) motion: RowMotion,
+}
+
+#[derive(Clone)]
+pub(super) enum RowMotion {
+    Linear { start: f64, since: f64, velocity: f64 },
+    Path(Path),
+    Spline(Arc<Spline>),
+    Formula(Arc<Formula>),
+    Turning(Turning),
+}
+
+impl RowMotion {
+    /// Whether it is known to be the same, of two rows with the same terms in one phase.
+    pub(super) fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Linear { velocity, .. }, Self::Linear { velocity: other, .. }) => {
+                velocity == other
+            }
+            (Self::Path(path), Self::Path(other)) => Arc::ptr_eq(path, other),
+            (Self::Spline(spline), Self::Spline(other)) => spline == other,
+            (Self::Formula(formula), Self::Formula(other)) => formula.text() == other.text(),
+            (Self::Turning(turning), Self::Turning(other)) => turning.turn == other.turn,
+            _ => false,
+        }
+    }
+
+    /// What it does, for messages.
+    pub(super) fn label(&self) -> String {
+        match self {
+            Self::Linear { velocity: 0.0, .. } => "held".into(),
+            Self::Linear { velocity, .. } => format!("moved at {velocity} m/s"),
+            Self::Path(_) => "moved along a function of time".into(),
+            Self::Spline(_) => "moved along a path".into(),
+            Self::Formula(formula) => format!("moved by {}", formula.text()),
+            Self::Turning(_) => "turned".into(),
+        }
+    }
+}
+
+impl Row {
+    /// b, b', b'' at time `t`.
+    #[inline]
+    pub(crate) fn prescribed(&self, t: f64) -> Prescribed {
+        match &self.motion {
+            RowMotion::Linear { start, since, velocity } => Prescribed {
+                displacement: start + velocity * (t - since),
+                velocity: *velocity,
+                acceleration: 0.0,
+            },
+            RowMotion::Path(path) => path(t),
+            RowMotion::Spline(spline) => spline.at(t),
+            RowMotion::Formula(formula) => {
+                let [displacement, velocity, acceleration] = formula.at(t).0;
+                Prescribed { displacement, velocity, acceleration }
+            }
+            RowMotion::Turning(turning) => turning.at(t),
+        }
+    }
+
+    /// b', if it never changes.
+    pub(crate) fn constant_velocity(&self) -> Option<f64> {
+        match self.motion {
+            RowMotion::Linear { velocity, .. } => Some(velocity),
+            RowMotion::Path(_)
+            | RowMotion::Spline(_)
+            | RowMotion::Formula(_)
+            | RowMotion::Turning(_) => None,
+        }
+    }
+
+    /// Where the row starts, as far as the state there tells: b (m) and when (s), and for a row that turns the
+    /// arm (m), along b and across.
+    pub(crate) fn origin(&self) -> [f64; 4] {
+        match &self.motion {
+            RowMotion::Linear { start, since, .. } => [*start, *since, 0.0, 0.0],
+            RowMotion::Path(_) | RowMotion::Spline(_) | RowMotion::Formula(_) => [0.0; 4],
+            RowMotion::Turning(turning) => turning.origin(),
+        }
+    }
+
+    /// Lets the row start elsewhere: see [`origin`](Self::origin).
+    pub(crate) fn set_origin(&mut self, origin: [f64; 4]) {
+        match &mut self.motion {
+            RowMotion::Linear { start, since, .. } => [*start, *since, ..] = origin,
+            RowMotion::Path(_) | RowMotion::Spline(_) | RowMotion::Formula(_) => {}
+            RowMotion::Turning(turning) => turning.set_origin(origin),
+        }
+    }
+
+    /// A^T x for this row.
+    pub(crate) fn apply(&self, x: &[f64]) -> f64 {
+        self.terms.iter().map(|&(dof, coefficient)| coefficient * x[dof]).sum()
+    }
+
+    /// The degree of freedom of a nodal row and its coefficient.
+    pub(crate) fn nodal(&self) -> Option<(usize, f64)> {
+        match self.terms[..] {
+            [term] => Some(term),
+            _ => None,
+        }
+    }
+
+    /// The node of a row of a single one, of a body in `dimension` dimensions.
+    pub(crate) fn node(&self, dimension: usize) -> Option<usize> {
+        let mut nodes = self.terms.iter().map(|(dof, _)| dof / dimension);
+        let first = nodes.next();
+        first.filter(|first| nodes.all(|node| node == *first))
+    }
+
+    /// The nodes and axes of the row, nodes counted from 1, for messages.
+    pub(crate) fn label(&self, dimension: usize) -> String {
+        let name = |&(dof, _): &(usize, f64)| {
+            format!("node {} {:?}", dof / dimension + 1, Axis::all(dimension)[dof % dimension])
+                .to_lowercase()
+        };
+        self.terms.iter().map(name).collect::<Vec<_>>().join(" + ")
+    }
+}
+
+/// Puts the nodes that `rows` prescribe where they should be at time `t`: a constraint that is
+/// continued does not take over the error of the stabilization.
+pub(crate) fn prescribe(rows: &[Row], t: f64, u: &mut [f64]) {
+    for row in rows {
+        if let Some((dof, coefficient)) = row.nodal() {
+            u[dof] = row.prescribed(t).displacement / coefficient;
+        }
+    }
+}

@@ -1,0 +1,333 @@
+//! Chambers: pressure within walls of nodes, a closed polygon or a closed surface.
+
+mod enclosure;
+mod sides;
+#[cfg(test)]
+mod tests;
+mod walls;
+
+use enclosure::{Polygon, Surface};
+
+use super::signal::{self, Signal, finite_at};
+use crate::base::input::{InputError, positive};
+use crate::base::sparse::BlockMatrix;
+use crate::elements::body::Body;
+use crate::elements::force::{Force, NodalForces, Tangents};
+use crate::elements::mesh::{Mesh, Selection};
+use crate::integrators::ode::Failure;
+
+/// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart: the force on
+/// its nodes is p h dS/du in the plane, with the area S within its walls and the
+/// thickness h, and p dV/du in space, with the enclosed volume V. Walls with mid nodes are curved as
+/// the shape functions have it. Phases set the pressure
+/// ([`Phase::pressure`](crate::Phase::pressure)); without it a chamber does nothing.
+///
+/// Walls do not feel each other. A run ends with an error where a chamber under pressure encloses a volume below 0; without
+/// pressure, that is a warning.
+#[derive(Debug, Clone)]
+pub struct Chamber {
+    name: String,
+    walls: Walls,
+    is_closed_by_line: bool,
+    is_closed_by_lid: bool,
+    thickness: Option<f64>,
+}
+
+#[derive(Debug, Clone)]
+enum Walls {
+    Nodes(Selection),
+    Triangles(Vec<[usize; 3]>),
+}
+
+impl Chamber {
+    /// A chamber within walls of `nodes`.
+    ///
+    /// A named set or a box stands for part of the boundary of the body: the faces all of whose
+    /// nodes belong to it. The chamber lies on their other side than the body.
+    /// - In the plane they make closed loops, rooms with the same pressure; or one of them is open and
+    ///   [closed by a line](Self::closed_by_line).
+    /// - In space they make closed surfaces.
+    ///
+    /// Numbers in the plane are a closed polygon, given in its order around, either way; it need not
+    /// lie on the boundary. Where they run along edges of cells with mid nodes, these are curved. Pressure enlarges its area; if that is 0 (a flat membrane), the chamber
+    /// is on the other side of the boundary than the body. In space they are as a named set.
+    pub fn within(name: impl Into<String>, nodes: impl Into<Selection>) -> Self {
+        Self::new(name.into(), Walls::Nodes(nodes.into()))
+    }
+
+    /// With other nodes on its walls, as `change` has them; triangles stay.
+    pub(crate) fn with_nodes(
+        mut self,
+        change: impl FnOnce(&Selection) -> Result<Selection, InputError>,
+    ) -> Result<Self, InputError> {
+        if let Walls::Nodes(nodes) = &mut self.walls {
+            *nodes = change(nodes)?;
+        }
+        Ok(self)
+    }
+
+    /// A chamber in space, enclosed by `triangles` of nodes (numbers from 1): a closed surface, all
+    /// triangles counter-clockwise as seen from outside, or all clockwise.
+    pub fn surface(
+        name: impl Into<String>,
+        triangles: impl IntoIterator<Item = [usize; 3]>,
+    ) -> Self {
+        Self::new(name.into(), Walls::Triangles(triangles.into_iter().collect()))
+    }
+
+    fn new(name: String, walls: Walls) -> Self {
+        Self { name, walls, is_closed_by_line: false, is_closed_by_lid: false, thickness: None }
+    }
+
+    /// Walls in the plane that are open at one place are closed there by the straight line between their ends, which
+    /// feel its half of the pressure on it each (ends that are held feel nothing of that). Without this a gap is an
+    /// error.
+    pub fn closed_by_line(mut self) -> Self {
+        self.is_closed_by_line = true;
+        self
+    }
+
+    /// Walls in space that are open are closed by a lid on each of their rims, from the mean of the rim's nodes to its
+    /// edges: flat, if the rim is. The nodes of the rim feel the pressure on it. Without this a rim is an error.
+    pub fn closed_by_lid(mut self) -> Self {
+        self.is_closed_by_lid = true;
+        self
+    }
+
+    /// Thickness h (m) of a chamber in the plane. Default: that of the body.
+    pub fn thickness(mut self, thickness: f64) -> Self {
+        self.thickness = Some(thickness);
+        self
+    }
+
+    /// Name of the chamber.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The force of the chamber in a phase with `pressure` (Pa) in it.
+    ///
+    /// # Errors
+    /// Walls on a line, triangles outside space; nodes that do not exist, make no chain or enclose
+    /// nothing, a gap that no line closes, a surface with holes, a missing thickness.
+    pub(crate) fn force(
+        &self,
+        body: &Body,
+        pressure: Vec<Signal>,
+    ) -> Result<ChamberForce, InputError> {
+        if self.is_closed_by_line && body.dimension() != 2 {
+            let mend = "a line closes walls in the plane only: in space say closed_by_lid, or give a closed surface";
+            return Err(InputError::new(self.input("closed_by_line"), true, mend));
+        }
+        if self.is_closed_by_lid && body.dimension() != 3 {
+            let mend = "a lid closes walls in space only: in the plane say closed_by_line";
+            return Err(InputError::new(self.input("closed_by_lid"), true, mend));
+        }
+        let geometry = match (&self.walls, body.dimension()) {
+            (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
+            (Walls::Nodes(nodes), 3) => {
+                let surface = Surface::new(body.mesh(), self.faces(body.mesh(), nodes)?);
+                // seen from outside the body, and so from inside the chamber
+                let sign = match body.mesh().kind().dimension() {
+                    3 => -1.0,
+                    _ => self.surface_sign(body, &surface)?,
+                };
+                Geometry::Surface(surface, sign)
+            }
+            (Walls::Triangles(triangles), 3) => {
+                let surface = Surface::new(body.mesh(), self.triangles(body.mesh(), triangles)?);
+                let sign = self.surface_sign(body, &surface)?;
+                Geometry::Surface(surface, sign)
+            }
+            (walls, dimension) => {
+                let mend = match walls {
+                    Walls::Nodes(_) => "nodes enclose a chamber in 2 or 3 dimensions only",
+                    Walls::Triangles(_) => "a surface encloses a chamber in 3 dimensions only",
+                };
+                return Err(InputError::new(self.input("in dimension"), dimension, mend));
+            }
+        };
+        let mut force =
+            ChamberForce { name: self.name.clone(), geometry, pressure, has_room: false };
+        let natural = force.volume(&vec![0.0; body.dofs()]);
+        force.has_room = orientation(natural, body) == Some(1.0);
+        Ok(force)
+    }
+
+    /// Closed walls on the boundary of a body that fills its space have the chamber on their other side than the body.
+    pub(crate) fn check_side(&self, mesh: &Mesh, force: &ChamberForce) -> Result<(), InputError> {
+        let Walls::Nodes(nodes @ (Selection::Set(_) | Selection::Box { .. })) = &self.walls else {
+            return Ok(());
+        };
+        let is_closed = !self.is_closed_by_line && !self.is_closed_by_lid;
+        if !is_closed || mesh.kind().dimension() != mesh.dimension() {
+            return Ok(());
+        }
+        match sides::around_the_body(force, mesh) {
+            Some((node, volume)) => Err(InputError::new(
+                self.input("nodes"),
+                format!("{nodes:?}"),
+                format!(
+                    "the walls with node {} run around the body, so that the chamber would be all that is outside of it \
+                     ({volume:.1e} m^3), and pressure in it would shrink the body: name the walls of a room inside; for a \
+                     pressure on the outside, use pressure_on of a phase",
+                    node + 1
+                ),
+            )),
+            None => Ok(()),
+        }
+    }
+
+    fn polygon(&self, body: &Body, selection: &Selection) -> Result<Geometry, InputError> {
+        let mesh = body.mesh();
+        let edges = self.edges(mesh, selection)?;
+        let polygon = Polygon::new(mesh, walls::edge_parts(&edges));
+        let area = polygon.measure(&vec![0.0; body.dofs()]);
+        let by_area = orientation(area, body);
+        let by_boundary = || walls::against_boundary(mesh, &edges);
+        let sign = match selection {
+            // the cells of a string have no sides
+            Selection::Set(_) | Selection::Box { .. } if mesh.kind().dimension() == 2 => {
+                by_boundary()
+            }
+            _ => by_area.or_else(by_boundary),
+        };
+        let sign = sign.ok_or_else(|| self.encloses_nothing("area (m^2)", area))?;
+        let height = self.height(body)?;
+        Ok(Geometry::Polygon(polygon, sign * height))
+    }
+
+    /// 1 or -1, so that pressure enlarges the volume.
+    fn surface_sign(&self, body: &Body, surface: &Surface) -> Result<f64, InputError> {
+        let volume = surface.measure(&vec![0.0; body.dofs()]);
+        orientation(volume, body).ok_or_else(|| self.encloses_nothing("volume (m^3)", volume))
+    }
+
+    fn input(&self, key: &str) -> String {
+        format!("chamber \"{}\" {key}", self.name)
+    }
+
+    fn height(&self, body: &Body) -> Result<f64, InputError> {
+        match (self.thickness, body.mesh().kind().dimension()) {
+            (Some(thickness), _) => positive(&self.input("thickness"), thickness, "m"),
+            (None, 2) => Ok(body.section()),
+            (None, _) => {
+                let mend = "the body has no thickness of its own: give that of the chamber (m)";
+                Err(InputError::new(self.input("thickness"), "(missing)", mend))
+            }
+        }
+    }
+
+    fn encloses_nothing(&self, measure: &str, enclosed: f64) -> InputError {
+        let mend = "its walls enclose nothing: give its nodes in their order around";
+        InputError::new(self.input(measure), format!("{enclosed:.1e}"), mend)
+    }
+}
+
+/// 1 or -1, so that pressure enlarges the area or volume `enclosed`, which is signed; `None` if it
+/// is 0 but for round-off.
+fn orientation(enclosed: f64, body: &Body) -> Option<f64> {
+    let least = 1e-9 * body.mesh().size().powi(body.dimension() as i32);
+    (enclosed.abs() > least).then(|| enclosed.signum())
+}
+
+/// What a volume below 0 means.
+pub(crate) const TURNED: &str = "its walls have passed through each other, which they do not feel. Draw less out of it, make \
+                                 its walls stiffer, or hold them apart by springs between them";
+
+/// The force of one chamber.
+pub(crate) struct ChamberForce {
+    name: String,
+    geometry: Geometry,
+    pressure: Vec<Signal>,
+    /// Whether its walls enclose a volume in the undeformed shape, and are not flat.
+    has_room: bool,
+}
+
+impl ChamberForce {
+    /// The volume that its walls enclose under the displacements `u` (m^3).
+    pub(crate) fn volume(&self, u: &[f64]) -> f64 {
+        match &self.geometry {
+            Geometry::Polygon(polygon, factor) => factor * polygon.measure(u),
+            Geometry::Surface(surface, factor) => factor * surface.measure(u),
+        }
+    }
+
+    /// Whether its walls enclose a volume in the undeformed shape, and are not flat.
+    pub(crate) fn has_room(&self) -> bool {
+        self.has_room
+    }
+
+    /// Adds `factor` times the derivative of that volume by `u` (m^2).
+    pub(crate) fn add_gradient(&self, factor: f64, u: &[f64], gradient: &mut [f64]) {
+        match &self.geometry {
+            Geometry::Polygon(polygon, sign) => polygon.add_gradient(factor * sign, u, gradient),
+            Geometry::Surface(surface, sign) => surface.add_gradient(factor * sign, u, gradient),
+        }
+    }
+}
+
+/// What encloses a chamber, with the factor from p times the gradient of its area or volume to
+/// the force: +-h, or +-1.
+enum Geometry {
+    Polygon(Polygon, f64),
+    Surface(Surface, f64),
+}
+
+impl Force for ChamberForce {
+    fn add_forces(
+        &self,
+        t: f64,
+        u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let pressure = signal::sum(&self.pressure, t);
+        finite_at(t, format_args!("the pressure in chamber \"{}\"", self.name), pressure)?;
+        self.add_gradient(pressure, u, &mut forces.applied);
+        Ok(())
+    }
+
+    /// Pressure in a volume below 0 is none: it would draw walls further through each other that it should push apart.
+    fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
+        let pressure = signal::sum(&self.pressure, t);
+        if pressure == 0.0 {
+            return Ok(());
+        }
+        let volume = self.volume(after);
+        if !self.has_room || volume >= 0.0 {
+            return Ok(());
+        }
+        Err(Failure::Recoverable(format!(
+            "chamber \"{}\" encloses {volume:.1e} m^3 at t = {t} s under {pressure} Pa: {TURNED}",
+            self.name
+        )))
+    }
+
+    fn add_tangents(
+        &self,
+        t: f64,
+        u: &[f64],
+        _v: &[f64],
+        stiffness: &mut BlockMatrix,
+        _damping: &mut BlockMatrix,
+    ) -> Tangents {
+        let pressure = signal::sum(&self.pressure, t);
+        match &self.geometry {
+            Geometry::Polygon(polygon, factor) => {
+                polygon.add_hessian(-factor * pressure, stiffness);
+            }
+            Geometry::Surface(surface, factor) => {
+                surface.add_hessian(-factor * pressure, u, stiffness);
+            }
+        }
+        Tangents::Added
+    }
+
+    fn couplings(&self) -> Vec<[usize; 2]> {
+        match &self.geometry {
+            Geometry::Polygon(polygon, _) => polygon.couplings(),
+            Geometry::Surface(surface, _) => surface.couplings(),
+        }
+    }
+}

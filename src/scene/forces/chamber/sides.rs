@@ -1,0 +1,30 @@
+//! On which side of its walls a chamber lies.
+
+use std::collections::BTreeMap;
+
+use super::ChamberForce;
+use crate::base::sparse::NodePattern;
+use crate::base::vector::dot;
+use crate::elements::force::Force;
+use crate::elements::mesh::Mesh;
+
+/// Of the closed walls, apart from each other, of a chamber with this `force`: the first that run around the body and not
+/// around a room in it, by one of their nodes, and what they enclose, a volume (m^3) below 0.
+pub(super) fn around_the_body(force: &ChamberForce, mesh: &Mesh) -> Option<(usize, f64)> {
+    let d = mesh.dimension();
+    let mut gradient = vec![0.0; mesh.positions().len()];
+    force.add_gradient(1.0, &vec![0.0; mesh.positions().len()], &mut gradient);
+    let walls = force.couplings();
+    let pieces = NodePattern::new(mesh.node_count(), walls.iter().map(|pair| &pair[..])).pieces();
+    let mut nodes: Vec<usize> = walls.into_iter().flatten().collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let mut volumes: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
+    for node in nodes {
+        // volumes are homogeneous of degree d in positions: Euler's theorem gives them by their gradients
+        let part = dot(mesh.position(node), &gradient[node * d..][..d]) / d as f64;
+        volumes.entry(pieces[node]).or_insert((node, 0.0)).1 += part;
+    }
+    let whole: f64 = volumes.values().map(|(_, volume)| volume.abs()).sum();
+    volumes.into_values().find(|(_, volume)| *volume < -1e-9 * whole)
+}

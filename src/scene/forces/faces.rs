@@ -1,0 +1,212 @@
+//! Faces of the boundary between some nodes, which loads are spread over by the shape functions.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::surface::{pieces, section};
+use crate::base::tensor::determinant;
+use crate::base::vector::{cross, norm};
+use crate::elements::basis::{
+    Quadrilateral, Quadrilateral8, ReferenceCell, Segment, Segment3, Triangle, Triangle6,
+};
+use crate::elements::body::Body;
+use crate::elements::mesh::{Face, FaceKind, Mesh};
+
+/// Nodes of a face at most.
+pub(super) const MOST_NODES: usize = 8;
+
+/// A quadrature point of a reference face; what a face has not is 0.
+pub(super) struct FacePoint {
+    /// The shape functions N_a.
+    pub(super) values: [f64; MOST_NODES],
+    /// Their derivatives by the reference coordinates.
+    pub(super) derivatives: [[f64; 2]; MOST_NODES],
+    pub(super) weight: f64,
+}
+
+/// The quadrature points of all faces of a kind. They integrate the normal times a shape function exactly.
+pub(super) fn face_points(kind: FaceKind) -> Vec<FacePoint> {
+    match kind {
+        FaceKind::Point => {
+            let values = std::array::from_fn(|a| if a == 0 { 1.0 } else { 0.0 });
+            vec![FacePoint { values, derivatives: [[0.0; 2]; MOST_NODES], weight: 1.0 }]
+        }
+        FaceKind::Segment => points_of::<Segment, 2, 1>(),
+        FaceKind::Segment3 => points_of::<Segment3, 3, 1>(),
+        FaceKind::Triangle => points_of::<Triangle, 3, 2>(),
+        FaceKind::Triangle6 => points_of::<Triangle6, 6, 2>(),
+        FaceKind::Quadrilateral => points_of::<Quadrilateral, 4, 2>(),
+        FaceKind::Quadrilateral8 => points_of::<Quadrilateral8, 8, 2>(),
+    }
+}
+
+fn points_of<C: ReferenceCell<N, M>, const N: usize, const M: usize>() -> Vec<FacePoint> {
+    let point = |&(xi, weight): &([f64; M], f64)| {
+        let (mut values, mut derivatives) = ([0.0; MOST_NODES], [[0.0; 2]; MOST_NODES]);
+        values[..N].copy_from_slice(&C::values(xi));
+        for (to, from) in derivatives.iter_mut().zip(C::derivatives(xi)) {
+            to[..M].copy_from_slice(&from);
+        }
+        FacePoint { values, derivatives, weight }
+    };
+    C::MASS_RULE.iter().map(point).collect()
+}
+
+impl FacePoint {
+    /// Derivatives of the position by the reference coordinates, for a face with its nodes at `x`.
+    pub(super) fn tangents(&self, x: &[[f64; 3]]) -> [[f64; 3]; 2] {
+        let mut tangents = [[0.0; 3]; 2];
+        for (x, derivatives) in x.iter().zip(&self.derivatives) {
+            for (tangent, derivative) in tangents.iter_mut().zip(derivatives) {
+                tangent.iter_mut().zip(x).for_each(|(sum, x)| *sum += derivative * x);
+            }
+        }
+        tangents
+    }
+}
+
+/// What a face of `N` corners takes part in the area or volume within walls by: (1/N!) sum w det(x_a, ...) over sets of
+/// `N` of its nodes, local numbers, with the weight w of each. They are straight pieces of a face without mid nodes; with
+/// them, w = (N - 1)! int det(N_a, N_a,1, ...), for determinants of positions are linear in each of them and change sign
+/// with every exchange.
+pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f64)> {
+    let count: usize = match kind {
+        FaceKind::Segment3 => 3,
+        FaceKind::Triangle6 => 6,
+        FaceKind::Quadrilateral8 => 8,
+        _ => {
+            let parts = pieces(kind);
+            return parts.map(|(part, w)| (std::array::from_fn(|k| part[k]), w)).collect();
+        }
+    };
+    let points = face_points(kind);
+    let weight = |nodes: &[usize; N]| -> f64 {
+        let at = |point: &FacePoint| {
+            let row = |a: usize, k: usize| match k {
+                0 => point.values[a],
+                _ => point.derivatives[a][k - 1],
+            };
+            point.weight * determinant(&nodes.map(|a| std::array::from_fn(|k| row(a, k))))
+        };
+        points.iter().map(at).sum::<f64>() * (N - 1) as f64
+    };
+    let ascending = |nodes: &[usize; N]| nodes.windows(2).all(|pair| pair[0] < pair[1]);
+    let all = (0..count.pow(N as u32))
+        .map(|number| std::array::from_fn(|k| number / count.pow(k as u32) % count));
+    let weighed = all.filter(ascending).map(|nodes| (nodes, weight(&nodes)));
+    weighed.filter(|(_, w)| w.abs() > NO_PART).collect()
+}
+
+/// Weights of parts, of the order of 1, below which they are round-off of 0.
+const NO_PART: f64 = 1e-12;
+
+/// Natural position of a node; components beyond the dimension are 0.
+pub(super) fn natural(mesh: &Mesh, node: usize) -> [f64; 3] {
+    let x = mesh.position(node);
+    std::array::from_fn(|i| x.get(i).copied().unwrap_or(0.0))
+}
+
+/// Those of `faces` all of whose nodes are among `nodes`.
+///
+/// # Errors
+/// The nodes that are on none of these faces.
+pub(super) fn between<F: AsRef<[usize]>>(
+    mut faces: Vec<F>,
+    nodes: &BTreeSet<usize>,
+) -> Result<Vec<F>, Vec<usize>> {
+    faces.retain(|face| face.as_ref().iter().all(|node| nodes.contains(node)));
+    let touched: BTreeSet<usize> = faces.iter().flat_map(|face| face.as_ref()).copied().collect();
+    let loose: Vec<usize> = nodes.difference(&touched).copied().collect();
+    if loose.is_empty() { Ok(faces) } else { Err(loose) }
+}
+
+/// Some node numbers in words.
+pub(super) fn list(nodes: &[usize]) -> String {
+    let numbers: Vec<String> = nodes.iter().take(8).map(|node| (node + 1).to_string()).collect();
+    let more =
+        if nodes.len() > 8 { format!(" and {} more", nodes.len() - 8) } else { String::new() };
+    format!("node(s) {}{more}", numbers.join(", "))
+}
+
+/// Faces that a load acts on.
+pub(super) struct Loaded {
+    pub(super) faces: Vec<Face>,
+    pub(super) kind: FaceKind,
+    /// What their lengths are to be multiplied by for areas (m^2); none of a string along its length.
+    pub(super) section: Option<f64>,
+}
+
+impl Loaded {
+    /// The faces of the boundary between `nodes`; of a body thinner than space its cells or, where they are none
+    /// of them, the faces of its cells on its rim.
+    ///
+    /// # Errors
+    /// The nodes that are on none.
+    pub(super) fn between(body: &Body, nodes: &[usize]) -> Result<Self, Vec<usize>> {
+        let (mesh, nodes) = (body.mesh(), nodes.iter().copied().collect());
+        let skin = between(mesh.boundary_faces(), &nodes);
+        let skin = skin.map(|faces| Self { faces, kind: mesh.face_kind(), section: section(body) });
+        if mesh.dimension() == mesh.kind().dimension() {
+            return skin;
+        }
+        let (kind, section) = (mesh.kind().face(), Some(body.section()));
+        skin.or_else(|loose| {
+            let rim = between(mesh.outer_faces(), &nodes);
+            rim.map(|faces| Self { faces, kind, section }).map_err(|_| loose)
+        })
+    }
+
+    /// The integral of the shape function of each node in the undeformed shape: the length (m) or area (m^2) that the
+    /// node stands for, 1 for a point.
+    fn integrals(&self, mesh: &Mesh) -> BTreeMap<usize, f64> {
+        let points = face_points(self.kind);
+        let mut integrals = BTreeMap::new();
+        for face in &self.faces {
+            let x: Vec<[f64; 3]> = face.iter().map(|&node| natural(mesh, node)).collect();
+            for point in &points {
+                let [along, across] = point.tangents(&x);
+                let measure = match self.kind.dimension() {
+                    0 => 1.0,
+                    1 => norm(&along),
+                    _ => norm(&cross(&along, &across)),
+                };
+                for (&node, value) in face.iter().zip(point.values) {
+                    *integrals.entry(node).or_default() += point.weight * value * measure;
+                }
+            }
+        }
+        integrals
+    }
+}
+
+/// The parts of each of `nodes` in a force on all of them together, which add up to 1: as the shape functions of
+/// the faces between them have it, or equal ones where they make up no whole faces.
+pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
+    let Ok(loaded) = Loaded::between(body, nodes) else {
+        return vec![1.0 / nodes.len() as f64; nodes.len()];
+    };
+    let integrals = loaded.integrals(body.mesh());
+    let whole: f64 = integrals.values().sum();
+    nodes.iter().map(|node| integrals[node] / whole).collect()
+}
+
+/// The undeformed area (m^2) of the boundary that each of `nodes` stands for.
+///
+/// # Errors
+/// What is wrong with them: nodes on no whole face, a body without a surface.
+pub(crate) fn areas(body: &Body, nodes: &[usize]) -> Result<Vec<f64>, String> {
+    let loaded = Loaded::between(body, nodes).map_err(|loose| on_no_face(&loose))?;
+    let Some(section) = loaded.section else {
+        return Err("a string has no surface but its ends: give the force on each node".into());
+    };
+    let integrals = loaded.integrals(body.mesh());
+    Ok(nodes.iter().map(|node| section * integrals[node]).collect())
+}
+
+/// What is said of nodes that are on no face.
+pub(super) fn on_no_face(loose: &[usize]) -> String {
+    format!(
+        "it acts on faces of the boundary with all their nodes given, and {} are on none: name a whole side, or \
+         give forces on nodes",
+        list(loose)
+    )
+}

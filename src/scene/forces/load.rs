@@ -1,0 +1,75 @@
+//! Loads: given forces on nodes.
+
+use super::signal::{VectorSignal, finite_at};
+use crate::elements::force::{Force, NodalForces};
+use crate::integrators::ode::Failure;
+
+/// Constant forces on some degrees of freedom.
+pub(crate) struct Load {
+    /// (degree of freedom, force in N)
+    pub(crate) forces: Vec<(usize, f64)>,
+}
+
+impl Force for Load {
+    fn add_forces(
+        &self,
+        _t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        for &(dof, force) in &self.forces {
+            forces.applied[dof] += force;
+        }
+        Ok(())
+    }
+
+    fn is_nonlinear(&self) -> bool {
+        false
+    }
+}
+
+impl VectorSignal {
+    /// Its components, `dimension` of them, at time `t`.
+    pub(crate) fn components(&self, t: f64, dimension: usize) -> Vec<f64> {
+        let mut components = vec![0.0; dimension];
+        self.at(t, &mut components);
+        components
+    }
+}
+
+/// A force which changes with time, on some nodes.
+pub(crate) struct VaryingLoad {
+    /// Nodes, counted from 0, and how many times the force each of them gets.
+    pub(crate) nodes: Vec<(usize, f64)>,
+    /// Force (N), or force per area (N/m^2) if nodes get areas of it.
+    pub(crate) force: VectorSignal,
+    /// Components of the force.
+    pub(crate) dimension: usize,
+}
+
+impl Force for VaryingLoad {
+    fn add_forces(
+        &self,
+        t: f64,
+        _u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let mut buffer = [0.0; 3];
+        let force = &mut buffer[..self.dimension];
+        self.force.at(t, force);
+        for (i, &component) in force.iter().enumerate() {
+            let what = format_args!("component {} of a load", i + 1);
+            finite_at(t, what, component)?;
+            for (node, times) in &self.nodes {
+                forces.applied[node * self.dimension + i] += times * component;
+            }
+        }
+        Ok(())
+    }
+
+    fn is_nonlinear(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,424 @@
+//! Obstacles: a shape, how it moves, and the law of its force.
+
+use std::sync::Arc;
+
+use super::friction::Coulomb;
+use super::shape::{Nearest, Shape};
+use super::travel::{Cubics, Travel, Waypoints};
+#[cfg(feature = "scene-file")]
+use crate::base::formula::Formula;
+use crate::base::input::{InputError, not_negative, positive};
+use crate::scene::constraint::Spline;
+
+/// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force on each
+/// boundary node of a body with d <= 0 (or point of a face, see
+/// [`stiffness_density`](Self::stiffness_density)):
+///
+/// f = N n - B_t s - mu(|s|) N s/|s|,   N = -K_p d - B_p d'
+///
+/// with the gradient n of d, the velocity w of the obstacle, d' = n . (x' - w), and the sliding
+/// velocity s = (I - n n^T) (x' - w). Coulomb's friction, the last term, acts where N presses (is above 0).
+/// Point masses belong to no boundary and pass through obstacles.
+///
+/// # Friction
+///
+/// [`friction_coefficients`](Self::friction_coefficients) mu_s (static) and mu_k (kinetic) make
+///
+/// ```text
+/// mu(w) = mu_s (3 w/v0 - (w/v0)^3)/2                  up to v0, the sticking speed
+///         mu_s - (mu_s - mu_k) (3 y^2 - 2 y^3)        up to 3 v0, with y = (w/v0 - 1)/2
+///         mu_k                                        from there on
+/// ```
+///
+/// a force that is smooth in the speed, in place of one that jumps at rest: what sticks creeps, slower than
+/// v0. On a slope of angle a, for tan(a) below mu_s, a block creeps at
+///
+/// ```text
+/// w = 2 v0 sin(asin(tan(a)/mu_s)/3),
+/// ```
+///
+/// some 2/3 v0 tan(a)/mu_s; on a steeper one it slides with the acceleration g (sin(a) - mu_k cos(a)).
+/// Where contact events are located ([`Settings::contact_events`](crate::Settings::contact_events)), so are the
+/// moments at which points pass v0, and the report says when the body slips and sticks
+/// ([`PhaseReport::slips`](crate::PhaseReport::slips)). What the force takes is heat, counted relative to the
+/// obstacle. In statics ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing slides, and there is no
+/// friction.
+///
+/// Near rest friction is a damper of 3 mu_s N/(2 v0). Implicit methods do not mind it, but speeds are as good
+/// as their tolerances, so `atol_velocity` stays well below v0 if it is not given. Explicit
+/// steps are bounded by it (central differences: on a node of mass m to 2 m v0/(3 mu_s N)): give them a
+/// larger [`sticking_speed`](Self::sticking_speed).
+#[derive(Debug, Clone)]
+pub struct Obstacle {
+    name: String,
+    shape: Shape,
+    stiffness: Stiffness,
+    damping: f64,
+    tangential_damping: f64,
+    /// mu_s and mu_k
+    friction: Option<[f64; 2]>,
+    sticking_speed: Option<f64>,
+    adhesion: bool,
+    travel: Travel,
+    /// How far it is from where its travel alone would have brought it (m).
+    offset: [f64; 3],
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Stiffness {
+    PerNode(f64),
+    Density(f64),
+}
+
+/// The numbers of the law, for one point.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Law {
+    /// K_p (N/m)
+    pub(super) stiffness: f64,
+    /// B_p (N s/m)
+    pub(super) damping: f64,
+    /// B_t (N s/m)
+    pub(super) tangential_damping: f64,
+}
+
+impl Law {
+    /// K_p d + B_p d': the normal force (N), above 0 where it pulls.
+    pub(super) fn pull(&self, distance: f64, rate: f64) -> f64 {
+        self.stiffness * distance + self.damping * rate
+    }
+}
+
+impl Obstacle {
+    /// An obstacle of any shape.
+    pub fn new(shape: Shape) -> Self {
+        Self {
+            name: "floor".into(),
+            shape,
+            stiffness: Stiffness::PerNode(0.0),
+            damping: 0.0,
+            tangential_damping: 0.0,
+            friction: None,
+            sticking_speed: None,
+            adhesion: false,
+            travel: Travel::Uniform(Vec::new()),
+            offset: [0.0; 3],
+        }
+    }
+
+    /// With `share` of its stiffness and damping at each node, where they are given per node: as many more nodes share
+    /// them.
+    pub(crate) fn shared_out(mut self, share: f64) -> Self {
+        if let Stiffness::PerNode(stiffness) = &mut self.stiffness {
+            *stiffness *= share;
+            self.damping *= share;
+            self.tangential_damping *= share;
+        }
+        self
+    }
+
+    /// As [`Shape::half_plane`].
+    pub fn half_plane(point: impl Into<Vec<f64>>, normal: impl Into<Vec<f64>>) -> Self {
+        Self::new(Shape::half_plane(point, normal))
+    }
+
+    /// As [`Shape::disc`].
+    pub fn disc(centre: impl Into<Vec<f64>>, radius: f64) -> Self {
+        Self::new(Shape::disc(centre, radius))
+    }
+
+    /// As [`Shape::cavity`].
+    pub fn cavity(centre: impl Into<Vec<f64>>, radius: f64) -> Self {
+        Self::new(Shape::cavity(centre, radius))
+    }
+
+    /// As [`Shape::box_between`].
+    pub fn box_between(min: impl Into<Vec<f64>>, max: impl Into<Vec<f64>>) -> Self {
+        Self::new(Shape::box_between(min, max))
+    }
+
+    /// As [`Shape::capsule`].
+    pub fn capsule(from: impl Into<Vec<f64>>, to: impl Into<Vec<f64>>, radius: f64) -> Self {
+        Self::new(Shape::capsule(from, to, radius))
+    }
+
+    /// As [`Shape::union`].
+    pub fn union(parts: impl IntoIterator<Item = Shape>) -> Self {
+        Self::new(Shape::union(parts))
+    }
+
+    /// As [`Shape::custom`].
+    pub fn custom(distance: impl Fn(&[f64], &mut [f64]) -> f64 + Send + Sync + 'static) -> Self {
+        Self::new(Shape::custom(distance))
+    }
+
+    /// Name of the obstacle (default: "floor").
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// Contact stiffness K_p (N/m per node), above 0. A finer mesh has more nodes in contact:
+    /// scale it by the node count to keep the floor alike, or give a
+    /// [`stiffness_density`](Self::stiffness_density).
+    pub fn stiffness(mut self, stiffness: f64) -> Self {
+        self.stiffness = Stiffness::PerNode(stiffness);
+        self
+    }
+
+    /// Contact stiffness per area of the boundary of the body (N/m^3), above 0: pressure over
+    /// depth, the same for all meshes. Damping, tangential too, is per area then (N s/m^3). The
+    /// area is that of the faces in the undeformed shape: edge length times thickness in the plane,
+    /// the cross section in one dimension.
+    ///
+    /// Contact is felt at Gauss points of the faces instead of at the nodes: a corner that goes
+    /// ahead is felt once the points next to it, a fifth of an edge away, are inside.
+    pub fn stiffness_density(mut self, stiffness: f64) -> Self {
+        self.stiffness = Stiffness::Density(stiffness);
+        self
+    }
+
+    /// Contact damping B_p (N s/m per node; default 0).
+    pub fn damping(mut self, damping: f64) -> Self {
+        self.damping = damping;
+        self
+    }
+
+    /// Tangential damping B_t (N s/m per node; default 0): a force in proportion to the sliding speed,
+    /// whatever the normal force. A block on a slope never comes to rest by it.
+    pub fn tangential_damping(mut self, damping: f64) -> Self {
+        self.tangential_damping = damping;
+        self
+    }
+
+    /// Coefficient mu of Coulomb's friction, static and kinetic, 0 or above (default: no friction). It
+    /// multiplies the normal force where that acts, so it is the same for all meshes.
+    pub fn friction_coefficient(self, coefficient: f64) -> Self {
+        self.friction_coefficients(coefficient, coefficient)
+    }
+
+    /// Coefficients of Coulomb's friction: `at_rest` (mu_s, static) while it sticks, `sliding` (mu_k,
+    /// kinetic), not above it, once it slides. See [Friction](Self#friction).
+    pub fn friction_coefficients(mut self, at_rest: f64, sliding: f64) -> Self {
+        self.friction = Some([at_rest, sliding]);
+        self
+    }
+
+    /// The sliding speed v0 (m/s) below which friction sticks, above 0; with
+    /// [friction coefficients](Self::friction_coefficients) only. Default: a thousandth of the size of the
+    /// body per second, little against motions that one looks at, as what sticks may creep so fast.
+    pub fn sticking_speed(mut self, speed: f64) -> Self {
+        self.sticking_speed = Some(speed);
+        self
+    }
+
+    /// Whether damping may pull a node back while it separates (default: no). Hirai's law is `true`.
+    /// With `false` the normal force is never negative.
+    pub fn adhesion(mut self, adhesion: bool) -> Self {
+        self.adhesion = adhesion;
+        self
+    }
+
+    /// Constant velocity w of the obstacle (m/s), which is where it was said to be at t = 0.
+    /// Default: at rest. The power f . w that keeps it moving is supplied to the body.
+    pub fn velocity(mut self, velocity: impl Into<Vec<f64>>) -> Self {
+        self.travel = Travel::Uniform(velocity.into());
+        self
+    }
+
+    /// A smooth path instead: at the `times` (s, ascending, two at least) the obstacle has the `displacements`
+    /// (m, one component per dimension) from where it was said to be. It may stop and come back.
+    ///
+    /// The path is a cubic spline, as that of [`Phase::path`](crate::Phase::path): it starts and ends with
+    /// velocity 0, and the obstacle rests before the first time and after the last.
+    pub fn path(
+        mut self,
+        times: impl Into<Vec<f64>>,
+        displacements: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Self {
+        let displacements = displacements.into_iter().map(Into::into).collect();
+        self.travel = Travel::Path(Arc::new(Waypoints::new(&times.into(), displacements)));
+        self
+    }
+
+    /// A path by smooth formulas of time instead, one per component: the displacement (m) from where the obstacle
+    /// was said to be.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn follow_formulas(mut self, formulas: Vec<Formula>) -> Self {
+        self.travel = Travel::Formulas(formulas.into());
+        self
+    }
+
+    /// Name of the obstacle.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The obstacle with a normal of length 1, if all its numbers make sense.
+    pub(crate) fn validated(&self, dimension: usize) -> Result<Self, InputError> {
+        let input = |key: &str| format!("obstacle \"{}\" {key}", self.name);
+        let shape = self.shape.validated(dimension, &input)?;
+        let (rate, area) = match self.stiffness {
+            Stiffness::PerNode(stiffness) => {
+                positive(&input("stiffness"), stiffness, "N/m per node")?;
+                ("N s/m per node", "")
+            }
+            Stiffness::Density(stiffness) => {
+                positive(&input("stiffness_density"), stiffness, "N/m^3")?;
+                ("N s/m^3", " per area")
+            }
+        };
+        not_negative(&input(&format!("damping{area}")), self.damping, rate)?;
+        let tangential = input(&format!("tangential_damping{area}"));
+        not_negative(&tangential, self.tangential_damping, rate)?;
+        self.validate_friction(&input)?;
+        self.travel.validate(dimension, &input)?;
+        Ok(Self { shape, ..self.clone() })
+    }
+
+    fn validate_friction(&self, input: &impl Fn(&str) -> String) -> Result<(), InputError> {
+        if let Some([at_rest, sliding]) = self.friction {
+            not_negative(&input("friction_coefficient"), at_rest, "")?;
+            not_negative(&input("friction_coefficient"), sliding, "")?;
+            if sliding > at_rest {
+                let value = format!("{at_rest} at rest, {sliding} sliding");
+                let mend = "the kinetic coefficient must not be above the static one";
+                return Err(InputError::new(input("friction_coefficient"), value, mend));
+            }
+        }
+        let Some(speed) = self.sticking_speed else { return Ok(()) };
+        positive(&input("sticking_speed"), speed, "m/s")?;
+        match self.friction {
+            Some(_) => Ok(()),
+            None => {
+                let mend = "it belongs to friction: give a friction coefficient, too";
+                Err(InputError::new(input("sticking_speed"), speed, mend))
+            }
+        }
+    }
+
+    pub(crate) fn shape(&self) -> &Shape {
+        &self.shape
+    }
+
+    /// The same obstacle, but with this [`displacement`](Self::displacement) (m) at time `t` (s).
+    pub(crate) fn placed(mut self, t: f64, displacement: [f64; 3]) -> Self {
+        let travelled = self.travel.displacement(t);
+        self.offset = std::array::from_fn(|i| displacement[i] - travelled[i]);
+        self
+    }
+
+    /// Where it is at time `t` (s), from where it was said to be (m); 0 beyond the dimension.
+    pub(crate) fn displacement(&self, t: f64) -> [f64; 3] {
+        let travelled = self.travel.displacement(t);
+        std::array::from_fn(|i| self.offset[i] + travelled[i])
+    }
+
+    /// w at time `t` (s); 0 beyond the dimension.
+    pub(crate) fn velocity_at(&self, t: f64) -> [f64; 3] {
+        self.travel.velocity(t)
+    }
+
+    /// A bound on its speed (m/s) at all times, 0 if it rests; there is none if it follows formulas.
+    pub(super) fn fastest(&self) -> Option<f64> {
+        self.travel.fastest()
+    }
+
+    /// Cubics that it moves along between two times (s), up to `tolerance` (m), and how fast.
+    pub(crate) fn cubics(&self, times: [f64; 2], tolerance: f64) -> Cubics {
+        self.travel.cubics(times, tolerance)
+    }
+
+    /// Its velocity (m/s) if that is constant; 0 beyond the dimension.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn constant_velocity(&self) -> Option<[f64; 3]> {
+        self.travel.is_uniform().then(|| self.velocity_at(0.0))
+    }
+
+    /// Times (s) between which its path is a cubic, up to a time `end` and to `tolerance` (m); none if its
+    /// velocity is constant.
+    #[cfg(feature = "output")]
+    pub(crate) fn knots(&self, end: f64, tolerance: f64) -> Vec<f64> {
+        match self.travel {
+            Travel::Uniform(_) => Vec::new(),
+            Travel::Path(_) => self.breaks().into(),
+            Travel::Formulas(_) => {
+                let Cubics { parts, .. } = self.cubics([0.0, end], tolerance);
+                (0..=parts).map(|k| k as f64 / parts as f64 * end).collect()
+            }
+        }
+    }
+
+    /// How far its velocity or path alone have brought it by time `t` (m).
+    #[cfg(feature = "output")]
+    pub(crate) fn travelled(&self, t: f64) -> [f64; 3] {
+        self.travel.displacement(t)
+    }
+
+    /// How far it is from where its velocity or path alone would have brought it (m).
+    #[cfg(any(feature = "checkpoint", feature = "output"))]
+    pub(crate) fn offset(&self) -> [f64; 3] {
+        self.offset
+    }
+
+    /// Times (s) between which it moves by one law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        self.travel.splines().first().map_or(&[], Spline::times)
+    }
+
+    /// The same obstacle with this [`offset`](Self::offset).
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn with_offset(mut self, offset: [f64; 3]) -> Self {
+        self.offset = offset;
+        self
+    }
+
+    /// Whether what slides on it is held back in proportion to its speed.
+    pub(crate) fn has_tangential_damping(&self) -> bool {
+        self.tangential_damping > 0.0
+    }
+
+    /// With nothing that holds back what slides on it.
+    pub(crate) fn without_friction(self) -> Self {
+        Self { friction: None, sticking_speed: None, tangential_damping: 0.0, ..self }
+    }
+
+    /// Whether what slides on it is held back by Coulomb's friction.
+    pub(crate) fn has_friction(&self) -> bool {
+        self.friction.is_some_and(|[at_rest, _]| at_rest > 0.0)
+    }
+
+    /// The sliding speed (m/s) below which a body of `size` (m) sticks to it; `None` without friction.
+    pub(crate) fn sticks_below(&self, size: f64) -> Option<f64> {
+        self.coulomb(size).filter(|_| self.has_friction()).map(|coulomb| coulomb.sticking_speed)
+    }
+
+    pub(super) fn is_per_area(&self) -> bool {
+        matches!(self.stiffness, Stiffness::Density(_))
+    }
+
+    /// Whether normal forces may pull.
+    pub(super) fn has_adhesion(&self) -> bool {
+        self.adhesion
+    }
+
+    /// The law for a point that stands for `area` (m^2; 1 for a node).
+    pub(super) fn law(&self, area: f64) -> Law {
+        let (Stiffness::PerNode(stiffness) | Stiffness::Density(stiffness)) = self.stiffness;
+        Law {
+            stiffness: area * stiffness,
+            damping: area * self.damping,
+            tangential_damping: area * self.tangential_damping,
+        }
+    }
+
+    /// Its friction with a body of `size` (m).
+    pub(super) fn coulomb(&self, size: f64) -> Option<Coulomb> {
+        self.friction.map(|coefficients| Coulomb::new(coefficients, self.sticking_speed, size))
+    }
+
+    /// d and its derivatives, with this [`displacement`](Self::displacement).
+    pub(super) fn nearest(&self, moved: &[f64; 3], mut x: [f64; 3], dimension: usize) -> Nearest {
+        x.iter_mut().zip(moved).for_each(|(x, moved)| *x -= moved);
+        self.shape.nearest(&x[..dimension])
+    }
+}

@@ -1,0 +1,129 @@
+//! Pressure on faces of the boundary: a force along the normal of the deformed face.
+
+use super::faces::{FacePoint, Loaded, MOST_NODES, face_points, natural, on_no_face};
+use super::signal::{Signal, finite_at};
+use crate::base::input::InputError;
+use crate::base::sparse::BlockMatrix;
+use crate::base::vector::cross;
+use crate::elements::body::Body;
+use crate::elements::force::{Force, NodalForces, Tangents};
+use crate::elements::mesh::Selection;
+use crate::integrators::ode::Failure;
+
+/// Pressure p on faces: f_a = -sum w p N_a n over their quadrature points, with n = x,1 x x,2, the outward normal of
+/// the deformed face times its area per reference area. In the plane the thickness along z stands for x,2.
+///
+/// Hibbitt, *Some follower forces and load stiffness*, Int. J. Numer. Meth. Engng. 14 (1979).
+pub(crate) struct FacePressure {
+    dimension: usize,
+    faces: Vec<PressedFace>,
+    points: Vec<FacePoint>,
+    /// x,2 in the plane.
+    across: Option<[f64; 3]>,
+    pressure: Signal,
+}
+
+struct PressedFace {
+    nodes: Vec<usize>,
+    /// Their undeformed positions; components beyond the dimension are 0.
+    natural: Vec<[f64; 3]>,
+}
+
+impl FacePressure {
+    /// `pressure` (Pa) on the faces between the nodes that `selection` names.
+    ///
+    /// # Errors
+    /// Nodes that are on no whole face; faces without a normal.
+    pub(crate) fn new(
+        body: &Body,
+        selection: &Selection,
+        pressure: Signal,
+    ) -> Result<Self, InputError> {
+        let mesh = body.mesh();
+        let bad = |problem: String| InputError::new("pressure nodes", selection, problem);
+        pressure.validate("pressure")?;
+        let nodes = mesh.select(selection)?;
+        let loaded = Loaded::between(body, &nodes).map_err(|loose| bad(on_no_face(&loose)))?;
+        let across = match (mesh.dimension(), loaded.kind.dimension(), loaded.section) {
+            (2, 1, Some(thickness)) => Some([0.0, 0.0, thickness]),
+            (3, 2, _) => None,
+            _ => {
+                let mend = "there is no face with a normal between them: give a traction or forces";
+                return Err(bad(mend.into()));
+            }
+        };
+        let faces = loaded.faces.into_iter().map(|nodes| {
+            let natural = nodes.iter().map(|&node| natural(mesh, node)).collect();
+            PressedFace { nodes, natural }
+        });
+        let (dimension, points) = (mesh.dimension(), face_points(loaded.kind));
+        Ok(Self { dimension, faces: faces.collect(), points, across, pressure })
+    }
+
+    /// Each quadrature point with its face and the derivatives x,1 and x,2 of the deformed face.
+    fn each_point(&self, u: &[f64], mut see: impl FnMut(&[usize], &FacePoint, [[f64; 3]; 2])) {
+        for PressedFace { nodes, natural } in &self.faces {
+            let mut x = [[0.0; 3]; MOST_NODES];
+            for ((x, natural), node) in x.iter_mut().zip(natural).zip(nodes) {
+                *x = *natural;
+                let moved = &u[node * self.dimension..][..self.dimension];
+                x.iter_mut().zip(moved).for_each(|(x, u)| *x += u);
+            }
+            for point in &self.points {
+                let [first, second] = point.tangents(&x[..nodes.len()]);
+                see(nodes, point, [first, self.across.unwrap_or(second)]);
+            }
+        }
+    }
+}
+
+impl Force for FacePressure {
+    fn add_forces(
+        &self,
+        t: f64,
+        u: &[f64],
+        _v: &[f64],
+        forces: &mut NodalForces,
+    ) -> Result<(), Failure> {
+        let pressure = finite_at(t, format_args!("the pressure on faces"), self.pressure.at(t))?;
+        let (d, applied) = (self.dimension, &mut forces.applied[..]);
+        self.each_point(u, |nodes, point, [first, second]| {
+            let normal = cross(&first, &second);
+            for (node, value) in nodes.iter().zip(point.values) {
+                let factor = pressure * point.weight * value;
+                for (f, n) in applied[node * d..][..d].iter_mut().zip(normal) {
+                    *f -= factor * n;
+                }
+            }
+        });
+        Ok(())
+    }
+
+    /// -df_a/du_b = sum w p N_a (N_b,2 [x,1 x] - N_b,1 [x,2 x]), where [c x] is the matrix of the product c x. It is
+    /// not symmetric by itself; over a closed surface, or one whose rim is held, the sum is.
+    fn add_tangents(
+        &self,
+        t: f64,
+        u: &[f64],
+        _v: &[f64],
+        stiffness: &mut BlockMatrix,
+        _damping: &mut BlockMatrix,
+    ) -> Tangents {
+        let (d, pressure) = (self.dimension, self.pressure.at(t));
+        self.each_point(u, |nodes, point, [first, second]| {
+            for (column, [by_first, by_second]) in nodes.iter().zip(point.derivatives) {
+                let c: [f64; 3] =
+                    std::array::from_fn(|i| by_second * first[i] - by_first * second[i]);
+                let times = [[0.0, -c[2], c[1]], [c[2], 0.0, -c[0]], [-c[1], c[0], 0.0]];
+                for (row, value) in nodes.iter().zip(point.values) {
+                    let factor = pressure * point.weight * value;
+                    let Some(block) = stiffness.block_mut(*row, *column) else { continue };
+                    for (k, x) in block.iter_mut().enumerate() {
+                        *x += factor * times[k / d][k % d];
+                    }
+                }
+            }
+        });
+        Tangents::Added
+    }
+}

@@ -1,0 +1,384 @@
+//! Numbers and vectors that may change with time: actuation forces, pressures, loads.
+
+use std::fmt;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::base::formula::Formula;
+use crate::base::input::{InputError, finite};
+use crate::integrators::ode::Failure;
+
+/// Vectors at given times (s). In between they are interpolated linearly; before the first time
+/// and after the last they are constant.
+#[derive(Debug, Clone)]
+pub(crate) struct TimeTable {
+    pub(crate) times: Vec<f64>,
+    /// The components at each time.
+    pub(crate) values: Vec<Vec<f64>>,
+}
+
+impl TimeTable {
+    pub(crate) fn new(times: Vec<f64>, values: Vec<Vec<f64>>) -> Self {
+        Self { times, values }
+    }
+
+    /// One component at time `t`.
+    fn at(&self, t: f64, component: usize) -> f64 {
+        let value = |k: usize| self.values[k][component];
+        match self.times.partition_point(|&time| time <= t) {
+            0 => value(0),
+            next if next == self.times.len() => value(next - 1),
+            next => {
+                let (from, to) = (self.times[next - 1], self.times[next]);
+                let share = (t - from) / (to - from);
+                value(next - 1) + share * (value(next) - value(next - 1))
+            }
+        }
+    }
+
+    /// Checks that there are vectors of `dimension` at ascending times.
+    fn validate(&self, input: &str, dimension: usize) -> Result<(), InputError> {
+        let Self { times, values } = self;
+        let input_times = format!("times of {input}");
+        finite(&input_times, times)?;
+        if times.is_empty() || values.len() != times.len() {
+            let mend = format!("one value is needed for each time, there are {}", values.len());
+            return Err(InputError::new(input_times, format!("{times:?}"), mend));
+        }
+        if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
+            let mend = format!(
+                "times must ascend: it must lie after {} s (for a jump, begin another phase)",
+                pair[0]
+            );
+            return Err(InputError::new(input_times, format!("{} s", pair[1]), mend));
+        }
+        for value in values {
+            if value.len() != dimension {
+                let mend = format!("it needs {dimension} component(s)");
+                return Err(InputError::new(input, format!("{value:?}"), mend));
+            }
+            finite(input, value)?;
+        }
+        Ok(())
+    }
+}
+
+/// A number, constant or changing with time (s): a pressure (Pa), the force of an actuator (N).
+///
+/// A number converts into a constant one.
+#[derive(Clone)]
+pub struct Signal(pub(crate) Course);
+
+/// What a [`Signal`] is.
+#[derive(Clone)]
+pub(crate) enum Course {
+    Constant(f64),
+    Function { function: Arc<dyn Fn(f64) -> f64 + Send + Sync>, breaks: Vec<f64> },
+    TimeTable(TimeTable),
+    Formula(Arc<Formula>),
+    Live(Live),
+}
+
+/// Numbers that stay until a command sets others, also while forces read them.
+#[derive(Clone)]
+pub(crate) struct Live(Arc<[AtomicU64]>);
+
+impl Live {
+    pub(crate) fn new(values: &[f64]) -> Self {
+        Self(values.iter().map(|value| AtomicU64::new(value.to_bits())).collect())
+    }
+
+    /// Sets them.
+    pub(crate) fn set(&self, values: &[f64]) {
+        self.0
+            .iter()
+            .zip(values)
+            .for_each(|(x, value)| x.store(value.to_bits(), Ordering::Relaxed));
+    }
+
+    pub(crate) fn get(&self) -> Vec<f64> {
+        (0..self.0.len()).map(|number| self.at(number)).collect()
+    }
+
+    fn at(&self, number: usize) -> f64 {
+        f64::from_bits(self.0[number].load(Ordering::Relaxed))
+    }
+}
+
+impl Signal {
+    /// A constant.
+    pub fn constant(value: f64) -> Self {
+        Self(Course::Constant(value))
+    }
+
+    /// A function of time (s), smooth but for [`with_breaks`](Self::with_breaks).
+    pub fn function(f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        Self(Course::Function { function: Arc::new(f), breaks: Vec::new() })
+    }
+
+    /// A formula of time `t` (s): `"2000 * sin(2*pi*3*t)"`.
+    ///
+    /// It consists of numbers, `t`, `pi`, `e`, `+ - * / ^`, parentheses and the functions `sin`, `cos`, `tan`, `asin`,
+    /// `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `log10`, `sqrt`, `abs`, `min`, `max` (of two numbers) and `step` (0
+    /// below 0, else 1). Signs count after powers: `-t^2` is -(t^2). Steps do not end at its kinks and jumps: for those
+    /// there are [tables](Self::table).
+    ///
+    /// # Errors
+    /// A text that is no formula, with the place.
+    pub fn formula(text: &str) -> Result<Self, InputError> {
+        let formula = Formula::parse(text);
+        let formula = formula.map_err(|problem| InputError::new("formula", text, problem))?;
+        Ok(Self(Course::Formula(Arc::new(formula))))
+    }
+
+    /// The `values` at the `times` (s, ascending). In between it is interpolated linearly; before and
+    /// after it is constant.
+    pub fn table(times: impl Into<Vec<f64>>, values: impl Into<Vec<f64>>) -> Self {
+        let values = values.into().into_iter().map(|value| vec![value]).collect();
+        Self(Course::TimeTable(TimeTable::new(times.into(), values)))
+    }
+
+    /// From the value `from` at time `start` (s) to the value `to`, which it keeps, `duration` (s) later,
+    /// along a straight line.
+    pub fn ramp(from: f64, to: f64, start: f64, duration: f64) -> Self {
+        Self::table([start, start + duration], [from, to])
+    }
+
+    /// The same function, with the times (s, ascending) at which it has a kink or a jump: steps end there.
+    pub fn with_breaks(mut self, times: impl Into<Vec<f64>>) -> Self {
+        if let Course::Function { breaks, .. } = &mut self.0 {
+            *breaks = times.into();
+        }
+        self
+    }
+
+    /// The value at time `t` (s).
+    pub fn at(&self, t: f64) -> f64 {
+        match &self.0 {
+            Course::Constant(value) => *value,
+            Course::Function { function, .. } => function(t),
+            Course::TimeTable(table) => table.at(t, 0),
+            Course::Formula(formula) => formula.at(t).0[0],
+            Course::Live(live) => live.at(0),
+        }
+    }
+
+    /// The value of a constant.
+    pub(crate) fn value(&self) -> Option<f64> {
+        match &self.0 {
+            Course::Constant(value) => Some(*value),
+            _ => None,
+        }
+    }
+
+    /// The number that a command can set, if it is one.
+    pub(crate) fn live(&self) -> Option<&Live> {
+        match &self.0 {
+            Course::Live(live) => Some(live),
+            _ => None,
+        }
+    }
+
+    /// The same signal, as a number that a command can set if it is a constant.
+    pub(crate) fn thawed(self) -> Self {
+        self.value().map_or(self, |value| Self(Course::Live(Live::new(&[value]))))
+    }
+
+    /// The same signal, as a constant if it is a number that a command can set.
+    pub(crate) fn frozen(&self) -> Self {
+        self.live().map_or_else(|| self.clone(), |live| Self::constant(live.at(0)))
+    }
+
+    /// Times (s) at which the signal changes its law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        match &self.0 {
+            Course::Constant(_) | Course::Formula(_) | Course::Live(_) => &[],
+            Course::Function { breaks, .. } => breaks,
+            Course::TimeTable(table) => &table.times,
+        }
+    }
+
+    /// Checks what can be known beforehand.
+    pub(crate) fn validate(&self, input: &str) -> Result<(), InputError> {
+        match &self.0 {
+            Course::Constant(value) => finite(input, &[*value]),
+            Course::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
+            Course::TimeTable(table) => table.validate(input, 1),
+            Course::Formula(_) => Ok(()),
+            Course::Live(live) => finite(input, &[live.at(0)]),
+        }
+    }
+}
+
+impl From<f64> for Signal {
+    fn from(value: f64) -> Self {
+        Self::constant(value)
+    }
+}
+
+impl fmt::Debug for Signal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.0 {
+            Course::Constant(value) => write!(f, "{value}"),
+            Course::Function { .. } => f.write_str("function of time"),
+            Course::TimeTable(table) => table.fmt(f),
+            Course::Formula(formula) => formula.fmt(f),
+            Course::Live(live) => write!(f, "{}", live.at(0)),
+        }
+    }
+}
+
+/// The sum of `signals` at time `t`.
+pub(super) fn sum(signals: &[Signal], t: f64) -> f64 {
+    signals.iter().map(|signal| signal.at(t)).sum()
+}
+
+/// Passes a `value` that a function of time gave, if it is finite.
+pub(super) fn finite_at(t: f64, what: fmt::Arguments<'_>, value: f64) -> Result<f64, Failure> {
+    if value.is_finite() {
+        return Ok(value);
+    }
+    Err(Failure::Fatal(
+        format!("{what} is {value} at t = {t} s: it must be a finite number").into(),
+    ))
+}
+
+/// Writes the vector at a time (s).
+type WriteVector = dyn Fn(f64, &mut [f64]) + Send + Sync;
+
+/// A vector that changes with time (s), with one component per dimension.
+#[derive(Clone)]
+pub(crate) enum VectorSignal {
+    Constant(Vec<f64>),
+    Function {
+        dimension: usize,
+        write: Arc<WriteVector>,
+    },
+    TimeTable(TimeTable),
+    /// One per component.
+    #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
+    Formulas(Arc<[Formula]>),
+    Live(Live),
+}
+
+impl VectorSignal {
+    pub(crate) fn function<const D: usize>(
+        f: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
+    ) -> Self {
+        let write = move |t: f64, vector: &mut [f64]| vector.copy_from_slice(&f(t));
+        Self::Function { dimension: D, write: Arc::new(write) }
+    }
+
+    /// Writes it at time `t`.
+    pub(super) fn at(&self, t: f64, vector: &mut [f64]) {
+        match self {
+            Self::Constant(constant) => {
+                vector.iter_mut().zip(constant).for_each(|(x, constant)| *x = *constant);
+            }
+            Self::Function { write, .. } => write(t, vector),
+            Self::TimeTable(table) => {
+                vector.iter_mut().enumerate().for_each(|(i, x)| *x = table.at(t, i));
+            }
+            Self::Formulas(formulas) => {
+                vector.iter_mut().zip(&**formulas).for_each(|(x, formula)| *x = formula.at(t).0[0]);
+            }
+            Self::Live(live) => vector.iter_mut().enumerate().for_each(|(i, x)| *x = live.at(i)),
+        }
+    }
+
+    /// The numbers that a command can set, if it consists of such.
+    pub(crate) fn live(&self) -> Option<&Live> {
+        match self {
+            Self::Live(live) => Some(live),
+            _ => None,
+        }
+    }
+
+    /// The same vector, as a constant if it consists of numbers that a command can set.
+    pub(crate) fn frozen(&self) -> Self {
+        self.live().map_or_else(|| self.clone(), |live| Self::Constant(live.get()))
+    }
+
+    /// Times (s) at which the vector changes its law.
+    pub(crate) fn breaks(&self) -> &[f64] {
+        match self {
+            Self::Constant(_) | Self::Function { .. } | Self::Formulas(_) | Self::Live(_) => &[],
+            Self::TimeTable(table) => &table.times,
+        }
+    }
+
+    /// Checks what can be known beforehand.
+    pub(crate) fn validate(
+        &self,
+        input: &str,
+        needed: usize,
+        unit: &str,
+    ) -> Result<(), InputError> {
+        let numbers = |values: &[f64]| {
+            if values.len() != needed {
+                let mend = format!("it needs {needed} component(s) ({unit})");
+                return Err(InputError::new(input, format!("{values:?}"), mend));
+            }
+            finite(input, values)
+        };
+        match self {
+            Self::Constant(values) => numbers(values),
+            Self::Function { dimension, .. } if *dimension != needed => Err(InputError::new(
+                format!("number of components of {input}"),
+                dimension,
+                format!("it must give {needed} component(s) ({unit})"),
+            )),
+            Self::Function { .. } => Ok(()),
+            Self::TimeTable(table) => table.validate(input, needed),
+            Self::Formulas(formulas) if formulas.len() == needed => Ok(()),
+            Self::Formulas(formulas) => {
+                let mend = format!("it needs {needed} component(s) ({unit})");
+                Err(InputError::new(input, format!("{formulas:?}"), mend))
+            }
+            Self::Live(live) => numbers(&live.get()),
+        }
+    }
+}
+
+impl fmt::Debug for VectorSignal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Constant(values) => write!(f, "{values:?}"),
+            Self::Function { .. } => f.write_str("function of time"),
+            Self::TimeTable(table) => table.fmt(f),
+            Self::Formulas(formulas) => formulas.fmt(f),
+            Self::Live(live) => write!(f, "{:?}", live.get()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_run_along_straight_lines() {
+        let table = TimeTable::new(
+            vec![0.5, 1.0, 3.0],
+            vec![vec![2.0, 0.0], vec![-1.0, 4.0], vec![0.0, 5.0]],
+        );
+        table.validate("f", 2).unwrap();
+        let expected = |t: f64| match t {
+            t if t <= 0.5 => [2.0, 0.0],
+            t if t <= 1.0 => [2.0 - 6.0 * (t - 0.5), 8.0 * (t - 0.5)],
+            t if t <= 3.0 => [-1.0 + 0.5 * (t - 1.0), 4.0 + 0.5 * (t - 1.0)],
+            _ => [0.0, 5.0],
+        };
+        let signal = VectorSignal::TimeTable(table);
+        for k in 0..=35 {
+            let (t, mut found) = (0.1 * f64::from(k), [f64::NAN; 2]);
+            signal.at(t, &mut found);
+            for (found, expected) in found.into_iter().zip(expected(t)) {
+                assert!((found - expected).abs() < 1e-14, "{t}: {found} {expected}");
+            }
+        }
+        assert_eq!(signal.breaks(), [0.5, 1.0, 3.0]);
+        let ramp = Signal::ramp(0.0, -1.0, 0.0, 0.1);
+        assert_eq!([-1.0, 0.0, 0.025, 0.1, 2.0].map(|t| ramp.at(t)), [0.0, 0.0, -0.25, -1.0, -1.0]);
+    }
+}

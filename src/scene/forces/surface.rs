@@ -1,0 +1,193 @@
+//! Points of the boundary of a body, at which contact is felt.
+
+use crate::base::vector::{cross, norm};
+use crate::elements::body::Body;
+use crate::elements::mesh::FaceKind;
+
+/// A point that moves with some nodes.
+pub(crate) struct SurfacePoint {
+    /// How many of the places below are taken.
+    count: usize,
+    nodes: [usize; 3],
+    shares: [f64; 3],
+    /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge or the middle of a face.
+    pub(super) area: f64,
+}
+
+impl SurfacePoint {
+    /// The nodes that it moves with (counted from 0), and their shares in it, which add up to 1.
+    pub(crate) fn nodes(&self) -> impl Iterator<Item = (usize, f64)> + Clone {
+        self.nodes.into_iter().zip(self.shares).take(self.count)
+    }
+
+    /// Its position or velocity in a field of `dimension` components per node; 0 beyond them.
+    pub(crate) fn at(&self, field: &[f64], dimension: usize) -> [f64; 3] {
+        let mut x = [0.0; 3];
+        for (node, share) in self.nodes() {
+            let of_node = &field[node * dimension..][..dimension];
+            x.iter_mut().zip(of_node).for_each(|(x, y)| *x += share * y);
+        }
+        x
+    }
+}
+
+/// Each boundary node by itself.
+pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
+    let nodes = body.mesh().boundary_nodes().iter();
+    nodes.map(|&node| point(&[node], &[1.0], 1.0)).collect()
+}
+
+/// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They divide it into
+/// `parts` of the same length.
+pub(crate) fn edge_points(edge: &[usize], parts: usize) -> impl Iterator<Item = SurfacePoint> {
+    (1..parts).filter_map(move |part| {
+        let s = part as f64 / parts as f64;
+        match *edge {
+            [a, b] => Some(point(&[a, b], &[1.0 - s, s], 0.0)),
+            [a, b, middle] if 2 * part != parts => {
+                let (from, to) = (1.0 - 2.0 * s, 2.0 * s - 1.0);
+                let shares = [(1.0 - s) * from, s * to, 4.0 * s * (1.0 - s)];
+                Some(point(&[a, b, middle], &shares, 0.0))
+            }
+            _ => None,
+        }
+    })
+}
+
+/// A point in the middle of a face of a body in space; none of others.
+pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint> {
+    let locals: &[usize] = match kind {
+        FaceKind::Point | FaceKind::Segment | FaceKind::Segment3 => return None,
+        FaceKind::Triangle => &[0, 1, 2],
+        FaceKind::Triangle6 => &[3, 4, 5],
+        FaceKind::Quadrilateral => &[0, 2],
+        FaceKind::Quadrilateral8 => &[4, 6],
+    };
+    let nodes: Vec<usize> = locals.iter().map(|&local| face[local]).collect();
+    Some(point(&nodes, &vec![1.0 / nodes.len() as f64; nodes.len()], 0.0))
+}
+
+/// Gauss points of the faces of the boundary, which are cut into segments or triangles for them. A
+/// membrane in space is boundary all over; a string has no area: `None`.
+///
+/// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
+/// touch.
+pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
+    let (mesh, section) = (body.mesh(), section(body)?);
+    let parts = pieces(mesh.face_kind());
+    let mut points = Vec::new();
+    for face in mesh.boundary_faces() {
+        for (part, weight) in parts.clone() {
+            let corners: Vec<usize> = part.iter().map(|&local| face[local]).collect();
+            let area = weight * section * measure(body, &corners);
+            let rule: &[&[f64]] = match corners.len() {
+                1 => &[&[1.0]],
+                2 => &[&[NEAR, FAR], &[FAR, NEAR]],
+                _ => &TRIANGLE,
+            };
+            let share = area / rule.len() as f64;
+            points.extend(rule.iter().map(|shares| point(&corners, shares, share)));
+        }
+    }
+    Some(points)
+}
+
+/// What lengths of the boundary are to be multiplied by for areas (m^2): the thickness of a body in the plane, the
+/// cross-section of a bar; 1 in space. A string has no surface: `None`.
+pub(super) fn section(body: &Body) -> Option<f64> {
+    match (body.mesh().kind().dimension(), body.dimension()) {
+        (cell, space) if cell == space => Some(body.section()),
+        (2, 3) => Some(1.0),
+        _ => None,
+    }
+}
+
+/// (1 +- 1/sqrt 3)/2
+const NEAR: f64 = 0.788_675_134_594_812_9;
+const FAR: f64 = 0.211_324_865_405_187_1;
+const TRIANGLE: [&[f64]; 3] = [
+    &[2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0],
+    &[1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0],
+    &[1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0],
+];
+
+fn point(nodes: &[usize], shares: &[f64], area: f64) -> SurfacePoint {
+    let mut point = SurfacePoint { count: nodes.len(), nodes: [0; 3], shares: [0.0; 3], area };
+    point.nodes[..nodes.len()].copy_from_slice(nodes);
+    point.shares[..nodes.len()].copy_from_slice(shares);
+    point
+}
+
+/// A face, cut into points, segments or triangles by their local nodes, and the weight of each: a
+/// quadrilateral is cut along both diagonals, and so is the middle of one with mid nodes.
+pub(crate) fn pieces(face: FaceKind) -> impl Iterator<Item = (&'static [usize], f64)> + Clone {
+    let (whole, halves): (&'static [&'static [usize]], &'static [&'static [usize]]) = match face {
+        FaceKind::Point => (&[&[0]], &[]),
+        FaceKind::Segment => (&[&[0, 1]], &[]),
+        FaceKind::Segment3 => (&[&[0, 2], &[2, 1]], &[]),
+        FaceKind::Triangle => (&[&[0, 1, 2]], &[]),
+        FaceKind::Quadrilateral => (&[], &[&[0, 1, 2], &[0, 2, 3], &[1, 2, 3], &[1, 3, 0]]),
+        FaceKind::Triangle6 => (&[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]], &[]),
+        FaceKind::Quadrilateral8 => (
+            &[&[0, 4, 7], &[4, 1, 5], &[5, 2, 6], &[6, 3, 7]],
+            &[&[4, 5, 6], &[4, 6, 7], &[5, 6, 7], &[5, 7, 4]],
+        ),
+    };
+    whole.iter().map(|part| (*part, 1.0)).chain(halves.iter().map(|part| (*part, 0.5)))
+}
+
+/// Length of a segment, area of a triangle, 1 of a point.
+fn measure(body: &Body, corners: &[usize]) -> f64 {
+    let edge = |a: usize, b: usize| -> [f64; 3] {
+        let (a, b) = (body.mesh().position(a), body.mesh().position(b));
+        std::array::from_fn(|i| if i < a.len() { b[i] - a[i] } else { 0.0 })
+    };
+    match *corners {
+        [a, b] => norm(&edge(a, b)),
+        [a, b, c] => 0.5 * norm(&cross(&edge(a, b), &edge(a, c))),
+        _ => 1.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::elements::body::Strain;
+    use crate::elements::mesh::{Cells, Mesh, SolidCells};
+    use crate::studies::samples::SQUARE_MATERIAL;
+
+    fn assert_total(body: &Body, expected: f64) {
+        let points = gauss_points(body).unwrap();
+        let total: f64 = points.iter().map(|point| point.area).sum();
+        assert!((total - expected).abs() < 1e-14, "{total} {expected}");
+        for point in points {
+            assert!(point.area > 0.0);
+            let shares: f64 = point.nodes().map(|(_, share)| share).sum();
+            assert!((shares - 1.0).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn areas_add_up_to_the_boundary() {
+        for cells in [Cells::Triangles, Cells::Rectangles, Cells::Triangles6] {
+            let mesh = Mesh::rectangle([0.3, 0.2], [4, 3], cells).unwrap();
+            let body = Body::new(mesh, SQUARE_MATERIAL)
+                .strain(Strain::Cauchy)
+                .thickness(0.01)
+                .build()
+                .unwrap();
+            assert_total(&body, 0.01);
+        }
+        for cells in SolidCells::ALL {
+            let mesh = Mesh::cuboid([0.3, 0.2, 0.1], [4, 3, 2], cells).unwrap();
+            assert_total(
+                &Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Cauchy).build().unwrap(),
+                0.22,
+            );
+        }
+        let bar = Body::new(Mesh::bar(0.1, 5).unwrap(), SQUARE_MATERIAL)
+            .strain(Strain::Cauchy)
+            .area(2e-4);
+        assert_total(&bar.build().unwrap(), 4e-4);
+    }
+}

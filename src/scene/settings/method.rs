@@ -1,0 +1,190 @@
+//! The words among the settings: integration methods, ways to meet contact events.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+use std::str::FromStr;
+
+use crate::base::input::InputError;
+
+/// An integration method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Method {
+    /// Chooses one of the others for each phase, by what the phase asks for; looks at the energy
+    /// balance while it runs, and goes on with another method if need be. The report says what
+    /// was chosen and why.
+    #[default]
+    Auto,
+    /// CVODE, backward differentiation formulas of order 1 to 5: for stiff motion.
+    CvodeBdf,
+    /// CVODE, Adams-Moulton formulas of order 1 to 12: for motion that is hardly damped.
+    CvodeAdams,
+    /// IDA on the index-1 form, with the structured Newton matrix.
+    Ida,
+    /// IDA on the index-1 form, with KLU on the sparse Jacobian of the whole system.
+    IdaKlu,
+    /// IDA on the stabilized index-2 form (Gear, Gupta, Leimkuhler): positions and velocities meet the
+    /// constraints at each step, within the tolerances, without alpha; velocities jump to what they allow
+    /// where a phase begins.
+    IdaIndexTwo,
+    /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that
+    /// steps may go over. `max_order` is their order; default: 4.
+    Arkode,
+    /// The internal Rosenbrock methods of order 3 and 4, implicit without an iteration, L-stable: for vibrations that
+    /// steps may go over. `max_order` is their order; default: 4.
+    Rosenbrock,
+    /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
+    /// and as a check of the others.
+    Rk,
+    /// Explicit central differences, order 2: for bodies with lumped inertia that are hardly damped.
+    /// Steps are as long as stability allows, so that at a loose `rtol` errors are far below it.
+    CentralDifference,
+}
+
+impl Method {
+    /// All methods.
+    pub const ALL: [Self; 10] = [
+        Self::Auto,
+        Self::CvodeBdf,
+        Self::CvodeAdams,
+        Self::Ida,
+        Self::IdaKlu,
+        Self::IdaIndexTwo,
+        Self::Arkode,
+        Self::Rosenbrock,
+        Self::Rk,
+        Self::CentralDifference,
+    ];
+
+    /// Whether it integrates bodies with [Maxwell branches](crate::MaxwellBranch).
+    pub(crate) fn takes_branches(self) -> bool {
+        matches!(self, Self::Auto | Self::CvodeBdf | Self::CvodeAdams | Self::Arkode | Self::Rk)
+    }
+
+    /// Name of the method: `auto`, `cvode-bdf`, `cvode-adams`, `ida`, `ida-klu`,
+    /// `ida-index-2`, `arkode`, `rosenbrock`, `rk`, `central-difference`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::CvodeBdf => "cvode-bdf",
+            Self::CvodeAdams => "cvode-adams",
+            Self::Ida => "ida",
+            Self::IdaKlu => "ida-klu",
+            Self::IdaIndexTwo => "ida-index-2",
+            Self::Arkode => "arkode",
+            Self::Rosenbrock => "rosenbrock",
+            Self::Rk => "rk",
+            Self::CentralDifference => "central-difference",
+        }
+    }
+
+    /// What it is for.
+    pub fn purpose(self) -> &'static str {
+        match self {
+            Self::Auto => {
+                "choosing one of the others for each phase, by what it asks for and how it goes"
+            }
+            Self::CvodeBdf => {
+                "stiff motion: damped bodies, hard contact, fine meshes (CVODE, BDF of order 1 to 5)"
+            }
+            Self::CvodeAdams => {
+                "motion that is hardly damped (CVODE, Adams-Moulton of order 1 to 12)"
+            }
+            Self::Ida => {
+                "a check of CVODE: constraint forces are unknowns, too (IDA on the index-1 form)"
+            }
+            Self::IdaKlu => {
+                "a check of the structured linear solver: IDA with KLU on the whole Jacobian"
+            }
+            Self::IdaIndexTwo => {
+                "constraints met at each step, without alpha (IDA on the stabilized index-2 form)"
+            }
+            Self::Arkode => {
+                "bodies that vibrate with little damping (ARKODE, diagonally implicit, order 2 to 5)"
+            }
+            Self::Rosenbrock => {
+                "bodies that vibrate, without iterations (Rosenbrock methods, linearly implicit, order 3 and 4)"
+            }
+            Self::Rk => {
+                "motion that is not stiff: light damping, small alpha (Dormand-Prince 5(4))"
+            }
+            Self::CentralDifference => {
+                "bodies of lumped inertia without much damping (explicit central differences)"
+            }
+        }
+    }
+
+    pub(super) fn orders(self) -> RangeInclusive<u32> {
+        match self {
+            Self::CvodeAdams => 1..=12,
+            Self::Arkode => 2..=5,
+            Self::Rosenbrock => 3..=4,
+            _ => 1..=5,
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for Method {
+    type Err = InputError;
+
+    fn from_str(name: &str) -> Result<Self, InputError> {
+        Self::ALL.into_iter().find(|method| method.name() == name).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            InputError::new("method", format!("\"{name}\""), format!("it is one of {known}"))
+        })
+    }
+}
+
+/// How contact events are met: nodes that touch an obstacle or leave it, and under friction stick or slip.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ContactEvents {
+    /// Where it is faster: [`Method::Auto`] locates them while it is explicit Runge-Kutta, and with implicit methods
+    /// if `rtol` is below 1e-6; where a method was asked for, they are stepped over.
+    #[default]
+    Auto,
+    /// Steps go over them; the error control makes those steps small.
+    StepOver,
+    /// Each is located, a step ends there, and the integration starts anew.
+    Locate,
+}
+
+impl ContactEvents {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::StepOver, Self::Locate];
+
+    /// `auto`, `step-over` or `locate`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::StepOver => "step-over",
+            Self::Locate => "locate",
+        }
+    }
+}
+
+impl fmt::Display for ContactEvents {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl FromStr for ContactEvents {
+    type Err = InputError;
+
+    fn from_str(name: &str) -> Result<Self, InputError> {
+        Self::ALL.into_iter().find(|way| way.name() == name).ok_or_else(|| {
+            let known = Self::ALL.map(Self::name).join(", ");
+            InputError::new(
+                "contact_events",
+                format!("\"{name}\""),
+                format!("it is one of {known}"),
+            )
+        })
+    }
+}

@@ -1,0 +1,176 @@
+//! The record of all settings, and the tolerances that follow from it.
+
+use super::method::{ContactEvents, Method};
+use crate::base::input::{InputError, positive};
+use crate::scene::timeline::Scene;
+
+/// How a scene is integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Integration method. Default: [`Method::Auto`].
+    pub method: Method,
+    /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
+    /// `rtol |y| + atol` in the root mean square over displacements and velocities. Errors of steps add up: that of the
+    /// whole motion may be twenty times as large. [`Method::Auto`] gives the method that it chooses a part of the
+    /// tolerances, mostly a fifth or less, so that the motion is about as precise as `rtol` says. Default: 1e-5.
+    pub rtol: f64,
+    /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the body's size,
+    /// so that smaller displacements count as that large.
+    pub atol_position: Option<f64>,
+    /// Absolute tolerance of velocities (m/s). Default: rtol times a hundredth of the speed of
+    /// waves in the body, its displacements' counterpart in a vibration; and no more than 1/400 of the
+    /// [sticking speed](crate::Obstacle::sticking_speed) of an obstacle with friction, without which a step
+    /// does not see what breaks loose.
+    pub atol_velocity: Option<f64>,
+    /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger
+    /// means less drift; it costs the implicit methods and central differences nothing, `rk` a step
+    /// of 3.3/alpha.
+    pub alpha: f64,
+    /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's (default: 4).
+    pub max_order: Option<u32>,
+    /// Whether CVODE's BDF looks out for steps that its orders above 2 make unstable, and lowers the
+    /// order then (`CVodeSetStabLimDet`). It helps some lightly damped vibrations, not undamped
+    /// ones. Default: no.
+    pub stability_limit_detection: bool,
+    /// Whether contact events are located. Default: where that is faster for the accuracy.
+    pub contact_events: ContactEvents,
+    /// Longest step (s), above 0. Default: none. Error control needs no bound, and no step leads
+    /// through an obstacle; this is for forces that come and go between two steps.
+    pub max_step: Option<f64>,
+    /// Steps that one phase may take. Default: 10 million, a guard against runs without end.
+    pub max_steps: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            method: Method::default(),
+            rtol: 1e-5,
+            atol_position: None,
+            atol_velocity: None,
+            alpha: 1e3,
+            max_order: None,
+            stability_limit_detection: false,
+            contact_events: ContactEvents::default(),
+            max_step: None,
+            max_steps: 10_000_000,
+        }
+    }
+}
+
+impl Settings {
+    /// Checks what can be known before anything is run.
+    ///
+    /// # Errors
+    /// The first number out of its range.
+    pub fn validate(&self) -> Result<(), InputError> {
+        if !(self.rtol > 0.0 && self.rtol < 1.0) {
+            let mend = "it must lie above 0 and below 1 (1e-3 is rough, 1e-8 fine)";
+            return Err(InputError::new("rtol", self.rtol, mend));
+        }
+        positive("alpha", self.alpha, "1/s")?;
+        self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
+        self.atol_velocity.map_or(Ok(1.0), |atol| positive("atol_velocity", atol, "m/s"))?;
+        self.max_step.map_or(Ok(1.0), |step| positive("max_step", step, "s"))?;
+        let orders = self.method.orders();
+        match self.max_order {
+            Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {
+                let mend = format!("{} has one order only: leave it out", self.method);
+                Err(InputError::new("max_order", order, mend))
+            }
+            Some(order) if !orders.contains(&order) => {
+                let (lowest, highest) = (orders.start(), orders.end());
+                let mend = format!("{} has the orders {lowest} to {highest}", self.method);
+                Err(InputError::new("max_order", order, mend))
+            }
+            _ if self.stability_limit_detection
+                && !matches!(self.method, Method::Auto | Method::CvodeBdf) =>
+            {
+                let mend = format!("{} has no such limits: leave it out", self.method);
+                Err(InputError::new("stability_limit_detection", true, mend))
+            }
+            _ if self.max_steps == 0 => {
+                Err(InputError::new("max_steps", 0, "allow one step at least"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The same with all tolerances times `part`.
+    pub(crate) fn tightened(&self, part: f64) -> Self {
+        Self {
+            rtol: part * self.rtol,
+            atol_position: self.atol_position.map(|atol| part * atol),
+            atol_velocity: self.atol_velocity.map(|atol| part * atol),
+            ..self.clone()
+        }
+    }
+
+    /// The absolute tolerances in force for `scene`.
+    pub fn tolerances(&self, scene: &Scene) -> AbsoluteTolerances {
+        self.tolerances_by(&Scales::of(scene))
+    }
+
+    /// Those for a scene of these `scales`.
+    pub(crate) fn tolerances_by(&self, scales: &Scales) -> AbsoluteTolerances {
+        const SMALL_STRAIN: f64 = 0.01;
+        const SMALL_CREEP: f64 = 1.0 / 400.0;
+        let &Scales { size, young, volume, wave_speed, sticking_speed } = scales;
+        let position = self.rtol * SMALL_STRAIN * size;
+        let velocity = (self.rtol * SMALL_STRAIN * wave_speed).min(SMALL_CREEP * sticking_speed);
+        AbsoluteTolerances {
+            position: self.atol_position.unwrap_or(position),
+            velocity: self.atol_velocity.unwrap_or(velocity),
+            strain: self.atol_position.unwrap_or(position) / size,
+            energy: self.rtol * young * volume,
+            force: self.rtol * young * volume / size,
+            momentum: self.rtol * young * volume / wave_speed,
+        }
+    }
+}
+
+/// What tolerances are measured by: found by going through all cells, so that a run keeps it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scales {
+    size: f64,
+    young: f64,
+    volume: f64,
+    wave_speed: f64,
+    /// Of the obstacle on which it is the least; infinite without friction.
+    sticking_speed: f64,
+}
+
+impl Scales {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let body = scene.body();
+        let (size, material) = (body.mesh().size(), body.material());
+        let sticking = scene.obstacles().iter().filter_map(|obstacle| obstacle.sticks_below(size));
+        Self {
+            size,
+            young: material.young,
+            volume: body.volume(),
+            wave_speed: material.wave_speed(),
+            sticking_speed: sticking.fold(f64::INFINITY, f64::min),
+        }
+    }
+}
+
+/// Absolute tolerances in force.
+///
+/// Those of the energies and of the multipliers are loose (as if strain were 1):
+/// enough that the Newton iteration looks after them, too little for them to rule the steps.
+#[derive(Debug, Clone, Copy)]
+pub struct AbsoluteTolerances {
+    /// Displacements (m).
+    pub position: f64,
+    /// Velocities (m/s).
+    pub velocity: f64,
+    /// Internal strains (1).
+    pub(crate) strain: f64,
+    /// Energies dissipated and supplied (J).
+    pub(crate) energy: f64,
+    /// Multipliers (N).
+    pub(crate) force: f64,
+    /// Multipliers of positions in the form of index 2 (kg m/s).
+    pub(crate) momentum: f64,
+}

@@ -1,0 +1,44 @@
+//! What a scene can start from.
+
+use crate::base::input::InputError;
+use crate::elements::body::Body;
+
+/// Where the nodes of a body are and how fast they move: what [`Scene::starting_from`](crate::Scene::starting_from) takes. It is taken
+/// from a motion or an equilibrium by [`Trajectory::state`](crate::Trajectory::state), or read from what an earlier run has left.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyState {
+    /// Undeformed positions (m), dimension components per node: what the mesh is known by.
+    pub positions: Vec<f64>,
+    /// Displacements (m), likewise.
+    pub displacements: Vec<f64>,
+    /// Velocities (m/s), likewise.
+    pub velocities: Vec<f64>,
+}
+
+/// Parts of the size of a body by which the same positions may differ: as round-off where a mesh is made.
+const SAME: f64 = 1e-9;
+
+/// # Errors
+/// Undeformed positions other than those of `body`.
+pub(super) fn check_positions(positions: &[f64], body: &Body) -> Result<(), InputError> {
+    let (mesh, dimension) = (body.mesh(), body.dimension());
+    let mend = "start from a state of a body with the same mesh";
+    if positions.len() != mesh.positions().len() {
+        let count = positions.len() / dimension;
+        let mend = format!("this body has {}: {mend}", mesh.node_count());
+        return Err(InputError::new("state at the start", format!("{count} nodes"), mend));
+    }
+    let pairs = positions.chunks_exact(dimension).zip(mesh.positions().chunks_exact(dimension));
+    let far = |(_, (theirs, ours)): &(usize, (&[f64], &[f64]))| {
+        // what is no number is far
+        !theirs.iter().zip(*ours).all(|(a, b)| (a - b).abs() <= SAME * mesh.size())
+    };
+    match (1..).zip(pairs).find(far) {
+        None => Ok(()),
+        Some((node, (theirs, ours))) => Err(InputError::new(
+            "state at the start",
+            format!("node {node} at {theirs:?} undeformed"),
+            format!("this body has it at {ours:?}: {mend}"),
+        )),
+    }
+}

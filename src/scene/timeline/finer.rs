@@ -1,0 +1,206 @@
+//! The same scene on a finer mesh, or with another body.
+
+use std::sync::Arc;
+
+use super::load::LoadKind;
+use super::{Phase, Scene};
+use crate::base::input::{InputError, check_memory};
+use crate::elements::basis::Finer;
+use crate::elements::body::{Body, BodyBuilder};
+use crate::elements::mesh::{BYTES_PER_NODE, Mesh, Selection};
+use crate::scene::constraint::Constrained;
+use crate::scene::forces::Obstacle;
+
+impl Scene {
+    /// The same scene with its body made in another way: of another material, by another measure of strain, with other
+    /// inertia. Nodes and cells stay.
+    ///
+    /// ```
+    /// use pliant::{Inertia, Strain, samples};
+    ///
+    /// let lumped = samples::beam_jump()?.with_body(|body| body.inertia(Inertia::Lumped))?;
+    /// lumped.validate()?;
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`BodyBuilder::build`]; another number of nodes.
+    pub fn with_body(
+        &self,
+        change: impl FnOnce(BodyBuilder) -> BodyBuilder,
+    ) -> Result<Self, InputError> {
+        let body = change(self.body.to_builder()).build()?;
+        if body.dofs() != self.body.dofs() {
+            let mend = format!(
+                "the scene's body has {}: only the mesh may not be another",
+                self.body.dofs()
+            );
+            return Err(InputError::new("displacement components of the body", body.dofs(), mend));
+        }
+        Ok(Self { body: Arc::new(body), ..self.clone() })
+    }
+
+    /// The same scene with each cell of the mesh divided at the middles of its edges: see [`Mesh::halved`].
+    ///
+    /// Node sets, and numbers of nodes that are held or moved together, take the new nodes between them with them. What acts on
+    /// single nodes stays there: forces on each node, springs, sensors. Stiffness and damping of
+    /// obstacles per node are shared out among as many more nodes as the boundary has.
+    ///
+    /// # Errors
+    /// Point masses that are named by number, forces that are not of this crate: nobody knows which nodes they mean.
+    pub fn halved(&self) -> Result<Self, InputError> {
+        Ok(self.on(|mesh| Ok(mesh.divided()))?.0)
+    }
+
+    /// The same scene with quadratic cells: see [`Mesh::quadratic`], and [`halved`](Self::halved) for what
+    /// becomes of the rest.
+    ///
+    /// # Errors
+    /// As [`halved`](Self::halved); cells of which there are no quadratic ones.
+    pub fn quadratic(&self) -> Result<Self, InputError> {
+        Ok(self.on(Mesh::elevated)?.0)
+    }
+
+    /// The same scene on the nearest richer mesh, and what that makes of the nodes: quadratic cells, or halves of those that are
+    /// quadratic or of which there are no quadratic ones.
+    #[cfg(feature = "study")]
+    pub(crate) fn enriched(&self) -> Result<(Self, Finer), InputError> {
+        self.on(|mesh| mesh.elevated().or_else(|_| Ok(mesh.divided())))
+    }
+
+    fn on(
+        &self,
+        make: impl FnOnce(&Mesh) -> Result<Finer, InputError>,
+    ) -> Result<(Self, Finer), InputError> {
+        if !self.forces.is_empty() {
+            let mend =
+                "they know the nodes of this mesh alone: build the scene anew on the finer one";
+            return Err(InputError::new(
+                "forces that are not of this crate",
+                self.forces.len(),
+                mend,
+            ));
+        }
+        let builder = self.body.to_builder();
+        let nodes = builder.own_mesh().node_count() << builder.own_mesh().kind().dimension();
+        let mend = "take coarser cells, or halve them less often";
+        check_memory(
+            "finer mesh",
+            format!("{nodes} nodes or so"),
+            BYTES_PER_NODE * nodes as f64,
+            mend,
+        )?;
+        let coarse = builder.own_mesh().clone();
+        let finer = make(&coarse)?;
+        let body = builder.on(&finer)?.build()?;
+        let change = Change { body: &self.body, coarse: &coarse, finer: &finer };
+        let mut scene = self.clone();
+        scene.start = change.start(self, &body)?;
+        scene.chambers = self
+            .chambers
+            .iter()
+            .map(|chamber| chamber.clone().with_nodes(|nodes| change.extended(nodes)))
+            .collect::<Result<_, _>>()?;
+        for spring in &self.springs {
+            spring.selections().try_for_each(|nodes| change.check(nodes))?;
+        }
+        let count = |mesh: &Mesh| mesh.boundary_nodes().len() as f64;
+        let share = count(&coarse) / count(&finer.mesh);
+        let shared = |obstacle: &Obstacle| obstacle.clone().shared_out(share);
+        scene.obstacles = self.obstacles.iter().map(shared).collect();
+        for phase in &mut scene.phases {
+            change.phase(phase)?;
+            phase.turned = phase.turned.iter().map(shared).collect();
+        }
+        scene.body = Arc::new(body);
+        Ok((scene, finer))
+    }
+}
+
+/// What a finer mesh makes of selections of nodes.
+struct Change<'a> {
+    body: &'a Body,
+    coarse: &'a Mesh,
+    finer: &'a Finer,
+}
+
+impl Change<'_> {
+    /// Numbers have to mean nodes of the mesh.
+    fn check(&self, nodes: &Selection) -> Result<(), InputError> {
+        let Selection::Numbers(numbers) = nodes else { return Ok(()) };
+        match numbers.iter().find(|number| **number > self.coarse.node_count()) {
+            None => Ok(()),
+            Some(number) => {
+                let mend = "it is a point mass, which has another number on a finer mesh: name it by its name";
+                Err(InputError::new("node", number, mend))
+            }
+        }
+    }
+
+    /// Numbers with those of the new nodes between them; names and boxes find them by themselves.
+    fn extended(&self, nodes: &Selection) -> Result<Selection, InputError> {
+        self.check(nodes)?;
+        let Selection::Numbers(numbers) = nodes else { return Ok(nodes.clone()) };
+        let nodes = self.body.mesh().select(nodes)?;
+        Ok(match numbers.len() {
+            1 => numbers.clone().into(),
+            _ => self.finer.extended(&nodes).iter().map(|node| node + 1).collect::<Vec<_>>().into(),
+        })
+    }
+
+    /// The nodes that there were, by number.
+    fn same(&self, nodes: &Selection) -> Result<Selection, InputError> {
+        self.check(nodes)?;
+        let nodes = self.body.mesh().select(nodes)?;
+        if nodes.iter().any(|&node| node >= self.coarse.node_count()) {
+            let mend = "it holds point masses: give those by themselves";
+            return Err(InputError::new(
+                "nodes of a force on each",
+                format!("{} nodes", nodes.len()),
+                mend,
+            ));
+        }
+        Ok(nodes.iter().map(|node| node + 1).collect::<Vec<_>>().into())
+    }
+
+    fn phase(&self, phase: &mut Phase) -> Result<(), InputError> {
+        for constraint in &mut phase.constraints {
+            match &mut constraint.what {
+                Constrained::Nodes(nodes, _) | Constrained::Along(nodes, _) => {
+                    *nodes = self.extended(nodes)?;
+                }
+                Constrained::Row(terms) => {
+                    let numbers: Vec<usize> = terms.iter().map(|(node, ..)| *node).collect();
+                    self.check(&numbers.into())?;
+                }
+            }
+        }
+        for (nodes, load) in &mut phase.loads {
+            let is_point = self.body.mesh().select(nodes)?.len() == 1;
+            *nodes = match load.kind {
+                _ if is_point => self.extended(nodes)?,
+                LoadKind::Each => self.same(nodes)?,
+                LoadKind::Total | LoadKind::Traction => self.extended(nodes)?,
+            };
+        }
+        for (nodes, _) in &mut phase.face_pressures {
+            *nodes = self.extended(nodes)?;
+        }
+        Ok(())
+    }
+
+    /// The start, at all nodes.
+    fn start(&self, scene: &Scene, body: &Body) -> Result<super::start::Start, InputError> {
+        scene.start.velocities(self.body)?;
+        let mut start = scene.start.clone();
+        // it was of this mesh, as it should be
+        start.positions = None;
+        for field in [&mut start.displacements, &mut start.velocities] {
+            *field = self.finer.interpolated(field, body.dimension());
+        }
+        for (nodes, _) in &mut start.of_nodes {
+            *nodes = self.extended(nodes)?;
+        }
+        Ok(start)
+    }
+}

@@ -1,0 +1,189 @@
+//! The forces that act in a phase.
+
+use std::sync::Arc;
+
+use super::phase::check_vector;
+use super::{LoadKind, Phase, Scene};
+use crate::base::input::{InputError, finite};
+use crate::elements::force::Forces;
+use crate::elements::mesh::Selection;
+use crate::scene::forces::{
+    Contact, FacePressure, Gravity, Load, Signal, VaryingLoad, VectorSignal, areas, shares,
+};
+
+impl Scene {
+    /// The forces in one phase, all but those of constant matrices.
+    pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
+        let dimension = self.body.dimension();
+        let mut forces = Forces::new();
+        if let Some(elastic) = self.body.elastic() {
+            forces.push(Arc::new(elastic));
+        }
+        if let Some(reinforcement) = self.body.reinforcement() {
+            forces.push(Arc::new(reinforcement));
+        }
+        if let Some(gravity) = self.gravity_in(phase) {
+            check_vector("gravity", gravity, dimension, "m/s^2")?;
+            finite("gravity", gravity)?;
+            forces.push(Arc::new(Gravity::new(&self.body, gravity)));
+        }
+        self.add_loads(phase, &mut forces)?;
+        self.add_springs(phase, &mut forces)?;
+        self.add_chambers(phase, &mut forces)?;
+        for (nodes, pressure) in &phase.face_pressures {
+            forces.push(Arc::new(FacePressure::new(&self.body, nodes, pressure.clone())?));
+        }
+        for contact in self.contacts(phase)? {
+            forces.push(Arc::new(contact));
+        }
+        forces.extend_from_slice(&self.forces);
+        Ok(forces)
+    }
+
+    /// Acceleration of gravity (m/s^2) in one phase, if there is any.
+    pub(crate) fn gravity_in<'a>(&'a self, phase: &'a Phase) -> Option<&'a [f64]> {
+        phase.gravity.as_deref().or(self.acceleration())
+    }
+
+    /// The contact forces among them.
+    pub(crate) fn contacts(&self, phase: &Phase) -> Result<Vec<Contact>, InputError> {
+        let obstacles = phase.contacts(&self.obstacles)?.into_iter();
+        obstacles.map(|obstacle| Contact::new(&self.body, obstacle)).collect()
+    }
+
+    fn add_loads(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+        let dimension = self.body.dimension();
+        let mut constant = Vec::new();
+        for (selection, load) in &phase.loads {
+            let nodes = self.body.mesh().select(selection)?;
+            load.validate(dimension)?;
+            let parts = self.parts(load.kind, selection, &nodes)?;
+            let nodes = nodes.into_iter().zip(parts);
+            match &load.value {
+                VectorSignal::Constant(force) => {
+                    for (node, part) in nodes {
+                        let along = |i| (node * dimension + i, part * force[i]);
+                        constant.extend((0..dimension).map(along));
+                    }
+                }
+                varying => {
+                    let (nodes, force) = (nodes.collect(), varying.clone());
+                    forces.push(Arc::new(VaryingLoad { nodes, force, dimension }));
+                }
+            }
+        }
+        if !constant.is_empty() {
+            forces.push(Arc::new(Load { forces: constant }));
+        }
+        Ok(())
+    }
+
+    /// Forces (N) of the loads of `phase` at time `t` (s), node by node as they are named.
+    pub(crate) fn loads_at(
+        &self,
+        phase: &Phase,
+        t: f64,
+    ) -> Result<Vec<(usize, Vec<f64>)>, InputError> {
+        let mut forces = Vec::new();
+        for (selection, load) in &phase.loads {
+            let nodes = self.body.mesh().select(selection)?;
+            let parts = self.parts(load.kind, selection, &nodes)?;
+            let value = load.value.components(t, self.body.dimension());
+            let on = |part: f64| value.iter().map(|value| part * value).collect();
+            forces.extend(nodes.into_iter().zip(parts.into_iter().map(on)));
+        }
+        Ok(forces)
+    }
+
+    /// How many times the value of a load of this `kind` each of the `nodes` gets, which `selection` has named.
+    fn parts(
+        &self,
+        kind: LoadKind,
+        selection: &Selection,
+        nodes: &[usize],
+    ) -> Result<Vec<f64>, InputError> {
+        match kind {
+            LoadKind::Each => Ok(vec![1.0; nodes.len()]),
+            LoadKind::Total => Ok(shares(&self.body, nodes)),
+            LoadKind::Traction => areas(&self.body, nodes)
+                .map_err(|problem| InputError::new("traction nodes", selection, problem)),
+        }
+    }
+
+    /// The loads that `phase` has for `selection` at time `t` (s), added up as one of this `kind`. Those of other
+    /// kinds count by the mean of their forces on the nodes.
+    pub(crate) fn load_on(
+        &self,
+        phase: &Phase,
+        selection: &Selection,
+        kind: LoadKind,
+        t: f64,
+    ) -> Result<Vec<f64>, InputError> {
+        let nodes = self.body.mesh().select(selection)?;
+        let count = nodes.len() as f64;
+        // how many times the mean force on a node is a load of a kind
+        let times = |kind: LoadKind| match kind {
+            LoadKind::Each => Ok(1.0),
+            LoadKind::Total => Ok(count),
+            LoadKind::Traction => {
+                let parts = self.parts(kind, selection, &nodes)?;
+                Ok::<f64, InputError>(count / parts.iter().sum::<f64>())
+            }
+        };
+        let mut sum = vec![0.0; self.body.dimension()];
+        for (_, load) in phase.loads.iter().filter(|(other, _)| other == selection) {
+            let value = load.value.components(t, sum.len());
+            let [own, wanted] = match load.kind == kind {
+                true => [1.0; 2],
+                false => [times(load.kind)?, times(kind)?],
+            };
+            sum.iter_mut().zip(value).for_each(|(sum, value)| *sum += value / own * wanted);
+        }
+        Ok(sum)
+    }
+
+    fn add_springs(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+        for (spring, actuation) in self.springs.iter().zip(self.actuation_signals(phase)?) {
+            forces.push(Arc::new(spring.force(self.body.mesh())?));
+            if !actuation.is_empty() {
+                forces.push(Arc::new(spring.actuator(self.body.mesh(), actuation)?));
+            }
+        }
+        Ok(())
+    }
+
+    /// Forces (N) of the actuators of all springs at time `t` (s) in `phase`.
+    #[cfg(feature = "output")]
+    pub(crate) fn actuations(&self, phase: &Phase, t: f64) -> Result<Vec<f64>, InputError> {
+        let signals = self.actuation_signals(phase)?.into_iter();
+        Ok(signals.map(|signals| signals.iter().map(|signal| signal.at(t)).sum()).collect())
+    }
+
+    /// What actuates each spring in `phase`.
+    fn actuation_signals(&self, phase: &Phase) -> Result<Vec<Vec<Signal>>, InputError> {
+        let input = format!("actuation of phase \"{}\"", phase.name);
+        let mut actuations: Vec<Vec<Signal>> = vec![Vec::new(); self.springs.len()];
+        for (names, force) in &phase.actuations {
+            force.validate(&input)?;
+            for name in names {
+                actuations[self.spring_number(name, &input)?].push(force.clone());
+            }
+        }
+        Ok(actuations)
+    }
+
+    fn add_chambers(&self, phase: &Phase, forces: &mut Forces) -> Result<(), InputError> {
+        let input = format!("pressure of phase \"{}\"", phase.name);
+        let mut pressures: Vec<Vec<Signal>> = vec![Vec::new(); self.chambers.len()];
+        for (name, pressure) in &phase.pressures {
+            pressure.validate(&input)?;
+            pressures[self.chamber_number(name, &input)?].push(pressure.clone());
+        }
+        for (chamber, pressure) in self.chambers.iter().zip(pressures) {
+            if !pressure.is_empty() {
+                forces.push(Arc::new(chamber.force(&self.body, pressure)?));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,102 @@
+//! What a scene is told about its start.
+
+use super::{BodyState, Scene};
+use crate::base::input::InputError;
+use crate::elements::mesh::Selection;
+
+/// # The start
+///
+/// Velocities that the constraints of the first phase do not allow are projected on the nearest, in the
+/// sense of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves.
+impl Scene {
+    /// Starts from a state of an earlier motion, or from an equilibrium, of a body with the same mesh: displacements and
+    /// velocities at t = 0. All else may differ, such as material, strain, loads and obstacles. Time and energies begin anew.
+    ///
+    /// [`initial_displacement`](Self::initial_displacement) and [`initial_velocity`](Self::initial_velocity), called after it,
+    /// take the place of one or the other; [`spin`](Self::spin) is on top of its velocities.
+    ///
+    /// ```
+    /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Statics};
+    ///
+    /// let mesh = Mesh::rectangle([0.1, 0.02], [11, 3], Cells::Triangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e5, poisson: 0.3, viscosity: 4.0 };
+    /// let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// let bent = Scene::new(body.clone()).phase(Phase::until(1.0).hold("left").load([22], [0.0, -0.01]));
+    /// let bent = bent.equilibrium(&Statics::default())?;
+    /// // let go
+    /// let scene = Scene::new(body)
+    ///     .starting_from(&bent.trajectory().state(bent.sample()))
+    ///     .phase(Phase::until(0.1).hold("left"));
+    /// let motion = scene.simulate(&Settings::default(), &Sampling::every(0.01))?;
+    /// assert_eq!(motion.samples()[0].u, bent.displacements());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    ///
+    /// [`validate`](Self::validate) and runs refuse a state of another mesh.
+    pub fn starting_from(mut self, state: &BodyState) -> Self {
+        let BodyState { positions, displacements, velocities } = state.clone();
+        self.start.positions = Some(positions);
+        self.start.displacements = displacements;
+        self.start.velocities = velocities;
+        self
+    }
+
+    /// Displacements at t = 0 (m): `field` gives one for each undeformed position. Default: none.
+    pub fn initial_displacement(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        self.start.displacements = self.body.mesh().field(field);
+        self
+    }
+
+    /// Velocities at t = 0 (m/s): `field` gives one for each undeformed position. Default: rest.
+    ///
+    /// ```
+    /// # use pliant::{Body, Cells, Material, Mesh, Phase, Scene};
+    /// # let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+    /// # let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+    /// # let body = Body::new(mesh, rubber).thickness(0.01).build()?;
+    /// // thrown upwards, turning once a second
+    /// let scene = Scene::new(body)
+    ///     .initial_velocity(|_| vec![0.0, 5.0])
+    ///     .spin([std::f64::consts::TAU])
+    ///     .gravity([0.0, -9.8])
+    ///     .phase(Phase::until(1.0));
+    /// # scene.validate()?;
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn initial_velocity(mut self, field: impl Fn(&[f64]) -> Vec<f64>) -> Self {
+        self.start.velocities = self.body.mesh().field(field);
+        self
+    }
+
+    /// Velocity (m/s) of some nodes at t = 0, instead of what [`initial_velocity`](Self::initial_velocity) and
+    /// [`spin`](Self::spin) give them.
+    pub fn initial_velocity_of(
+        mut self,
+        nodes: impl Into<Selection>,
+        velocity: impl Into<Vec<f64>>,
+    ) -> Self {
+        self.start.of_nodes.push((nodes.into(), velocity.into()));
+        self
+    }
+
+    /// Angular velocity (rad/s) at t = 0 about the centre of mass, on top of
+    /// [`initial_velocity`](Self::initial_velocity): one component in the plane, counter-clockwise, three in
+    /// space. Default: none.
+    pub fn spin(mut self, angular_velocity: impl Into<Vec<f64>>) -> Self {
+        self.start.spin = Some(angular_velocity.into());
+        self
+    }
+
+    /// Displacements at t = 0.
+    pub(crate) fn initial_displacements(&self) -> &[f64] {
+        &self.start.displacements
+    }
+
+    /// Velocities at t = 0.
+    ///
+    /// # Errors
+    /// Numbers of components that do not fit the body, numbers that are not finite, unknown nodes.
+    pub(crate) fn initial_velocities(&self) -> Result<Vec<f64>, InputError> {
+        self.start.velocities(&self.body)
+    }
+}

@@ -1,0 +1,103 @@
+//! How a phase is given loads: forces on nodes, tractions on faces.
+
+use super::load::{Load, LoadKind};
+use super::phase::Phase;
+use crate::elements::mesh::Selection;
+use crate::scene::forces::{TimeTable, VectorSignal};
+
+impl Phase {
+    /// A constant force (N) on each of the nodes.
+    pub fn load(self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
+        self.loaded(nodes, LoadKind::Each, VectorSignal::Constant(force.into()))
+    }
+
+    /// A force (N) on each of the nodes that changes with time (s): `force` gives one component
+    /// per dimension.
+    pub fn load_with<const D: usize>(
+        self,
+        nodes: impl Into<Selection>,
+        force: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
+    ) -> Self {
+        self.loaded(nodes, LoadKind::Each, VectorSignal::function(force))
+    }
+
+    /// A force (N) on each of the nodes that has the values `forces`, one component per dimension, at
+    /// the `times` (s, ascending). In between it is interpolated linearly; before and after it is
+    /// constant.
+    pub fn load_table(
+        self,
+        nodes: impl Into<Selection>,
+        times: impl Into<Vec<f64>>,
+        forces: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Self {
+        self.loaded(nodes, LoadKind::Each, table(times, forces))
+    }
+
+    /// A constant force (N) on the nodes together.
+    ///
+    /// Where they make up whole faces of the boundary (edges in the plane) it is spread over these evenly: each
+    /// node has as much of it as the integral of its shape function is of the area, half as much at the corner
+    /// of a side of linear cells as within. Nodes that make up no faces share it equally.
+    pub fn load_total(self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
+        self.loaded(nodes, LoadKind::Total, VectorSignal::Constant(force.into()))
+    }
+
+    /// As [`load_total`](Self::load_total), with a force that has the values `forces` (N) at the `times` (s,
+    /// ascending), as [`load_table`](Self::load_table) has it.
+    pub fn load_total_table(
+        self,
+        nodes: impl Into<Selection>,
+        times: impl Into<Vec<f64>>,
+        forces: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Self {
+        self.loaded(nodes, LoadKind::Total, table(times, forces))
+    }
+
+    /// A constant traction: a force per area (N/m^2) on the faces of the boundary (edges in the plane) between the
+    /// nodes, which all have to belong to such faces. The area is that of the undeformed shape, and the direction stays
+    /// as the body turns (a dead load). A membrane in space is loaded all over or at its rim, a string at its ends.
+    ///
+    /// Nodal forces are the integrals of the traction times the shape functions.
+    pub fn traction(self, nodes: impl Into<Selection>, traction: impl Into<Vec<f64>>) -> Self {
+        self.loaded(nodes, LoadKind::Traction, VectorSignal::Constant(traction.into()))
+    }
+
+    /// As [`traction`](Self::traction), with a traction (N/m^2) that changes with time (s): one component per
+    /// dimension.
+    pub fn traction_with<const D: usize>(
+        self,
+        nodes: impl Into<Selection>,
+        traction: impl Fn(f64) -> [f64; D] + Send + Sync + 'static,
+    ) -> Self {
+        self.loaded(nodes, LoadKind::Traction, VectorSignal::function(traction))
+    }
+
+    /// As [`traction`](Self::traction), with a traction that has the values `tractions` (N/m^2) at the `times` (s,
+    /// ascending), as [`load_table`](Self::load_table) has it.
+    pub fn traction_table(
+        self,
+        nodes: impl Into<Selection>,
+        times: impl Into<Vec<f64>>,
+        tractions: impl IntoIterator<Item: Into<Vec<f64>>>,
+    ) -> Self {
+        self.loaded(nodes, LoadKind::Traction, table(times, tractions))
+    }
+
+    pub(crate) fn loaded(
+        mut self,
+        nodes: impl Into<Selection>,
+        kind: LoadKind,
+        value: VectorSignal,
+    ) -> Self {
+        self.loads.push((nodes.into(), Load { kind, value }));
+        self
+    }
+}
+
+fn table(
+    times: impl Into<Vec<f64>>,
+    values: impl IntoIterator<Item: Into<Vec<f64>>>,
+) -> VectorSignal {
+    let values = values.into_iter().map(Into::into).collect();
+    VectorSignal::TimeTable(TimeTable::new(times.into(), values))
+}

@@ -1,0 +1,337 @@
+//! Scenes: a body, what surrounds it, and a timeline of phases.
+
+mod body_state;
+mod finer;
+mod forces;
+mod initial;
+mod load;
+mod loading;
+mod phase;
+mod start;
+mod term;
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+pub use body_state::BodyState;
+pub(crate) use load::{Load, LoadKind};
+#[cfg(feature = "checkpoint")]
+pub(crate) use phase::ContactWith;
+pub use phase::Phase;
+use start::Start;
+pub use term::Term;
+
+use crate::base::input::{InputError, find, finite};
+use crate::base::vector::largest;
+use crate::elements::body::Body;
+use crate::elements::force::{Force, Forces, NodalForces};
+use crate::integrators::ode::Failure;
+use crate::scene::constraint::{PhaseStart, Row, prescribe, rows};
+use crate::scene::forces::{Chamber, Contact, Obstacle, Spring};
+
+/// A body, gravity, springs, chambers, obstacles, and what happens when.
+///
+/// ```
+/// use pliant::{Body, Cells, Material, Mesh, Obstacle, Phase, Scene};
+///
+/// let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles)?;
+/// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 40.0 };
+/// let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?)
+///     .obstacle(Obstacle::half_plane([0.0, 0.0], [0.0, 1.0]).stiffness(100.0))
+///     .phase(
+///         Phase::until(0.5).hold("bottom").move_nodes([14, 15], [0.0, -0.16]).without_contact(),
+///     )
+///     .phase(Phase::until(1.0).named("free"));
+/// scene.validate()?;
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Scene {
+    body: Arc<Body>,
+    gravity: Option<Vec<f64>>,
+    springs: Vec<Spring>,
+    chambers: Vec<Chamber>,
+    obstacles: Vec<Obstacle>,
+    /// Other forces.
+    forces: Forces,
+    phases: Vec<Phase>,
+    start: Start,
+    unusual: Vec<String>,
+}
+
+/// What of a scene may be [unusual](Scene::unusual): the names of the indicators of its units.
+pub(crate) const UNITS: [&str; 7] =
+    ["size", "mass", "density", "young", "wave-speed", "thickness", "weight"];
+
+impl Scene {
+    /// A scene with a body alone, at rest in its undeformed shape at t = 0.
+    pub fn new(body: Body) -> Self {
+        Self {
+            start: Start::rest(&body),
+            body: Arc::new(body),
+            gravity: None,
+            springs: Vec::new(),
+            chambers: Vec::new(),
+            obstacles: Vec::new(),
+            forces: Forces::new(),
+            phases: Vec::new(),
+            unusual: Vec::new(),
+        }
+    }
+
+    /// Acceleration of gravity (m/s^2), one component per dimension, in all phases that have none of
+    /// [their own](Phase::gravity). Default: none.
+    pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
+        self.gravity = Some(acceleration.into());
+        self
+    }
+
+    /// Adds a spring between two nodes, which acts in every phase.
+    pub fn spring(mut self, spring: Spring) -> Self {
+        let number = self.springs.len() + 1;
+        self.springs.push(spring.or_named(format!("spring {number}")));
+        self
+    }
+
+    /// Adds a chamber, to be filled by the pressure that phases give it.
+    pub fn chamber(mut self, chamber: Chamber) -> Self {
+        self.chambers.push(chamber);
+        self
+    }
+
+    /// Adds an obstacle, which acts in every phase that does not exclude it.
+    pub fn obstacle(mut self, obstacle: Obstacle) -> Self {
+        self.obstacles.push(obstacle);
+        self
+    }
+
+    /// Adds any other force, which acts in every phase: a field, a wind, a coupling to something that is not
+    /// of this crate.
+    pub fn force(mut self, force: impl Force + 'static) -> Self {
+        self.forces.push(Arc::new(force));
+        self
+    }
+
+    /// Adds a phase, which begins where the one before it ends (the first one at t = 0).
+    pub fn phase(mut self, phase: Phase) -> Self {
+        let number = self.phases.len() + 1;
+        self.phases.push(phase.or_named(format!("phase {number}")));
+        self
+    }
+
+    /// Quantities that are meant as they are, though a soft body in SI units rarely has such: of `size`, `mass`, `density`,
+    /// `young`, `wave-speed`, `thickness` and `weight` (the strain of a column as high as the body under its own weight).
+    /// [Indicators](Self::indicators) with these names keep their numbers and warn of nothing.
+    ///
+    /// ```
+    /// # use pliant::{Body, Cells, Material, Mesh, Phase, Scene};
+    /// let mesh = Mesh::rectangle([15.0, 4.0], [16, 5], Cells::Triangles)?;
+    /// let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 40.0 };
+    /// let scene = Scene::new(Body::new(mesh, rubber).thickness(0.01).build()?).phase(Phase::until(1.0));
+    /// assert!(scene.warnings()[0].contains("15.524 m across"));
+    /// assert!(scene.unusual(["size"]).warnings().is_empty());
+    /// # Ok::<(), pliant::Error>(())
+    /// ```
+    pub fn unusual(mut self, names: impl IntoIterator<Item = impl Into<String>>) -> Self {
+        self.unusual.extend(names.into_iter().map(Into::into));
+        self
+    }
+
+    /// The same scene, ended at time `end` (s) if it lasts longer.
+    pub fn ended_at(mut self, end: f64) -> Self {
+        let whole = self.phases.iter().filter(|phase| phase.until < end).count();
+        self.phases.truncate(whole + 1);
+        if let Some(last) = self.phases.last_mut()
+            && (last.until > end || end.is_nan())
+        {
+            last.until = end;
+        }
+        self
+    }
+
+    /// The scene as [`ended_at`](Self::ended_at), but if it ends before time `end` (s), its last phase goes on
+    /// until then.
+    pub fn lasting(self, end: f64) -> Self {
+        let mut scene = self.ended_at(end);
+        if let Some(last) = scene.phases.last_mut() {
+            last.until = end;
+        }
+        scene
+    }
+
+    /// The body.
+    pub fn body(&self) -> &Body {
+        &self.body
+    }
+
+    /// Acceleration of gravity (m/s^2), if there is any, but for phases that have one of their own.
+    pub fn acceleration(&self) -> Option<&[f64]> {
+        self.gravity.as_deref()
+    }
+
+    /// The springs.
+    pub fn springs(&self) -> &[Spring] {
+        &self.springs
+    }
+
+    /// The chambers.
+    pub fn chambers(&self) -> &[Chamber] {
+        &self.chambers
+    }
+
+    /// The obstacles.
+    pub fn obstacles(&self) -> &[Obstacle] {
+        &self.obstacles
+    }
+
+    /// Number (from 0) of the chamber with a name; `input` is where that was given.
+    pub(crate) fn chamber_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        find(name, self.chambers.iter().map(Chamber::name), input, "chambers")
+    }
+
+    /// Number (from 0) of the spring with a name; `input` is where that was given.
+    pub(crate) fn spring_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        find(name, self.springs.iter().map(Spring::name), input, "springs")
+    }
+
+    /// Number (from 0) of the obstacle with a name; `input` is where that was given.
+    pub(crate) fn obstacle_number(&self, name: &str, input: &str) -> Result<usize, InputError> {
+        find(name, self.obstacles.iter().map(Obstacle::name), input, "obstacles")
+    }
+
+    /// The quantities that are [unusual](Self::unusual).
+    pub fn unusual_quantities(&self) -> &[String] {
+        &self.unusual
+    }
+
+    /// Forces that are none of these.
+    pub(crate) fn other_forces(&self) -> &Forces {
+        &self.forces
+    }
+
+    /// The phases, in order.
+    pub fn phases(&self) -> &[Phase] {
+        &self.phases
+    }
+
+    /// Times (s) within a phase, counted from 0, at which what it prescribes changes its law: those
+    /// of its paths and tables.
+    pub fn breaks(&self, phase: usize) -> Vec<f64> {
+        let start = phase.checked_sub(1).and_then(|before| self.phases.get(before));
+        let start = start.map_or(0.0, |before| before.until);
+        let Some(phase) = self.phases.get(phase) else { return Vec::new() };
+        let mut breaks = phase.breaks(&self.obstacles);
+        breaks.retain(|&time| start < time && time < phase.until);
+        breaks
+    }
+
+    /// Ends of the legs of a phase, counted from 0: its [`breaks`](Self::breaks) and its own end.
+    pub(crate) fn stops(&self, phase: usize) -> Vec<f64> {
+        let mut stops = self.breaks(phase);
+        stops.extend(self.phases.get(phase).map(Phase::end));
+        stops
+    }
+
+    /// End of the last phase (s); 0 without phases.
+    pub fn end(&self) -> f64 {
+        self.phases.last().map_or(0.0, |phase| phase.until)
+    }
+
+    /// Checks everything that can be known before the scene is run.
+    ///
+    /// # Errors
+    /// The first input that cannot be used: no phases, phases out of order, unknown nodes, springs,
+    /// chambers or obstacles, numbers out of range, constraints that contradict each other, initial
+    /// displacements in which a force has no meaning (an inverted cell of Green strain).
+    pub fn validate(&self) -> Result<(), InputError> {
+        self.forces_from_start().map(|_| ())
+    }
+
+    /// The [`forces`](Self::forces) of each phase, if those of the first one have a meaning at t = 0.
+    pub(crate) fn forces_from_start(&self) -> Result<Vec<Forces>, InputError> {
+        let forces = self.forces()?;
+        let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
+        let mut nodal = NodalForces::zeros(self.body.dofs());
+        let mut first = forces.iter().take(1).flatten();
+        match first.try_for_each(|force| force.add_forces(0.0, u, &v, &mut nodal)) {
+            Ok(()) => Ok(forces),
+            Err(failure) => Err(self.bad_start(failure)),
+        }
+    }
+
+    /// A force that has no meaning at t = 0.
+    pub(crate) fn bad_start(&self, failure: Failure) -> InputError {
+        match failure {
+            Failure::Recoverable(reason) => {
+                let displacement = format!("up to {:e} m", largest(self.initial_displacements()));
+                InputError::new("initial displacement", displacement, reason)
+            }
+            Failure::Fatal(error) => {
+                InputError::new("start of the first phase", "t = 0 s", error.to_string())
+            }
+        }
+    }
+
+    /// The phase that a run begins with.
+    pub(crate) fn first_phase(&self) -> Result<&Phase, InputError> {
+        let none = || InputError::new("number of phases", 0, "a scene needs one phase at least");
+        self.phases.first().ok_or_else(none)
+    }
+
+    /// The forces of each phase, all but those of constant matrices, after the checks of
+    /// [`validate`](Self::validate), but for those of the initial state.
+    pub(crate) fn forces(&self) -> Result<Vec<Forces>, InputError> {
+        self.first_phase()?;
+        self.initial_velocities()?;
+        for name in &self.unusual {
+            find(name, UNITS.into_iter(), "unusual", "quantities")?;
+        }
+        let mut start = 0.0;
+        for phase in &self.phases {
+            let input = format!("end of phase \"{}\"", phase.name);
+            finite(&input, &[phase.until])?;
+            if phase.until <= start {
+                let mend = format!("phases run one after the other: it must lie after {start} s");
+                return Err(InputError::new(input, format!("{} s", phase.until), mend));
+            }
+            start = phase.until;
+        }
+        unique("spring", self.springs.iter().map(Spring::name))?;
+        unique("chamber", self.chambers.iter().map(Chamber::name))?;
+        unique("obstacle", self.obstacles.iter().map(Obstacle::name))?;
+        for chamber in &self.chambers {
+            chamber.check_side(self.body.mesh(), &chamber.force(&self.body, Vec::new())?)?;
+        }
+        for obstacle in &self.obstacles {
+            Contact::new(&self.body, obstacle)?;
+        }
+        let (mut time, mut u) = (0.0, self.initial_displacements().to_vec());
+        let forces = self.phases.iter().map(|phase| {
+            let rows = self.rows(phase, &PhaseStart { time, u: &u })?;
+            time = phase.until;
+            prescribe(&rows, time, &mut u);
+            self.forces_in(phase)
+        });
+        forces.collect()
+    }
+
+    /// The rows of the constraints of a phase.
+    pub(crate) fn rows(&self, phase: &Phase, start: &PhaseStart) -> Result<Vec<Row>, InputError> {
+        rows(&phase.constraints, self.body.mesh(), &phase.name, start)
+    }
+}
+
+fn unique<'a>(what: &str, names: impl Iterator<Item = &'a str>) -> Result<(), InputError> {
+    let mut seen = BTreeSet::new();
+    for name in names {
+        if !seen.insert(name) {
+            let value = format!("\"{name}\"");
+            return Err(InputError::new(
+                format!("{what} name"),
+                value,
+                "it is taken: name it otherwise",
+            ));
+        }
+    }
+    Ok(())
+}

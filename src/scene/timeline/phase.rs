@@ -1,0 +1,523 @@
+//! Phases: what is held, moved, loaded and touched during a stretch of time.
+
+use std::sync::Arc;
+
+use super::load::Load;
+#[cfg(feature = "scene-file")]
+use crate::base::formula::Formula;
+use crate::base::input::{InputError, find};
+use crate::elements::mesh::{Mesh, Selection};
+use crate::scene::constraint::{
+    Axes, Axis, Constrained, Constraint, Motion, Prescribed, Spline, Turn,
+};
+use crate::scene::forces::{Live, Obstacle, Signal, VectorSignal};
+
+/// A stretch of time with its own constraints, loads and contacts. Displacements and velocities
+/// carry over from phase to phase.
+#[derive(Debug, Clone)]
+pub struct Phase {
+    pub(crate) name: String,
+    pub(crate) until: f64,
+    /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
+    pub(crate) gravity: Option<Vec<f64>>,
+    pub(crate) constraints: Vec<Constraint>,
+    pub(crate) loads: Vec<(Selection, Load)>,
+    /// Names of springs, force (N).
+    pub(crate) actuations: Vec<(Vec<String>, Signal)>,
+    /// Name of a chamber, pressure (Pa).
+    pub(crate) pressures: Vec<(String, Signal)>,
+    /// Nodes, pressure (Pa) on the faces between them.
+    pub(crate) face_pressures: Vec<(Selection, Signal)>,
+    pub(crate) projects_velocity: bool,
+    pub(crate) contact: ContactWith,
+    /// Obstacles that do not move as the scene has it.
+    pub(crate) turned: Vec<Obstacle>,
+}
+
+/// The obstacles that act.
+#[derive(Debug, Clone)]
+pub(crate) enum ContactWith {
+    All,
+    These(Vec<String>),
+}
+
+impl Phase {
+    /// A phase that ends at time `until` (s). Without more it is free motion, in contact with all
+    /// obstacles.
+    pub fn until(until: f64) -> Self {
+        Self {
+            name: String::new(),
+            until,
+            gravity: None,
+            constraints: Vec::new(),
+            loads: Vec::new(),
+            actuations: Vec::new(),
+            pressures: Vec::new(),
+            face_pressures: Vec::new(),
+            projects_velocity: false,
+            contact: ContactWith::All,
+            turned: Vec::new(),
+        }
+    }
+
+    /// Name of the phase, for messages and tables (default: "phase 1", "phase 2", ...).
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
+    }
+
+    /// Acceleration of gravity (m/s^2) in this phase, one component per dimension, in place of the
+    /// [scene's](crate::Scene::gravity). What its change adds to the energy of the body counts as supplied from outside.
+    pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
+        self.gravity = Some(acceleration.into());
+        self
+    }
+
+    /// Whether it has a gravity of its own.
+    #[cfg(feature = "study")]
+    pub(crate) fn has_gravity(&self) -> bool {
+        self.gravity.is_some()
+    }
+
+    /// Nodes that stay, in all components, where they are when the phase begins. Where the phase
+    /// before prescribed their position, they stay where that should have brought them.
+    pub fn hold(self, nodes: impl Into<Selection>) -> Self {
+        self.constrain(nodes, Axes::All, Motion::Hold)
+    }
+
+    /// As [`hold`](Self::hold), for some components only.
+    pub fn hold_axes(
+        self,
+        nodes: impl Into<Selection>,
+        axes: impl IntoIterator<Item = Axis>,
+    ) -> Self {
+        self.constrain(nodes, Axes::These(axes.into_iter().collect()), Motion::Hold)
+    }
+
+    /// Nodes that move on from there with a constant `velocity` (m/s), one component per dimension.
+    pub fn move_nodes(self, nodes: impl Into<Selection>, velocity: impl Into<Vec<f64>>) -> Self {
+        self.constrain(nodes, Axes::All, Motion::Velocity(velocity.into()))
+    }
+
+    /// One component of nodes that moves with a constant `velocity` (m/s); the others are free.
+    pub fn move_axis(self, nodes: impl Into<Selection>, axis: Axis, velocity: f64) -> Self {
+        self.constrain(nodes, Axes::These(vec![axis]), Motion::Velocity(vec![velocity]))
+    }
+
+    /// One component of nodes that follows a smooth path: `path` gives b, b' and b'' at time t.
+    pub fn follow(
+        self,
+        nodes: impl Into<Selection>,
+        axis: Axis,
+        path: impl Fn(f64) -> Prescribed + Send + Sync + 'static,
+    ) -> Self {
+        self.constrain(nodes, Axes::These(vec![axis]), Motion::Path(Arc::new(path)))
+    }
+
+    /// One component of nodes that follows a formula of time (m, from the undeformed position).
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn follow_formula(
+        self,
+        nodes: impl Into<Selection>,
+        axis: Axis,
+        formula: Formula,
+    ) -> Self {
+        self.constrain(nodes, Axes::These(vec![axis]), Motion::Formula(Arc::new(formula)))
+    }
+
+    /// One component of nodes that follows a smooth path through points: at the `times` (s,
+    /// ascending, two at least) it has the `displacements` (m, from the undeformed position).
+    ///
+    /// The path is a cubic spline, twice continuously differentiable, that starts and ends with
+    /// velocity 0; before the first time and after the last the component rests.
+    pub fn path(
+        self,
+        nodes: impl Into<Selection>,
+        axis: Axis,
+        times: impl Into<Vec<f64>>,
+        displacements: impl Into<Vec<f64>>,
+    ) -> Self {
+        let spline = Spline::new(times.into(), displacements.into());
+        self.constrain(nodes, Axes::These(vec![axis]), Motion::Spline(Arc::new(spline)))
+    }
+
+    /// Nodes on a plane of symmetry (a line, in the plane) with this `normal`, of any length: their displacements
+    /// along it stay what they are when the phase begins, and they slide freely in the plane.
+    ///
+    /// Half of a body so moves as the whole, with half of its mass by itself. What was given node by node has to be
+    /// halved on the plane: loads, point masses, springs, contact stiffness per node (not per area).
+    pub fn symmetry(mut self, nodes: impl Into<Selection>, normal: impl Into<Vec<f64>>) -> Self {
+        let what = Constrained::Along(nodes.into(), normal.into());
+        self.constraints.push(Constraint { what, how: Motion::Hold });
+        self
+    }
+
+    /// Nodes that turn about `centre` (m) with a constant angular velocity (rad/s): one component in the plane,
+    /// counter-clockwise; in space three, and `centre` is any point of the axis. They turn from where they
+    /// are when the phase begins, as [`move_nodes`](Self::move_nodes) moves them.
+    pub fn rotate(
+        self,
+        nodes: impl Into<Selection>,
+        centre: impl Into<Vec<f64>>,
+        angular_velocity: impl Into<Vec<f64>>,
+    ) -> Self {
+        let turn = Turn { centre: centre.into(), axis: angular_velocity.into(), angles: None };
+        self.constrain(nodes, Axes::All, Motion::Turn(Arc::new(turn)))
+    }
+
+    /// As [`rotate`](Self::rotate), by an angle that runs smoothly through given ones: at the `times` (s,
+    /// ascending, two at least) the `angles` (rad), as [`path`](Self::path) does. `axis` is the direction of the angular
+    /// velocity, of any length: `[1.0]` is counter-clockwise in the plane.
+    ///
+    /// Nodes turn from where they are when the phase begins, by what the angle has changed since then: phases
+    /// that are given the same path follow it without a jump.
+    pub fn rotate_path(
+        self,
+        nodes: impl Into<Selection>,
+        centre: impl Into<Vec<f64>>,
+        axis: impl Into<Vec<f64>>,
+        times: impl Into<Vec<f64>>,
+        angles: impl Into<Vec<f64>>,
+    ) -> Self {
+        let angles = Some(Spline::new(times.into(), angles.into()));
+        let turn = Turn { centre: centre.into(), axis: axis.into(), angles };
+        self.constrain(nodes, Axes::All, Motion::Turn(Arc::new(turn)))
+    }
+
+    /// A linear combination of displacements that keeps the value it has when the phase begins:
+    /// `terms` are (node number from 1, axis, coefficient).
+    pub fn hold_combination(mut self, terms: impl IntoIterator<Item = (usize, Axis, f64)>) -> Self {
+        let what = Constrained::Row(terms.into_iter().collect());
+        self.constraints.push(Constraint { what, how: Motion::Hold });
+        self
+    }
+
+    /// An actuation force (N) in each of the named springs, a number or any other [`Signal`]; a positive one
+    /// extends it. Forces on the same spring add up.
+    pub fn actuate<N: Into<String>>(
+        self,
+        springs: impl IntoIterator<Item = N>,
+        force: impl Into<Signal>,
+    ) -> Self {
+        self.actuated(springs, force.into())
+    }
+
+    /// As [`actuate`](Self::actuate), with a force (N) that changes with time (s).
+    pub fn actuate_with<N: Into<String>>(
+        self,
+        springs: impl IntoIterator<Item = N>,
+        force: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.actuated(springs, Signal::function(force))
+    }
+
+    /// As [`actuate`](Self::actuate), with a force that has the values `forces` (N) at the `times` (s,
+    /// ascending). In between it is interpolated linearly; before and after it is constant.
+    pub fn actuate_table<N: Into<String>>(
+        self,
+        springs: impl IntoIterator<Item = N>,
+        times: impl Into<Vec<f64>>,
+        forces: impl Into<Vec<f64>>,
+    ) -> Self {
+        self.actuated(springs, Signal::table(times, forces))
+    }
+
+    /// A pressure (Pa) in a chamber, a number or any other [`Signal`]; a positive one enlarges it. Pressures in the
+    /// same chamber add up.
+    pub fn pressure(self, chamber: impl Into<String>, pressure: impl Into<Signal>) -> Self {
+        self.pressurized(chamber, pressure.into())
+    }
+
+    /// As [`pressure`](Self::pressure), with a pressure (Pa) that changes with time (s).
+    pub fn pressure_with(
+        self,
+        chamber: impl Into<String>,
+        pressure: impl Fn(f64) -> f64 + Send + Sync + 'static,
+    ) -> Self {
+        self.pressurized(chamber, Signal::function(pressure))
+    }
+
+    /// As [`pressure`](Self::pressure), with a pressure that has the `values` (Pa) at the `times` (s,
+    /// ascending). In between it is interpolated linearly; before and after it is constant.
+    pub fn pressure_table(
+        self,
+        chamber: impl Into<String>,
+        times: impl Into<Vec<f64>>,
+        values: impl Into<Vec<f64>>,
+    ) -> Self {
+        self.pressurized(chamber, Signal::table(times, values))
+    }
+
+    /// A pressure (Pa) on the faces of the boundary (edges in the plane) between the nodes, which all have to belong to
+    /// such faces; a positive one presses onto the body. It follows the body: it acts on the deformed area, along
+    /// its normal. (A constant direction has [`traction`](Self::traction).) Pressures on the same faces add up.
+    ///
+    /// Cells of a membrane in space are pressed on the side from which they run counter-clockwise.
+    pub fn pressure_on(mut self, nodes: impl Into<Selection>, pressure: impl Into<Signal>) -> Self {
+        self.face_pressures.push((nodes.into(), pressure.into()));
+        self
+    }
+
+    /// No obstacle acts in this phase.
+    pub fn without_contact(self) -> Self {
+        self.contact_with::<String>([])
+    }
+
+    /// Only the named obstacles act in this phase.
+    pub fn contact_with<N: Into<String>>(mut self, obstacles: impl IntoIterator<Item = N>) -> Self {
+        self.contact = ContactWith::These(obstacles.into_iter().map(Into::into).collect());
+        self
+    }
+
+    /// Begins with the velocities nearest to the present ones that the constraints allow (an
+    /// inelastic impact). Without it, the default, a jump of b' decays by the stabilization
+    /// within a time of about 1/alpha.
+    pub fn project_velocity(mut self) -> Self {
+        self.projects_velocity = true;
+        self
+    }
+
+    /// Name of the phase.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// End of the phase (s).
+    pub fn end(&self) -> f64 {
+        self.until
+    }
+
+    /// Times (s) at which what the phase prescribes changes its law, ascending; not only those
+    /// within it. `obstacles` are those of the scene.
+    pub(crate) fn breaks(&self, obstacles: &[Obstacle]) -> Vec<f64> {
+        let paths = self.constraints.iter().map(|constraint| constraint.how.breaks());
+        let loads = self.loads.iter().map(|(_, load)| load.value.breaks());
+        let actuations = self.actuations.iter().map(|(_, force)| force.breaks());
+        let pressures = self.pressures.iter().map(|(_, pressure)| pressure.breaks());
+        let on_faces = self.face_pressures.iter().map(|(_, pressure)| pressure.breaks());
+        let acting = self.contacts(obstacles).unwrap_or_default();
+        let obstacles = acting.into_iter().map(Obstacle::breaks);
+        let all = paths.chain(loads).chain(actuations).chain(pressures).chain(on_faces);
+        let all = all.chain(obstacles);
+        let mut breaks = all.flatten().copied().collect::<Vec<f64>>();
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    }
+
+    pub(super) fn or_named(self, name: String) -> Self {
+        if self.name.is_empty() { self.named(name) } else { self }
+    }
+
+    /// The obstacles that act in this phase.
+    pub(crate) fn contacts<'a>(
+        &'a self,
+        obstacles: &'a [Obstacle],
+    ) -> Result<Vec<&'a Obstacle>, InputError> {
+        let ContactWith::These(names) = &self.contact else {
+            return Ok(obstacles.iter().map(|obstacle| self.moving(obstacle)).collect());
+        };
+        let input = format!("contact of phase \"{}\"", self.name);
+        let find =
+            |name: &String| find(name, obstacles.iter().map(Obstacle::name), &input, "obstacles");
+        names.iter().map(|name| Ok(self.moving(&obstacles[find(name)?]))).collect()
+    }
+
+    /// An obstacle of the scene as it moves in this phase.
+    pub(crate) fn moving<'a>(&'a self, obstacle: &'a Obstacle) -> &'a Obstacle {
+        self.turned.iter().find(|turned| turned.name() == obstacle.name()).unwrap_or(obstacle)
+    }
+
+    /// Whether there are obstacles that do not move as the scene has it.
+    pub(crate) fn is_turned(&self) -> bool {
+        !self.turned.is_empty()
+    }
+
+    /// Lets an obstacle of the scene move on with `velocity` (m/s) from where it is at time `t` (s).
+    pub(crate) fn turn(&mut self, obstacle: &Obstacle, t: f64, velocity: Vec<f64>) {
+        let here = self.moving(obstacle).displacement(t);
+        let turned = obstacle.clone().velocity(velocity).placed(t, here);
+        self.turned.retain(|other| other.name() != turned.name());
+        self.turned.push(turned);
+    }
+
+    /// The phase as it follows `before` at time `t` (s): `obstacles` that were turned go on from where they are.
+    pub(crate) fn after(mut self, before: &Self, obstacles: &[Obstacle], t: f64) -> Self {
+        let is_turned = |obstacle: &&Obstacle| {
+            before.turned.iter().any(|turned| turned.name() == obstacle.name())
+        };
+        for obstacle in obstacles.iter().filter(is_turned) {
+            let here = before.moving(obstacle).displacement(t);
+            self.turned.push(obstacle.clone().placed(t, here));
+        }
+        self
+    }
+
+    /// The pressure in a chamber, if that is one number that a command can set.
+    pub(crate) fn live_pressure(&self, chamber: &str) -> Option<&Live> {
+        let mut all = self.pressures.iter().filter(|(name, _)| name == chamber);
+        all.next().filter(|_| all.next().is_none())?.1.live()
+    }
+
+    /// The actuation force in a spring, likewise.
+    pub(crate) fn live_actuation(&self, spring: &str) -> Option<&Live> {
+        let acts = |(names, _): &&(Vec<String>, Signal)| names.iter().any(|name| name == spring);
+        let mut all = self.actuations.iter().filter(acts);
+        let (names, force) = all.next().filter(|_| all.next().is_none())?;
+        force.live().filter(|_| names.len() == 1)
+    }
+
+    /// The load on a selection, likewise.
+    pub(crate) fn live_load(&self, nodes: &Selection) -> Option<&Live> {
+        let mut all = self.loads.iter().filter(|(other, _)| other == nodes);
+        all.next().filter(|_| all.next().is_none())?.1.value.live()
+    }
+
+    /// The phase with constants in place of numbers that commands can set: those to come do not change it.
+    pub(crate) fn frozen(self: &Arc<Self>) -> Arc<Self> {
+        if !self.is_live() {
+            return self.clone();
+        }
+        let mut frozen = Self::clone(self);
+        for (_, load) in &mut frozen.loads {
+            load.value = load.value.frozen();
+        }
+        let actuations = frozen.actuations.iter_mut().map(|(_, force)| force);
+        for signal in actuations.chain(frozen.pressures.iter_mut().map(|(_, pressure)| pressure)) {
+            *signal = signal.frozen();
+        }
+        Arc::new(frozen)
+    }
+
+    /// What acts at rest at a `fraction` of the load, for good: loads, pressures and the forces of actuators are so much of those at the end,
+    /// and `obstacles` stand where they have come to by then.
+    pub(crate) fn at_rest(&self, fraction: f64, obstacles: &[Obstacle], dimension: usize) -> Self {
+        let (mut rest, end) = (self.clone(), self.until);
+        for (_, load) in &mut rest.loads {
+            let force = load.value.components(end, dimension);
+            let part = force.iter().map(|force| fraction * force).collect();
+            load.value = VectorSignal::Constant(part);
+        }
+        let actuations = rest.actuations.iter_mut().map(|(_, force)| force);
+        let pressures = rest.pressures.iter_mut().map(|(_, pressure)| pressure);
+        let on_faces = rest.face_pressures.iter_mut().map(|(_, pressure)| pressure);
+        for signal in actuations.chain(pressures).chain(on_faces) {
+            *signal = Signal::constant(fraction * signal.at(end));
+        }
+        let reached = fraction * end;
+        for obstacle in obstacles {
+            if self.moving(obstacle).velocity_at(reached) != [0.0; 3] {
+                rest.turn(obstacle, reached, vec![0.0; dimension]);
+            }
+        }
+        rest
+    }
+
+    /// Whether there are any.
+    fn is_live(&self) -> bool {
+        self.loads.iter().any(|(_, load)| load.value.live().is_some())
+            || self.actuations.iter().any(|(_, force)| force.live().is_some())
+            || self.pressures.iter().any(|(_, pressure)| pressure.live().is_some())
+    }
+
+    /// Replaces the pressure in a chamber.
+    pub(crate) fn set_pressure(&mut self, chamber: &str, pressure: Signal) {
+        self.pressures.retain(|(name, _)| name != chamber);
+        self.pressures.push((chamber.to_owned(), pressure));
+    }
+
+    /// Replaces the actuation force in a spring.
+    pub(crate) fn set_actuation(&mut self, spring: &str, force: Signal) {
+        for (names, _) in &mut self.actuations {
+            names.retain(|name| name != spring);
+        }
+        self.actuations.retain(|(names, _)| !names.is_empty());
+        self.actuations.push((vec![spring.to_owned()], force));
+    }
+
+    /// Replaces the loads that were given for the same selection.
+    pub(crate) fn set_load(&mut self, nodes: Selection, load: Load) {
+        self.loads.retain(|(other, _)| *other != nodes);
+        self.loads.push((nodes, load));
+    }
+
+    /// Frees the `nodes` (counted from 0) that are held or moved one by one. Returns whether there were any.
+    pub(crate) fn release(&mut self, mesh: &Mesh, nodes: &[usize]) -> Result<bool, InputError> {
+        let mut kept = Vec::with_capacity(self.constraints.len());
+        let mut is_changed = false;
+        for Constraint { what, how } in self.constraints.drain(..) {
+            let selection = match &what {
+                Constrained::Nodes(selection, _) | Constrained::Along(selection, _) => selection,
+                Constrained::Row(_) => {
+                    kept.push(Constraint { what, how });
+                    continue;
+                }
+            };
+            let held = mesh.select(selection)?;
+            let rest: Vec<usize> = held.iter().filter(|n| !nodes.contains(n)).copied().collect();
+            is_changed |= rest.len() < held.len();
+            let rest = match rest.len() {
+                0 => continue,
+                count if count == held.len() => selection.clone(),
+                _ => Selection::Numbers(rest.iter().map(|node| node + 1).collect()),
+            };
+            let what = match what {
+                Constrained::Along(_, normal) => Constrained::Along(rest, normal),
+                Constrained::Nodes(_, axes) => Constrained::Nodes(rest, axes),
+                row @ Constrained::Row(_) => row,
+            };
+            kept.push(Constraint { what, how });
+        }
+        self.constraints = kept;
+        Ok(is_changed)
+    }
+
+    /// Lets an obstacle act or not; `all` are those of the scene.
+    pub(crate) fn set_contact(&mut self, obstacle: &str, acts: bool, all: &[Obstacle]) {
+        let acting = match &mut self.contact {
+            ContactWith::These(names) => names,
+            contact => {
+                let all = all.iter().map(|obstacle| obstacle.name().to_owned());
+                *contact = ContactWith::These(all.collect());
+                let ContactWith::These(names) = contact else { return };
+                names
+            }
+        };
+        acting.retain(|name| name != obstacle);
+        if acts {
+            acting.push(obstacle.to_owned());
+        }
+    }
+
+    fn actuated<N: Into<String>>(
+        mut self,
+        springs: impl IntoIterator<Item = N>,
+        force: Signal,
+    ) -> Self {
+        self.actuations.push((springs.into_iter().map(Into::into).collect(), force));
+        self
+    }
+
+    fn pressurized(mut self, chamber: impl Into<String>, pressure: Signal) -> Self {
+        self.pressures.push((chamber.into(), pressure));
+        self
+    }
+
+    fn constrain(mut self, nodes: impl Into<Selection>, axes: Axes, how: Motion) -> Self {
+        self.constraints.push(Constraint { what: Constrained::Nodes(nodes.into(), axes), how });
+        self
+    }
+}
+
+pub(super) fn check_vector(
+    input: &str,
+    vector: &[f64],
+    dimension: usize,
+    unit: &str,
+) -> Result<(), InputError> {
+    if vector.len() == dimension {
+        return Ok(());
+    }
+    let mend = format!("it needs {dimension} component(s) ({unit})");
+    Err(InputError::new(input, format!("{vector:?}"), mend))
+}

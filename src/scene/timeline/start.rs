@@ -1,0 +1,80 @@
+//! How a scene starts: displacements and velocities at t = 0.
+
+use super::body_state::check_positions;
+use super::phase::check_vector;
+use crate::base::input::{InputError, finite};
+use crate::base::vector::cross;
+use crate::elements::body::Body;
+use crate::elements::mesh::Selection;
+use crate::scene::constraint::angular;
+
+/// The start as the user of a scene gives it.
+#[derive(Debug, Clone)]
+pub(super) struct Start {
+    /// Undeformed positions (m) of the body that had the displacements, if it was another one.
+    pub(super) positions: Option<Vec<f64>>,
+    /// Displacements (m).
+    pub(super) displacements: Vec<f64>,
+    /// Velocities (m/s), but for what follows.
+    pub(super) velocities: Vec<f64>,
+    /// Angular velocity (rad/s) about the centre of mass, on top of them.
+    pub(super) spin: Option<Vec<f64>>,
+    /// Velocities (m/s) of some nodes, instead of all that.
+    pub(super) of_nodes: Vec<(Selection, Vec<f64>)>,
+}
+
+impl Start {
+    /// At rest in the undeformed shape.
+    pub(super) fn rest(body: &Body) -> Self {
+        let rest = vec![0.0; body.dofs()];
+        Self {
+            positions: None,
+            displacements: rest.clone(),
+            velocities: rest,
+            spin: None,
+            of_nodes: Vec::new(),
+        }
+    }
+
+    /// Velocities at t = 0.
+    ///
+    /// # Errors
+    /// A state of another mesh, numbers of components that do not fit the body, numbers that are not finite, unknown nodes.
+    pub(super) fn velocities(&self, body: &Body) -> Result<Vec<f64>, InputError> {
+        let dimension = body.dimension();
+        let Self { positions, displacements, velocities, spin, of_nodes } = self;
+        if let Some(positions) = positions {
+            check_positions(positions, body)?;
+        }
+        for (name, vector) in
+            [("initial displacement", displacements), ("initial velocity", velocities)]
+        {
+            if vector.len() != body.dofs() {
+                let mend = format!("it needs {dimension} components at each node");
+                let value = format!("{} numbers in all", vector.len());
+                return Err(InputError::new(name, value, mend));
+            }
+            finite(name, vector)?;
+        }
+        let mut v = velocities.clone();
+        if let Some(spin) = spin {
+            let omega = angular("spin", spin, dimension)?;
+            let positions = body.mesh().positions().iter();
+            let x: Vec<f64> = positions.zip(displacements).map(|(x, u)| x + u).collect();
+            let centre = body.mass_average(&x);
+            for (v, x) in v.chunks_exact_mut(dimension).zip(x.chunks_exact(dimension)) {
+                let mut arm = [0.0; 3];
+                arm.iter_mut().zip(x.iter().zip(&centre)).for_each(|(arm, (x, c))| *arm = x - c);
+                v.iter_mut().zip(cross(&omega, &arm)).for_each(|(v, turning)| *v += turning);
+            }
+        }
+        for (nodes, velocity) in of_nodes {
+            check_vector("initial velocity", velocity, dimension, "m/s")?;
+            finite("initial velocity", velocity)?;
+            for node in body.mesh().select(nodes)? {
+                v[node * dimension..][..dimension].copy_from_slice(velocity);
+            }
+        }
+        Ok(v)
+    }
+}

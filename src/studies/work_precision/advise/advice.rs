@@ -1,0 +1,87 @@
+//! What was found out.
+
+use super::choice::Choice;
+use super::parts::Parts;
+use crate::dynamics::equilibrium::MeshEstimate;
+use crate::scene::timeline::Term;
+use crate::studies::work_precision::look::Look;
+
+/// What is enough for a scene, and what that was found from.
+#[derive(Debug, Clone)]
+pub struct Advice {
+    /// What has to be right.
+    pub quantity: String,
+    /// The relative accuracy that was asked for, and what it is relative to: how much the quantity changes, in `unit`.
+    pub accuracy: f64,
+    /// See `accuracy`.
+    pub scale: f64,
+    /// Unit of the scale.
+    pub unit: String,
+    /// The scene as it was written.
+    pub written: Candidate,
+    /// The cheapest that is right, if there is one: its error and the [`resolution`](Self::resolution) are below the accuracy
+    /// together.
+    pub enough: Option<Candidate>,
+    /// What all were compared with, and the relative error that it may have itself (NaN: not known).
+    pub truth: Option<Candidate>,
+    /// See `truth`.
+    pub resolution: f64,
+    /// Where no finer mesh is fine enough to compare with, so that the mesh is taken as it was written: by how much the finest
+    /// that was tried differs from it (relative).
+    pub mesh: Option<f64>,
+    /// Values of alpha (1/s), each with what ten times as much changes (relative).
+    pub alphas: Vec<(f64, f64)>,
+    /// What the other measure of strain changes.
+    pub law: Option<f64>,
+    /// What the other inertia changes.
+    pub inertia: Option<f64>,
+    /// What is changed by leaving something out.
+    pub terms: Vec<(Term, f64)>,
+    /// All that were run, in their order.
+    pub candidates: Vec<Candidate>,
+    /// Time (s) until which the motion can be known, if small errors grow too large before its end.
+    pub known_until: Option<f64>,
+    /// Time (s) at which the motion ends that all else is about: the end of the scene, or some time before `known_until`.
+    pub end: f64,
+    /// By how much a number that an equilibrium gives is off because of the mesh as it was written, as adjoint-weighted residuals
+    /// tell; only where an equilibrium is enough. `errors` of meshes are what paired runs tell.
+    pub mesh_estimate: Option<MeshEstimate>,
+    /// What a coarse run told before all others.
+    pub look: Option<Look>,
+    /// What was not tried, and why.
+    pub not_tried: Vec<String>,
+    /// Whether the budget was spent, or the observer has ended the search, before all was tried.
+    pub is_cut_short: bool,
+    /// Runs, and the time (s) that they took in all.
+    pub runs: usize,
+    /// See `runs`.
+    pub seconds: f64,
+    /// Runs that were known from an earlier search.
+    pub known: usize,
+}
+
+/// A choice, and how good it is.
+#[derive(Debug, Clone)]
+pub struct Candidate {
+    /// The choice.
+    pub choice: Choice,
+    /// What has to be set for it in the file of the scene, as `--set` takes it.
+    pub set: Vec<String>,
+    /// Its relative error; none without a motion, or without anything to compare with.
+    pub error: Option<f64>,
+    /// What that is made of, where the runs between it and the truth were made, too.
+    pub parts: Option<Parts>,
+    /// Wall-clock time (s) of one run.
+    pub seconds: f64,
+    /// Unknowns of the integrator.
+    pub unknowns: usize,
+    /// Why there is no motion.
+    pub failure: Option<String>,
+}
+
+impl Candidate {
+    pub(super) fn new(choice: Choice) -> Self {
+        let set = Vec::new();
+        Self { choice, set, error: None, parts: None, seconds: 0.0, unknowns: 0, failure: None }
+    }
+}

@@ -1,0 +1,185 @@
+//! The advice in words.
+
+use std::fmt;
+
+use super::advice::{Advice, Candidate};
+use super::choice::{Choice, times};
+use crate::base::input::{percent, short, told};
+use crate::dynamics::report::Verdict;
+use crate::elements::body::{Inertia, Strain};
+use crate::studies::work_precision::look::Look;
+use crate::studies::work_precision::time_text;
+
+impl Advice {
+    /// What was found, reason by reason.
+    pub fn reasons(&self) -> Vec<String> {
+        let mut reasons = Vec::new();
+        let rich = self.truth.as_ref().map(|truth| &truth.choice);
+        for (alpha, change) in &self.alphas {
+            let change = self.change(*change);
+            reasons.push(format!("alpha = {alpha:e} 1/s: ten times as much {change}"));
+        }
+        if let (Some(law), Some(rich)) = (self.law, rich) {
+            let other = match rich.strain {
+                Strain::Green => "Cauchy strain in place of Green strain",
+                Strain::Cauchy => "Green strain in place of Cauchy strain",
+            };
+            reasons.push(format!("{other} {}", self.change(law)));
+        }
+        if self.law.is_none() && rich.is_some_and(|rich| rich.strain == Strain::Cauchy) {
+            reasons.push("what Green strain changes is not known: it gave no motion".into());
+        }
+        for candidate in &self.candidates {
+            let is_mesh = |rich: &Choice| {
+                let same = &candidate.choice;
+                same.strain == rich.strain
+                    && same.inertia == rich.inertia
+                    && same.without == rich.without
+                    && same.settings == rich.settings
+                    && !same.is_static
+            };
+            if let (Some(error), true) = (candidate.error, rich.is_some_and(is_mesh)) {
+                let choice = &candidate.choice;
+                let mesh = match (choice.quadratic, choice.halved) {
+                    (false, 0) => "the mesh as written".to_owned(),
+                    (false, count) => format!("cells halved {}", times(count)),
+                    (true, 0) => "quadratic cells".to_owned(),
+                    (true, count) => format!("quadratic cells, halved {}", times(count)),
+                };
+                let (unknowns, time) = (candidate.unknowns, time_text(candidate.seconds));
+                let differs = if self.mesh.is_some() { "away" } else { "off" };
+                reasons.push(match error {
+                    0.0 => format!("{mesh}: {unknowns} unknowns; what all are compared with"),
+                    _ => {
+                        let off = self.off(error, differs);
+                        format!("{mesh}: {unknowns} unknowns, {off}, {time}")
+                    }
+                });
+            }
+        }
+        for (term, error) in &self.terms {
+            reasons.push(match error.is_nan() {
+                true => format!("without {term} there is no {} to compare", self.quantity),
+                false => format!("without {term} it changes by {}", percent(*error)),
+            });
+        }
+        if let (Some(error), Some(rich)) = (self.inertia, rich) {
+            let other = match rich.inertia {
+                Inertia::Consistent => "lumped inertia",
+                Inertia::Lumped => "consistent inertia",
+            };
+            reasons.push(format!("{other} {}", self.change(error)));
+        }
+        if let Some(estimate) = &self.mesh_estimate {
+            let apart =
+                self.candidates.iter().find(|candidate| candidate.choice.is_mesh_as_written());
+            let paired = apart.and_then(|candidate| Some(percent(candidate.parts?.mesh)));
+            reasons.push(format!(
+                "the mesh as written is {} off at rest, as adjoint-weighted residuals tell{}{}",
+                percent(estimate.correction.abs() / self.scale),
+                if estimate.is_reliable() { "" } else { " roughly" },
+                paired.map_or_else(String::new, |paired| format!(" (by paired runs: {paired})"))
+            ));
+        }
+        reasons
+    }
+
+    /// A relative change in words: not a number where the quantity is none, as a frequency without swings.
+    fn change(&self, change: f64) -> String {
+        match change.is_nan() {
+            true => format!("leaves no {} to compare", self.quantity),
+            false => format!("changes it by {}", percent(change)),
+        }
+    }
+
+    /// A relative error in words, `differs` after it.
+    fn off(&self, error: f64, differs: &str) -> String {
+        match error.is_nan() {
+            true => format!("no {} to compare", self.quantity),
+            false => format!("{} {differs}", percent(error)),
+        }
+    }
+}
+
+impl fmt::Display for Advice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { quantity, accuracy, scale, unit, .. } = self;
+        write!(f, "{quantity} to {}", percent(*accuracy))?;
+        match scale.is_nan() {
+            true => writeln!(f)?,
+            false => writeln!(f, ", which is {} {unit}", short(accuracy * scale))?,
+        }
+        if let Some(until) = self.known_until {
+            writeln!(
+                f,
+                "It can be known until t = {} s only: small errors grow there, as after impacts. What follows is about \
+                 the motion until t = {} s; rely on energies and means later on.",
+                told(until),
+                told(self.end)
+            )?;
+        }
+        let made_of = |candidate: &Candidate| match candidate.parts {
+            Some(parts) => format!(" ({parts})"),
+            None => String::new(),
+        };
+        let run = |candidate: &Candidate| match (candidate.error, &candidate.failure) {
+            (_, Some(failure)) => format!("{}: {failure}", candidate.choice),
+            (Some(error), None) => {
+                let time = time_text(candidate.seconds);
+                let made_of = made_of(candidate);
+                format!("{}: {}{made_of} in {time}", candidate.choice, self.off(error, "off"))
+            }
+            (None, None) => format!("{}: {}", candidate.choice, time_text(candidate.seconds)),
+        };
+        match &self.enough {
+            Some(enough) if self.resolution.is_nan() => {
+                writeln!(f, "\nEnough on this mesh: {}", run(enough))?;
+            }
+            Some(enough) => writeln!(f, "\nEnough:      {}", run(enough))?,
+            None => writeln!(f, "\nNothing that was tried is enough.")?,
+        }
+        writeln!(f, "As written:  {}", run(&self.written))?;
+        match self.mesh {
+            Some(apart) => writeln!(
+                f,
+                "This mesh is not fine enough itself: the finest that was tried differs from it by {}, and may not be either. \
+                 Allow more time (--budget); loads on single nodes and sharp corners may leave no limit.",
+                percent(apart)
+            )?,
+            None if self.resolution.is_nan() => writeln!(
+                f,
+                "What the mesh lacks is not known: no finer one gave a motion to compare with."
+            )?,
+            None => {
+                let resolution = percent(self.resolution);
+                writeln!(f, "What they are compared with may itself be off by {resolution}.")?;
+            }
+        }
+        writeln!(f)?;
+        for reason in self.reasons() {
+            writeln!(f, "- {reason}")?;
+        }
+        let looked = self.look.iter().flat_map(Look::indicators);
+        for indicator in looked.filter(|indicator| indicator.verdict != Verdict::Fine) {
+            let less = match indicator.verdict {
+                Verdict::MoreThanNeeded => "less would do: ",
+                _ => "",
+            };
+            writeln!(f, "- {less}{}", indicator.text)?;
+        }
+        for failed in self.candidates.iter().filter(|candidate| candidate.failure.is_some()) {
+            writeln!(f, "- failed: {}", run(failed))?;
+        }
+        for what in &self.not_tried {
+            writeln!(f, "- not tried: {what}")?;
+        }
+        if self.is_cut_short {
+            writeln!(f, "- cut short: allow more time (--budget)")?;
+        }
+        write!(f, "\n{} runs in {}", self.runs, time_text(self.seconds))?;
+        match self.known {
+            0 => Ok(()),
+            known => write!(f, ", and {known} that were known"),
+        }
+    }
+}

@@ -1,0 +1,223 @@
+//! A model of a scene, and how it is integrated.
+
+use std::fmt;
+
+use crate::base::input::InputError;
+use crate::elements::body::{Inertia, Strain};
+use crate::elements::mesh::CellKind;
+use crate::scene::settings::{ContactEvents, Settings};
+use crate::scene::timeline::{Scene, Term};
+
+/// What of a scene is modelled, by what measure of strain, on what mesh, and how it is integrated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Choice {
+    /// Measure of strain.
+    pub strain: Strain,
+    /// Whether cells get mid nodes: see [`Scene::quadratic`].
+    pub quadratic: bool,
+    /// How often each cell is divided: see [`Scene::halved`].
+    pub halved: usize,
+    /// How inertia is shared out.
+    pub inertia: Inertia,
+    /// What is left out.
+    pub without: Vec<Term>,
+    /// Whether the equilibrium of the last phase stands for the end of the motion, as `pliant static` finds it.
+    pub is_static: bool,
+    /// How it is integrated.
+    pub settings: Settings,
+}
+
+impl Choice {
+    /// The scene as it was written.
+    pub(super) fn written(scene: &Scene, settings: &Settings) -> Self {
+        let body = scene.body();
+        Self {
+            strain: body.strain(),
+            quadratic: false,
+            halved: 0,
+            inertia: body.inertia_kind(),
+            without: Vec::new(),
+            is_static: false,
+            settings: settings.clone(),
+        }
+    }
+
+    /// The scene as it is modelled by this choice; `written` is what it was made of.
+    ///
+    /// # Errors
+    /// A scene that cannot be on another mesh: see [`Scene::halved`].
+    pub fn scene(&self, written: &Scene) -> Result<Scene, InputError> {
+        let (strain, inertia) = (self.strain, self.inertia);
+        let mut scene = match (written.body().strain(), written.body().inertia_kind()) {
+            own if own == (strain, inertia) => written.clone(),
+            _ => written.with_body(|body| body.strain(strain).inertia(inertia))?,
+        };
+        if self.quadratic {
+            scene = scene.quadratic()?;
+        }
+        for _ in 0..self.halved {
+            scene = scene.halved()?;
+        }
+        self.without.iter().try_fold(scene, |scene, term| scene.without(term))
+    }
+
+    /// Whether both are the same model on the same mesh, however they are integrated.
+    pub(super) fn is_model_of(&self, other: &Self) -> bool {
+        let settings = other.settings.clone();
+        let alpha = self.settings.alpha == other.settings.alpha;
+        alpha && Self { settings, ..self.clone() } == *other
+    }
+
+    /// Whether it is on the mesh as it was written.
+    pub(super) fn is_mesh_as_written(&self) -> bool {
+        (self.quadratic, self.halved) == (false, 0)
+    }
+
+    /// Whether both are on the same mesh.
+    pub(super) fn is_mesh_of(&self, other: &Self) -> bool {
+        (self.quadratic, self.halved) == (other.quadratic, other.halved)
+    }
+
+    /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written` with `settings`.
+    pub(super) fn overrides(&self, written: &Scene, settings: &Settings) -> Vec<String> {
+        let mut sets = Vec::new();
+        let body = written.body();
+        if self.strain != body.strain() {
+            let strain = match self.strain {
+                Strain::Cauchy => "cauchy",
+                Strain::Green => "green",
+            };
+            sets.push(format!("body.strain={strain}"));
+        }
+        if self.quadratic {
+            sets.push("body.mesh.quadratic=true".into());
+        }
+        if self.halved > 0 {
+            sets.push(format!("body.mesh.halved={}", self.halved));
+        }
+        if self.inertia != body.inertia_kind() {
+            let inertia = match self.inertia {
+                Inertia::Consistent => "consistent",
+                Inertia::Lumped => "lumped",
+            };
+            sets.push(format!("body.inertia={inertia}"));
+        }
+        let numbers = |count: usize| (1..=count).map(|number| number.to_string());
+        for term in &self.without {
+            match term {
+                Term::Gravity => {
+                    let zero = format!("gravity={:?}", vec![0.0; body.dimension()]);
+                    let phases = numbers(written.phases().len()).zip(written.phases());
+                    let own = phases.filter(|(_, phase)| phase.has_gravity());
+                    sets.push(zero.clone());
+                    sets.extend(own.map(|(number, _)| format!("phase.{number}.{zero}")));
+                }
+                Term::Viscosity => {
+                    sets.push("body.material.viscosity=0".into());
+                    let regions = numbers(body.region_count());
+                    sets.extend(regions.map(|k| format!("body.region.{k}.material.viscosity=0")));
+                }
+                Term::Friction => {
+                    for (number, obstacle) in numbers(usize::MAX).zip(written.obstacles()) {
+                        if obstacle.has_friction() {
+                            sets.push(format!("obstacle.{number}.friction_coefficient=0"));
+                        }
+                        if obstacle.has_tangential_damping() {
+                            sets.push(format!("obstacle.{number}.tangential_damping=0"));
+                        }
+                    }
+                }
+                Term::Obstacle(name) => {
+                    for (number, phase) in numbers(usize::MAX).zip(written.phases()) {
+                        let acting = phase.contacts(written.obstacles()).unwrap_or_default();
+                        let rest = acting.iter().map(|obstacle| obstacle.name());
+                        let rest: Vec<&str> = rest.filter(|other| other != name).collect();
+                        sets.push(match rest.is_empty() {
+                            true => format!("phase.{number}.contact=false"),
+                            false => format!("phase.{number}.contact={rest:?}"),
+                        });
+                    }
+                }
+            }
+        }
+        if self.is_static {
+            return sets;
+        }
+        sets.push(format!("solver.method={}", self.settings.method));
+        sets.push(format!("solver.rtol={:e}", self.settings.rtol));
+        let own = self.settings.tolerances(written);
+        if settings.atol_position.is_some() && self.settings.atol_position.is_none() {
+            sets.push(format!("solver.atol_position={:e}", own.position));
+        }
+        if settings.atol_velocity.is_some() && self.settings.atol_velocity.is_none() {
+            sets.push(format!("solver.atol_velocity={:e}", own.velocity));
+        }
+        if self.settings.alpha != settings.alpha {
+            sets.push(format!("solver.alpha={:e}", self.settings.alpha));
+        }
+        if self.settings.contact_events != settings.contact_events {
+            sets.push(format!("solver.contact_events={}", self.settings.contact_events));
+        }
+        sets
+    }
+
+    /// The cells that it makes of those of a `kind`, in words.
+    pub(super) fn cells(&self, kind: CellKind) -> String {
+        let kind = match (self.quadratic, kind) {
+            (true, CellKind::Triangle | CellKind::Quadrilateral) => CellKind::Triangle6,
+            (true, CellKind::Tetrahedron) => CellKind::Tetrahedron10,
+            (true, CellKind::Hexahedron) => CellKind::Hexahedron20,
+            (_, kind) => kind,
+        };
+        let parts = match self.halved {
+            0 => return kind.name().into(),
+            1 => "half".to_owned(),
+            times => format!("1/{} of", 1 << times),
+        };
+        format!("{} of {parts} the size", kind.name())
+    }
+}
+
+impl fmt::Display for Choice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let strain = match self.strain {
+            Strain::Cauchy => "Cauchy",
+            Strain::Green => "Green",
+        };
+        write!(f, "{strain} strain")?;
+        if self.quadratic {
+            f.write_str(", quadratic cells")?;
+        }
+        if self.halved > 0 {
+            write!(f, ", cells halved {}", times(self.halved))?;
+        }
+        if self.inertia == Inertia::Lumped {
+            f.write_str(", lumped inertia")?;
+        }
+        for term in &self.without {
+            write!(f, ", no {term}")?;
+        }
+        if self.is_static {
+            return f.write_str(", in equilibrium (pliant static)");
+        }
+        let Settings { method, rtol, alpha, contact_events, .. } = self.settings;
+        write!(f, ", {method} at rtol {rtol:.0e}")?;
+        if alpha != Settings::default().alpha {
+            write!(f, ", alpha {alpha:e}")?;
+        }
+        match contact_events {
+            ContactEvents::Auto => Ok(()),
+            ContactEvents::Locate => f.write_str(", contact events located"),
+            ContactEvents::StepOver => f.write_str(", contact events stepped over"),
+        }
+    }
+}
+
+/// How often.
+pub(super) fn times(count: usize) -> String {
+    match count {
+        1 => "once".into(),
+        2 => "twice".into(),
+        count => format!("{count} times"),
+    }
+}

@@ -1,0 +1,178 @@
+//! What was found on the way.
+
+use super::parts::Parts;
+use super::search::Solved;
+use crate::dynamics::equilibrium::MeshEstimate;
+use crate::scene::timeline::Term;
+
+/// Runs, by what they were made for, and what they tell.
+#[derive(Debug, Default)]
+pub(super) struct Found {
+    /// The scene as it was written, by its own settings.
+    pub(super) written: Option<Solved>,
+    /// The same with hardly any error of the integration.
+    pub(super) tight: Option<Solved>,
+    /// Models on the mesh as it was written that something is learned from.
+    pub(super) models: Vec<Solved>,
+    /// The richest model on meshes from coarse to fine; the last one is what all is compared with.
+    pub(super) meshes: Vec<Solved>,
+    /// Finer ones that are not fine enough either: then the mesh is taken as it was written, and stands alone above.
+    pub(super) finer: Vec<Solved>,
+    /// Values of alpha (1/s), each with what ten times as much changes (relative).
+    pub(super) alphas: Vec<(f64, f64)>,
+    /// What the other measure of strain changes, and the other inertia.
+    pub(super) law: Option<f64>,
+    pub(super) inertia: Option<f64>,
+    /// What was left out, and what that changes.
+    pub(super) terms: Vec<(Term, f64)>,
+    /// What is enough, by several methods and tolerances, ...
+    pub(super) sweep: Vec<Solved>,
+    /// ... and with hardly any error of the integration.
+    pub(super) enough: Option<Solved>,
+    /// By how much an equilibrium is off on the mesh as it was written.
+    pub(super) mesh_estimate: Option<MeshEstimate>,
+    /// Time (s) until which two tight runs agree, if that is before the end.
+    pub(super) known_until: Option<f64>,
+    pub(super) not_tried: Vec<String>,
+}
+
+/// What the error of the finer of two meshes is of their distance, if halving the cells leaves a quarter of it; ...
+const ORDER_2: f64 = 1.0 / 3.0;
+/// ... and the most that it counts as if halving leaves nearly all of it, as under loads on single nodes.
+const LEAST_ORDER: f64 = 10.0;
+
+impl Found {
+    /// What all is compared with.
+    pub(super) fn truth(&self) -> Option<&Solved> {
+        self.meshes.last()
+    }
+
+    /// The error that the finest mesh may have itself, as those before tell: two by their distance and order 2, three by what
+    /// the last step has left of the distance; all of the distance where the cells are not of one kind. Not a number where
+    /// there is but one.
+    pub(super) fn resolution(&self) -> f64 {
+        let (Some(truth), [.., before, _]) = (self.truth(), &self.meshes[..]) else {
+            return f64::NAN;
+        };
+        let apart = |a: &Solved, b: &Solved| a.seen.distance(&b.seen).mean / truth.seen.scale;
+        let is_of_kind = |mesh: &Solved| mesh.choice.quadratic == truth.choice.quadratic;
+        let left = match &self.meshes[..] {
+            [.., first, second, third] if is_of_kind(first) => {
+                let rate = apart(second, third) / apart(first, second);
+                if rate < 1.0 {
+                    (rate / (1.0 - rate)).clamp(ORDER_2, LEAST_ORDER)
+                } else {
+                    LEAST_ORDER
+                }
+            }
+            [.., second, _] if is_of_kind(second) => ORDER_2,
+            _ => 1.0,
+        };
+        left * apart(before, truth)
+    }
+
+    /// The error that a candidate may have for an `accuracy`: that less what its measure may be off by. A mesh that was compared with
+    /// none is taken as it is.
+    pub(super) fn allowed(&self, accuracy: f64) -> f64 {
+        let resolution = self.resolution();
+        accuracy - if resolution.is_nan() { 0.0 } else { resolution }
+    }
+
+    /// All runs, in the order in which they were made.
+    pub(super) fn all(&self) -> impl Iterator<Item = &Solved> {
+        let models = self.written.iter().chain(&self.tight).chain(&self.models);
+        let meshes = self.meshes.iter().skip(1).chain(&self.finer);
+        models.chain(meshes).chain(&self.enough).chain(&self.sweep)
+    }
+
+    /// Takes the mesh as it was written, if even the finest is not fine enough for an `accuracy`.
+    pub(super) fn settle(&mut self, accuracy: f64) {
+        if self.allowed(accuracy) <= 0.0 {
+            self.finer = self.meshes.split_off(1);
+        }
+    }
+
+    /// By how much the finest mesh differs from the one as it was written, if that is taken as it is.
+    pub(super) fn mesh(&self) -> Option<f64> {
+        Some(self.finer.last()?.error(self.truth()?))
+    }
+
+    /// The fastest of those that are right.
+    pub(super) fn best(&self, accuracy: f64) -> Option<&Solved> {
+        let (truth, allowed) = (self.truth()?, self.allowed(accuracy));
+        let is_right = |solved: &&Solved| solved.error(truth) <= allowed;
+        self.all().filter(is_right).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
+    }
+
+    /// What the error of a run is made of, if what stands between it and the truth was run, too: its own model with hardly any
+    /// error of the integration, and the richest model on its own mesh.
+    pub(super) fn parts(&self, of: &Solved) -> Option<Parts> {
+        let truth = self.truth()?;
+        let tight = &self.tight.as_ref()?.choice.settings;
+        let own = self.all().chain(self.meshes.first()).find(|solved| {
+            solved.choice.is_model_of(&of.choice) && solved.choice.settings.rtol <= tight.rtol
+        })?;
+        let mesh = self.meshes.iter().find(|mesh| mesh.choice.is_mesh_of(&of.choice))?;
+        let apart = |a: &Solved, b: &Solved| a.seen.distance(&b.seen).mean / truth.seen.scale;
+        let parts @ [time, model, mesh] = [apart(of, own), apart(own, mesh), apart(mesh, truth)];
+        // where one run has no such quantity, nothing is known of them
+        parts.iter().all(|part| part.is_finite()).then_some(Parts { time, model, mesh })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::scene::settings::Settings;
+    use crate::studies::samples::beam_jump;
+    use crate::studies::work_precision::advise::Choice;
+
+    /// Meshes on which a number is off by `errors` of its scale.
+    fn meshes(errors: &[(bool, f64)]) -> Found {
+        let scene = beam_jump().unwrap();
+        let meshes = errors.iter().zip(0..).map(|(&(quadratic, error), halved)| {
+            let values = [[1.0 + error]];
+            let seen = json!({ "dimension": 1, "values": values, "scale": 1.0 });
+            let choice = Choice::written(&scene, &Settings::default());
+            Solved {
+                choice: Choice { quadratic, halved, ..choice },
+                seen: serde_json::from_value(seen).unwrap(),
+                seconds: 1.0,
+                unknowns: 1,
+            }
+        });
+        Found { meshes: meshes.collect(), ..Found::default() }
+    }
+
+    #[test]
+    fn the_finest_mesh_is_as_good_as_the_order_of_the_others_says() {
+        let known = |errors: &[(bool, f64)]| meshes(errors).resolution();
+        let near = |told: f64, error: f64| assert!((told - error).abs() < 1e-12, "{told} {error}");
+        // order 2, by two meshes and by three
+        near(known(&[(true, 0.16), (true, 0.04)]), 0.04);
+        near(known(&[(true, 0.64), (true, 0.16), (true, 0.04)]), 0.04);
+        // order 1
+        near(known(&[(true, 0.16), (true, 0.08), (true, 0.04)]), 0.04);
+        // no limit: each step is as large as the one before
+        near(known(&[(true, 0.3), (true, 0.2), (true, 0.1)]), LEAST_ORDER * 0.1);
+        // order 4 counts as order 2
+        near(known(&[(true, 0.0257), (true, 0.0017), (true, 0.0002)]), 0.0005);
+        // cells of two kinds
+        near(known(&[(false, 0.5), (false, 0.05), (true, 0.02)]), 0.03);
+        near(known(&[(false, 0.05), (true, 0.02), (true, 0.005)]), 0.005);
+        assert!(known(&[(false, 0.05)]).is_nan());
+    }
+
+    #[test]
+    fn a_mesh_that_no_other_confirms_is_taken_as_it_was_written() {
+        let mut found = meshes(&[(false, 0.5), (false, 0.05), (true, 0.02)]);
+        found.settle(0.04);
+        assert!(found.mesh().is_none() && (found.allowed(0.04) - 0.01).abs() < 1e-12);
+        found.settle(0.02);
+        // 0.48 away, of a scale that is 1
+        assert!((found.mesh().unwrap() - 0.48).abs() < 1e-12 && found.meshes.len() == 1);
+        assert_eq!(found.allowed(0.02), 0.02);
+    }
+}

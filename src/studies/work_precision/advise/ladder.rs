@@ -1,0 +1,300 @@
+//! The ladder, one rung at a time: tolerance, alpha, law, mesh, what may be left out, method.
+
+use std::iter;
+
+use super::choice::Choice;
+use super::found::Found;
+use super::search::{Cut, Search, Solved, Stop};
+use crate::dynamics::equilibrium::MeshEstimate;
+use crate::elements::body::{Inertia, Strain};
+use crate::elements::mesh::CellKind;
+use crate::scene::settings::{ContactEvents, Method, Settings};
+use crate::studies::work_precision::tightening;
+
+/// Parts of the accuracy that errors of a kind may take: of the integration of those runs that models are compared
+/// by, of alpha, of the law, of each term that is left out, and of the mesh.
+const OF_TIGHT: f64 = 0.05;
+const OF_ALPHA: f64 = 0.05;
+const OF_LAW: f64 = 0.3;
+const OF_TERM: f64 = 0.05;
+const OF_MESH: f64 = 0.6;
+/// The finest mesh is fine enough if it may be off by this part of the accuracy itself.
+const OF_TRUTH: f64 = 0.3;
+/// Runs that locate contact events may take so many times as long as the scene as it was written, or so long (s) more; then they are
+/// left out.
+const LOCATING: f64 = 10.0;
+const LOCATING_SHORT: f64 = 0.5;
+/// Cells are halved less often than that.
+const FINEST: usize = 6;
+/// What alpha is multiplied by, and the largest (1/s) that is tried.
+const FIRMER: f64 = 10.0;
+const FIRMEST: f64 = 1e6;
+/// Tolerances that are swept.
+const TOLERANCES: [f64; 10] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8];
+/// A sweep ends where runs take so many times as long as the fastest that is right.
+const PATIENCE: f64 = 2.0;
+
+impl Search<'_> {
+    /// Climbs until all is known, or there is no more time.
+    pub(super) fn climb(&mut self, found: &mut Found) -> Result<(), Stop> {
+        let written = Choice::written(&self.scene, &self.request.settings);
+        found.written = self.run(&written)?;
+        let Some(tight) = self.tight(&written, found)? else { return Ok(()) };
+        found.tight = Some(tight.clone());
+        let firm = self.alpha(tight, found)?;
+        let rich = self.law(firm, found)?;
+        found.meshes.push(rich.clone());
+        let refined = self.refine(&rich, found);
+        found.settle(self.request.accuracy);
+        refined?;
+        self.leave_out(&rich, found)?;
+        let Some(enough) = self.enough(&rich, found) else { return Ok(()) };
+        if self.request.quantity.is_at_end() {
+            self.rest(&enough, found)?;
+        }
+        self.sweep(&enough, found)?;
+        self.by_itself(&rich, found)
+    }
+
+    /// The model as it was written with hardly any error of the integration. `None` if it has no such motion.
+    fn tight(&mut self, written: &Choice, found: &mut Found) -> Result<Option<Solved>, Stop> {
+        let accuracy = self.request.accuracy;
+        let mut rtol = tightening::first(accuracy);
+        let mut before: Option<Solved> = None;
+        let mut contact_events = ContactEvents::Locate;
+        let usual = found.written.as_ref().map_or(f64::INFINITY, |written| written.seconds);
+        loop {
+            let settings = self.request.settings(Method::Auto, rtol, contact_events);
+            // events that follow each other closely may take longer than all the rest
+            if contact_events == ContactEvents::Locate && before.is_none() {
+                self.patience = LOCATING * usual + LOCATING_SHORT;
+            }
+            let solved = self.run(&Choice { settings, ..written.clone() });
+            self.patience = f64::INFINITY;
+            let Some(solved) = solved? else {
+                if self.cut == Some(Cut::Late) {
+                    contact_events = ContactEvents::Auto;
+                    continue;
+                }
+                return Ok(before);
+            };
+            if let Some(before) = &before {
+                let apart = before.error(&solved);
+                let is_last = tightening::is_tightest(rtol);
+                if apart <= OF_TIGHT * accuracy || (is_last && apart <= accuracy) {
+                    return Ok(Some(solved));
+                }
+                if is_last {
+                    let limit = accuracy * solved.seen.scale;
+                    let distances = solved.seen.distances(&before.seen);
+                    let parted = distances.iter().position(|distance| *distance > limit);
+                    // of a number that follows from the motion it is not known since when
+                    let parted = parted.filter(|_| self.request.quantity.is_over_time());
+                    let part = parted.map_or(0.0, |at| at as f64 / distances.len() as f64);
+                    found.known_until = Some(part * self.scene.end());
+                    return Ok(None);
+                }
+            }
+            before = Some(solved);
+            rtol = tightening::tighter(rtol);
+        }
+    }
+
+    /// An alpha of which ten times as much changes nothing that counts.
+    fn alpha(&mut self, tight: Solved, found: &mut Found) -> Result<Solved, Stop> {
+        let has_rows = self.scene.phases().iter().any(|phase| !phase.constraints.is_empty());
+        let mut firm = tight;
+        while has_rows && firm.choice.settings.alpha < FIRMEST {
+            let alpha = firm.choice.settings.alpha;
+            let settings = Settings { alpha: FIRMER * alpha, ..firm.choice.settings.clone() };
+            let Some(firmer) = self.run(&Choice { settings, ..firm.choice.clone() })? else {
+                break;
+            };
+            let change = firm.error(&firmer);
+            found.alphas.push((alpha, change));
+            found.models.push(firmer.clone());
+            if change <= OF_ALPHA * self.request.accuracy {
+                break;
+            }
+            firm = firmer;
+        }
+        Ok(firm)
+    }
+
+    /// The measure of strain that is right however far cells turn, and what the other one changes.
+    fn law(&mut self, firm: Solved, found: &mut Found) -> Result<Solved, Stop> {
+        let strain = match firm.choice.strain {
+            Strain::Cauchy => Strain::Green,
+            Strain::Green => Strain::Cauchy,
+        };
+        let Some(other) = self.run(&Choice { strain, ..firm.choice.clone() })? else {
+            return Ok(firm);
+        };
+        found.models.push(other.clone());
+        let [rich, poor] = match strain {
+            Strain::Green => [other, firm],
+            Strain::Cauchy => [firm, other],
+        };
+        found.law = Some(poor.error(&rich));
+        Ok(rich)
+    }
+
+    /// Finer meshes, until the finest tell that they are fine enough, or take too long.
+    fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
+        let kind = self.scene.body().mesh().kind();
+        let has_quadratic = kind != CellKind::Segment && !kind.is_quadratic();
+        let finer = |quadratic, halved| Choice { quadratic, halved, ..rich.choice.clone() };
+        let first = if has_quadratic { 0 } else { 2 };
+        let steps = (first..FINEST).map(|halved| finer(has_quadratic, halved));
+        for choice in iter::once(finer(false, 1)).chain(steps) {
+            let Some(last) = found.truth() else { return Ok(()) };
+            let scene = match choice.scene(&self.scene) {
+                Ok(scene) => scene,
+                Err(error) => {
+                    found.not_tried.push(format!("finer meshes: {error}"));
+                    return Ok(());
+                }
+            };
+            let unknowns = 2 * scene.body().dofs() + 2;
+            if unknowns > last.unknowns && !self.affords(unknowns, last) {
+                let cells = choice.cells(kind);
+                found
+                    .not_tried
+                    .push(format!("{cells}: {unknowns} unknowns take longer than the budget"));
+                return Ok(());
+            }
+            if let Some(solved) = self.run(&choice)? {
+                found.meshes.push(solved);
+            }
+            // linear cells that lock may agree with each other
+            let may_tell = choice.quadratic == has_quadratic;
+            if may_tell && found.resolution() < OF_TRUTH * self.request.accuracy {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    /// Tries what may be left out.
+    fn leave_out(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
+        for term in self.scene.terms() {
+            let choice = Choice { without: vec![term.clone()], ..rich.choice.clone() };
+            if let Some(solved) = self.run(&choice)? {
+                found.terms.push((term, solved.error(rich)));
+                found.models.push(solved);
+            }
+        }
+        let inertia = match rich.choice.inertia {
+            Inertia::Consistent => Inertia::Lumped,
+            Inertia::Lumped => Inertia::Consistent,
+        };
+        if let Some(solved) = self.run(&Choice { inertia, ..rich.choice.clone() })? {
+            found.inertia = Some(solved.error(rich));
+            found.models.push(solved);
+        }
+        Ok(())
+    }
+
+    /// The cheapest model on the cheapest mesh that is right, but for the integration.
+    fn enough(&self, rich: &Solved, found: &Found) -> Option<Choice> {
+        let accuracy = self.request.accuracy;
+        let truth = found.truth()?;
+        let is_fine = |mesh: &&Solved| mesh.error(truth) <= OF_MESH * accuracy;
+        let fine = found.meshes.iter().filter(is_fine);
+        let mesh = fine.min_by(|a, b| a.seconds.total_cmp(&b.seconds)).unwrap_or(truth);
+        let strain = match found.law {
+            Some(error) if error <= OF_LAW * accuracy => Strain::Cauchy,
+            _ => rich.choice.strain,
+        };
+        let small = found.terms.iter().filter(|(_, error)| *error <= OF_TERM * accuracy);
+        let without = small.map(|(term, _)| term.clone()).collect();
+        Some(Choice { strain, without, ..mesh.choice.clone() })
+    }
+
+    /// The equilibrium in place of the motion, and by how much that is off on the mesh as it was written.
+    fn rest(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
+        // what damps a motion has nothing to do at rest
+        let choice = Choice { is_static: true, ..enough.clone() };
+        let Some(solved) = self.run(&choice)? else { return Ok(()) };
+        let allowed = found.allowed(self.request.accuracy);
+        let is_right = found.truth().is_some_and(|truth| solved.error(truth) <= allowed);
+        found.sweep.push(solved);
+        if is_right {
+            let coarse = Choice { quadratic: false, halved: 0, ..choice };
+            let scene = coarse.scene(&self.scene).ok();
+            let equilibrium = scene.and_then(|scene| self.at_rest(&scene).ok());
+            let estimate =
+                |equilibrium| MeshEstimate::of(&equilibrium, &self.request.quantity).ok();
+            found.mesh_estimate = equilibrium.and_then(estimate);
+        }
+        Ok(())
+    }
+
+    /// Methods and tolerances for a model that is enough, and how contact events are met by the fastest of them.
+    fn sweep(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
+        let Some(truth) = found.truth().cloned() else { return Ok(()) };
+        let accuracy = self.request.accuracy;
+        let allowed = found.allowed(accuracy);
+        let implicit = [Method::Auto, Method::Arkode, Method::CvodeBdf];
+        let mut ways = implicit.map(|method| (method, enough.inertia)).to_vec();
+        let lumped_is_enough = found.inertia.is_some_and(|error| error <= OF_LAW * accuracy);
+        if lumped_is_enough || enough.inertia == Inertia::Lumped {
+            ways.push((Method::CentralDifference, Inertia::Lumped));
+        }
+        let mut fastest: Option<Solved> = None;
+        for (method, inertia) in ways {
+            for rtol in TOLERANCES {
+                let settings = Settings {
+                    alpha: enough.settings.alpha,
+                    ..self.request.settings(method, rtol, ContactEvents::Auto)
+                };
+                let choice = Choice { settings, inertia, ..enough.clone() };
+                let limit = fastest.as_ref().map_or(f64::INFINITY, |fastest| fastest.seconds);
+                self.patience = PATIENCE * limit;
+                let solved = self.run(&choice);
+                self.patience = f64::INFINITY;
+                let Some(solved) = solved? else {
+                    if self.cut == Some(Cut::Late) {
+                        let late = "it takes more than twice as long as the fastest that is right";
+                        found
+                            .not_tried
+                            .push(format!("{method} at rtol {rtol:.0e} to its end: {late}"));
+                        break;
+                    }
+                    continue;
+                };
+                found.sweep.push(solved.clone());
+                let is_right = solved.error(&truth) <= allowed;
+                let is_late = solved.seconds > PATIENCE * limit;
+                if is_right && solved.seconds < limit {
+                    fastest = Some(solved);
+                }
+                if is_right || is_late {
+                    break;
+                }
+            }
+        }
+        let Some(fastest) = fastest else { return Ok(()) };
+        let has_contact =
+            !fastest.choice.scene(&self.scene).is_ok_and(|s| s.obstacles().is_empty());
+        for contact_events in [ContactEvents::StepOver, ContactEvents::Locate] {
+            let settings = Settings { contact_events, ..fastest.choice.settings.clone() };
+            if has_contact
+                && let Some(solved) = self.run(&Choice { settings, ..fastest.choice.clone() })?
+            {
+                found.sweep.push(solved);
+            }
+        }
+        Ok(())
+    }
+
+    /// The model that is enough with hardly any error of the integration: what of its error is the model's, and what the mesh's.
+    fn by_itself(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
+        let Some(best) = found.best(self.request.accuracy) else { return Ok(()) };
+        let choice = Choice { settings: rich.choice.settings.clone(), ..best.choice.clone() };
+        if found.all().all(|solved| solved.choice != choice) {
+            found.enough = self.run(&choice)?;
+        }
+        Ok(())
+    }
+}

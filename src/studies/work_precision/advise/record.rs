@@ -1,0 +1,91 @@
+//! The advice as data.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use super::advice::{Advice, Candidate};
+use super::parts::Parts;
+use crate::dynamics::error::Error;
+use crate::io::output::write_file;
+use crate::studies::work_precision::look::Look;
+
+impl Advice {
+    /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `mesh`, `alphas`,
+    /// `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `mesh_estimate`,
+    /// `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` is
+    /// not known. A candidate has `model` and `set`, what has to be set for it in the file of the scene.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written.
+    pub fn write_json(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let candidate = |candidate: &Candidate| -> Value {
+            let Candidate { choice, set, error, parts, seconds, unknowns, failure } = candidate;
+            json!({
+                "model": choice.to_string(),
+                "set": set,
+                "error": error,
+                "parts": parts.map(|Parts { model, mesh, time }| {
+                    json!({ "model": model, "mesh": mesh, "time": time })
+                }),
+                "seconds": seconds,
+                "unknowns": unknowns,
+                "failure": failure,
+            })
+        };
+        let terms = self.terms.iter();
+        let terms =
+            terms.map(|(term, error)| json!({ "without": term.to_string(), "error": error }));
+        let document = json!({
+            "quantity": self.quantity,
+            "accuracy": self.accuracy,
+            "scale": self.scale,
+            "unit": self.unit,
+            "written": candidate(&self.written),
+            "enough": self.enough.as_ref().map(candidate),
+            "truth": self.truth.as_ref().map(candidate),
+            "resolution": self.resolution,
+            "mesh": self.mesh,
+            "alphas": self.alphas.iter().map(|(alpha, change)| {
+                json!({ "alpha": alpha, "ten_times_as_much_changes": change })
+            }).collect::<Vec<_>>(),
+            "law": self.law,
+            "inertia": self.inertia,
+            "terms": terms.collect::<Vec<_>>(),
+            "candidates": self.candidates.iter().map(candidate).collect::<Vec<_>>(),
+            "known_until": self.known_until,
+            "end": self.end,
+            "mesh_estimate": self.mesh_estimate.as_ref().map(|estimate| {
+                json!({ "value": estimate.value, "change": estimate.change, "correction": estimate.correction, "is_reliable": estimate.is_reliable() })
+            }),
+            "look": self.look.as_ref().map(Look::to_json),
+            "not_tried": self.not_tried,
+            "is_cut_short": self.is_cut_short,
+            "runs": self.runs,
+            "seconds": self.seconds,
+            "known": self.known,
+        });
+        write_file(path.as_ref(), |file| writeln!(file, "{document:#}"))
+    }
+
+    /// Writes a row for each candidate as CSV: `model`, `error` (relative), `seconds`, `unknowns`, `failure`.
+    ///
+    /// # Errors
+    /// [`Error::Output`] if it cannot be written.
+    pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        write_file(path.as_ref(), |file| {
+            let mut table = csv::Writer::from_writer(file);
+            table.write_record(["model", "error", "seconds", "unknowns", "failure"])?;
+            for Candidate { choice, error, seconds, unknowns, failure, .. } in &self.candidates {
+                table.write_record([
+                    choice.to_string(),
+                    error.map(|error| format!("{error:e}")).unwrap_or_default(),
+                    format!("{seconds:e}"),
+                    unknowns.to_string(),
+                    failure.clone().unwrap_or_default(),
+                ])?;
+            }
+            table.flush()
+        })
+    }
+}

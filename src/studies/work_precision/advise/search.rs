@@ -1,0 +1,246 @@
+//! The ladder: one rung at a time.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use super::advice::Candidate;
+use super::choice::Choice;
+use super::runs::{Outcome, Runs};
+use crate::dynamics::equilibrium::Equilibrium;
+use crate::dynamics::error::Error;
+use crate::dynamics::statics::Statics;
+use crate::dynamics::trajectory::Trajectory;
+use crate::scene::settings::{ContactEvents, Method, Settings};
+use crate::scene::timeline::{Phase, Scene};
+use crate::studies::work_precision::quantity::{Quantity, Seen};
+use crate::studies::work_precision::truth::{Probe, reason};
+
+/// What is asked.
+#[derive(Debug)]
+pub(super) struct Request {
+    pub(super) accuracy: f64,
+    pub(super) settings: Settings,
+    pub(super) quantity: Quantity,
+    /// Time (s) for all runs.
+    pub(super) budget: f64,
+}
+
+impl Request {
+    /// Those of the request, by another method and tolerance.
+    pub(super) fn settings(
+        &self,
+        method: Method,
+        rtol: f64,
+        contact_events: ContactEvents,
+    ) -> Settings {
+        let (atol_position, atol_velocity) = (None, None);
+        let own = self.settings.clone();
+        Settings { method, rtol, contact_events, atol_position, atol_velocity, ..own }
+    }
+}
+
+/// A run that has come to its end.
+#[derive(Debug, Clone)]
+pub(super) struct Solved {
+    pub(super) choice: Choice,
+    pub(super) seen: Seen,
+    pub(super) seconds: f64,
+    pub(super) unknowns: usize,
+}
+
+impl Solved {
+    /// Its relative error, if `truth` is right.
+    pub(super) fn error(&self, truth: &Self) -> f64 {
+        truth.seen.error(&self.seen).mean
+    }
+}
+
+/// Why the search ends before its time: the budget is spent, the observer says so, or runs cannot be kept.
+#[derive(Debug)]
+pub(super) enum Stop {
+    Budget,
+    Interrupted,
+    Trouble(Error),
+}
+
+/// Runs candidates within the budget.
+pub(super) struct Search<'a> {
+    pub(super) request: &'a Request,
+    /// The scene as it was written, or the part of it that can be known.
+    pub(super) scene: Scene,
+    /// Nodes of its mesh, which all finer ones share.
+    pub(super) nodes: usize,
+    pub(super) observer: &'a mut dyn FnMut(&str) -> ControlFlow<()>,
+    pub(super) began: Instant,
+    pub(super) kept: Runs,
+    pub(super) failures: Vec<Candidate>,
+    /// Runs that were made, and that were known already.
+    pub(super) runs: usize,
+    pub(super) known: usize,
+    /// The longest time (s) that a run may take.
+    pub(super) patience: f64,
+    /// Why the last run was cut short, if it was.
+    pub(super) cut: Option<Cut>,
+}
+
+/// Why a run is cut short.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Cut {
+    /// The observer says so.
+    Interrupted,
+    /// Its share of the time that is left is spent.
+    Share,
+    /// It takes longer than the search has patience for.
+    Late,
+}
+
+/// A run this short (s) is timed again, so many times in all.
+const SHORT: f64 = 0.1;
+const REPETITIONS: usize = 3;
+/// A run may take this part of the time that is left: there are others.
+const SHARE: f64 = 0.4;
+/// Below this part of the budget it is spent.
+const LEAST: f64 = 0.02;
+/// How run time grows with the unknowns: between the plane and space.
+const GROWTH: f64 = 1.5;
+
+impl<'a> Search<'a> {
+    /// Of `scene`, within the budget from now on.
+    pub(super) fn new(
+        request: &'a Request,
+        scene: &Scene,
+        kept: Runs,
+        observer: &'a mut dyn FnMut(&str) -> ControlFlow<()>,
+    ) -> Self {
+        Self {
+            request,
+            scene: scene.clone(),
+            nodes: scene.body().to_builder().own_mesh().node_count(),
+            observer,
+            began: Instant::now(),
+            kept,
+            failures: Vec::new(),
+            runs: 0,
+            known: 0,
+            patience: f64::INFINITY,
+            cut: None,
+        }
+    }
+
+    /// Seconds left.
+    fn left(&self) -> f64 {
+        self.request.budget - self.began.elapsed().as_secs_f64()
+    }
+
+    /// Whether too little is left to begin anything.
+    fn is_spent(&self) -> bool {
+        self.left() < LEAST * self.request.budget
+    }
+
+    /// Runs the scene by a choice, if it was not run before. `None` if that gives no motion, which is noted, or if it takes
+    /// longer than there is patience for.
+    pub(super) fn run(&mut self, choice: &Choice) -> Result<Option<Solved>, Stop> {
+        self.cut = None;
+        let name = self.kept.name(&self.scene, &self.request.quantity, choice);
+        let outcome = match self.kept.get(&name) {
+            Some(known) => {
+                self.known += 1;
+                known.clone()
+            }
+            None => {
+                let outcome = self.attempt(choice, name);
+                match (outcome, self.cut) {
+                    (Ok(outcome), _) => {
+                        self.kept.keep(&outcome).map_err(Stop::Trouble)?;
+                        outcome
+                    }
+                    (Err(_), Some(Cut::Interrupted)) => return Err(Stop::Interrupted),
+                    (Err(_), Some(Cut::Share)) if self.is_spent() => return Err(Stop::Budget),
+                    (Err(_), Some(Cut::Late)) => return Ok(None),
+                    (Err(outcome), _) => outcome,
+                }
+            }
+        };
+        let (choice, Outcome { seen, seconds, unknowns, failure, .. }) = (choice.clone(), outcome);
+        match seen {
+            Some(seen) => Ok(Some(Solved { choice, seen, seconds, unknowns })),
+            None => {
+                self.failures.push(Candidate { failure, ..Candidate::new(choice) });
+                Ok(None)
+            }
+        }
+    }
+
+    /// What comes of a run: to be kept, or not as it was cut short.
+    fn attempt(&mut self, choice: &Choice, name: String) -> Result<Outcome, Outcome> {
+        match self.solve(choice) {
+            Ok((seen, seconds, unknowns)) => Ok(Outcome::new(name, Some(seen), seconds, unknowns)),
+            Err(error) => {
+                let outcome = Outcome::failed(name, reason(error).to_string());
+                if self.cut.is_some() { Err(outcome) } else { Ok(outcome) }
+            }
+        }
+    }
+
+    /// What is seen in a run, its time (s) and its unknowns.
+    fn solve(&mut self, choice: &Choice) -> Result<(Seen, f64, usize), Error> {
+        let scene = choice.scene(&self.scene)?;
+        let what = format!("{choice}: {} nodes", scene.body().mesh().node_count());
+        if choice.is_static {
+            self.runs += 1;
+            if (self.observer)(&what).is_break() {
+                self.cut = Some(Cut::Interrupted);
+            }
+            let clock = Instant::now();
+            let seen = self.request.quantity.seen_at_rest(&self.at_rest(&scene)?)?;
+            return Ok((seen, clock.elapsed().as_secs_f64(), scene.body().dofs()));
+        }
+        let nodes = (0..self.nodes).collect();
+        let probe = Probe::new(&scene, self.request.quantity.clone(), nodes);
+        let first = self.once(&scene, &probe, &choice.settings, &what)?;
+        let mut seconds = first.report().wall_seconds;
+        for _ in 1..REPETITIONS {
+            if seconds > SHORT {
+                break;
+            }
+            let again = self.once(&scene, &probe, &choice.settings, &what)?;
+            seconds = seconds.min(again.report().wall_seconds);
+        }
+        Ok((probe.seen(&first), seconds, first.report().states))
+    }
+
+    /// What a scene comes to rest in, if it ever does.
+    pub(super) fn at_rest(&self, scene: &Scene) -> Result<Equilibrium, Error> {
+        let last = scene.phases().last().map_or("", Phase::name);
+        scene.equilibrium_of(last, &Statics::default())
+    }
+
+    fn once(
+        &mut self,
+        scene: &Scene,
+        probe: &Probe,
+        settings: &Settings,
+        what: &str,
+    ) -> Result<Trajectory, Error> {
+        self.runs += 1;
+        let share = SHARE * self.left();
+        let clock = Instant::now();
+        // a look at the clock costs nothing beside a step
+        scene.simulate_with(settings, &probe.sampling(), |_| {
+            let seconds = clock.elapsed().as_secs_f64();
+            self.cut = match (self.observer)(what) {
+                ControlFlow::Break(()) => Some(Cut::Interrupted),
+                ControlFlow::Continue(()) if seconds > self.patience => Some(Cut::Late),
+                ControlFlow::Continue(()) if seconds > share => Some(Cut::Share),
+                ControlFlow::Continue(()) => None,
+            };
+            self.cut.map_or(ControlFlow::Continue(()), |_| ControlFlow::Break(()))
+        })
+    }
+
+    /// Whether there is time for a run with as many unknowns, as the time of another tells.
+    pub(super) fn affords(&self, unknowns: usize, known: &Solved) -> bool {
+        let ratio = unknowns as f64 / known.unknowns as f64;
+        known.seconds * ratio.powf(GROWTH) < SHARE * self.left()
+    }
+}

@@ -1,0 +1,457 @@
+//! What is asked of a motion, and what an error in it is relative to.
+
+use std::f64::consts::PI;
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::base::input::{InputError, unknown_among};
+use crate::dynamics::equilibrium::Equilibrium;
+use crate::dynamics::simulate::{Component, Reading, Sampling};
+use crate::dynamics::trajectory::{Sample, Trajectory};
+use crate::scene::timeline::Scene;
+
+/// What is asked of a motion: the whole of it, or a number that follows from it.
+///
+/// | quantity | an error of 1 % is |
+/// | --- | --- |
+/// | the [whole motion](Self::motion) | a root mean square distance of the nodes, over all of them and all times, of a hundredth of their root mean square displacement |
+/// | a [reading](Self::reading) over time | a root mean square error over all times of a hundredth of the reading's root mean square change since the start |
+/// | its value at the end, its largest or its least | a hundredth of its largest change since the start |
+/// | its frequency or damping ratio | a hundredth of itself |
+///
+/// Errors of a reading with several components (a position) are lengths of vectors.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Quantity {
+    reading: Option<Reading>,
+    /// How it was named.
+    name: String,
+    part: Part,
+}
+
+/// What counts of a reading over time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Part {
+    /// All of it.
+    #[default]
+    OverTime,
+    /// Its value at the end.
+    End,
+    /// Its largest value.
+    Largest,
+    /// Its least value.
+    Least,
+    /// The frequency (Hz) at which it swings: that of its turning points.
+    Frequency,
+    /// Its damping ratio: the mean logarithmic decrement of its swings.
+    Damping,
+}
+
+impl Part {
+    /// All but the first, with the words behind a colon that name them.
+    const WORDS: [(&'static str, Self); 5] = [
+        ("end", Self::End),
+        ("max", Self::Largest),
+        ("min", Self::Least),
+        ("frequency", Self::Frequency),
+        ("damping", Self::Damping),
+    ];
+}
+
+/// Motion below this fraction of the body's size counts as that large.
+const LEAST_MOTION: f64 = 1e-6;
+/// Changes below this part of the largest value are round-off.
+const LEAST_CHANGE: f64 = 1e-9;
+
+impl Quantity {
+    /// The whole motion: where all nodes are at all times.
+    pub fn motion() -> Self {
+        Self::default()
+    }
+
+    /// What `reading` reads over time, by a name for messages.
+    pub fn reading(name: impl Into<String>, reading: Reading) -> Self {
+        Self { name: name.into(), reading: Some(reading), part: Part::OverTime }
+    }
+
+    /// A part of it alone.
+    #[must_use]
+    pub fn part(mut self, part: Part) -> Self {
+        self.part = part;
+        self
+    }
+
+    /// The quantity that a text names: `motion`; the name of one of the `sensors`, or of one of its components
+    /// (`tip.y`); a set of nodes and an axis, `tip.y`, which is their position; `com` or `com.y`, the centre of mass;
+    /// `rotation`, the angle by which a body in the plane has turned. After a colon the part that counts: `tip.y:end`, `max`,
+    /// `min`, `frequency`, `damping`; without, all times count.
+    ///
+    /// # Errors
+    /// A text that names nothing in `scene`.
+    pub fn named(
+        text: &str,
+        scene: &Scene,
+        sensors: &[(String, Reading)],
+    ) -> Result<Self, InputError> {
+        let bad = |mend: String| InputError::new("quantity", format!("\"{text}\""), mend);
+        let (name, part) = match text.rsplit_once(':') {
+            None => (text, Part::OverTime),
+            Some((name, word)) => {
+                let known = Part::WORDS.map(|(word, _)| word);
+                let part = Part::WORDS.iter().find(|(known, _)| *known == word);
+                let mend = || bad(unknown_among(word, &known, "quantity", "parts"));
+                (name, part.ok_or_else(mend)?.1)
+            }
+        };
+        let quantity = Self { name: name.into(), part, reading: None };
+        if name == "motion" {
+            return match part {
+                Part::OverTime => Ok(Self::motion()),
+                _ => Err(bad("the whole motion is no single number: name a reading".into())),
+            };
+        }
+        let reading = reading(name, scene, sensors).ok_or_else(|| bad(mend(scene, sensors)))?;
+        let quantity = Self { reading: Some(reading), ..quantity };
+        quantity.check(scene)?;
+        Ok(quantity)
+    }
+
+    /// # Errors
+    /// A reading that `scene` does not have, or one of which a part is asked though it has several components.
+    pub(super) fn check(&self, scene: &Scene) -> Result<(), InputError> {
+        if self.columns(scene)? > 1 && !self.is_over_time() {
+            let mend = "it has several components: choose one, as in tip.y:end";
+            return Err(InputError::new("quantity", format!("\"{self}\""), mend));
+        }
+        Ok(())
+    }
+
+    /// The reading of which the error of the mesh can be estimated.
+    ///
+    /// # Errors
+    /// Anything else: a motion, a part that equilibria do not have, several components, a reading without a known derivative.
+    pub(super) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
+        let refused =
+            |mend: &str| InputError::new("quantity of an equilibrium", format!("\"{self}\""), mend);
+        let Some(reading) = &self.reading else {
+            return Err(refused("the whole motion is no single number: name a reading, as tip.y"));
+        };
+        if ![Part::OverTime, Part::End].contains(&self.part) {
+            return Err(refused(
+                "an equilibrium does not move: leave out what stands after the colon",
+            ));
+        }
+        if self.columns(scene)? > 1 {
+            return Err(refused("it has several components: choose one, as in tip.y"));
+        }
+        if !reading.has_derivative() {
+            let mend = "the error of the mesh is estimated of positions, displacements, distances, angles between lines, \
+                        centres of mass, volumes of chambers and constraint forces";
+            return Err(refused(mend));
+        }
+        Ok(reading)
+    }
+
+    /// What it is in an equilibrium, beside what it is [seen](Self::seen) at the end of a motion.
+    ///
+    /// # Errors
+    /// As [`of_equilibrium`](Self::of_equilibrium).
+    pub(super) fn seen_at_rest(&self, found: &Equilibrium) -> Result<Seen, InputError> {
+        let scene = found.trajectory().scene();
+        let reading = self.of_equilibrium(scene)?;
+        let value = reading.at(scene, found.sample())?;
+        let change = value - reading.at(scene, &found.trajectory().samples()[0])?;
+        Ok(Seen { dimension: 1, values: vec![vec![value]], scale: change.abs() })
+    }
+
+    /// Whether it is what an equilibrium may give: a number at the end.
+    pub(super) fn is_at_end(&self) -> bool {
+        self.part == Part::End
+    }
+
+    /// Has it read beside what `sampling` reads.
+    pub(super) fn read_by(&self, sampling: Sampling) -> Sampling {
+        match &self.reading {
+            Some(reading) if self.is_peak() => {
+                sampling.read(SENSOR, reading.clone()).finding_peaks()
+            }
+            Some(reading) => sampling.read(SENSOR, reading.clone()),
+            None => sampling,
+        }
+    }
+
+    /// How many numbers a sample has of it that stand behind those of other sensors; none of the whole motion.
+    pub(super) fn columns(&self, scene: &Scene) -> Result<usize, InputError> {
+        match &self.reading {
+            Some(_) => self.read_by(Sampling::phase_ends()).columns(scene).map(|own| own.len()),
+            None => Ok(0),
+        }
+    }
+
+    /// What it is in a trajectory that was sampled [by it](Self::read_by), at the samples that `is_asked` passes. Of
+    /// the whole motion the `nodes` (from 0) count.
+    pub(super) fn seen<'a>(
+        &self,
+        trajectory: &'a Trajectory,
+        nodes: &[usize],
+        samples: impl Iterator<Item = &'a Sample>,
+    ) -> Seen {
+        let body = trajectory.body();
+        let d = body.dimension();
+        let Some(_) = &self.reading else {
+            let displacement = |sample: &'a Sample| {
+                nodes.iter().flat_map(|node| &sample.u[node * d..][..d]).copied().collect()
+            };
+            let values: Vec<Vec<f64>> = samples.map(displacement).collect();
+            let mut seen = Seen { dimension: d, values, scale: 0.0 };
+            seen.scale = seen.size(|_, _, x| x).mean.max(LEAST_MOTION * body.mesh().size());
+            return seen;
+        };
+        let count = trajectory.sensors().iter().filter(|column| is_own(&column.name)).count();
+        let own = |sample: &Sample| sample.sensors[sample.sensors.len() - count..].to_vec();
+        let start = own(&trajectory.samples()[0]);
+        let mut times = Vec::new();
+        let values: Vec<Vec<f64>> = samples
+            .map(|sample| {
+                times.push(sample.time);
+                own(sample)
+            })
+            .collect();
+        let mut seen = Seen { dimension: count, values, scale: 0.0 };
+        let largest = seen.size(|_, _, x| x).largest;
+        let mut change = seen.size(|_, k, x| x - start[k]);
+        // what was read between samples
+        let between = trajectory.peaks.last().copied().filter(|_| self.is_peak());
+        let [least_read, largest_read] = between.unwrap_or([start[0]; 2]);
+        for read in [least_read, largest_read] {
+            change.largest = change.largest.max((read - start[0]).abs());
+        }
+        let least = (LEAST_CHANGE * largest).max(f64::MIN_POSITIVE);
+        let one = |value: f64, scale: f64| Seen {
+            dimension: 1,
+            values: vec![vec![value]],
+            scale: scale.max(least),
+        };
+        let series = || seen.values.iter().map(|value| value[0]);
+        match self.part {
+            Part::OverTime => {
+                seen.scale = change.mean.max(least);
+                seen
+            }
+            Part::End => one(series().next_back().unwrap_or(f64::NAN), change.largest),
+            Part::Largest => {
+                one(series().fold(largest_read.max(start[0]), f64::max), change.largest)
+            }
+            Part::Least => one(series().fold(least_read.min(start[0]), f64::min), change.largest),
+            Part::Frequency => {
+                let frequency = swings(&times, series()).map_or(f64::NAN, |(f, _)| f);
+                one(frequency, frequency)
+            }
+            Part::Damping => {
+                let damping = swings(&times, series()).map_or(f64::NAN, |(_, damping)| damping);
+                one(damping, damping)
+            }
+        }
+    }
+
+    /// Whether its largest or least value counts, which may lie between samples.
+    fn is_peak(&self) -> bool {
+        matches!(self.part, Part::Largest | Part::Least)
+    }
+
+    /// Whether all times count, and not one number.
+    pub(super) fn is_over_time(&self) -> bool {
+        self.part == Part::OverTime
+    }
+
+    /// Its unit.
+    pub(super) fn unit(&self) -> &'static str {
+        match (&self.reading, self.part) {
+            (_, Part::Frequency) => "Hz",
+            (_, Part::Damping) => "1",
+            (Some(reading), _) => reading.unit(),
+            (None, _) => "m",
+        }
+    }
+
+    /// Number of times at which a motion has to be seen.
+    pub(super) fn times(&self) -> usize {
+        if self.is_over_time() { FEW_TIMES } else { MANY_TIMES }
+    }
+}
+
+/// Times at which motions are compared: this many, evenly from the start (without it) to the end, ...
+const FEW_TIMES: usize = 101;
+/// ... and this many to see the largest value or a frequency.
+const MANY_TIMES: usize = 2001;
+
+/// Name of the sensor that reads the quantity.
+const SENSOR: &str = "\u{1}quantity";
+
+/// Whether this is a column of that sensor.
+fn is_own(column: &str) -> bool {
+    column.starts_with(SENSOR)
+}
+
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.reading.is_none() {
+            return f.write_str("motion");
+        }
+        f.write_str(&self.name)?;
+        match Part::WORDS.iter().find(|(_, part)| *part == self.part) {
+            Some((word, _)) => write!(f, ":{word}"),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The reading that a name without a part stands for.
+fn reading(name: &str, scene: &Scene, sensors: &[(String, Reading)]) -> Option<Reading> {
+    let sensor = |name: &str| sensors.iter().find(|(known, _)| known == name);
+    if let Some((_, reading)) = sensor(name) {
+        return Some(reading.clone());
+    }
+    let of = |stem: &str| match stem {
+        _ if sensor(stem).is_some() => sensor(stem).map(|(_, reading)| reading.clone()),
+        "com" => Some(Reading::centre_of_mass()),
+        "rotation" => Some(Reading::rotation()),
+        set => scene.body().mesh().select(&set.into()).ok().map(|_| Reading::position(set)),
+    };
+    if let Some(reading) = of(name) {
+        return Some(reading);
+    }
+    let (stem, word) = name.rsplit_once('.')?;
+    let component = Component::WORDS.iter().find(|(known, _)| *known == word)?.1;
+    Some(of(stem)?.component(component))
+}
+
+/// What may be named.
+fn mend(scene: &Scene, sensors: &[(String, Reading)]) -> String {
+    let mut known: Vec<&str> = sensors.iter().map(|(name, _)| &name[..]).collect();
+    known.extend(scene.body().mesh().sets().keys().map(String::as_str));
+    format!(
+        "it is motion, com, rotation, a sensor or a set of nodes ({}), where need be with a component as in tip.y, and \
+         with :end, :max, :min, :frequency or :damping where one number counts",
+        known.join(", ")
+    )
+}
+
+/// Frequency (Hz) and damping ratio of a free vibration, from its turning points: their distances are half periods, and
+/// from one to the next the swing falls by exp(-pi zeta/sqrt(1 - zeta^2)). None with less than three of them.
+fn swings(times: &[f64], values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let values: Vec<f64> = values.collect();
+    let mut turns: Vec<[f64; 2]> = Vec::new();
+    for (t, x) in times.windows(3).zip(values.windows(3)) {
+        let (before, after) = (x[1] - x[0], x[2] - x[1]);
+        if before * after < 0.0 || (after == 0.0 && before != 0.0) {
+            // the turning point of the parabola through the three
+            let [before, after] = [before / (t[1] - t[0]), after / (t[2] - t[1])];
+            let curvature = (after - before) / (t[2] - t[0]);
+            let slope = before + curvature * (t[1] - t[0]);
+            let away = -0.5 * slope / curvature;
+            turns.push([t[1] + away, x[1] + 0.5 * slope * away]);
+        }
+    }
+    let (first, last) = (turns.first()?, turns.last()?);
+    let halves = turns.len().checked_sub(1).filter(|halves| *halves >= 2)? as f64;
+    let frequency = halves / (2.0 * (last[0] - first[0]));
+    let swing = |pair: &[[f64; 2]]| (pair[1][1] - pair[0][1]).abs();
+    let (largest, least) = (swing(&turns[..2]), swing(&turns[turns.len() - 2..]));
+    let decrement = (largest / least).ln() / (halves - 1.0);
+    Some((frequency, decrement / PI.hypot(decrement)))
+}
+
+/// A quantity as it was in a motion.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub(super) struct Seen {
+    /// Components of a point.
+    dimension: usize,
+    /// Time by time; point by point.
+    values: Vec<Vec<f64>>,
+    /// What errors are relative to.
+    pub(super) scale: f64,
+}
+
+/// Distances between two motions.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Distance {
+    /// Root mean square over points and times.
+    pub(super) mean: f64,
+    /// Largest.
+    pub(super) largest: f64,
+}
+
+impl Seen {
+    pub(super) fn distance(&self, other: &Self) -> Distance {
+        self.size(|time, k, x| x - other.values[time][k])
+    }
+
+    /// Distances of another motion from this one, relative to its scale.
+    pub(super) fn error(&self, of: &Self) -> Distance {
+        let Distance { mean, largest } = self.distance(of);
+        Distance { mean: mean / self.scale, largest: largest / self.scale }
+    }
+
+    /// Root mean square distance at each time.
+    pub(super) fn distances(&self, other: &Self) -> Vec<f64> {
+        let at = |(one, other): (&Vec<f64>, &Vec<f64>)| {
+            let squares: f64 = one.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum();
+            (squares / (one.len() / self.dimension) as f64).sqrt()
+        };
+        self.values.iter().zip(&other.values).map(at).collect()
+    }
+
+    fn size(&self, component: impl Fn(usize, usize, f64) -> f64) -> Distance {
+        let (mut sum, mut largest, mut count) = (0.0, 0.0_f64, 0);
+        for (time, values) in self.values.iter().enumerate() {
+            for (point, x) in values.chunks_exact(self.dimension).enumerate() {
+                let first = point * self.dimension;
+                let parts = x.iter().enumerate();
+                let square: f64 = parts.map(|(i, x)| component(time, first + i, *x).powi(2)).sum();
+                sum += square;
+                // a number that is none is told
+                largest = if square.is_nan() { square } else { largest.max(square) };
+                count += 1;
+            }
+        }
+        Distance { mean: (sum / f64::from(count.max(1))).sqrt(), largest: largest.sqrt() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_are_those_of_nodes() {
+        // two nodes at two times, in two dimensions
+        let seen = |values: [[f64; 4]; 2]| Seen {
+            dimension: 2,
+            values: values.map(Vec::from).into(),
+            scale: 1.0,
+        };
+        let one = seen([[1.0, 1.0, 2.0, 2.0], [1.0, 1.0, 0.0, 0.0]]);
+        let other = seen([[4.0, 5.0, 2.0, 2.0], [1.0, 1.0, 6.0, -8.0]]);
+        let Distance { mean, largest } = one.distance(&other);
+        assert_eq!((mean, largest), ((125.0_f64 / 4.0).sqrt(), 10.0));
+        assert_eq!(one.size(|_, _, x| x).mean, (12.0_f64 / 4.0).sqrt());
+        assert_eq!(one.distances(&other), [12.5_f64.sqrt(), 50.0_f64.sqrt()]);
+    }
+
+    /// x = 2 + exp(-zeta w t) cos(w sqrt(1 - zeta^2) t), of 3 Hz.
+    #[test]
+    fn frequency_and_damping_are_those_of_the_swings() {
+        for zeta in [0.0, 0.02, 0.2] {
+            let omega = 2.0 * PI * 3.0 / (1.0_f64 - zeta * zeta).sqrt();
+            let times: Vec<f64> = (0..=2000).map(|k| 1e-3 * f64::from(k)).collect();
+            let decay = |t: &f64| 2.0 + (-zeta * omega * t).exp() * (6.0 * PI * t).cos();
+            let (frequency, damping) = swings(&times, times.iter().map(decay)).unwrap();
+            // parabolas through three points in 330 of a period
+            assert!((frequency / 3.0 - 1.0).abs() < 1e-6, "{frequency}");
+            assert!((damping - zeta).abs() < 1e-5, "{damping} {zeta}");
+        }
+        assert!(swings(&[0.0, 1.0, 2.0], [0.0, 1.0, 0.0].into_iter()).is_none());
+    }
+}

@@ -1,0 +1,238 @@
+//! A motion with its error: runs with tighter and tighter tolerances, until two agree.
+
+use std::ops::ControlFlow;
+
+use super::quantity::{Quantity, Seen};
+use super::tightening;
+use crate::base::input::{Fraction, InputError};
+use crate::dynamics::error::Error;
+use crate::dynamics::report::Achieved;
+use crate::dynamics::simulate::{Sampling, Simulation};
+use crate::dynamics::trajectory::{Quantity as Column, Trajectory};
+use crate::io::output::{DIFFERENCE, OF_SENSOR};
+use crate::scene::settings::{ContactEvents, Settings};
+use crate::scene::timeline::{Phase, Scene};
+
+/// Runs a scene with tighter and tighter tolerances, until two runs agree in a [`Quantity`] to an accuracy: what a
+/// tolerance promises holds for each step alone, and small errors may grow in between.
+///
+/// ```
+/// use std::ops::ControlFlow;
+///
+/// use pliant::study::Verification;
+/// use pliant::{Sampling, samples};
+///
+/// let scene = samples::square_jump(4)?;
+/// let mut verification = Verification::new(&scene, 0.01).sampling(Sampling::every(0.01));
+/// while verification.refine(|_| ControlFlow::Continue(()))? {}
+/// let motion = verification.into_trajectory().expect("there was a run");
+/// let achieved = motion.report().achieved.as_ref().unwrap();
+/// assert!(achieved.difference < 0.01 && achieved.known_until == scene.end());
+/// # Ok::<(), pliant::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct Verification<'a> {
+    scene: &'a Scene,
+    accuracy: f64,
+    settings: Settings,
+    sampling: Sampling,
+    quantity: Quantity,
+    runs: usize,
+    /// The tightest run so far.
+    last: Option<Run>,
+}
+
+/// A run, and what was seen in it.
+#[derive(Debug)]
+struct Run {
+    settings: Settings,
+    /// The samples that were asked for.
+    trajectory: Trajectory,
+    /// The times (s) at which it was looked at, and whether a sample of them was asked for.
+    looks: Vec<(f64, bool)>,
+    /// The quantity that counts, and the displacements of all nodes, at each of them.
+    asked: Seen,
+    motion: Seen,
+    /// Columns of the sensors that were asked for.
+    sensors: usize,
+    /// Whether another tolerance than the one before has not changed its steps.
+    is_bounded: bool,
+}
+
+/// A tolerance that has a run take less than so many times the steps of the one before is not what bounds them:
+/// stability is. Then the steps are bounded themselves, by half of what they were in the mean.
+const FINER: f64 = 1.3;
+/// Runs are compared at so many times at least, evenly spread: at few, they may agree by chance.
+const LOOKS: usize = 100;
+
+impl<'a> Verification<'a> {
+    /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
+    pub fn new(scene: &'a Scene, accuracy: f64) -> Self {
+        Self {
+            scene,
+            accuracy,
+            settings: Settings::default(),
+            sampling: Sampling::every(scene.end() / LOOKS as f64),
+            quantity: Quantity::motion(),
+            runs: 0,
+            last: None,
+        }
+    }
+
+    /// How the scene is integrated; `rtol` does not count. Contact events are located, unless they are asked to be stepped
+    /// over. Default: [`Settings::default`].
+    #[must_use]
+    pub fn settings(mut self, settings: Settings) -> Self {
+        self.settings = settings;
+        self
+    }
+
+    /// When the motion is sampled. Runs are compared there, and at a hundred times in any case. Default: at those.
+    #[must_use]
+    pub fn sampling(mut self, sampling: Sampling) -> Self {
+        self.sampling = sampling;
+        self
+    }
+
+    /// What has to be accurate. Default: the whole motion.
+    #[must_use]
+    pub fn quantity(mut self, quantity: Quantity) -> Self {
+        self.quantity = quantity;
+        self
+    }
+
+    /// Runs the scene once more, by a tolerance a tenth of the last one. Returns whether a further run may help: two
+    /// did not agree yet, and the tolerance can be tighter. `observer` looks on after each step, and stops the run by
+    /// [`ControlFlow::Break`].
+    ///
+    /// # Errors
+    /// Bad input; [`Error::Integration`] if the run ends early. What earlier runs have found stays.
+    pub fn refine(
+        &mut self,
+        observer: impl FnMut(&Simulation) -> ControlFlow<()>,
+    ) -> Result<bool, Error> {
+        let settings = match &self.last {
+            None => self.first()?,
+            Some(last) => self.tighter(last),
+        };
+        let mut simulation = self.scene.start(&settings)?;
+        let sampling = self.quantity.read_by(self.sampling.clone()).also_at(self.looks());
+        simulation.record(&sampling)?;
+        let mut trajectory = simulation.finish(observer)?;
+        self.runs += 1;
+        let nodes: Vec<usize> = (0..self.scene.body().mesh().node_count()).collect();
+        let seen =
+            |quantity: &Quantity| quantity.seen(&trajectory, &nodes, trajectory.samples().iter());
+        let (asked, motion) = (seen(&self.quantity), seen(&Quantity::motion()));
+        trajectory.keep_sensors(trajectory.sensors().len() - self.quantity.columns(self.scene)?);
+        let sensors = trajectory.sensors().len();
+        let ends: Vec<f64> = self.scene.phases().iter().map(Phase::end).collect();
+        let is_kept = |time: f64| !sampling.is_extra(time) || ends.contains(&time);
+        let looks = trajectory.samples().iter().map(|sample| (sample.time, is_kept(sample.time)));
+        let looks = looks.collect();
+        trajectory.keep_samples(|sample| is_kept(sample.time));
+        let mut run =
+            Run { settings, trajectory, looks, asked, motion, sensors, is_bounded: false };
+        let difference = self.last.as_ref().map(|before| self.compare(before, &mut run));
+        let is_tightest = tightening::is_tightest(run.settings.rtol);
+        self.last = Some(run);
+        Ok(difference.is_none_or(|difference| difference > self.accuracy) && !is_tightest)
+    }
+
+    /// The motion of the tightest run, if there was one. Behind its sensors it has the column `difference` (m), the root
+    /// mean square distance of its nodes from the run before at each sample, and for each sensor `<sensor>.difference`;
+    /// its report says what was [achieved](crate::Report::achieved).
+    pub fn into_trajectory(self) -> Option<Trajectory> {
+        self.last.map(|run| run.trajectory)
+    }
+
+    /// As [`into_trajectory`](Self::into_trajectory), as far as it has come.
+    pub fn trajectory(&self) -> Option<&Trajectory> {
+        self.last.as_ref().map(|run| &run.trajectory)
+    }
+
+    /// Times (s) at which runs are compared in any case.
+    fn looks(&self) -> Vec<f64> {
+        let count = LOOKS.max(self.quantity.times());
+        (1..count).map(|k| self.scene.end() * (k as f64 / count as f64)).collect()
+    }
+
+    /// The settings of the first run.
+    fn first(&self) -> Result<Settings, Error> {
+        Fraction::check("accuracy", self.accuracy)?;
+        self.quantity.check(self.scene)?;
+        let is_ours = |name: &str| name == DIFFERENCE || name.ends_with(OF_SENSOR);
+        let sensors = self.sampling.columns(self.scene)?;
+        if let Some(Column { name, .. }) = sensors.iter().find(|column| is_ours(&column.name)) {
+            let mend = "a column of differences has it: name the sensor otherwise";
+            return Err(InputError::new("name of a sensor", format!("\"{name}\""), mend).into());
+        }
+        let contact_events = match self.settings.contact_events {
+            ContactEvents::Auto => ContactEvents::Locate,
+            asked => asked,
+        };
+        let rtol = tightening::first(self.accuracy);
+        Ok(Settings { rtol, contact_events, ..self.settings.clone() })
+    }
+
+    /// The settings of the run after `last`.
+    fn tighter(&self, last: &Run) -> Settings {
+        let mut settings = last.settings.clone();
+        settings.rtol = tightening::tighter(settings.rtol);
+        if last.is_bounded {
+            let steps = last.trajectory.report().steps() as f64;
+            let mean = self.scene.end() / steps;
+            settings.max_step = Some(settings.max_step.unwrap_or(mean).min(mean) / 2.0);
+        }
+        settings
+    }
+
+    /// Puts what a run differs by from the one before into its trajectory. Gives the relative difference.
+    fn compare(&self, before: &Run, run: &mut Run) -> f64 {
+        let scale = run.asked.scale;
+        let difference = run.asked.error(&before.asked).mean;
+        let steps = [before, run].map(|run| run.trajectory.report().steps() as f64);
+        run.is_bounded = steps[1] < FINER * steps[0];
+        let apart = run.motion.distances(&before.motion);
+        let series = match self.quantity.is_over_time() {
+            true => (run.asked.distances(&before.asked), scale),
+            false => (apart.clone(), run.motion.scale),
+        };
+        let end = self.scene.end();
+        let is_apart = |(distance, _): &(&f64, _)| **distance > self.accuracy * series.1;
+        let parted = series.0.iter().zip(&run.looks).find(is_apart).map(|(_, look)| look.0);
+        let known_until = match difference <= self.accuracy {
+            true => end,
+            false => parted.unwrap_or(end),
+        };
+        let columns = (0..run.sensors).map(|k| {
+            let pairs = run.trajectory.samples().iter().zip(before.trajectory.samples());
+            pairs.map(|(a, b)| (a.sensors[k] - b.sensors[k]).abs()).collect::<Vec<f64>>()
+        });
+        let columns: Vec<Vec<f64>> = columns.collect();
+        let metres = Column { name: DIFFERENCE.into(), unit: "m".into() };
+        let named = |sensor: &Column| Column {
+            name: format!("{}{OF_SENSOR}", sensor.name),
+            ..sensor.clone()
+        };
+        let names: Vec<Column> = run.trajectory.sensors().iter().map(named).collect();
+        let kept = apart.iter().zip(&run.looks).filter(|(_, look)| look.1);
+        let kept: Vec<f64> = kept.map(|(distance, _)| *distance).collect();
+        run.trajectory.add_column(metres, &kept);
+        for (name, column) in names.into_iter().zip(&columns) {
+            run.trajectory.add_column(name, column);
+        }
+        run.trajectory.report.achieved = Some(Achieved {
+            quantity: self.quantity.to_string(),
+            asked: self.accuracy,
+            difference,
+            scale,
+            unit: self.quantity.unit().into(),
+            known_until,
+            end,
+            runs: self.runs,
+            rtol: [before, run].map(|run| run.settings.rtol),
+        });
+        difference
+    }
+}
