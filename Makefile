@@ -17,11 +17,15 @@ demo: setup ## The jumping square and a scene file by the command: tables here, 
 	@echo "The pictures are in $(CURDIR)/out:"
 	@find out -name '*.svg' -o -name '*.html' | sort | sed 's/^/  /'
 
+# Unit tests are short: to optimize them, which compiles the library once more, would take longer than to run them as they are.
+# Examples are checked by clippy; the two that are named have tests of their own.
 test: ## Every check: format, lints, tests, documentation and its examples
 	@scripts/setup.sh chromium valgrind
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --features play -- -D warnings
-	cargo test --features play
+	cargo test --features play --lib --config profile.dev.opt-level=0
+	cargo test --features play --bins --test '*' --example gallery --example integrators
+	cargo test --features play --doc
 	RUSTDOCFLAGS=-Dwarnings cargo doc --no-deps --features play
 
 bench: ## What cells and the parts of steps cost, and what has become slower; all others: cargo bench

@@ -59,7 +59,7 @@ pub use dynamics::{
 #[cfg(feature = "bodies")]
 pub use elements::{
     body::{Body, CellField, CellSelection, Dilatation, Inertia, NodalField, Strain, Viscosity},
-    material::{Course, Fibres, Lame, Law, Material, MaxwellBranch, Plane, Substance},
+    material::{FibreDirection, Fibres, Lame, Law, Material, MaxwellBranch, Plane, Substance},
     mesh::{Cells, Mesh, Selection, SolidCells},
 };
 pub use integrators::common::Integrator;

@@ -207,7 +207,7 @@ impl Problem for Comparison {
             let solved = solved.map_err(|failure| Error::Reference {
                 rtol: solver.rtol,
                 failures: failure.to_string(),
-                mend: "allow more time".into(),
+                help: "allow more time".into(),
             })?;
             tell(&format!("reference: {:.1} s", solved.seconds));
             motions.push(solved.u);

@@ -164,10 +164,10 @@ impl Formula {
     /// Checks that a path can follow it: that its derivatives exist.
     pub(crate) fn check_smooth(&self) -> Result<(), InputError> {
         self.kink().map_or(Ok(()), |name| {
-            let mend = format!(
+            let help = format!(
                 "{name} has no velocity at its kink: give a smooth formula, or a path through points"
             );
-            Err(InputError::new("path", self.text(), mend))
+            Err(InputError::new("path", self.text(), help))
         })
     }
 
@@ -299,11 +299,11 @@ impl<'a> Parser<'a> {
         found
     }
 
-    fn problem(&mut self, mend: &str) -> String {
+    fn problem(&mut self, help: &str) -> String {
         let column = self.text[..self.at].chars().count() + 1;
         match self.peek() {
-            Some(found) => format!("{mend}, found '{found}' at character {column}"),
-            None => format!("{mend}, found the end"),
+            Some(found) => format!("{help}, found '{found}' at character {column}"),
+            None => format!("{help}, found the end"),
         }
     }
 

@@ -22,24 +22,24 @@ pub(crate) use words::{percent, short, told};
 
 /// An input that cannot be used: which one, its value, and how to mend it.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{input} = {value} cannot be used: {mend}")]
+#[error("{input} = {value} cannot be used: {help}")]
 pub struct InputError {
     /// Name of the input, in the words of the API.
     pub input: String,
     /// Its value, as given.
     pub value: String,
     /// What is allowed, and why.
-    pub mend: String,
+    pub help: String,
 }
 
 impl InputError {
-    /// `input` = `value` cannot be used: `mend`.
+    /// `input` = `value` cannot be used: `help`.
     pub(crate) fn new(
         input: impl Into<String>,
         value: impl Display,
-        mend: impl Into<String>,
+        help: impl Into<String>,
     ) -> Self {
-        Self { input: input.into(), value: value.to_string(), mend: mend.into() }
+        Self { input: input.into(), value: value.to_string(), help: help.into() }
     }
 }
 
@@ -94,8 +94,8 @@ pub(crate) fn finite(input: &str, values: &[f64]) -> Result<(), InputError> {
                 1 => input.to_owned(),
                 _ => format!("component {} of {input}", at + 1),
             };
-            let mend = too_large(values[at]).unwrap_or("it must be a finite number");
-            Err(InputError::new(name, shown(values[at]), mend))
+            let help = too_large(values[at]).unwrap_or("it must be a finite number");
+            Err(InputError::new(name, shown(values[at]), help))
         }
     }
 }

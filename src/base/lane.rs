@@ -15,7 +15,7 @@ pub(crate) const SIDE_BY_SIDE: usize = 8;
 /// One number for each of [`SIDE_BY_SIDE`] cells, in memory.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub(crate) struct Abreast(pub(crate) [f64; SIDE_BY_SIDE]);
+pub(crate) struct Packed(pub(crate) [f64; SIDE_BY_SIDE]);
 
 /// One number for each of as many cells as a register of the machine holds.
 #[derive(Clone, Copy)]
@@ -112,11 +112,11 @@ impl<S: Simd> Real for Lane<S> {
         f: impl Fn([f64; I]) -> [f64; O],
     ) -> [Self; O] {
         let simd = numbers[0].simd;
-        let mut given = [Abreast([0.0; SIDE_BY_SIDE]); I];
+        let mut given = [Packed([0.0; SIDE_BY_SIDE]); I];
         for i in 0..I {
             numbers[i].store(&mut given[i].0, 0);
         }
-        let mut made = [Abreast([0.0; SIDE_BY_SIDE]); O];
+        let mut made = [Packed([0.0; SIDE_BY_SIDE]); O];
         for lane in 0..S::F64_LANES {
             let of_lane = f(std::array::from_fn(|i| given[i].0[lane]));
             for o in 0..O {

@@ -20,7 +20,7 @@ use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::dynamics::system::System;
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{PhaseStart, Prescribed, Row};
+use crate::scene::constraint::{ConstraintRow, PhaseStart, Prescribed};
 use crate::scene::timeline::Scene;
 
 /// The equations of one phase of a scene, discrete in space and continuous in time.
@@ -44,20 +44,20 @@ impl Scene {
         let model = self.model(&forces);
         let (Some(own), Some(forces)) = (self.phases().get(phase), forces.into_iter().nth(phase))
         else {
-            let mend = format!("the scene has {}, counted from 0", self.phases().len());
-            return Err(InputError::new("number of the phase", phase, mend));
+            let help = format!("the scene has {}, counted from 0", self.phases().len());
+            return Err(InputError::new("number of the phase", phase, help));
         };
         if u.len() != self.body().dofs() {
-            let mend = format!("it needs {} numbers, one for each component", self.body().dofs());
+            let help = format!("it needs {} numbers, one for each component", self.body().dofs());
             return Err(InputError::new(
                 "start of the phase",
                 format!("{} numbers", u.len()),
-                mend,
+                help,
             ));
         }
         if model.branches.is_some() {
-            let mend = "equations are given for bodies without Maxwell branches: leave them out";
-            return Err(InputError::new("material.branches", "some", mend));
+            let help = "equations are given for bodies without Maxwell branches: leave them out";
+            return Err(InputError::new("material.branches", "some", help));
         }
         let time = phase.checked_sub(1).map_or(0.0, |before| self.phases()[before].end());
         // positions follow b(t) exactly here, so that no stabilization is needed
@@ -87,7 +87,7 @@ impl Equations {
 
     /// Displacement components that are prescribed at time `t` (s), with b, b' and b''.
     pub fn prescribed(&self, t: f64) -> impl Iterator<Item = (usize, Prescribed)> {
-        let row = move |row: &Row| {
+        let row = move |row: &ConstraintRow| {
             let (dof, coefficient) = row.nodal()?;
             let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
             let [displacement, velocity, acceleration] =

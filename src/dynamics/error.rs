@@ -45,7 +45,7 @@ pub enum Error {
 
     /// A study found no reference to compare with.
     #[error(
-        "no two methods solve the scene at rtol {rtol:.0e}, so there is no reference: {mend} ({failures})"
+        "no two methods solve the scene at rtol {rtol:.0e}, so there is no reference: {help} ({failures})"
     )]
     Reference {
         /// Relative tolerance.
@@ -53,7 +53,7 @@ pub enum Error {
         /// Why the methods failed.
         failures: String,
         /// What to do about it.
-        mend: String,
+        help: String,
     },
 
     /// A file could not be read.

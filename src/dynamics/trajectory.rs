@@ -127,8 +127,8 @@ impl Trajectory {
     ) -> Result<(), InputError> {
         let is_known = |column: &&Quantity| self.sensors.iter().any(|own| own.name == column.name);
         if let Some(Quantity { name, .. }) = columns.iter().find(is_known) {
-            let mend = "a column of the equilibria has it: name the sensor otherwise";
-            return Err(InputError::new("name of a sensor", format!("\"{name}\""), mend));
+            let help = "a column of the equilibria has it: name the sensor otherwise";
+            return Err(InputError::new("name of a sensor", format!("\"{name}\""), help));
         }
         self.sensors.extend(columns);
         self.samples.iter_mut().zip(rows).for_each(|(sample, row)| sample.sensors.extend(row));

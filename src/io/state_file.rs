@@ -62,7 +62,7 @@ impl BodyState {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let path = if path.is_dir() { path.join(NAME) } else { path.into() };
-        let refuse = |mend: String| InputError::new("file of a state", path.display(), mend).into();
+        let refuse = |help: String| InputError::new("file of a state", path.display(), help).into();
         let unread = |source| Error::Read { path: path.clone(), source };
         // to open a pipe may take for ever
         if !fs::metadata(&path).map_err(unread)?.is_file() {

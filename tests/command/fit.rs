@@ -181,7 +181,7 @@ fn runs_that_fail_are_bad_steps() {
             true => Err(Error::Input(InputError {
                 input: "number".into(),
                 value: at[0].to_string(),
-                mend: "it runs away".into(),
+                help: "it runs away".into(),
             })),
             false => Ok(vec![vec![(10.0 * (at[0] - 0.3)).atan(), at[0] - 0.3]]),
         };
@@ -193,8 +193,8 @@ fn runs_that_fail_are_bad_steps() {
     }
     // nothing in the middle is an error
     let none = |_: &[f64]| {
-        let [input, value, mend] = ["number", "0.5", "it runs away"].map(String::from);
-        Err(Error::Input(InputError { input, value, mend }))
+        let [input, value, help] = ["number", "0.5", "it runs away"].map(String::from);
+        Err(Error::Input(InputError { input, value, help }))
     };
     let error = least_squares(&[Unknown::new("number", 0.0, 1.0)], 1e-12, &none, &mut |_, _| {});
     assert!(error.unwrap_err().to_string().contains("it runs away"));

@@ -323,8 +323,8 @@ fn too_many_steps_and_too_much_accuracy() {
 fn unusable_input_is_named_before_c_sees_it() {
     let good = CvodeOptions::new(1e-6, 1e-9);
     let refused = |y0: &[f64], options: &CvodeOptions| match Cvode::new(decay, 0.0, y0, options) {
-        Err(Error::Input(InputError { input, value, mend })) => {
-            println!("{input} = {value}: {mend}");
+        Err(Error::Input(InputError { input, value, help })) => {
+            println!("{input} = {value}: {help}");
             input
         }
         other => panic!("{other:?} is not an input error"),

@@ -28,15 +28,15 @@ fn functions_that_commands_gave_are_named() {
     let mut beam = driven().start(&settings(Method::Arkode, 1e-5)).unwrap();
     beam.checkpoint().write(&path).unwrap();
     let before = fs::read(&path).unwrap();
-    let mend = "a function of time cannot be used: a file cannot hold it; command a constant";
+    let help = "a function of time cannot be used: a file cannot hold it; command a constant";
     beam.pressure("inside", Signal::function(|t| t)).unwrap();
-    says(beam.checkpoint().write(&path), &["pressure of chamber \"inside\"", mend]);
+    says(beam.checkpoint().write(&path), &["pressure of chamber \"inside\"", help]);
     beam.pressure("inside", 1.0).unwrap();
     beam.actuate("tendon", Signal::function(|t| t)).unwrap();
-    says(beam.checkpoint().write(&path), &["actuation of spring \"tendon\"", mend]);
+    says(beam.checkpoint().write(&path), &["actuation of spring \"tendon\"", help]);
     beam.actuate("tendon", Signal::table([0.0, 1.0], [0.0, 1.0])).unwrap();
     beam.load_with("right", |t| [t, 0.0]).unwrap();
-    says(beam.checkpoint().write(&path), &["load on \"right\"", mend]);
+    says(beam.checkpoint().write(&path), &["load on \"right\"", help]);
     assert_eq!(before, fs::read(&path).unwrap());
     beam.load("right", [0.0, 0.0]).unwrap();
     beam.checkpoint().write(&path).unwrap();
@@ -68,16 +68,16 @@ fn other_scenes_are_refused_by_what_differs() {
     let read = |scene: Scene| scene.start(&settings).unwrap().read_checkpoint(&path);
     assert!(read(phases(like(body(0.1, 11, Cells::Rectangles, young)))).is_ok());
     let file = path.to_str().unwrap();
-    let mend = "read it by a simulation of the scene that it was written for";
+    let help = "read it by a simulation of the scene that it was written for";
     let bar = Body::new(Mesh::bar(0.1, 5).unwrap(), SQUARE_MATERIAL)
         .strain(Strain::Cauchy)
         .area(1e-4)
         .build()
         .unwrap();
-    says(read(phases(Scene::new(bar))), &[file, "nodes: it is of a scene with 33", "has 5", mend]);
+    says(read(phases(Scene::new(bar))), &[file, "nodes: it is of a scene with 33", "has 5", help]);
     says(
         read(phases(like(body(0.1, 11, Cells::Triangles, young)))),
-        &["cells: ", "20", "40", mend],
+        &["cells: ", "20", "40", help],
     );
     let ball = Obstacle::disc([0.0, -1.0], 0.1).stiffness(1.0).named("ball");
     let others = [
@@ -91,7 +91,7 @@ fn other_scenes_are_refused_by_what_differs() {
         (beam().initial_velocity_of([33], [0.0, 1.0]), "velocities at the start: they differ"),
     ];
     for (other, words) in others {
-        says(read(phases(other)), &[file, words, "the scene in the file", mend]);
+        says(read(phases(other)), &[file, words, "the scene in the file", help]);
     }
     let others = [
         (
@@ -108,7 +108,7 @@ fn other_scenes_are_refused_by_what_differs() {
         ),
     ];
     for (other, words) in others {
-        says(read(other), &[file, words, mend]);
+        says(read(other), &[file, words, help]);
     }
 }
 

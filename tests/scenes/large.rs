@@ -10,7 +10,7 @@ use rayon::ThreadPoolBuilder;
 fn block() -> Scene {
     let mesh = Mesh::cuboid([0.1; 3], [15; 3], SolidCells::Tetrahedra).unwrap();
     let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Green).build().unwrap();
-    Scene::new(body).gravity([3.0, 0.0, -9.8]).phase(Phase::until(0.005).hold("bottom"))
+    Scene::new(body).gravity([3.0, 0.0, -9.8]).phase(Phase::until(0.002).hold("bottom"))
 }
 
 fn motion(scene: &Scene, method: Method, rtol: f64) -> Trajectory {

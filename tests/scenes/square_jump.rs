@@ -22,7 +22,7 @@ fn jump(scene: &Scene, method: Method, rtol: f64, alpha: f64) -> Trajectory {
 #[test]
 fn methods_agree() {
     let scene = square_jump(4).unwrap();
-    for alpha in [10.0, 1e2, 1e4, 1e6] {
+    for alpha in [10.0, 1e4, 1e6] {
         let too_stiff_for = |method| alpha > 1e5 && method == Method::Rk;
         let judge = if too_stiff_for(Method::Rk) { Method::Ida } else { Method::Rk };
         let truth = jump(&scene, judge, 1e-11, alpha);

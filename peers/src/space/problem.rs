@@ -218,7 +218,7 @@ impl Problem for Space<'_> {
                 Err(failure) => Err(Error::Reference {
                     rtol,
                     failures: failure.to_string(),
-                    mend: "allow more time".into(),
+                    help: "allow more time".into(),
                 }),
             }
         };

@@ -124,8 +124,8 @@ impl Directory {
         let lock = File::open(&self.path).map_err(failed)?;
         // file systems that know no locks are left alone
         if let Err(TryLockError::WouldBlock) = lock.try_lock() {
-            let mend = "wait until it has ended, or name another directory by --out";
-            return Err(Failure::bad_input(format!("another run writes to {place}: {mend}")));
+            let help = "wait until it has ended, or name another directory by --out";
+            return Err(Failure::bad_input(format!("another run writes to {place}: {help}")));
         }
         for entry in fs::read_dir(&self.path).map_err(failed)?.flatten() {
             let goes_on = |name: &str| self.resumes && [TABLE, CHECKPOINT].contains(&name);

@@ -34,10 +34,10 @@ pub struct Arguments {
 }
 
 fn unknown(text: &str) -> Result<Unknown, String> {
-    let mend = || "write KEY=LEAST..MOST, as body.material.young=1e5..5e5".to_owned();
-    let (key, range) = text.split_once('=').ok_or_else(mend)?;
-    let (least, most) = range.split_once("..").ok_or_else(mend)?;
-    let [least, most] = [least, most].map(|end| end.trim().parse().map_err(|_| mend()));
+    let help = || "write KEY=LEAST..MOST, as body.material.young=1e5..5e5".to_owned();
+    let (key, range) = text.split_once('=').ok_or_else(help)?;
+    let (least, most) = range.split_once("..").ok_or_else(help)?;
+    let [least, most] = [least, most].map(|end| end.trim().parse().map_err(|_| help()));
     Ok(Unknown::new(key.trim(), least?, most?))
 }
 

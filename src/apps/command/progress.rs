@@ -13,7 +13,7 @@ use pliant::simulate::Simulation;
 use crate::failure::Failure;
 
 /// Watches a run: shows how far it has come, and stops it when Ctrl-C was pressed.
-pub struct Watch {
+pub struct RunProgress {
     bar: ProgressBar,
     interrupted: Arc<AtomicBool>,
     /// Whether steps are being taken: before and after there is nothing to wait for.
@@ -31,7 +31,7 @@ const PERIOD: Duration = Duration::from_millis(100);
 /// Exit code after the second Ctrl-C, or one outside of steps: that of shells for programs that it ends.
 const KILLED: i32 = 130;
 
-impl Watch {
+impl RunProgress {
     /// Watches a run up to time `end` (s). The bar is drawn on a terminal only, and not if `quiet`.
     pub fn new(end: f64, quiet: bool) -> Result<Self, Failure> {
         let target = match quiet {

@@ -12,7 +12,7 @@ use pliant::{Error, Fraction, IntegrationFailure, SceneFile, Trajectory};
 use crate::accuracy::AccuracyArguments;
 use crate::failure::{Failure, print};
 use crate::files::{Directory, OutputArguments};
-use crate::progress::Watch;
+use crate::progress::RunProgress;
 use crate::scene::SceneArguments;
 use crate::settings::{SettingsArguments, ended};
 
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         times.retain(|t| *t <= file.scene.end());
     }
     let directory = output.directory(&arguments.scene.path, "")?;
-    let watch = Watch::new(file.scene.end(), output.quiet)?;
+    let watch = RunProgress::new(file.scene.end(), output.quiet)?;
     match file.accuracy.within {
         Some(_) if *resume => Err(Failure::bad_input(
             "--resume goes on with one run, and --accuracy takes several: leave one of them out",
@@ -121,7 +121,7 @@ fn once(
     file: &SceneFile,
     resume: bool,
     mut directory: Directory,
-    mut watch: Watch,
+    mut watch: RunProgress,
     quiet: bool,
 ) -> Result<(), Failure> {
     let SceneFile { title, scene, settings, output: request, .. } = file;
@@ -208,7 +208,7 @@ fn verified(
     file: &mut SceneFile,
     within: Fraction,
     mut directory: Directory,
-    mut watch: Watch,
+    mut watch: RunProgress,
     quiet: bool,
 ) -> Result<(), Failure> {
     if file.output.times.is_none() {

@@ -34,8 +34,8 @@ impl Door {
     pub(super) fn new(port: u16) -> Result<Self, Error> {
         let mut bytes = [0; LENGTH];
         getrandom::fill(&mut bytes).map_err(|error| {
-            let mend = "the page needs a random address, and the system gives no random numbers";
-            InputError::new("random numbers", error, mend)
+            let help = "the page needs a random address, and the system gives no random numbers";
+            InputError::new("random numbers", error, help)
         })?;
         let token = bytes.iter().fold(String::new(), |mut token, byte| {
             // a text has room for everything

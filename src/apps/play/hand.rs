@@ -49,8 +49,8 @@ impl Hand {
         let dimension = mesh.dimension();
         let drawn = dimension.max(2);
         if target.len() != drawn {
-            let mend = format!("it needs {drawn} coordinates (m)");
-            return Err(InputError::new("target of the pull", format!("{target:?}"), mend));
+            let help = format!("it needs {drawn} coordinates (m)");
+            return Err(InputError::new("target of the pull", format!("{target:?}"), help));
         }
         finite("the target of the pull", &target)?;
         // a bar is drawn upright

@@ -52,13 +52,13 @@ struct Track {
 }
 
 /// What acts in place of what the scene has: on a chamber, a spring, or some nodes.
-pub(super) enum Course {
+pub(super) enum Replacement {
     Pressure(String, Signal),
     Actuation(String, Signal),
     Load(Selection, Load),
 }
 
-impl Course {
+impl Replacement {
     /// Puts it in force.
     pub(super) fn command(self, simulation: &mut Simulation) -> Result<(), Error> {
         match self {
@@ -124,7 +124,13 @@ impl Record {
     }
 
     /// `target` is moved to `value` at time `t` (s): what it brings about from then on, with all before.
-    pub(super) fn moved(&mut self, scene: &Scene, target: &Target, t: f64, value: f64) -> Course {
+    pub(super) fn moved(
+        &mut self,
+        scene: &Scene,
+        target: &Target,
+        t: f64,
+        value: f64,
+    ) -> Replacement {
         let phases = scene.phases();
         let last = phases.len().saturating_sub(1);
         let number = phases.iter().position(|phase| t < phase.end()).unwrap_or(last);
@@ -138,10 +144,14 @@ impl Record {
     }
 
     /// What a track brings about from time `t` (s) on; for a component of a load, with the other ones.
-    fn course(&self, scene: &Scene, track: &Track, t: f64) -> Course {
+    fn course(&self, scene: &Scene, track: &Track, t: f64) -> Replacement {
         let (nodes, kind) = match &track.target {
-            Target::Pressure(chamber) => return Course::Pressure(chamber.clone(), track.signal()),
-            Target::Actuation(spring) => return Course::Actuation(spring.clone(), track.signal()),
+            Target::Pressure(chamber) => {
+                return Replacement::Pressure(chamber.clone(), track.signal());
+            }
+            Target::Actuation(spring) => {
+                return Replacement::Actuation(spring.clone(), track.signal());
+            }
             Target::Load(nodes, kind, _) => (nodes, *kind),
         };
         let component = |axis| {
@@ -157,7 +167,7 @@ impl Record {
         let force = |t: &f64| components.iter().map(|signal| signal.at(*t)).collect();
         let forces = times.iter().map(force).collect();
         let value = VectorSignal::TimeTable(TimeTable::new(times, forces));
-        Course::Load(nodes.clone(), Load { kind, value })
+        Replacement::Load(nodes.clone(), Load { kind, value })
     }
 }
 

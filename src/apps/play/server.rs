@@ -186,8 +186,8 @@ impl Player {
 }
 
 fn no_port(port: u16, error: &io::Error) -> InputError {
-    let mend = format!("{error}; choose another one, or 0 for any that is free");
-    InputError::new("port", port, mend)
+    let help = format!("{error}; choose another one, or 0 for any that is free");
+    InputError::new("port", port, help)
 }
 
 impl House {

@@ -184,8 +184,8 @@ impl Session {
 
     fn slide(&mut self, number: usize, value: f64) -> Result<(), Error> {
         let slider = self.sliders.get(number).ok_or_else(|| {
-            let mend = format!("there are {} sliders, counted from 0", self.sliders.len());
-            InputError::new("slider", number, mend)
+            let help = format!("there are {} sliders, counted from 0", self.sliders.len());
+            InputError::new("slider", number, help)
         })?;
         self.simulation.check_goes_on()?;
         let (scene, t) = (self.simulation.scene(), self.simulation.time());

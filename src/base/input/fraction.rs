@@ -22,8 +22,8 @@ impl Fraction {
         if part > 0.0 && part < 1.0 {
             return Ok(part);
         }
-        let mend = "it is a part of the whole, above 0 and below 1: 0.01 or 1%";
-        Err(InputError::new(input, part, mend))
+        let help = "it is a part of the whole, above 0 and below 1: 0.01 or 1%";
+        Err(InputError::new(input, part, help))
     }
 }
 

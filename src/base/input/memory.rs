@@ -4,20 +4,20 @@ use std::fs;
 
 use super::InputError;
 
-/// Passes what takes at least so many `bytes`, if they are free; `mend` says what takes less.
+/// Passes what takes at least so many `bytes`, if they are free; `help` says what takes less.
 pub(crate) fn check_memory(
     input: &str,
     value: String,
     bytes: f64,
-    mend: &str,
+    help: &str,
 ) -> Result<(), InputError> {
     let free = available().unwrap_or(A_LOT) as f64;
     if bytes <= free {
         return Ok(());
     }
     let [needed, free] = [bytes, free].map(size);
-    let mend = format!("it takes {needed} of memory at least, and {free} are free: {mend}");
-    Err(InputError::new(input, value, mend))
+    let help = format!("it takes {needed} of memory at least, and {free} are free: {help}");
+    Err(InputError::new(input, value, help))
 }
 
 /// What is taken to be free where the system does not tell.

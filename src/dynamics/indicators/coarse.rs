@@ -18,7 +18,7 @@ const LEAST_STRAIN: f64 = 1e-8;
 /// strain energy of what jumps between cells is stored in the mesh and not in the body, which is that much too stiff.
 pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let body = trajectory.body();
-    let mend = quadratic_cells(body.mesh().kind())?;
+    let help = quadratic_cells(body.mesh().kind())?;
     let young = body.materials().iter().map(|material| material.young).fold(0.0, f64::max);
     let round_off = 0.5 * young * body.volume() * LEAST_STRAIN.powi(2);
     let energy = |sample: &Sample| sample.energy.strain;
@@ -40,7 +40,7 @@ pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Ind
         let finer = ((stiff - 1.0) / (MOST_STIFF - 1.0)).sqrt();
         format!(
             "cells are too coarse for their strains: at t = {} s {:.0} % of the strain energy is in jumps between \
-             cells, so the body is some {stiff:.1} times too stiff or more (limit: {MOST_STIFF} times); take {mend}, or a \
+             cells, so the body is some {stiff:.1} times too stiff or more (limit: {MOST_STIFF} times); take {help}, or a \
              mesh {:.1} times as fine where it bends",
             told(time),
             100.0 * jumps,

@@ -85,7 +85,7 @@ impl Deformed {
 
     fn largest_strain(&self, body: &Body) -> Indicator {
         let is_plain = |law: Option<Law>| matches!(law, None | Some(Law::StVenantKirchhoff));
-        let (factor, off, mend) = match body.strain() {
+        let (factor, off, help) = match body.strain() {
             Strain::Cauchy => (
                 CAUCHY_LAW,
                 "Hooke's law is off by about as much",
@@ -118,7 +118,7 @@ impl Deformed {
         let beyond = || {
             format!(
                 "{said}, cell {} at t = {} s: {off} in its stress, compared with that of rubber; forces there are \
-                 doubtful, shapes less so. Deform it less, or {mend}",
+                 doubtful, shapes less so. Deform it less, or {help}",
                 cell + 1,
                 told(time)
             )

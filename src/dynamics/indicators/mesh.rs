@@ -24,7 +24,7 @@ pub(super) fn locking(body: &Body) -> Option<Indicator> {
         CellKind::Hexahedron => " or dilatation = \"mean\"",
         _ => "",
     };
-    let mend = quadratic_cells(body.mesh().kind())?;
+    let help = quadratic_cells(body.mesh().kind())?;
     if body.mesh().kind().dimension() == 2 && body.plane() == Plane::Stress {
         return None;
     }
@@ -33,7 +33,7 @@ pub(super) fn locking(body: &Body) -> Option<Indicator> {
     let told = format!("Poisson's ratio {most} in linear {cells} (limit: {MOST_POISSON})");
     let beyond = || {
         format!(
-            "{told}: they lock, and may be several times too stiff in bending; take {mend}{other}, or a smaller ratio"
+            "{told}: they lock, and may be several times too stiff in bending; take {help}{other}, or a smaller ratio"
         )
     };
     let limits = [-1.0, MOST_POISSON];

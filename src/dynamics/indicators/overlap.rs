@@ -91,11 +91,14 @@ impl<'a> Overlaps<'a> {
         }
         // what is turned inside out overlaps its neighbours, and is told as that
         let inverted = self.body.inverted_cells(u);
-        let mut is_turned = vec![false; mesh.node_count()];
-        inverted.iter().flat_map(|&cell| self.cells[cell]).for_each(|&node| is_turned[node] = true);
+        let mut is_redirected = vec![false; mesh.node_count()];
+        inverted
+            .iter()
+            .flat_map(|&cell| self.cells[cell])
+            .for_each(|&node| is_redirected[node] = true);
         met.retain(|(point, cell, _)| {
-            let is_turned = self.points[*point].nodes().any(|(node, _)| is_turned[node]);
-            !is_turned && !inverted.contains(cell)
+            let is_redirected = self.points[*point].nodes().any(|(node, _)| is_redirected[node]);
+            !is_redirected && !inverted.contains(cell)
         });
         let entry = |(point, cell, shares): (usize, usize, Vec<(usize, f64)>)| {
             let depth = self.skin.depth(&shares, &now);

@@ -77,7 +77,7 @@ impl Extent {
         }
         let told = format!("{told}, which bends (limit: {wanted})");
         let beyond = || match quadratic_cells(kind) {
-            Some(mend) => format!("{told}: it may be too stiff; take {mend}, or more of them"),
+            Some(help) => format!("{told}: it may be too stiff; take {help}, or more of them"),
             None => format!("{told}: it may be too stiff; take more of them"),
         };
         let limits = [f64::from(wanted), f64::INFINITY];

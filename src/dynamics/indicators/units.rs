@@ -45,14 +45,14 @@ pub(super) fn units(scene: &Scene) -> Vec<Indicator> {
 
 fn extent(body: &Body) -> Vec<Indicator> {
     let (size, mass) = (body.mesh().size(), body.mass());
-    let mend = "is the mesh in mm? Coordinates are metres: divide them by 1000, or by 100 if they are in cm (in Gmsh: \
+    let help = "is the mesh in mm? Coordinates are metres: divide them by 1000, or by 100 if they are in cm (in Gmsh: \
                 Mesh.ScalingFactor = 0.001)";
     let size_told = format!("the body is {size:.3} m across (limit: {LARGEST} m)");
-    let size_beyond = || format!("{size_told}: {mend}");
+    let size_beyond = || format!("{size_told}: {help}");
     let size =
         Indicator::trusted("size", (size, "m"), [0.0, LARGEST], || size_told.clone(), size_beyond);
     let mass_told = format!("the body weighs {mass:.3e} kg (limit: {HEAVIEST} kg)");
-    let mass_beyond = || format!("{mass_told}: {mend}");
+    let mass_beyond = || format!("{mass_told}: {help}");
     let mass = Indicator::trusted(
         "mass",
         (mass, "kg"),

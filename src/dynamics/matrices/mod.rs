@@ -11,7 +11,7 @@ use crate::elements::body::{Body, Branches, LinearByCells};
 use crate::elements::force::Force;
 
 /// Inertia and the constant parts of the tangents. What is `None` is nowhere needed.
-pub(crate) struct Model {
+pub(crate) struct Matrices {
     pub(crate) dimension: usize,
     /// Undeformed positions of the nodes (m), and the size of the body (m).
     pub(crate) positions: Vec<f64>,
@@ -40,7 +40,7 @@ pub(crate) struct Model {
 /// Nodes from which a second order of elimination is worth the search.
 const LARGE: usize = 2000;
 
-impl Model {
+impl Matrices {
     /// The model of `body` under `forces`.
     pub(crate) fn new<'a>(body: &Body, forces: impl Iterator<Item = &'a dyn Force>) -> Self {
         let pattern = body.inertia().pattern();

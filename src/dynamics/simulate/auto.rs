@@ -83,7 +83,7 @@ const TIGHTEST: f64 = 1e-13;
 pub(super) const TRIAL: usize = 32;
 pub(super) const TRIALS: usize = 4;
 
-/// Steps of a plan after which it is asked how far they have led, whatever legs they lie in.
+/// Steps of a plan after which it is asked how far they have led, whatever intervals they lie in.
 pub(super) const LONG: usize = TRIAL * TRIALS;
 
 impl Plan {

@@ -1,6 +1,6 @@
 //! Commands: what a program changes while a scene is in motion.
 
-use super::renewal::Change;
+use super::changes::Change;
 use super::simulation::Simulation;
 use crate::base::input::{InputError, finite};
 use crate::dynamics::error::Error;
@@ -140,8 +140,8 @@ impl Simulation {
             if phase.release(mesh, &mesh.select(&nodes)?)? {
                 return Ok(());
             }
-            let mend = "none of these nodes is held or moved";
-            Err(InputError::new("nodes to release", nodes, mend))
+            let help = "none of these nodes is held or moved";
+            Err(InputError::new("nodes to release", nodes, help))
         })
     }
 
@@ -172,7 +172,7 @@ impl Simulation {
         self.command(Change::Contacts, |phase, scene| {
             let number = scene.obstacle_number(obstacle, "velocity of obstacle")?;
             let obstacle = &scene.obstacles()[number];
-            phase.turn(obstacle, time, velocity);
+            phase.redirect(obstacle, time, velocity);
             phase.moving(obstacle).validated(scene.body().dimension()).map(|_| ())
         })
     }

@@ -11,7 +11,7 @@ use crate::dynamics::state::State;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::basis::Finer;
 use crate::elements::mesh::Selection;
-use crate::scene::constraint::Row;
+use crate::scene::constraint::ConstraintRow;
 use crate::scene::timeline::Scene;
 
 /// A reading on a richer mesh, at the displacements of this one, to first order.
@@ -31,7 +31,7 @@ pub(crate) struct Moved<'a> {
     /// What became of the nodes.
     pub(crate) finer: &'a Finer,
     /// The rows of its constraints.
-    pub(crate) rows: &'a [Row],
+    pub(crate) rows: &'a [ConstraintRow],
     /// The displacements there.
     pub(crate) u: &'a [f64],
 }

@@ -51,7 +51,7 @@ pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
             None => source,
         };
     };
-    let (what, mend) = match &error.cause {
+    let (what, help) = match &error.cause {
         // the words of a force, or of a function of the scene
         Cause::Fatal(_) => match &error.source {
             Some(source) => return source.to_string().into(),
@@ -90,6 +90,6 @@ pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
         | Cause::HigherIndex { .. }
         | Cause::Other => return source,
     };
-    let mend = doom.unwrap_or(mend);
-    format!("{what}: {mend} ({}, order {})", error.integrator, error.order).into()
+    let help = doom.unwrap_or(help);
+    format!("{what}: {help} ({}, order {})", error.integrator, error.order).into()
 }

@@ -10,7 +10,7 @@ use crate::base::vector::{cross, dot, norm};
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::{NodalField, von_mises};
 use crate::elements::mesh::Selection;
-use crate::scene::constraint::{PhaseStart, Row};
+use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::forces::Contact;
 use crate::scene::timeline::{Phase, Scene};
 
@@ -129,11 +129,11 @@ impl Reading {
             }));
         }
         if d != 2 {
-            let mend = "a body turns by one angle in two dimensions only: take the angle between two lines";
-            return Err(InputError::new("rotation in dimension", d, mend));
+            let help = "a body turns by one angle in two dimensions only: take the angle between two lines";
+            return Err(InputError::new("rotation in dimension", d, help));
         }
         let arms = scene.body().arms();
-        Ok(Arc::new(move |view| in_turn * view.body().turned(&arms, view.displacements())))
+        Ok(Arc::new(move |view| in_turn * view.body().rotation_by(&arms, view.displacements())))
     }
 }
 
@@ -164,8 +164,8 @@ fn line(scene: &Scene, ends: &[Selection; 2]) -> Result<[Vec<usize>; 2], InputEr
     let along: [f64; 3] = std::array::from_fn(|i| b[i] - a[i]);
     if norm(&along) <= 1e-9 * mesh.size() {
         let value = format!("{} to {}", ends[0], ends[1]);
-        let mend = "its ends are in the same place, so that it has no direction";
-        return Err(InputError::new("line of an angle", value, mend));
+        let help = "its ends are in the same place, so that it has no direction";
+        return Err(InputError::new("line of an angle", value, help));
     }
     Ok([from, to])
 }
@@ -236,26 +236,26 @@ fn moment(scene: &Scene, nodes: Vec<usize>, lever: &Lever) -> Result<Gauge, Inpu
     let vector = |input: &str, given: &[f64]| -> Result<[f64; 3], InputError> {
         finite(input, given)?;
         if given.len() != d {
-            let mend = format!("it needs {d} component(s)");
-            return Err(InputError::new(input, format!("{given:?}"), mend));
+            let help = format!("it needs {d} component(s)");
+            return Err(InputError::new(input, format!("{given:?}"), help));
         }
         Ok(std::array::from_fn(|i| given.get(i).copied().unwrap_or(0.0)))
     };
     if d == 1 {
-        let mend = "nothing turns on a line: read the constraint force";
-        return Err(InputError::new("moment in dimension", d, mend));
+        let help = "nothing turns on a line: read the constraint force";
+        return Err(InputError::new("moment in dimension", d, help));
     }
     let about = vector("point of a moment", &about)?;
     let axis = match axis {
         Some(axis) if d == 2 => {
-            let mend = "in the plane it is across: leave it out";
-            return Err(InputError::new("axis of a moment", format!("{axis:?}"), mend));
+            let help = "in the plane it is across: leave it out";
+            return Err(InputError::new("axis of a moment", format!("{axis:?}"), help));
         }
         Some(axis) => {
             let along = vector("axis of a moment", &axis)?;
             if norm(&along) == 0.0 {
-                let mend = "it must have a direction";
-                return Err(InputError::new("axis of a moment", format!("{axis:?}"), mend));
+                let help = "it must have a direction";
+                return Err(InputError::new("axis of a moment", format!("{axis:?}"), help));
             }
             Some(along.map(|x| x / norm(&along)))
         }
@@ -288,8 +288,8 @@ fn constraint_sum(
     let d = scene.body().dimension();
     let mut is_read = vec![false; scene.body().mesh().node_count()];
     nodes.into_iter().for_each(|node| is_read[node] = true);
-    let terms = move |rows: &[Row]| -> Vec<Term> {
-        let of_row = |(number, row): (usize, &Row)| -> Vec<Term> {
+    let terms = move |rows: &[ConstraintRow]| -> Vec<Term> {
+        let of_row = |(number, row): (usize, &ConstraintRow)| -> Vec<Term> {
             let read = row.terms.iter().filter(|(dof, _)| is_read[dof / d]);
             read.map(|&(dof, coefficient)| (number, dof, coefficient)).collect()
         };

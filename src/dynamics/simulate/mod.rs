@@ -1,27 +1,27 @@
 //! Running a scene: phase by phase, with restarts in between and samples along the way.
 
-#[cfg(feature = "checkpoint")]
-mod adoption;
 mod angles;
 mod at_rest;
 mod auto;
+mod changes;
 mod checkpoint;
+#[cfg(feature = "checkpoint")]
+mod checkpoint_parts;
 mod commands;
 #[cfg(feature = "study")]
 mod derivative;
 mod events;
 mod failure;
 mod gauge;
-mod leg;
+mod interval;
+mod phase_run;
 mod progress;
 mod reading;
 mod records;
-mod renewal;
 mod run;
 mod sampling;
 mod sensor;
 mod simulation;
-mod stage;
 mod stepper;
 mod steps;
 mod view;
@@ -32,12 +32,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 #[cfg(feature = "checkpoint")]
-pub(crate) use adoption::Choice;
-#[cfg(feature = "checkpoint")]
 pub(crate) use angles::Angles;
 pub use checkpoint::Checkpoint;
 #[cfg(feature = "checkpoint")]
 pub(crate) use checkpoint::Kept;
+#[cfg(feature = "checkpoint")]
+pub(crate) use checkpoint_parts::Choice;
 #[cfg(feature = "study")]
 pub(crate) use derivative::{Linearized, Moved};
 pub use progress::Progress;

@@ -111,8 +111,8 @@ impl Component {
             return Ok(());
         }
         let known: Vec<&str> = known.iter().map(|component| component.word()).collect();
-        let mend = unknown_among(self.word(), &known, "quantity", "components");
-        Err(InputError::new("component", format!("\"{}\"", self.word()), mend))
+        let help = unknown_among(self.word(), &known, "quantity", "components");
+        Err(InputError::new("component", format!("\"{}\"", self.word()), help))
     }
 }
 
@@ -286,8 +286,8 @@ impl Reading {
     pub(super) fn components(&self, dimension: usize) -> Result<Vec<Component>, InputError> {
         use Component::*;
         if self.in_degrees && !self.is_angle() {
-            let mend = format!("angles and rotations alone have it, this is in {}", self.unit());
-            return Err(InputError::new("unit", format!("\"{DEGREES}\""), mend));
+            let help = format!("angles and rotations alone have it, this is in {}", self.unit());
+            return Err(InputError::new("unit", format!("\"{DEGREES}\""), help));
         }
         // those of all columns, and one more that has to be asked for
         let (all, more): (&[Component], _) = match (&self.what, dimension) {

@@ -10,7 +10,7 @@ use crate::dynamics::state::{State, StateMut};
 use crate::dynamics::system::{Energy, System};
 use crate::dynamics::trajectory::{Commanded, Sample};
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::Row;
+use crate::scene::constraint::ConstraintRow;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
@@ -94,7 +94,7 @@ pub(super) fn begin_to_move(
     state: &mut [f64],
 ) {
     let v = State::of(state, system.dofs()).v;
-    let violates = |row: &Row| row.apply(v) != row.prescribed(0.0).velocity;
+    let violates = |row: &ConstraintRow| row.apply(v) != row.prescribed(0.0).velocity;
     if largest(v) > 0.0 && system.rows().iter().any(violates) {
         project_now(system, 0.0, state);
     } else {

@@ -1,4 +1,4 @@
-//! A scene on its way: phases one after the other, and their legs.
+//! A scene on its way: phases one after the other, and their intervals.
 
 use std::mem::take;
 use std::sync::Arc;
@@ -7,18 +7,18 @@ use std::time::Instant;
 use super::angles::Angles;
 use super::auto::Plan;
 use super::failure::in_mechanics;
-use super::leg::{Ending, Good};
+use super::interval::{Ending, RollbackPoint};
+use super::phase_run::{Integration, PhaseRun, Running};
 use super::progress::Observer;
 use super::records::{self, begin_to_move, energy, project};
 use super::sampling::Sampling;
 use super::sensor::Sensors;
-use super::stage::{At, Stage, Work};
 use super::stepper::{self, Failed};
 use super::view::{Gauges, View};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::indicators;
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 use crate::dynamics::report::{Report, creation};
 use crate::dynamics::state::{ENERGIES, State};
 use crate::dynamics::system::System;
@@ -33,7 +33,7 @@ use crate::scene::timeline::{Phase, Scene};
 pub(super) struct Run {
     pub(super) scene: Arc<Scene>,
     pub(super) settings: Settings,
-    pub(super) model: Arc<Model>,
+    pub(super) model: Arc<Matrices>,
     pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
     pub(super) sensors: Sensors,
@@ -51,8 +51,8 @@ pub(super) struct Run {
     pub(super) is_commanded: bool,
     /// Identity of the constraints in force.
     pub(super) constraints: Arc<()>,
-    pub(super) stage: Stage,
-    pub(super) at: At,
+    pub(super) phase_run: PhaseRun,
+    pub(super) integration: Integration,
     pub(super) time: f64,
     /// (u, v, energies, internal strains)
     pub(super) state: Vec<f64>,
@@ -62,13 +62,13 @@ pub(super) struct Run {
     pub(super) standing: usize,
     pub(super) trajectory: Trajectory,
     /// Where the energy balance last was in order.
-    pub(super) good: Good,
+    pub(super) rollback_point: RollbackPoint,
     /// Energy balance (J) that methods are judged by: that of the start or, once a phase has ended with one
     /// that was not in order, of the next one, which is not to blame for that.
     pub(super) balance: f64,
     /// Energies below this (J) are too small to be watched.
     pub(super) least_energy: f64,
-    /// A time (s) at which steps end, though no leg does.
+    /// A time (s) at which steps end, though no interval does.
     pub(super) pause: Option<f64>,
 }
 
@@ -79,7 +79,7 @@ impl Run {
         settings: &Settings,
         (sampling, sensors): (&Sampling, Sensors),
         clock: Instant,
-        (model, gauges): (Arc<Model>, Gauges),
+        (model, gauges): (Arc<Matrices>, Gauges),
         forces: Forces,
     ) -> Result<Self, Error> {
         let phase = scene.first_phase()?;
@@ -89,8 +89,8 @@ impl Run {
         if system.relaxation_rate() > 0.0 && !settings.method.takes_branches() {
             let takes = Method::ALL.into_iter().filter(|method| method.takes_branches());
             let takes: Vec<&str> = takes.map(Method::name).collect();
-            let mend = format!("bodies with Maxwell branches are for {}", takes.join(", "));
-            return Err(InputError::new("method", settings.method, mend).into());
+            let help = format!("bodies with Maxwell branches are for {}", takes.join(", "));
+            return Err(InputError::new("method", settings.method, help).into());
         }
         let mut state = [u, &v, &[0.0; ENERGIES], &system.relaxed(u)].concat();
         begin_to_move(settings, phase, &mut system, &mut state);
@@ -117,12 +117,12 @@ impl Run {
         let mut trajectory = Trajectory::new(scene, report, first);
         trajectory.sensors = sensors.quantities.clone();
         let mut run = Self {
-            stage: Stage::new(plan, times, scene.stops(0), settings.max_steps),
+            phase_run: PhaseRun::new(plan, times, scene.stops(0), settings.max_steps),
             phase,
             is_commanded: false,
             number: 0,
             constraints: Arc::new(()),
-            at: At::Nothing,
+            integration: Integration::Absent,
             settings: settings.clone(),
             model,
             gauges: Arc::new(gauges),
@@ -136,7 +136,7 @@ impl Run {
             state,
             steps: 0,
             standing: 0,
-            good: Good::default(),
+            rollback_point: RollbackPoint::default(),
             balance,
             trajectory,
             // that of strains of a thousandth
@@ -146,23 +146,23 @@ impl Run {
         };
         run.follow_angles();
         run.begin(&system);
-        run.at = At::Rest(system);
+        run.integration = Integration::Idle(system);
         Ok(run)
     }
 
     /// Takes a step; `false` at the end of the scene, where there is none.
     pub(super) fn advance(&mut self, observer: Observer) -> Result<bool, Error> {
         loop {
-            let system = match take(&mut self.at) {
-                At::Work(mut work) if self.stage.ended.is_none() => {
+            let system = match take(&mut self.integration) {
+                Integration::Running(mut work) if self.phase_run.ended.is_none() => {
                     let ended = self.try_step(&mut work, observer);
-                    self.at = At::Work(work);
-                    self.stage.ended = ended.map_err(|source| self.give_up(source))?;
+                    self.integration = Integration::Running(work);
+                    self.phase_run.ended = ended.map_err(|source| self.give_up(source))?;
                     return Ok(true);
                 }
-                At::Work(work) => self.stage.rest(work),
-                At::Rest(system) => system,
-                At::Nothing => {
+                Integration::Running(work) => self.phase_run.rest(work),
+                Integration::Idle(system) => system,
+                Integration::Absent => {
                     let system = self.equations(&self.phase, &self.state)?;
                     self.begin_events(&system);
                     system
@@ -174,47 +174,49 @@ impl Run {
         }
     }
 
-    /// Begins the next leg, if need be that of the next phase; `false` at the end of the scene.
+    /// Begins the next interval, if need be that of the next phase; `false` at the end of the scene.
     pub(super) fn go_on(&mut self, mut system: System) -> Result<bool, Error> {
         loop {
-            match self.stage.ended.take() {
-                Some(Ending::Reached) if self.stage.leg.inside.take().is_some() => {}
-                Some(Ending::Reached) => match self.stage.stops.pop() {
-                    Some(stop) => self.stage.leg.stop = stop,
+            match self.phase_run.ended.take() {
+                Some(Ending::Reached) if self.phase_run.interval.inside.take().is_some() => {}
+                Some(Ending::Reached) => match self.phase_run.stops.pop() {
+                    Some(stop) => self.phase_run.interval.stop = stop,
                     None if self.is_last_phase() => {
-                        self.stage.ended = Some(Ending::Reached);
-                        self.at = At::Rest(system);
+                        self.phase_run.ended = Some(Ending::Reached);
+                        self.integration = Integration::Idle(system);
                         return Ok(false);
                     }
                     None => system = self.next_phase(system)?,
                 },
-                Some(Ending::Event) => self.stage.leg.inside = None,
+                Some(Ending::Event) => self.phase_run.interval.inside = None,
                 // a step that ends within the obstacle feels it
-                Some(Ending::Passage(t)) => self.stage.leg.inside = Some(t),
+                Some(Ending::Passage(t)) => self.phase_run.interval.inside = Some(t),
                 Some(Ending::Better(other)) => {
-                    self.stage.follow(other);
+                    self.phase_run.follow(other);
                     self.begin_events(&system);
                 }
                 Some(Ending::Doubtful { instead }) => {
                     self.go_back();
-                    self.find_leg();
-                    self.stage.follow(instead);
+                    self.find_interval();
+                    self.phase_run.follow(instead);
                     self.begin_events(&system);
                 }
                 None => {}
             }
-            if self.time < self.stage.leg.end() {
+            if self.time < self.phase_run.interval.end() {
                 break;
             }
-            // an event, or a look at the method, just where the leg ends
-            self.stage.ended = Some(Ending::Reached);
+            // an event, or a look at the method, just where the interval ends
+            self.phase_run.ended = Some(Ending::Reached);
         }
         system.forget_counts();
-        let (settings, end) = (&self.stage.plan.settings, self.stop());
+        let (settings, end) = (&self.phase_run.plan.settings, self.stop());
         let atol = settings.tolerances_by(&self.scales);
-        let first = self.stage.first_step.take();
+        let first = self.phase_run.first_step.take();
         match stepper::start(system, settings, &atol, [self.time, end], first, &self.state) {
-            Ok(stepper) => self.at = At::Work(Work::new(stepper, self.time, end)),
+            Ok(stepper) => {
+                self.integration = Integration::Running(Running::new(stepper, self.time, end))
+            }
             Err(source) => return Err(self.failure(source, 0.0)),
         }
         Ok(true)
@@ -222,7 +224,7 @@ impl Run {
 
     /// Where steps end (s).
     pub(super) fn stop(&self) -> f64 {
-        self.pause.unwrap_or(f64::INFINITY).min(self.stage.leg.end())
+        self.pause.unwrap_or(f64::INFINITY).min(self.phase_run.interval.end())
     }
 
     pub(super) fn is_last_phase(&self) -> bool {
@@ -237,10 +239,10 @@ impl Run {
         let phase = Arc::new(phase.after(&self.phase, scene.obstacles(), self.time));
         let mut next = self.followed_by(&phase, &system)?;
         (self.number, self.phase, self.is_commanded) =
-            (self.number + 1, phase.clone(), phase.is_turned());
+            (self.number + 1, phase.clone(), phase.is_redirected());
         project(&self.settings, &phase, &mut next, self.time, &mut self.state);
         let plan = Plan::new(&self.settings, &mut next, self.time, &self.state);
-        (self.stage, self.constraints) = (self.new_stage(plan), Arc::new(()));
+        (self.phase_run, self.constraints) = (self.new_phase_run(plan), Arc::new(()));
         self.begin(&next);
         Ok(next)
     }
@@ -282,8 +284,8 @@ impl Run {
     }
 
     pub(super) fn begin_events(&mut self, system: &System) {
-        let located = self.stage.plan.locates();
-        self.stage.leg.events.begin(system, self.time, &self.state, located);
+        let located = self.phase_run.plan.locates();
+        self.phase_run.interval.events.begin(system, self.time, &self.state, located);
     }
 
     /// A run in the same state without equations; its trajectory begins with the last sample of this one.
@@ -303,14 +305,14 @@ impl Run {
             number: self.number,
             is_commanded: self.is_commanded,
             constraints: self.constraints.clone(),
-            stage: self.new_stage(self.stage.plan.clone()),
-            at: At::Nothing,
+            phase_run: self.new_phase_run(self.phase_run.plan.clone()),
+            integration: Integration::Absent,
             time: self.time,
             state: self.state.clone(),
             steps: self.steps,
             standing: 0,
             trajectory: self.trajectory.at_end(),
-            good: self.good.clone(),
+            rollback_point: self.rollback_point.clone(),
             balance: self.balance,
             least_energy: self.least_energy,
             pause: None,
@@ -320,7 +322,7 @@ impl Run {
     /// How the motion was computed so far.
     pub(super) fn report(&self) -> Report {
         let mut report = self.trajectory.report.clone();
-        let phase = self.stage.report(&self.phase.name, self.time, &self.at);
+        let phase = self.phase_run.report(&self.phase.name, self.time, &self.integration);
         report.wall_seconds = self.clock.elapsed().as_secs_f64();
         report.states = phase.states;
         report.phases.push(phase);
@@ -337,9 +339,11 @@ impl Run {
     /// The error of an integrator that has given up, with the state that the last step led to, unless the
     /// equations have no meaning there.
     fn give_up(&mut self, source: Failed) -> Error {
-        let At::Work(work) = take(&mut self.at) else { return self.failure(source, 0.0) };
+        let Integration::Running(work) = take(&mut self.integration) else {
+            return self.failure(source, 0.0);
+        };
         let step = work.stepper.counts().last_step;
-        let mut system = self.stage.rest(work);
+        let mut system = self.phase_run.rest(work);
         if self.time > self.trajectory.last().time {
             let last = records::sample(self.number, &mut system, self.time, &self.state);
             if let Ok(mut last) = last {
@@ -347,7 +351,7 @@ impl Run {
                 self.trajectory.push(last);
             }
         }
-        self.at = At::Rest(system);
+        self.integration = Integration::Idle(system);
         self.failure(source, step)
     }
 
@@ -371,8 +375,10 @@ impl Run {
 
     /// Size (s) and order of the last step of the integrator at work.
     pub(super) fn last_step(&self) -> (f64, u32) {
-        match &self.at {
-            At::Work(work) => (work.stepper.counts().last_step, work.stepper.last_order()),
+        match &self.integration {
+            Integration::Running(work) => {
+                (work.stepper.counts().last_step, work.stepper.last_order())
+            }
             _ => (0.0, 0),
         }
     }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::reading::Reading;
-use super::sensor::{Sensor, Sensors, Source};
+use super::sensor::{Sensor, SensorKind, Sensors};
 use super::view::View;
 use crate::base::input::{InputError, check_memory, positive};
 #[cfg(feature = "study")]
@@ -29,7 +29,7 @@ enum Times {
     #[default]
     PhaseEnds,
     Every(f64),
-    At(Vec<f64>),
+    Integration(Vec<f64>),
 }
 
 impl Times {
@@ -38,7 +38,7 @@ impl Times {
         match self {
             Self::PhaseEnds => false,
             Self::Every(step) => (time / step).round() * step == time,
-            Self::At(times) => times.contains(&time),
+            Self::Integration(times) => times.contains(&time),
         }
     }
 }
@@ -56,7 +56,7 @@ impl Sampling {
 
     /// At the given times (s), in any order.
     pub fn at(times: impl Into<Vec<f64>>) -> Self {
-        Self { times: Times::At(times.into()), ..Self::default() }
+        Self { times: Times::Integration(times.into()), ..Self::default() }
     }
 
     /// Whether a run of `scene` takes a sample at this `time` (s), to the last digit.
@@ -112,7 +112,7 @@ impl Sampling {
         unit: impl Into<String>,
         reading: impl Fn(&View, &Sample) -> f64 + Send + Sync + 'static,
     ) -> Self {
-        let source = Source::Own(unit.into(), Arc::new(reading));
+        let source = SensorKind::Own(unit.into(), Arc::new(reading));
         self.sensors.push(Sensor { name: name.into(), source });
         self
     }
@@ -134,7 +134,7 @@ impl Sampling {
     /// # Ok::<(), pliant::Error>(())
     /// ```
     pub fn read(mut self, name: impl Into<String>, reading: Reading) -> Self {
-        self.sensors.push(Sensor { name: name.into(), source: Source::Named(reading) });
+        self.sensors.push(Sensor { name: name.into(), source: SensorKind::Named(reading) });
         self
     }
 
@@ -177,17 +177,17 @@ impl Sampling {
             Times::Every(step) => {
                 positive("sampling step", *step, "s")?;
                 if *step < LEAST_STEP * end {
-                    let mend =
+                    let help =
                         format!("double precision does not tell such times apart up to {end} s");
-                    return Err(InputError::new("sampling step", step, mend));
+                    return Err(InputError::new("sampling step", step, help));
                 }
                 let bytes = (end / step) * (dofs as f64) * SAMPLE_BYTES;
                 check_memory("sampling step", format!("{step:e} s"), bytes, "sample less often")
             }
-            Times::At(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
+            Times::Integration(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
                 Some(t) => {
-                    let mend = format!("samples lie between 0 and the end of the scene, {end} s");
-                    Err(InputError::new("sampling time", t, mend))
+                    let help = format!("samples lie between 0 and the end of the scene, {end} s");
+                    Err(InputError::new("sampling time", t, help))
                 }
                 None => Ok(()),
             },
@@ -206,7 +206,7 @@ impl Sampling {
                 let count = ((before / step).ceil() - first).max(0.0) as usize;
                 (Inner::Multiples { step: *step, first }, count)
             }
-            Times::At(times) => {
+            Times::Integration(times) => {
                 let inside = times.iter().copied().filter(|&t| t > after && t < before);
                 let mut times: Vec<f64> = inside.collect();
                 times.sort_by(f64::total_cmp);

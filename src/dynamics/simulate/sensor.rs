@@ -15,7 +15,7 @@ use crate::scene::timeline::Scene;
 #[derive(Clone)]
 pub(super) struct Sensor {
     pub(super) name: String,
-    pub(super) source: Source,
+    pub(super) source: SensorKind,
 }
 
 /// Reads a number of the user's own.
@@ -23,7 +23,7 @@ pub(super) type Own = dyn Fn(&View, &Sample) -> f64 + Send + Sync;
 
 /// What a sensor reads.
 #[derive(Clone)]
-pub(super) enum Source {
+pub(super) enum SensorKind {
     /// A number of the user's own: its unit, and what reads it.
     Own(String, Arc<Own>),
     /// A quantity that scenes have.
@@ -64,8 +64,8 @@ impl Sensors {
         }
         for (number, Quantity { name, .. }) in sensors.quantities.iter().enumerate() {
             if sensors.quantities[..number].iter().any(|other| other.name == *name) {
-                let mend = "two sensors have it: name one of them otherwise";
-                return Err(InputError::new("name of a sensor", format!("\"{name}\""), mend));
+                let help = "two sensors have it: name one of them otherwise";
+                return Err(InputError::new("name of a sensor", format!("\"{name}\""), help));
             }
         }
         Ok(sensors)
@@ -73,14 +73,14 @@ impl Sensors {
 
     fn add(&mut self, Sensor { name, source }: &Sensor, scene: &Scene) -> Result<(), InputError> {
         let reading = match source {
-            Source::Own(unit, read) => {
+            SensorKind::Own(unit, read) => {
                 self.quantities.push(Quantity { name: name.clone(), unit: unit.clone() });
                 let read = read.clone();
                 self.reads
                     .push(Arc::new(move |view, sample, numbers| numbers.push(read(view, sample))));
                 return Ok(());
             }
-            Source::Named(reading) => reading,
+            SensorKind::Named(reading) => reading,
         };
         let components = reading.components(scene.body().dimension())?;
         let gauge = reading.gauge(scene)?;
@@ -135,8 +135,8 @@ impl Sensors {
 impl fmt::Debug for Sensor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.source {
-            Source::Own(unit, _) => f.debug_tuple("Own").field(&self.name).field(unit).finish(),
-            Source::Named(reading) => {
+            SensorKind::Own(unit, _) => f.debug_tuple("Own").field(&self.name).field(unit).finish(),
+            SensorKind::Named(reading) => {
                 f.debug_tuple("Named").field(&self.name).field(reading).finish()
             }
         }

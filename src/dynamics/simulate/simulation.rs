@@ -6,12 +6,12 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use super::checkpoint::Checkpoint;
+use super::phase_run::Integration;
 use super::run::Run;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
-use super::stage::At;
 use super::view::{Gauges, View};
-use super::watch::{Arrival, Watch};
+use super::watch::{Arrival, WatchedEvent};
 use crate::base::input::{InputError, finite, positive};
 use crate::dynamics::error::{Error, Panicked, guarded};
 use crate::dynamics::report::Report;
@@ -57,7 +57,7 @@ pub struct Simulation {
     pub(super) now: Vec<f64>,
     /// Whether there was a command since time went on.
     pub(super) commanded: bool,
-    pub(super) watches: Vec<Watch<Self>>,
+    pub(super) watches: Vec<WatchedEvent<Self>>,
 }
 
 impl Scene {
@@ -354,8 +354,8 @@ impl Simulation {
         if time < end {
             return Ok(());
         }
-        let mend = "the scene has ended, and nothing moves any more: restore a checkpoint, or let the last phase end later";
-        Err(InputError::new("command at time", format!("{time} s"), mend))
+        let help = "the scene has ended, and nothing moves any more: restore a checkpoint, or let the last phase end later";
+        Err(InputError::new("command at time", format!("{time} s"), help))
     }
 
     fn check(&self, t: f64) -> Result<(), InputError> {
@@ -363,9 +363,9 @@ impl Simulation {
         if (time..=end).contains(&t) {
             return Ok(());
         }
-        let mend =
+        let help =
             format!("it must lie between the present, {time} s, and the end of the scene, {end} s");
-        Err(InputError::new("time to go on to", format!("{t} s"), mend))
+        Err(InputError::new("time to go on to", format!("{t} s"), help))
     }
 
     /// Makes `t`, within the last step, the present.
@@ -388,7 +388,7 @@ impl Simulation {
     /// where the last step ended.
     fn panicked<T>(&mut self, panic: Panicked) -> Result<T, Error> {
         let error = self.run.failure(Box::new(panic), 0.0);
-        self.run.at = At::Nothing;
+        self.run.integration = Integration::Absent;
         Err(error)
     }
 }

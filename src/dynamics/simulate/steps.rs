@@ -1,13 +1,13 @@
-//! The steps of a leg: how far they go, what casts doubt on them, and the samples within them.
+//! The steps of a interval: how far they go, what casts doubt on them, and the samples within them.
 
 use super::auto::{LONG, TRIAL};
 use super::events::Met;
 use super::failure::{STANDING, crawling, standing_still, too_many_steps};
-use super::leg::{Ending, Good, Outcome};
+use super::interval::{Ending, Outcome, RollbackPoint};
+use super::phase_run::Running;
 use super::progress::{Observer, Progress};
 use super::records::{self, energy};
 use super::run::Run;
-use super::stage::Work;
 use super::stepper::{Failed, Stepper};
 use crate::dynamics::report::creation;
 use crate::dynamics::system::System;
@@ -24,18 +24,18 @@ const PARTS: usize = 4;
 const CLEAN: f64 = 0.001;
 
 impl Run {
-    /// Takes one step of a leg; gives how the leg ended, if it did.
+    /// Takes one step of a interval; gives how the interval ended, if it did.
     ///
     /// The energy balance is looked at now and then, and may cast doubt on a method that can be exchanged.
     pub(super) fn try_step(
         &mut self,
-        work: &mut Work,
+        work: &mut Running,
         observer: Observer,
     ) -> Result<Option<Ending>, Failed> {
-        if self.stage.leg.steps == 0 {
+        if self.phase_run.interval.steps == 0 {
             return Err(too_many_steps(self.settings.max_steps, &work.stepper.counts()));
         }
-        self.stage.leg.steps -= 1;
+        self.phase_run.interval.steps -= 1;
         let stop = self.stop();
         if work.stop != stop {
             work.stepper.stop_at(stop)?;
@@ -47,13 +47,13 @@ impl Run {
             Outcome::CutOff(step) => (step, true),
             Outcome::Refused(t) => return Ok(Some(Ending::Passage(t))),
         };
-        if self.steps.is_multiple_of(WATCH) || self.time >= self.stage.leg.stop {
+        if self.steps.is_multiple_of(WATCH) || self.time >= self.phase_run.interval.stop {
             let energy = energy(work.stepper.system(), self.time, &self.state);
             self.trajectory.note_energy(&energy);
-            if self.stage.plan.is_on_trial() {
+            if self.phase_run.plan.is_on_trial() {
                 let (created, scale) = self.created(energy.balance());
                 let trouble = creation(created, scale);
-                match trouble.and_then(|trouble| self.stage.plan.instead(&trouble)) {
+                match trouble.and_then(|trouble| self.phase_run.plan.instead(&trouble)) {
                     Some(instead) => return Ok(Some(Ending::Doubtful { instead })),
                     // what another method would begin with
                     None if created < CLEAN * scale => self.remember(),
@@ -62,13 +62,13 @@ impl Run {
             }
         }
         self.report_progress(step, work.stepper.last_order(), observer)?;
-        let led = self.stage.way.add([start, self.time]);
+        let led = self.phase_run.mean_steps.add([start, self.time]);
         if let Some(mean) = led {
             let refusal = work.stepper.system().refusal();
             if let Some(failed) = crawling(LONG, mean, self.time, refusal) {
                 return Err(failed);
             }
-            if let Some(other) = self.stage.plan.turned_back(mean) {
+            if let Some(other) = self.phase_run.plan.turned_back(mean) {
                 return Ok(Some(Ending::Better(other)));
             }
         }
@@ -80,11 +80,11 @@ impl Run {
             work.means.rotate_right(1);
             work.means[0] = (self.time - work.trial_began) / TRIAL as f64;
             work.trial_began = self.time;
-            if let Some(other) = self.stage.plan.reconsidered(work.means, work.steps) {
+            if let Some(other) = self.phase_run.plan.reconsidered(work.means, work.steps) {
                 return Ok(Some(Ending::Better(other)));
             }
         }
-        Ok((self.time >= self.stage.leg.end()).then_some(Ending::Reached))
+        Ok((self.time >= self.phase_run.interval.end()).then_some(Ending::Reached))
     }
 
     /// What the methods have created if the energy balance is now `balance`, and the scale of it (J).
@@ -95,33 +95,34 @@ impl Run {
 
     /// Keeps the present state to go back to.
     pub(super) fn remember(&mut self) {
-        let good = &mut self.good;
-        (good.time, good.taken, good.samples) =
-            (self.time, self.stage.leg.taken, self.trajectory.samples().len());
-        good.energies = self.trajectory.noted();
-        good.angles.clone_from(&self.angles);
-        good.peaks.clone_from(&self.trajectory.peaks);
-        good.state.clone_from(&self.state);
+        let rollback_point = &mut self.rollback_point;
+        (rollback_point.time, rollback_point.taken, rollback_point.samples) =
+            (self.time, self.phase_run.interval.taken, self.trajectory.samples().len());
+        rollback_point.energies = self.trajectory.noted();
+        rollback_point.angles.clone_from(&self.angles);
+        rollback_point.peaks.clone_from(&self.trajectory.peaks);
+        rollback_point.state.clone_from(&self.state);
     }
 
     /// Goes back to the state last kept.
     pub(super) fn go_back(&mut self) {
-        let Good { time, ref state, taken, samples, energies, ref angles, ref peaks } = self.good;
+        let RollbackPoint { time, ref state, taken, samples, energies, ref angles, ref peaks } =
+            self.rollback_point;
         self.angles.clone_from(angles);
         self.trajectory.peaks.clone_from(peaks);
-        (self.time, self.stage.leg.taken, self.standing) = (time, taken, 0);
+        (self.time, self.phase_run.interval.taken, self.standing) = (time, taken, 0);
         self.state.clone_from(state);
         self.trajectory.go_back(samples, energies);
     }
 
     /// Takes one step, up to the first contact event within it, and the samples there are.
-    fn step(&mut self, work: &mut Work) -> Result<Outcome, Failed> {
+    fn step(&mut self, work: &mut Running) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
-        let Work { stepper, stop, sample, .. } = work;
+        let Running { stepper, stop, sample, .. } = work;
         let stepper = &mut **stepper;
         let reached = stepper.step(*stop)?;
         let times = [self.time, reached];
-        let (events, tolerance) = (&mut self.stage.leg.events, self.atol_position);
+        let (events, tolerance) = (&mut self.phase_run.interval.events, self.atol_position);
         let event = match events.met(stepper, &self.state, times, tolerance, sample)? {
             Met::Nothing => None,
             Met::Event(t) => Some(t),
@@ -136,8 +137,8 @@ impl Run {
         let (system, arrived) = arrival(stepper, event, sample)?;
         let before = &self.state[..n];
         system.check_step(time, before, &arrived[..n]).map_err(Failure::into_error)?;
-        while let Some(t) = self.stage.leg.next_sample().filter(|&t| t <= time) {
-            self.stage.leg.taken += 1;
+        while let Some(t) = self.phase_run.interval.next_sample().filter(|&t| t <= time) {
+            self.phase_run.interval.taken += 1;
             stepper.interpolate(t, sample)?;
             let taken = records::sample(self.number, stepper.system_mut(), t, sample);
             let mut taken = taken.map_err(Failure::into_error)?;
@@ -153,7 +154,7 @@ impl Run {
         self.steps += 1;
         self.state.copy_from_slice(&arrived[..length]);
         if event.is_some() {
-            self.stage.leg.events.pass(system, time, &self.state, step);
+            self.phase_run.interval.events.pass(system, time, &self.state, step);
         }
         let drift = system.drift(time, &self.state[..n]);
         let worst = &mut self.trajectory.report.constraint_drift;

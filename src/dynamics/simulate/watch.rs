@@ -34,7 +34,7 @@ type Event = dyn FnMut(&View) -> f64 + Send;
 type Action<S> = dyn FnMut(&mut S) -> Result<ControlFlow<()>, Error> + Send;
 
 /// An event that is watched, and what is done when it is met in a simulation `S`.
-pub(super) struct Watch<S> {
+pub(super) struct WatchedEvent<S> {
     pub(super) event: Box<Event>,
     pub(super) direction: Direction,
     pub(super) action: Box<Action<S>>,
@@ -91,10 +91,10 @@ impl Turns {
         let Self { count, last, .. } = self;
         let input = format!("number of times that event {} of `when` was met", number + 1);
         let value = format!("{count} up to t = {last} s");
-        let mend = "its action turns the motion back ever sooner, or by less than the tolerances tell from nothing, and no time leads \
+        let help = "its action turns the motion back ever sooner, or by less than the tolerances tell from nothing, and no time leads \
                     past all the events that are still to come: below some speed let it bring the motion to rest and `hold` \
                     what has landed, let an obstacle act (`contact`), or stop the advance by ControlFlow::Break";
-        InputError::new(input, value, mend)
+        InputError::new(input, value, help)
     }
 }
 

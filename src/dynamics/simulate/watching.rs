@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use super::simulation::Simulation;
 use super::view::View;
-use super::watch::{Arrival, Direction, Turns, Watch};
+use super::watch::{Arrival, Direction, Turns, WatchedEvent};
 use crate::base::input::InputError;
 use crate::base::vector::largest;
 use crate::dynamics::error::{Error, guarded};
@@ -85,7 +85,7 @@ impl Simulation {
         action: impl FnMut(&mut Self) -> Result<ControlFlow<()>, Error> + Send + 'static,
     ) {
         let (event, action) = (Box::new(event), Box::new(action));
-        self.watches.push(Watch {
+        self.watches.push(WatchedEvent {
             event,
             direction,
             action,
@@ -111,14 +111,14 @@ impl Simulation {
     fn watch(
         &mut self,
         t: f64,
-        watches: &mut [Watch<Self>],
+        watches: &mut [WatchedEvent<Self>],
         until: &mut Option<&mut dyn FnMut(&View) -> f64>,
         mut commanded: bool,
     ) -> Result<Arrival, Error> {
         loop {
             let mut pending = Vec::with_capacity(watches.len() + 1);
             for (number, watch) in watches.iter_mut().enumerate() {
-                let Watch { event, direction, met, turns, .. } = watch;
+                let WatchedEvent { event, direction, met, turns, .. } = watch;
                 let number = Some(number);
                 let is_met = *met == self.time;
                 let value = if is_met { 0.0 } else { self.value(number, event)? };
@@ -318,9 +318,9 @@ impl Simulation {
             Some(number) => format!("value of event {} of `when`", number + 1),
             None => "value of the event of `advance_until`".into(),
         };
-        let mend = "its function has to give a number at all times: look for a root or logarithm of a negative number, or a \
+        let help = "its function has to give a number at all times: look for a root or logarithm of a negative number, or a \
                     division of 0 by 0";
-        Err(InputError::new(input, format!("NaN at t = {} s", self.time), mend).into())
+        Err(InputError::new(input, format!("NaN at t = {} s", self.time), help).into())
     }
 }
 

@@ -76,7 +76,7 @@ impl Search<'_> {
         }
         let fractions = || self.curve.iter().map(|point| point.fraction);
         let [lowest, highest] = [fractions().fold(0.0, f64::min), fractions().fold(0.0, f64::max)];
-        let mend = match lowest < -1.0 {
+        let help = match lowest < -1.0 {
             true => {
                 "it leads far below no load: if it should not, raise load_steps, for shorter steps do not leave it for \
                  another branch"
@@ -85,7 +85,7 @@ impl Search<'_> {
         };
         self.tried = 1.0;
         Err(self.stuck(format!(
-            "the path of equilibria has not come to the whole load in {} steps, and to {:.2} % of it at most: {mend}",
+            "the path of equilibria has not come to the whole load in {} steps, and to {:.2} % of it at most: {help}",
             self.statics.arc_steps,
             100.0 * highest
         )))

@@ -40,7 +40,7 @@ use crate::dynamics::report::Report;
 use crate::dynamics::system::AtRest;
 use crate::dynamics::system::rigid::{self, RigidMotion};
 use crate::dynamics::trajectory::{Commanded, Quantity, Sample, Trajectory};
-use crate::scene::constraint::{PhaseStart, Row, prescribe};
+use crate::scene::constraint::{ConstraintRow, PhaseStart, prescribe};
 use crate::scene::timeline::{Phase, Scene};
 
 impl Scene {
@@ -100,14 +100,14 @@ impl Scene {
         let free = rigid::free_motions(natural, pattern, rest.system().rows());
         let words: Vec<&str> = free.iter().map(|motion| &*motion.words).collect();
         let words = words.join(", ");
-        let loose = |freedom: &str, mend: &str| {
+        let loose = |freedom: &str, help: &str| {
             let input = format!("constraints of phase \"{}\"", phase.name());
             let value = format!("leaving the body free {freedom}");
-            Error::from(InputError::new(input, value, mend))
+            Error::from(InputError::new(input, value, help))
         };
         let linear = rest.is_linear();
         // rows of several nodes hold nothing while K is factorized
-        let (of_nodes, sums): (Vec<Row>, Vec<Row>) = rest
+        let (of_nodes, sums): (Vec<ConstraintRow>, Vec<ConstraintRow>) = rest
             .system()
             .rows()
             .iter()
@@ -141,8 +141,8 @@ impl Scene {
             }
             if search.rest.is_driven() {
                 let input = format!("statics.arc_steps for phase \"{}\"", phase.name());
-                let mend = "obstacles that move cannot go back with the load: let them stand, or leave it 0";
-                return Err(InputError::new(input, statics.arc_steps, mend).into());
+                let help = "obstacles that move cannot go back with the load: let them stand, or leave it 0";
+                return Err(InputError::new(input, statics.arc_steps, help).into());
             }
         }
         let result = if statics.arc_steps > 0 { search.trace() } else { search.all() };

@@ -53,12 +53,12 @@ impl Statics {
     pub(crate) fn validate(&self) -> Result<(), InputError> {
         if !RTOL.contains(&self.rtol) {
             let [least, most] = [RTOL.start(), RTOL.end()];
-            let mend = format!("it must lie between {least:e}, near round-off, and {most:e}");
-            return Err(InputError::new("statics.rtol", self.rtol, mend));
+            let help = format!("it must lie between {least:e}, near round-off, and {most:e}");
+            return Err(InputError::new("statics.rtol", self.rtol, help));
         }
         if !(self.min_load_step > 0.0 && self.min_load_step <= 1.0) {
-            let mend = "it is a part of the whole load, above 0 and at most 1";
-            return Err(InputError::new("statics.min_load_step", self.min_load_step, mend));
+            let help = "it is a part of the whole load, above 0 and at most 1";
+            return Err(InputError::new("statics.min_load_step", self.min_load_step, help));
         }
         for (input, number) in [
             ("statics.max_iterations", self.max_iterations),
@@ -72,8 +72,8 @@ impl Statics {
             [("statics.load_steps", self.load_steps), ("statics.arc_steps", self.arc_steps)]
         {
             if number > MOST_STEPS {
-                let mend = format!("{MOST_STEPS} are the most, for all of them are kept");
-                return Err(InputError::new(input, number, mend));
+                let help = format!("{MOST_STEPS} are the most, for all of them are kept");
+                return Err(InputError::new(input, number, help));
             }
         }
         Ok(())

@@ -17,14 +17,14 @@ mod tests;
 use super::System;
 use super::newton_matrix::NewtonMatrix;
 use super::reduced::nodal_multipliers;
-use super::source::Source;
+use super::source::EntrySource;
 use crate::base::input::InputError;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, largest};
 use crate::dynamics::system::Energy;
 use crate::elements::force::{Force, NodalForces, Reservoir};
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{Prescribed, Row};
+use crate::scene::constraint::{ConstraintRow, Prescribed};
 
 /// The system of a phase at its end, without velocities.
 pub(crate) struct AtRest {
@@ -271,7 +271,7 @@ impl AtRest {
         let System { rows, newton, .. } = &mut self.system;
         let NewtonMatrix { solver, right, mu: change, .. } = newton;
         right.copy_from_slice(f);
-        let general = |(row, _): &(&Row, _)| row.nodal().is_none();
+        let general = |(row, _): &(&ConstraintRow, _)| row.nodal().is_none();
         for (row, mu) in rows.iter().zip(&*mu).filter(general) {
             row.terms.iter().for_each(|&(dof, c)| right[dof] += c * mu);
         }
@@ -337,7 +337,7 @@ pub(super) fn shifted(
     inertia: &NodeMatrix,
     stiffness: &BlockMatrix,
     shift: f64,
-    source: Source,
+    source: EntrySource,
 ) -> f64 {
     let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
     let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };

@@ -3,13 +3,13 @@
 //! The matrix is whole, as blocks of the pattern of nodes, so that each row of a product is summed up by one thread: results
 //! are the same to the last bit on any number of threads.
 
-use super::source::{Coupling, Source};
+use super::source::{Coupling, EntrySource};
 use crate::base::simd::{Formula, each};
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::tensor::Real;
 use crate::base::vector::dot;
-use crate::dynamics::matrices::Model;
-use crate::scene::constraint::Row;
+use crate::dynamics::matrices::Matrices;
+use crate::scene::constraint::ConstraintRow;
 
 /// A symmetric positive definite matrix X, fixed degrees of freedom left out, and its iteration, preconditioned by the
 /// diagonal.
@@ -40,7 +40,7 @@ pub(super) struct Ended {
 
 impl Gradients {
     /// For an X on the pattern of the model; the nodal ones of the `rows` fix degrees of freedom.
-    pub(super) fn new(model: &Model, rows: &[Row], coupling: Coupling) -> Self {
+    pub(super) fn new(model: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
         let (pattern, dimension) = (model.pattern(), model.dimension);
         let zeros = || vec![0.0; model.dofs()];
         Self {
@@ -48,7 +48,7 @@ impl Gradients {
                 Coupling::AllAxes => Matrix::Blocks(BlockMatrix::zeros(pattern, dimension)),
                 _ => Matrix::Alike(NodeMatrix::zeros(pattern), dimension),
             },
-            fixed: rows.iter().filter_map(Row::nodal).map(|(dof, _)| dof).collect(),
+            fixed: rows.iter().filter_map(ConstraintRow::nodal).map(|(dof, _)| dof).collect(),
             inverse: zeros(),
             solution: zeros(),
             residual: zeros(),
@@ -58,7 +58,7 @@ impl Gradients {
     }
 
     /// Takes the matrix whose entries `value` gives. Returns whether its diagonal is that of a positive definite one.
-    pub(super) fn take(&mut self, value: impl Fn(Source) -> f64) -> bool {
+    pub(super) fn take(&mut self, value: impl Fn(EntrySource) -> f64) -> bool {
         self.matrix.fill(value);
         self.matrix.diagonal(&mut self.inverse);
         self.fixed.iter().for_each(|&dof| self.inverse[dof] = 1.0);
@@ -68,7 +68,7 @@ impl Gradients {
     }
 
     /// The entry of the matrix that a source names.
-    pub(super) fn entry(&self, source: Source) -> f64 {
+    pub(super) fn entry(&self, source: EntrySource) -> f64 {
         self.matrix.entry(source)
     }
 
@@ -141,12 +141,12 @@ impl Formula<2, 1, 1> for Turn {
 }
 
 impl Matrix {
-    fn fill(&mut self, value: impl Fn(Source) -> f64) {
+    fn fill(&mut self, value: impl Fn(EntrySource) -> f64) {
         match self {
             Self::Alike(matrix, _) => {
                 let pattern = matrix.pattern().clone();
                 for (entry, x) in matrix.values.iter_mut().enumerate() {
-                    *x = value(Source::new(entry, pattern.transposed(entry), [0, 0]));
+                    *x = value(EntrySource::new(entry, pattern.transposed(entry), [0, 0]));
                 }
             }
             Self::Blocks(matrix) => {
@@ -154,14 +154,14 @@ impl Matrix {
                 for (entry, block) in matrix.values.chunks_exact_mut(d * d).enumerate() {
                     let transposed = pattern.transposed(entry);
                     for (at, x) in block.iter_mut().enumerate() {
-                        *x = value(Source::new(entry, transposed, [at / d, at % d]));
+                        *x = value(EntrySource::new(entry, transposed, [at / d, at % d]));
                     }
                 }
             }
         }
     }
 
-    fn entry(&self, source: Source) -> f64 {
+    fn entry(&self, source: EntrySource) -> f64 {
         match self {
             Self::Alike(matrix, _) => matrix.values[source.entry()],
             Self::Blocks(matrix) => {

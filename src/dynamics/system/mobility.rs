@@ -8,9 +8,9 @@ use super::System;
 use super::reduced::nodal_multipliers;
 use crate::base::simd::{Formula, each};
 use crate::base::tensor::Real;
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Kick;
-use crate::scene::constraint::Row;
+use crate::scene::constraint::ConstraintRow;
 
 pub(super) enum Mobility {
     /// Lumped inertia, one component per row: nothing is to be solved.
@@ -35,8 +35,8 @@ pub(super) struct NodalRow {
 
 impl Mobility {
     pub(super) fn new(system: &System) -> Self {
-        let Model { inertia, dimension, .. } = &*system.model;
-        let rows: Option<Vec<_>> = system.rows.iter().map(Row::nodal).collect();
+        let Matrices { inertia, dimension, .. } = &*system.model;
+        let rows: Option<Vec<_>> = system.rows.iter().map(ConstraintRow::nodal).collect();
         let Some(rows) = rows.filter(|_| system.is_lumped()) else {
             let none = vec![0.0; system.rows.len()];
             return Self::Coupled { demands: none.clone(), multipliers: none };
@@ -73,7 +73,7 @@ impl Mobility {
                     .zip(rows)
                     .for_each(|(d, (row, rate))| *d = (rate - row.apply(before)) / duration);
                 system.accelerations(force, demands, accelerations, multipliers);
-                let rows = system.rows.iter().filter_map(Row::nodal);
+                let rows = system.rows.iter().filter_map(ConstraintRow::nodal);
                 rows.for_each(|(dof, _)| accelerations[dof] = 0.0);
             }
         }
@@ -125,7 +125,7 @@ impl System {
     /// Accelerations a and multipliers lambda with M a - A lambda = f, A^T a = d.
     fn accelerations(&mut self, f: &[f64], d: &[f64], a: &mut [f64], multipliers: &mut [f64]) {
         self.inertia.solve(&self.rows, f, d, a, multipliers);
-        let Model { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.model;
         nodal_multipliers(&self.rows, multipliers, |dof| {
             inertia.row_product(*dimension, dof, a) - f[dof]
         });

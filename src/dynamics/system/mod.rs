@@ -56,18 +56,18 @@ pub use summary::PhaseSummary;
 use crate::base::input::InputError;
 use crate::base::sparse::NodeMatrix;
 use crate::base::vector::dot;
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 use crate::dynamics::state;
 use crate::elements::body::Branches;
 use crate::elements::force::{Forces, NodalForces, Reservoir, Step};
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{Prescribed, Row};
+use crate::scene::constraint::{ConstraintRow, Prescribed};
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
-    model: Arc<Model>,
+    model: Arc<Matrices>,
     forces: Forces,
-    rows: Vec<Row>,
+    rows: Vec<ConstraintRow>,
     /// Stabilization rate alpha (1/s).
     alpha: f64,
     inertia: Reduced,
@@ -132,9 +132,9 @@ impl System {
     /// # Errors
     /// General constraint rows that follow from others.
     pub(crate) fn new(
-        model: Arc<Model>,
+        model: Arc<Matrices>,
         forces: Forces,
-        rows: Vec<Row>,
+        rows: Vec<ConstraintRow>,
         alpha: f64,
         phase: &str,
     ) -> Result<Self, InputError> {
@@ -200,7 +200,7 @@ impl System {
     }
 
     /// The constraints, row by row.
-    pub(crate) fn rows(&self) -> &[Row] {
+    pub(crate) fn rows(&self) -> &[ConstraintRow] {
         &self.rows
     }
 
@@ -241,7 +241,7 @@ impl System {
     /// at time `t`.
     pub(crate) fn project(&mut self, t: f64, v: &mut [f64]) {
         self.at.total.fill(0.0);
-        let Model { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.model;
         inertia.add_product(*dimension, 1.0, v, &mut self.at.total);
         for (demand, row) in self.at.demands.iter_mut().zip(&self.rows) {
             *demand = row.prescribed(t).velocity;
@@ -310,14 +310,15 @@ impl System {
 
     /// Largest |A^T u - b| (m).
     pub(crate) fn drift(&self, t: f64, u: &[f64]) -> f64 {
-        let drift = |row: &Row| (row.apply(u) - row.prescribed(t).displacement).abs();
+        let drift = |row: &ConstraintRow| (row.apply(u) - row.prescribed(t).displacement).abs();
         self.rows.iter().map(drift).fold(0.0, f64::max)
     }
 
     /// Kinetic and potential energies of a state; dissipated and supplied are left at 0. Without `internal` strains
     /// Maxwell branches have relaxed.
     pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Energy {
-        let Model { inertia, stiffness, linear_by_cells, dimension, branches, .. } = &*self.model;
+        let Matrices { inertia, stiffness, linear_by_cells, dimension, branches, .. } =
+            &*self.model;
         let mut energy = Energy {
             kinetic: 0.5 * inertia.quadratic_form(*dimension, v),
             strain: match linear_by_cells {
@@ -348,7 +349,7 @@ impl System {
         self.evaluate_rows(t, u, v)?;
         let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
         self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
-        let Model { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.model;
         nodal_multipliers(&self.rows, multipliers, |dof| {
             inertia.row_product(*dimension, dof, acceleration) - total[dof]
         });
@@ -436,7 +437,7 @@ impl System {
         self.model.branches.as_ref().map_or(0.0, Branches::fastest)
     }
 
-    fn not_finite(&self, row: &Row, t: f64) -> Failure {
+    fn not_finite(&self, row: &ConstraintRow, t: f64) -> Failure {
         let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
         let label = row.label(self.model.dimension);
         Failure::Fatal(
@@ -450,6 +451,6 @@ impl System {
 }
 
 /// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.
-fn follows(model: &Model, forces: &Forces) -> bool {
+fn follows(model: &Matrices, forces: &Forces) -> bool {
     model.branches.is_some() || forces.iter().any(|force| force.is_nonlinear())
 }

@@ -20,10 +20,10 @@
 use super::System;
 use super::newton_matrix::{ITERATED, NewtonMatrix, SOLVED_ONCE};
 use super::reduced::nodal_multipliers;
-use super::source::Source;
+use super::source::EntrySource;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{dot, largest};
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Failure;
 
 impl System {
@@ -66,7 +66,7 @@ impl System {
         if reuse && *is_set {
             return false;
         }
-        let Model { stiffness: k, damping: b, .. } = &*self.model;
+        let Matrices { stiffness: k, damping: b, .. } = &*self.model;
         if let (Some(stiffness), Some(damping)) = (stiffness.begin(k), damping.begin(b)) {
             for force in &self.forces {
                 differences.add_tangents(force, t, [u, v], [stiffness, damping]);
@@ -98,7 +98,7 @@ impl System {
         let NewtonMatrix { solver, stiffness, damping, is_damped, accuracy, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         let inertia = &self.model.inertia;
-        let factorized = solver.begin(*accuracy, |source: Source| {
+        let factorized = solver.begin(*accuracy, |source: EntrySource| {
             let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
             let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
             // the symmetric part: tangents of viscosity and contact need not be symmetric
@@ -221,7 +221,7 @@ impl System {
         let of_slip = r4.iter().zip(&*r3).map(|(r4, r3)| r4 - gamma * r3);
         demands.iter_mut().zip(of_slip).for_each(|(d, of_slip)| *d = of_slip);
         self.inertia.solve(&self.rows, right, demands, r1, r4);
-        let Model { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.model;
         nodal_multipliers(&self.rows, r4, |dof| {
             inertia.row_product(*dimension, dof, r1) - right[dof]
         });

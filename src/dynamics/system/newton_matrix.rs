@@ -6,8 +6,8 @@ use super::differences::Differences;
 use super::reduced::Reduced;
 use super::source::Coupling;
 use crate::base::sparse::BlockMatrix;
-use crate::dynamics::matrices::Model;
-use crate::scene::constraint::Row;
+use crate::dynamics::matrices::Matrices;
+use crate::scene::constraint::ConstraintRow;
 
 /// Residuals, relative to the right-hand side, that systems may be solved to where that saves work: far below what a
 /// Newton iteration leaves, and below what any integrator sees that solves each system once.
@@ -46,7 +46,7 @@ pub(super) enum Tangent {
 }
 
 impl Tangent {
-    fn new(model: &Model, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
+    fn new(model: &Matrices, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
         match constant {
             Some(constant) if !follows => Self::Constant(constant.clone()),
             _ => Self::Own(BlockMatrix::zeros(model.pattern(), model.dimension)),
@@ -83,7 +83,7 @@ impl Tangent {
 }
 
 impl NewtonMatrix {
-    pub(super) fn new(model: &Model, rows: &[Row], follows: bool) -> Self {
+    pub(super) fn new(model: &Matrices, rows: &[ConstraintRow], follows: bool) -> Self {
         let dofs = model.dofs();
         Self {
             solver: Reduced::new(model, rows, Coupling::AllAxes),

@@ -21,7 +21,7 @@
 use super::System;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::largest;
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 use crate::integrators::ode::Rates;
 
 /// Iterations for the first bound, and for those after it, which begin where the last one ended.
@@ -50,7 +50,7 @@ struct Bound {
 
 impl RatesBound {
     pub(super) fn new(system: &mut System) -> Self {
-        let Model { inertia, dimension, .. } = &*system.model.clone();
+        let Matrices { inertia, dimension, .. } = &*system.model.clone();
         let factor = if system.is_lumped() { 1.0 } else { system.inertia_factor() };
         let dofs = system.dofs();
         let mass = |dof: usize| inertia.get(dof / dimension, dof / dimension) / factor;
@@ -87,7 +87,7 @@ impl System {
 
     /// Largest eigenvalue of M^-1 diag(M), by the power method.
     fn inertia_factor(&mut self) -> f64 {
-        let Model { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.model;
         let (dofs, rows) = (self.dofs(), self.rows.len());
         let (nowhere, mut multipliers) = (vec![0.0; rows], vec![0.0; rows]);
         let mut x: Vec<f64> = (0..dofs).map(|i| (12.9898 * (i as f64 + 1.0)).sin()).collect();

@@ -22,10 +22,10 @@ use faer::{Mat, MatMut, Par, Spec};
 
 use super::cholesky::Indefinite;
 use super::gradients::Gradients;
-use super::source::{Coupling, Source};
+use super::source::{Coupling, EntrySource};
 use super::symmetric::Symmetric;
-use crate::dynamics::matrices::Model;
-use crate::scene::constraint::Row;
+use crate::dynamics::matrices::Matrices;
+use crate::scene::constraint::ConstraintRow;
 
 /// Residual, relative to the right-hand side, that is round-off.
 pub(super) const EXACT: f64 = 1e-13;
@@ -35,7 +35,7 @@ pub(super) struct Reduced {
     /// The free part of X.
     symmetric: Symmetric,
     /// Entries of X between a free row (position in `free`) and a fixed column (dof).
-    border: Vec<(usize, usize, Source)>,
+    border: Vec<(usize, usize, EntrySource)>,
     border_values: Vec<f64>,
     general: GeneralRows,
     springs: Vec<Spring>,
@@ -52,15 +52,15 @@ struct Spring {
     /// Entries of the free part of X with the products of two coefficients of the row.
     entries: Vec<(usize, f64)>,
     /// The diagonal of X there.
-    diagonal: Vec<Source>,
+    diagonal: Vec<EntrySource>,
 }
 
 impl Reduced {
-    pub(super) fn new(model: &Model, rows: &[Row], coupling: Coupling) -> Self {
+    pub(super) fn new(model: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
         let (pattern, dimension) = (model.pattern(), model.dimension);
         let dofs = pattern.nodes() * dimension;
         let mut position: Vec<Option<usize>> = vec![Some(0); dofs];
-        rows.iter().filter_map(Row::nodal).for_each(|(dof, _)| position[dof] = None);
+        rows.iter().filter_map(ConstraintRow::nodal).for_each(|(dof, _)| position[dof] = None);
         let free: Vec<usize> = (0..dofs).filter(|&dof| position[dof].is_some()).collect();
         free.iter().enumerate().for_each(|(at, &dof)| position[dof] = Some(at));
 
@@ -79,7 +79,7 @@ impl Reduced {
                         continue;
                     }
                     // X is symmetric: entry (column, row) stands for (row, column).
-                    let source = Source::new(entry, pattern.transposed(entry), axes);
+                    let source = EntrySource::new(entry, pattern.transposed(entry), axes);
                     match (position[node * dimension + axis], position[column]) {
                         (Some(row), Some(column)) if row >= column => {
                             row_indices.push(row);
@@ -152,7 +152,7 @@ impl Reduced {
     pub(super) fn begin(
         &mut self,
         accuracy: f64,
-        value: impl Fn(Source) -> f64,
+        value: impl Fn(EntrySource) -> f64,
     ) -> Result<(), Indefinite> {
         // prescribed components are as exact as the systems are
         let accuracy = if self.general.rows.is_empty() { accuracy } else { EXACT };
@@ -163,7 +163,10 @@ impl Reduced {
     }
 
     /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value` gives.
-    pub(super) fn factorize(&mut self, value: impl Fn(Source) -> f64) -> Result<(), Indefinite> {
+    pub(super) fn factorize(
+        &mut self,
+        value: impl Fn(EntrySource) -> f64,
+    ) -> Result<(), Indefinite> {
         self.assemble_border(&value);
         self.stiffening.clear();
         for Spring { row, entries, diagonal } in &self.springs {
@@ -181,7 +184,7 @@ impl Reduced {
         self.general.factorize(&mut self.symmetric)
     }
 
-    fn assemble_border(&mut self, value: impl Fn(Source) -> f64) {
+    fn assemble_border(&mut self, value: impl Fn(EntrySource) -> f64) {
         self.border_values
             .iter_mut()
             .zip(&self.border)
@@ -193,7 +196,7 @@ impl Reduced {
     /// X x - f at the fixed components.
     pub(super) fn solve(
         &mut self,
-        rows: &[Row],
+        rows: &[ConstraintRow],
         f: &[f64],
         d: &[f64],
         x: &mut [f64],
@@ -215,7 +218,13 @@ impl Reduced {
 
     /// Has iterations tried before a factor, for so many more than solves with it would cost, however small the body is.
     #[cfg(test)]
-    fn rent(mut self, model: &Model, rows: &[Row], coupling: Coupling, iterations: f64) -> Self {
+    fn rent(
+        mut self,
+        model: &Matrices,
+        rows: &[ConstraintRow],
+        coupling: Coupling,
+        iterations: f64,
+    ) -> Self {
         self.symmetric.rent(Gradients::new(model, rows, coupling), iterations);
         self
     }
@@ -257,7 +266,7 @@ struct GeneralRow {
 }
 
 impl GeneralRows {
-    fn new(rows: &[Row], position: &[Option<usize>]) -> Self {
+    fn new(rows: &[ConstraintRow], position: &[Option<usize>]) -> Self {
         let general = rows.iter().enumerate().filter(|(_, row)| row.nodal().is_none());
         let rows: Vec<GeneralRow> = general
             .map(|(number, row)| {
@@ -321,7 +330,14 @@ impl GeneralRows {
     }
 
     /// Corrects `free` = X^-1 f so that the rows hold.
-    fn solve(&mut self, all: &[Row], d: &[f64], x: &[f64], free: &mut [f64], mu: &mut [f64]) {
+    fn solve(
+        &mut self,
+        all: &[ConstraintRow],
+        d: &[f64],
+        x: &[f64],
+        free: &mut [f64],
+        mu: &mut [f64],
+    ) {
         if self.rows.is_empty() {
             return;
         }
@@ -350,7 +366,7 @@ impl GeneralRows {
 /// Completes the multipliers by those of nodal rows: `residual` is X x - f at a fixed component,
 /// where X x - f = A mu.
 pub(super) fn nodal_multipliers(
-    rows: &[Row],
+    rows: &[ConstraintRow],
     multipliers: &mut [f64],
     residual: impl Fn(usize) -> f64,
 ) {
@@ -361,7 +377,7 @@ pub(super) fn nodal_multipliers(
     }
     for general in (0..rows.len()).filter(|&k| rows[k].nodal().is_none()) {
         for &(dof, c) in &rows[general].terms {
-            let fixed = |row: &Row| row.nodal().filter(|term| term.0 == dof);
+            let fixed = |row: &ConstraintRow| row.nodal().filter(|term| term.0 == dof);
             let found = rows.iter().enumerate().find_map(|(k, row)| Some((k, fixed(row)?.1)));
             if let Some((k, coefficient)) = found {
                 multipliers[k] -= c * multipliers[general] / coefficient;

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::base::sparse::{NodeMatrix, NodePattern};
 use crate::base::vector::{dot, norm};
 use crate::elements::mesh::Mesh;
-use crate::scene::constraint::Row;
+use crate::scene::constraint::ConstraintRow;
 
 /// Squares of velocities below this, relative to the largest, are round-off.
 const NOTHING: f64 = 1e-12;
@@ -123,7 +123,11 @@ pub(crate) fn parts(motions: &[RigidMotion], inertia: &NodeMatrix, u: &[f64]) ->
 }
 
 /// The rigid motions that `rows` leave free; those of each connected piece of the body.
-pub(crate) fn free_motions(shape: Shape, pattern: &NodePattern, rows: &[Row]) -> Vec<RigidMotion> {
+pub(crate) fn free_motions(
+    shape: Shape,
+    pattern: &NodePattern,
+    rows: &[ConstraintRow],
+) -> Vec<RigidMotion> {
     let pieces = pattern.pieces();
     let count = pieces.iter().max().map_or(0, |last| last + 1);
     let mut nodes = vec![Vec::new(); count];
@@ -195,7 +199,12 @@ impl Modes {
     }
 
     /// Coefficients of the modes that move nothing of `rows`, reduced to echelon form.
-    fn free(&self, shape: Shape, rows: &[Row], inside: impl Fn(usize) -> bool) -> Vec<Vec<f64>> {
+    fn free(
+        &self,
+        shape: Shape,
+        rows: &[ConstraintRow],
+        inside: impl Fn(usize) -> bool,
+    ) -> Vec<Vec<f64>> {
         let count = self.products.nrows();
         let mut hold = DMatrix::zeros(count, count);
         for row in rows {

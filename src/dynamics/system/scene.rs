@@ -4,22 +4,22 @@ use std::sync::Arc;
 
 use super::{Spectrum, System};
 use crate::base::input::InputError;
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 use crate::elements::force::Forces;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::{Phase, Scene};
 
 impl Scene {
     /// The constant numbers of the scene under the forces of its phases.
-    pub(crate) fn model(&self, forces: &[Forces]) -> Arc<Model> {
+    pub(crate) fn model(&self, forces: &[Forces]) -> Arc<Matrices> {
         let all = forces.iter().flatten().map(|force| &**force);
-        Arc::new(Model::new(self.body(), all))
+        Arc::new(Matrices::new(self.body(), all))
     }
 
     /// The equations of one phase under its forces.
     pub(crate) fn system(
         &self,
-        model: &Arc<Model>,
+        model: &Arc<Matrices>,
         phase: &Phase,
         forces: Forces,
         start: &PhaseStart,

@@ -9,7 +9,7 @@ use super::mobility::Mobility;
 use super::rates::RatesBound;
 use crate::dynamics::state::ENERGIES;
 use crate::integrators::ode::{EnergyBalance, Failure, Kick, Rates, SecondOrder};
-use crate::scene::constraint::{Prescribed, Row};
+use crate::scene::constraint::{ConstraintRow, Prescribed};
 
 /// The equations of a phase as central differences take them. The integrals are the energies
 /// dissipated and supplied (J).
@@ -98,7 +98,7 @@ impl System {
     ///
     /// # Errors
     /// A path that gives no finite numbers.
-    pub(super) fn prescribed(&self, row: &Row, t: f64) -> Result<Prescribed, Failure> {
+    pub(super) fn prescribed(&self, row: &ConstraintRow, t: f64) -> Result<Prescribed, Failure> {
         let prescribed = row.prescribed(t);
         let Prescribed { displacement, velocity, acceleration } = prescribed;
         match (displacement + velocity + acceleration).is_finite() {

@@ -2,13 +2,13 @@
 
 /// Which entry of the matrices of the body an entry of X comes from. There are as many as X has entries, so they are small.
 #[derive(Clone, Copy)]
-pub(super) struct Source {
+pub(super) struct EntrySource {
     entry: u32,
     transposed: u32,
     axes: [u8; 2],
 }
 
-impl Source {
+impl EntrySource {
     /// The entry at two axes, of the row and of the column, in the block `entry` of the [`NodePattern`].
     pub(super) fn new(entry: usize, transposed: usize, axes: [usize; 2]) -> Self {
         let [entry, transposed] = [entry, transposed].map(|entry| entry as u32);

@@ -9,7 +9,7 @@ use super::rigid::{self, Shape};
 use super::source::Coupling;
 use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, noise};
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 
 /// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
 /// the constraints allow. Contacts and springs count as far as they act in that state, Maxwell branches as springs, without
@@ -119,7 +119,7 @@ impl System {
 
     /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, orthonormal by M.
     fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
-        let Model { positions, size, stiffness, dimension, inertia, .. } = &*self.model;
+        let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.model;
         let mut positions = positions.clone();
         // under linear strain turns along straight lines strain nothing
         if stiffness.is_none() {

@@ -9,7 +9,7 @@ use faer::sparse::SymbolicSparseColMat;
 
 use super::cholesky::{Cholesky, Indefinite};
 use super::gradients::Gradients;
-use super::source::Source;
+use super::source::EntrySource;
 
 /// Operations of a factorization in the time of one of an iteration: it computes with dense blocks.
 const DENSE_SPEED: f64 = 4.0;
@@ -25,7 +25,7 @@ pub(super) struct Symmetric {
     /// Free degrees of freedom, ascending.
     free: Vec<usize>,
     /// Where the lower triangle comes from.
-    sources: Vec<Source>,
+    sources: Vec<EntrySource>,
     values: Vec<f64>,
     cholesky: Cholesky,
     /// None where a factor is cheap.
@@ -54,7 +54,7 @@ impl Symmetric {
     /// For the lower triangle `pattern`, which is analysed as in [`Cholesky::new`]. `gradients` makes what iterates, if that may pay.
     pub(super) fn new(
         free: Vec<usize>,
-        sources: Vec<Source>,
+        sources: Vec<EntrySource>,
         pattern: SymbolicSparseColMat<usize>,
         order: Option<Vec<usize>>,
         gradients: impl FnOnce() -> Gradients,
@@ -82,7 +82,7 @@ impl Symmetric {
     pub(super) fn begin(
         &mut self,
         accuracy: f64,
-        value: impl Fn(Source) -> f64,
+        value: impl Fn(EntrySource) -> f64,
     ) -> Result<(), Indefinite> {
         let Some(rented) = &mut self.rented else { return self.factorize(value, &[]) };
         rented.begin(accuracy);
@@ -92,7 +92,7 @@ impl Symmetric {
     /// Factorizes the positive definite matrix whose entries `value` gives, `more` added to some of them.
     pub(super) fn factorize(
         &mut self,
-        value: impl Fn(Source) -> f64,
+        value: impl Fn(EntrySource) -> f64,
         more: &[(usize, f64)],
     ) -> Result<(), Indefinite> {
         self.rented.iter_mut().for_each(|rented| rented.is_open = false);

@@ -98,8 +98,8 @@ impl Trajectory {
 }
 
 fn foreign(sample: &Sample) -> InputError {
-    let mend = "it is not a sample of this trajectory: take one from Trajectory::samples";
-    InputError::new("sample", format!("that at {} s", sample.time), mend)
+    let help = "it is not a sample of this trajectory: take one from Trajectory::samples";
+    InputError::new("sample", format!("that at {} s", sample.time), help)
 }
 
 fn refused(sample: &Sample, failure: Failure) -> InputError {

@@ -79,8 +79,8 @@ impl Mesh {
             CellKind::Tetrahedron => (CellKind::Tetrahedron10, &[&[0, 1, 2, 3]]),
             CellKind::Hexahedron => (CellKind::Hexahedron20, &[&[0, 1, 2, 3, 4, 5, 6, 7]]),
             kind => {
-                let mend = "triangles, quadrilaterals, tetrahedra and hexahedra of linear shape functions get mid nodes";
-                return Err(InputError::new("cells", kind.name(), mend));
+                let help = "triangles, quadrilaterals, tetrahedra and hexahedra of linear shape functions get mid nodes";
+                return Err(InputError::new("cells", kind.name(), help));
             }
         };
         let corners = nodes(self.kind());

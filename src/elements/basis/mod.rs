@@ -10,7 +10,7 @@
 mod finer;
 mod hexahedron;
 mod hexahedron20;
-mod place;
+mod locate;
 mod quadrilateral;
 mod quadrilateral8;
 mod recovery;
@@ -29,7 +29,7 @@ use nalgebra::{SMatrix, SVector};
 pub(crate) use finer::Finer;
 pub(crate) use hexahedron::Hexahedron;
 pub(crate) use hexahedron20::Hexahedron20;
-pub(crate) use place::{shares_at, shares_in};
+pub(crate) use locate::{shares_at, shares_in};
 pub(crate) use quadrilateral::Quadrilateral;
 pub(crate) use quadrilateral8::Quadrilateral8;
 pub(crate) use recovery::extrapolation;

@@ -244,14 +244,14 @@ impl Body {
     /// A point outside the body.
     pub(crate) fn shares_at(&self, x: &[f64]) -> Result<Vec<(usize, f64)>, InputError> {
         if x.len() != self.dimension() {
-            let mend = format!("it needs {} component(s) (m)", self.dimension());
-            return Err(InputError::new("point", format!("{x:?}"), mend));
+            let help = format!("it needs {} component(s) (m)", self.dimension());
+            return Err(InputError::new("point", format!("{x:?}"), help));
         }
         finite("point", x)?;
         shares_at(&self.mesh, x).ok_or_else(|| {
-            let mend =
+            let help =
                 "it lies outside the body: give the undeformed position of one of its points";
-            InputError::new("point", format!("{x:?}"), mend)
+            InputError::new("point", format!("{x:?}"), help)
         })
     }
 
@@ -364,7 +364,7 @@ impl Body {
         if self.dimension() != 2 {
             return None;
         }
-        Some(self.turned(&self.arms(), u))
+        Some(self.rotation_by(&self.arms(), u))
     }
 
     /// The mass of each node of a body in the plane times where the node naturally is from the centre of mass (kg m). They add up to 0.
@@ -377,7 +377,7 @@ impl Body {
     }
 
     /// The [`rotation`](Self::rotation) of a body in the plane, by its `arms`.
-    pub(crate) fn turned(&self, arms: &[[f64; 2]], u: &[f64]) -> f64 {
+    pub(crate) fn rotation_by(&self, arms: &[[f64; 2]], u: &[f64]) -> f64 {
         let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
         let (mut along, mut across) = (0.0, 0.0);
         for ([a, b], (x, u)) in arms.iter().zip(nodes) {

@@ -32,7 +32,7 @@ impl Dilatation {
         dimension: usize,
         plane: Plane,
     ) -> Result<bool, InputError> {
-        let mend = match kind {
+        let help = match kind {
             _ if self == Self::AtPoints => return Ok(false),
             CellKind::Triangle | CellKind::Tetrahedron => {
                 "linear triangles and tetrahedra have one point each: nothing changes for them. Take quadratic ones, \
@@ -46,7 +46,7 @@ impl Dilatation {
             }
             _ => return Ok(true),
         };
-        Err(InputError::new("dilatation", "mean", mend))
+        Err(InputError::new("dilatation", "mean", help))
     }
 }
 

@@ -10,10 +10,10 @@
 
 use pulp::Simd;
 
-use super::rows::Rows;
-use super::shares::Shares;
+use super::contiguous::ContiguousCells;
+use super::partition::Partition;
 use crate::base::input::InputError;
-use crate::base::lane::{Abreast, Lane, SIDE_BY_SIDE};
+use crate::base::lane::{Lane, Packed, SIDE_BY_SIDE};
 use crate::base::sparse::NodePattern;
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::basis::{
@@ -28,7 +28,7 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) entries: Vec<[[u32; N]; N]>,
     /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes times section.
     /// Cells that are missing at the end repeat the last one.
-    points: Vec<StrainPoint<Abreast, N, M, D>>,
+    points: Vec<StrainPoint<Packed, N, M, D>>,
     /// Shape functions at the strain points of a cell.
     pub(super) values: [[f64; N]; Q],
     /// What values at the strain points of a cell count for at each of its nodes.
@@ -38,8 +38,8 @@ pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, con
     pub(super) quadratic: bool,
     /// Whether what resists a change of volume takes the mean of that over each cell.
     pub(super) mean_dilatation: bool,
-    pub(super) shares: Shares,
-    pub(super) rows: Rows<N>,
+    pub(super) shares: Partition,
+    pub(super) rows: ContiguousCells<N>,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
@@ -84,8 +84,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         let points = side_by_side::<N, M, D, Q>(&points);
         let values = std::array::from_fn(|q| C::values(C::STIFFNESS_RULE[q].0));
         let quadratic = mesh.kind().is_quadratic();
-        let shares = Shares::new(&nodes, mesh.node_count());
-        let rows = Rows::new(&nodes);
+        let shares = Partition::new(&nodes, mesh.node_count());
+        let rows = ContiguousCells::new(&nodes);
         Ok(Self {
             nodes,
             entries,
@@ -117,14 +117,14 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
             products: cells.iter().map(|&cell| self.products[cell]).collect(),
             quadratic: self.quadratic,
             mean_dilatation: false,
-            shares: Shares::new(&nodes, node_count),
-            rows: Rows::new(&nodes),
+            shares: Partition::new(&nodes, node_count),
+            rows: ContiguousCells::new(&nodes),
             nodes,
         }
     }
 
     /// The strain points of [`SIDE_BY_SIDE`] cells at once, from those of the first cells on.
-    pub(super) fn abreast(&self) -> &[[StrainPoint<Abreast, N, M, D>; Q]] {
+    pub(super) fn abreast(&self) -> &[[StrainPoint<Packed, N, M, D>; Q]] {
         self.points.as_chunks::<Q>().0
     }
 
@@ -136,7 +136,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
-impl<const N: usize, const M: usize, const D: usize> StrainPoint<Abreast, N, M, D> {
+impl<const N: usize, const M: usize, const D: usize> StrainPoint<Packed, N, M, D> {
     /// Those of as many cells as a register holds, from number `part` of these registers.
     #[inline(always)]
     pub(super) fn lane<S: Simd>(&self, simd: S, part: usize) -> StrainPoint<Lane<S>, N, M, D> {
@@ -168,14 +168,14 @@ impl<const N: usize, const M: usize, const D: usize> StrainPoint<Abreast, N, M, 
 /// The points of cells, `Q` of each, in lanes.
 fn side_by_side<const N: usize, const M: usize, const D: usize, const Q: usize>(
     points: &[StrainPoint<f64, N, M, D>],
-) -> Vec<StrainPoint<Abreast, N, M, D>> {
+) -> Vec<StrainPoint<Packed, N, M, D>> {
     let cells = points.as_chunks::<Q>().0;
     let mut lanes = Vec::with_capacity(Q * cells.len().div_ceil(SIDE_BY_SIDE));
     for cells in cells.chunks(SIDE_BY_SIDE) {
         for q in 0..Q {
             let of_lane = |lane: usize| &cells[lane.min(cells.len() - 1)][q];
             let each = |number: &dyn Fn(&StrainPoint<f64, N, M, D>) -> f64| {
-                Abreast(std::array::from_fn(|lane| number(of_lane(lane))))
+                Packed(std::array::from_fn(|lane| number(of_lane(lane))))
             };
             lanes.push(StrainPoint {
                 gradients: std::array::from_fn(|a| {
@@ -231,13 +231,13 @@ pub(super) fn pairs<const N: usize>() -> impl Iterator<Item = (usize, usize)> {
 }
 
 fn too_many(pattern: &NodePattern) -> InputError {
-    let mend = "4,294,967,296 are the most: take a coarser mesh";
-    InputError::new("number of pairs of nodes that share a cell", pattern.entries(), mend)
+    let help = "4,294,967,296 are the most: take a coarser mesh";
+    InputError::new("number of pairs of nodes that share a cell", pattern.entries(), help)
 }
 
 fn bad_cell(number: usize, cell: &[usize], volume: f64) -> InputError {
     let nodes: Vec<usize> = cell.iter().map(|node| node + 1).collect();
-    let mend = if volume < 0.0 {
+    let help = if volume < 0.0 {
         "its nodes run the wrong way round (clockwise, in two dimensions): reverse them"
     } else {
         "it is flat: move its nodes apart or leave the cell out"
@@ -245,6 +245,6 @@ fn bad_cell(number: usize, cell: &[usize], volume: f64) -> InputError {
     InputError::new(
         format!("signed volume of cell {} (nodes {nodes:?})", number + 1),
         format!("{volume:.3e}"),
-        format!("{mend} (numbers count from 1)"),
+        format!("{help} (numbers count from 1)"),
     )
 }

@@ -10,7 +10,7 @@ use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::base::tensor::{apply, dot};
 use crate::elements::basis::StrainPoint;
-use crate::elements::material::{Course, Fibre};
+use crate::elements::material::{Fibre, FibreDirection};
 use crate::elements::mesh::Mesh;
 use crate::integrators::ode::Failure;
 
@@ -21,7 +21,7 @@ pub(super) trait Reinforced {
         &self,
         mesh: &Mesh,
         cells: &[usize],
-        course: &Course,
+        course: &FibreDirection,
     ) -> Result<Box<dyn Strings>, InputError>;
 }
 
@@ -48,7 +48,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
         &self,
         mesh: &Mesh,
         cells: &[usize],
-        course: &Course,
+        course: &FibreDirection,
     ) -> Result<Box<dyn Strings>, InputError> {
         course.validate_in(D)?;
         let positions = mesh.positions().as_chunks::<D>().0;
@@ -67,9 +67,9 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
                 let length = dot(&own, &own).sqrt();
                 // what is left of a unit vector by rounding
                 if length < 1e-9 {
-                    let mend = "fibres have no direction there: move their axis out of the cell, turn them into the membrane, or \
+                    let help = "fibres have no direction there: move their axis out of the cell, turn them into the membrane, or \
                                 give them a region of their own";
-                    return Err(InputError::new("fibres in cell", cell + 1, mend));
+                    return Err(InputError::new("fibres in cell", cell + 1, help));
                 }
                 own.iter_mut().for_each(|x| *x /= length);
                 points.push(StrainPoint {

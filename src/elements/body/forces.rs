@@ -17,9 +17,9 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
+use super::contiguous;
 use super::elements::{ElementsOf, gradients};
 use super::regions::{Laws, Regions};
-use super::rows;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::force::NodalForces;
@@ -258,11 +258,11 @@ impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize,
                 balance(&mut pulls);
                 let mut vectors = [[[0.0; D]; SIDE_BY_SIDE]; N];
                 for a in 0..N {
-                    vectors[a] = rows::vectors(&pulls[a]);
+                    vectors[a] = contiguous::vectors(&pulls[a]);
                 }
                 for &a in order {
                     let a = usize::from(a);
-                    rows::subtract(simd, &vectors[a], &mut forces[nodes[start][a] - first..]);
+                    contiguous::subtract(simd, &vectors[a], &mut forces[nodes[start][a] - first..]);
                 }
                 continue;
             }

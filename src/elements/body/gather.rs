@@ -4,8 +4,8 @@
 
 use pulp::Simd;
 
+use super::contiguous::differences;
 use super::elements::ElementsOf;
-use super::rows::differences;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {

@@ -126,14 +126,14 @@ impl GreenPolynomial {
         let mesh = body.mesh();
         if (mesh.kind(), mesh.dimension()) != (CellKind::Triangle, 2) {
             let value = format!("{:?} in {} dimensions", mesh.kind(), mesh.dimension());
-            let mend = "the polynomials are those of triangles in the plane: add the forces up \
+            let help = "the polynomials are those of triangles in the plane: add the forces up \
                         cell by cell";
-            return Err(InputError::new("cells of the body", value, mend));
+            return Err(InputError::new("cells of the body", value, help));
         }
         let nodes = mesh.node_count();
         if nodes > MOST_NODES {
-            let mend = format!("products of three are numbered for {MOST_NODES} at most");
-            return Err(InputError::new("number of nodes", nodes, mend));
+            let help = format!("products of three are numbered for {MOST_NODES} at most");
+            return Err(InputError::new("number of nodes", nodes, help));
         }
         let cells: Vec<[usize; 3]> = mesh.cells().map(|cell| [cell[0], cell[1], cell[2]]).collect();
 

@@ -44,6 +44,6 @@ impl Recipe {
     }
 }
 
-fn missing(input: &str, mend: &str) -> InputError {
-    InputError::new(input, "(missing)", mend)
+fn missing(input: &str, help: &str) -> InputError {
+    InputError::new(input, "(missing)", help)
 }

@@ -55,17 +55,17 @@ impl CellSelection {
         let cells = match self {
             Self::Group(name) => mesh.cell_groups().get(name).cloned().ok_or_else(|| {
                 let known: Vec<&str> = mesh.cell_groups().keys().map(String::as_str).collect();
-                let mend = match known.is_empty() {
+                let help = match known.is_empty() {
                     true => "the mesh has no groups of cells".into(),
                     false => format!("the mesh has the groups {}", known.join(", ")),
                 };
-                InputError::new("group of cells", format!("\"{name}\""), mend)
+                InputError::new("group of cells", format!("\"{name}\""), help)
             })?,
             Self::Numbers(numbers) => {
                 let count = mesh.cell_count();
                 if let Some(number) = numbers.iter().find(|n| !(1..=count).contains(*n)) {
-                    let mend = format!("the mesh has the cells 1 to {count}");
-                    return Err(InputError::new("cell of a region", number, mend));
+                    let help = format!("the mesh has the cells 1 to {count}");
+                    return Err(InputError::new("cell of a region", number, help));
                 }
                 numbers.iter().map(|number| number - 1).collect()
             }
@@ -73,8 +73,8 @@ impl CellSelection {
                 let d = mesh.dimension();
                 for (name, corner) in [("region box min", min), ("region box max", max)] {
                     if corner.len() != d || corner.iter().any(|x| x.is_nan()) {
-                        let mend = format!("it needs {d} numbers (m)");
-                        return Err(InputError::new(name, format!("{corner:?}"), mend));
+                        let help = format!("it needs {d} numbers (m)");
+                        return Err(InputError::new(name, format!("{corner:?}"), help));
                     }
                 }
                 let inside = |cell: &[usize]| {
@@ -88,8 +88,8 @@ impl CellSelection {
             }
         };
         if cells.is_empty() {
-            let mend = "it contains no cell of the mesh";
-            return Err(InputError::new("region", self, mend));
+            let help = "it contains no cell of the mesh";
+            return Err(InputError::new("region", self, help));
         }
         Ok(cells)
     }
@@ -137,13 +137,13 @@ impl Regions {
             substance.validate()?;
             let Substance { material, law, mass_damping, branches, fibres } = substance;
             if let (Some(law), Strain::Cauchy) = (law, strain) {
-                let mend = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
-                return Err(InputError::new("material.law", format!("{law:?}"), mend));
+                let help = "Cauchy strain is linear elasticity and takes no other law: leave one of the two out";
+                return Err(InputError::new("material.law", format!("{law:?}"), help));
             }
             if strain == Strain::Cauchy && !fibres.is_empty() {
-                let mend =
+                let help =
                     "fibres take tension alone, which is not linear: measure strain by Green's";
-                return Err(InputError::new("number of families of fibres", fibres.len(), mend));
+                return Err(InputError::new("number of families of fibres", fibres.len(), help));
             }
             let dimension = mesh.kind().dimension();
             let hooke = |lame: Lame| Hooke::new(lame, dimension, plane);

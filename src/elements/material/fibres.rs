@@ -28,7 +28,7 @@ use crate::base::vector::norm;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fibres {
     /// Which way they run.
-    pub course: Course,
+    pub course: FibreDirection,
     /// Young's modulus (Pa, above 0) that they add along their course when they are slightly stretched: that of a fibre, times
     /// its share of the section.
     pub young: f64,
@@ -38,7 +38,7 @@ pub struct Fibres {
 
 /// Which way fibres run in the undeformed shape.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Course {
+pub enum FibreDirection {
     /// Along this vector, of any length above 0. In membranes it counts as its part along them.
     Along(Vec<f64>),
     /// Around an axis.
@@ -55,18 +55,19 @@ pub enum Course {
 impl Fibres {
     /// Fibres along a `direction` with Young's modulus `young` (Pa).
     pub fn along(direction: impl Into<Vec<f64>>, young: f64) -> Self {
-        Self { course: Course::Along(direction.into()), young, stiffening: 0.0 }
+        Self { course: FibreDirection::Along(direction.into()), young, stiffening: 0.0 }
     }
 
     /// Rings around the axis through `centre` (m), in the direction of `axis`, with Young's modulus `young` (Pa).
     pub fn around(centre: impl Into<Vec<f64>>, axis: impl Into<Vec<f64>>, young: f64) -> Self {
-        let course = Course::Around { centre: centre.into(), axis: axis.into(), pitch: 0.0 };
+        let course =
+            FibreDirection::Around { centre: centre.into(), axis: axis.into(), pitch: 0.0 };
         Self { course, young, stiffening: 0.0 }
     }
 
     /// The same as helices, which climb along the axis by the angle `pitch` (rad); nothing changes along a vector.
     pub fn pitch(mut self, angle: f64) -> Self {
-        if let Course::Around { pitch, .. } = &mut self.course {
+        if let FibreDirection::Around { pitch, .. } = &mut self.course {
             *pitch = angle;
         }
         self
@@ -81,8 +82,8 @@ impl Fibres {
         positive("fibres.young", self.young, "Pa")?;
         not_negative("fibres.stiffening", self.stiffening, "")?;
         match &self.course {
-            Course::Along(direction) => has_length("fibres.along", direction),
-            Course::Around { centre, axis, pitch } => {
+            FibreDirection::Along(direction) => has_length("fibres.along", direction),
+            FibreDirection::Around { centre, axis, pitch } => {
                 finite("fibres.centre", centre)?;
                 finite("fibres.pitch", &[*pitch])?;
                 match axis.is_empty() {
@@ -94,15 +95,15 @@ impl Fibres {
     }
 }
 
-impl Course {
+impl FibreDirection {
     /// Checks that it is one of a space of `dimension`.
     pub(crate) fn validate_in(&self, dimension: usize) -> Result<(), InputError> {
         let is = |name: &str, vector: &[f64], expected: usize| match vector.len() == expected {
             true => Ok(()),
             false => {
-                let mend =
+                let help =
                     format!("it needs {expected} numbers in a body of {dimension} dimensions");
-                Err(InputError::new(name, format!("{vector:?}"), mend))
+                Err(InputError::new(name, format!("{vector:?}"), help))
             }
         };
         match self {
@@ -161,8 +162,8 @@ fn has_length(name: &str, vector: &[f64]) -> Result<(), InputError> {
     match norm(vector) > 0.0 {
         true => Ok(()),
         false => {
-            let mend = "a direction needs a length above 0: give a vector along the fibres";
-            Err(InputError::new(name, format!("{vector:?}"), mend))
+            let help = "a direction needs a length above 0: give a vector along the fibres";
+            Err(InputError::new(name, format!("{vector:?}"), help))
         }
     }
 }

@@ -13,7 +13,7 @@ mod substance;
 pub use branch::MaxwellBranch;
 pub(crate) use branch::{Relaxing, Strained, Stretch};
 pub(crate) use deformation::Deformation;
-pub use fibres::{Course, Fibres};
+pub use fibres::{FibreDirection, Fibres};
 pub(crate) use flow::{Components, Step, trace};
 pub(crate) use hooke::Hooke;
 pub use hooke::{Lame, Plane};

@@ -136,16 +136,16 @@ fn only_kind(blocks: &[Block]) -> Result<CellKind, String> {
         [] => Err("it has no elements".into()),
         [only] => cell_kind(only.0).ok_or_else(|| {
             let known: Vec<&str> = CellKind::ALL.iter().map(|kind| kind.name()).collect();
-            let mend = "(in Gmsh: Mesh.ElementOrder; Mesh.SecondOrderIncomplete = 1 for hexahedra of 20 nodes)";
-            format!("it has {}: cells may be {} {mend}", words(only), known.join(", "))
+            let help = "(in Gmsh: Mesh.ElementOrder; Mesh.SecondOrderIncomplete = 1 for hexahedra of 20 nodes)";
+            format!("it has {}: cells may be {} {help}", words(only), known.join(", "))
         }),
         several => {
-            let mend = "all cells must be of one kind: mesh it so (in Gmsh: without Recombine; or \
+            let help = "all cells must be of one kind: mesh it so (in Gmsh: without Recombine; or \
                         with Mesh.RecombineAll = 1 and Mesh.SubdivisionAlgorithm = 1 for \
                         quadrilaterals alone, 2 for hexahedra alone), or put one kind only into \
                         physical groups";
             let counts: Vec<String> = several.iter().map(words).collect();
-            Err(format!("it has {}: {mend}", counts.join(" and ")))
+            Err(format!("it has {}: {help}", counts.join(" and ")))
         }
     }
 }

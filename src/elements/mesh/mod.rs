@@ -106,14 +106,14 @@ impl Mesh {
     /// Adds a node that belongs to no cell, alone in the node set `name`.
     pub(crate) fn push_node(&mut self, name: &str, position: &[f64]) -> Result<(), InputError> {
         if position.len() != self.dimension {
-            let mend = format!("it needs {} coordinates (m)", self.dimension);
+            let help = format!("it needs {} coordinates (m)", self.dimension);
             let input = format!("position of point \"{name}\"");
-            return Err(InputError::new(input, format!("{position:?}"), mend));
+            return Err(InputError::new(input, format!("{position:?}"), help));
         }
         finite(&format!("the position of point \"{name}\""), position)?;
         if self.sets.contains_key(name) {
-            let mend = "a node set has that name already: choose another one";
-            return Err(InputError::new("name of a point", format!("\"{name}\""), mend));
+            let help = "a node set has that name already: choose another one";
+            return Err(InputError::new("name of a point", format!("\"{name}\""), help));
         }
         let node = self.node_count();
         self.positions.extend_from_slice(position);
@@ -194,9 +194,9 @@ impl Mesh {
         for (node, from) in self.positions.chunks_exact(self.dimension).enumerate() {
             let to = map(from);
             if to.iter().any(|x| !x.is_finite()) {
-                let mend = format!("the map must give finite coordinates (m) for {from:?}");
+                let help = format!("the map must give finite coordinates (m) for {from:?}");
                 let input = format!("mapped position of node {}", node + 1);
-                return Err(InputError::new(input, format!("{to:?}"), mend));
+                return Err(InputError::new(input, format!("{to:?}"), help));
             }
             moved.extend(to);
         }
@@ -298,6 +298,6 @@ fn check_dimension(dimension: usize, kind: CellKind) -> Result<(), InputError> {
         return Ok(());
     }
     let allowed = if least == 3 { "3".into() } else { format!("{least} to 3") };
-    let mend = format!("{kind:?} cells need a space of dimension {allowed}");
-    Err(InputError::new("mesh.dimension", dimension, mend))
+    let help = format!("{kind:?} cells need a space of dimension {allowed}");
+    Err(InputError::new("mesh.dimension", dimension, help))
 }

@@ -100,8 +100,8 @@ impl Mesh {
         let mut seen = vec![false; count];
         for &number in numbers {
             if !(1..=count).contains(&number) {
-                let mend = format!("the mesh has the nodes 1 to {count} (numbers count from 1)");
-                return Err(InputError::new("node", number, mend));
+                let help = format!("the mesh has the nodes 1 to {count} (numbers count from 1)");
+                return Err(InputError::new("node", number, help));
             }
             if std::mem::replace(&mut seen[number - 1], true) {
                 return Err(InputError::new("node", number, "it is named twice in one selection"));
@@ -113,8 +113,8 @@ impl Mesh {
     fn in_box(&self, min: &[f64], max: &[f64]) -> Result<Vec<usize>, InputError> {
         for (name, corner) in [("box min", min), ("box max", max)] {
             if corner.len() != self.dimension || corner.iter().any(|x| x.is_nan()) {
-                let mend = format!("it needs {} numbers (m)", self.dimension);
-                return Err(InputError::new(name, format!("{corner:?}"), mend));
+                let help = format!("it needs {} numbers (m)", self.dimension);
+                return Err(InputError::new(name, format!("{corner:?}"), help));
             }
         }
         let inside = |node: &usize| {

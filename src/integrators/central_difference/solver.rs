@@ -76,8 +76,8 @@ impl<S: SecondOrder> CentralDifference<S> {
         let integrals = system.integrals();
         let both = y.len().saturating_sub(integrals);
         if both == 0 || !both.is_multiple_of(2) {
-            let mend = format!("as many displacements as velocities, and {integrals} integrals");
-            return Err(Error::input("length of y0", y.len(), mend));
+            let help = format!("as many displacements as velocities, and {integrals} integrals");
+            return Err(Error::input("length of y0", y.len(), help));
         }
         let n = both / 2;
         let (zeros, none) = (vec![0.0; n], vec![0.0; integrals]);
@@ -288,8 +288,8 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
             return Err(Error::input("derivative", derivative, "only the state itself is known"));
         }
         if !(self.t_before <= t && t <= self.t) {
-            let mend = format!("it lies outside the last step, [{}, {}]", self.t_before, self.t);
-            return Err(Error::input("t", t, mend));
+            let help = format!("it lies outside the last step, [{}, {}]", self.t_before, self.t);
+            return Err(Error::input("t", t, help));
         }
         self.interpolate_state(t, out)
     }

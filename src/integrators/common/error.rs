@@ -31,13 +31,13 @@ pub enum Error {
 }
 
 impl Error {
-    /// `input` = `value` cannot be used: `mend`.
+    /// `input` = `value` cannot be used: `help`.
     pub(crate) fn input(
         input: impl Into<String>,
         value: impl fmt::Display,
-        mend: impl Into<String>,
+        help: impl Into<String>,
     ) -> Self {
-        InputError::new(input, value, mend).into()
+        InputError::new(input, value, help).into()
     }
 
     /// A C function that returned `code`.

@@ -13,8 +13,8 @@ pub(crate) fn check_target(t: f64, limit: &str, earliest: f64) -> Result<(), Inp
     const INPUT: &str = "target time";
     check_time(INPUT, t)?;
     if t < earliest {
-        let mend = format!("{limit} {earliest}: {FORWARD_ONLY}");
-        return Err(InputError::new(INPUT, t, mend));
+        let help = format!("{limit} {earliest}: {FORWARD_ONLY}");
+        return Err(InputError::new(INPUT, t, help));
     }
     Ok(())
 }
@@ -25,8 +25,8 @@ pub(crate) fn check_stop_time(stop: f64, reached: f64, t: f64) -> Result<(), Inp
     const INPUT: &str = "stop time";
     check_time(INPUT, stop)?;
     if stop < reached || stop == t {
-        let mend = format!("the steps have reached {reached}: {FORWARD_ONLY}");
-        return Err(InputError::new(INPUT, stop, mend));
+        let help = format!("the steps have reached {reached}: {FORWARD_ONLY}");
+        return Err(InputError::new(INPUT, stop, help));
     }
     Ok(())
 }
@@ -68,12 +68,12 @@ impl ExplicitOptions {
     pub(crate) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         self.tolerances.check(y0)?;
         if self.tolerances.rtol < 1e-14 {
-            let mend = "rounding errors allow 1e-14 or more, such as 1e-6";
-            return Err(InputError::new("rtol", self.tolerances.rtol, mend));
+            let help = "rounding errors allow 1e-14 or more, such as 1e-6";
+            return Err(InputError::new("rtol", self.tolerances.rtol, help));
         }
         if (0..y0.len()).any(|i| self.tolerances.atol_of(i) == 0.0) {
-            let mend = "it is positive: rtol alone is not enough where a value passes through zero";
-            return Err(InputError::new("atol", 0, mend));
+            let help = "it is positive: rtol alone is not enough where a value passes through zero";
+            return Err(InputError::new("atol", 0, help));
         }
         self.steps.check()?;
         match self.steps.initial_step {

@@ -24,12 +24,12 @@ pub(crate) struct JacobianCheck {
     base: Vec<f64>,
     ahead: Vec<f64>,
     behind: Vec<f64>,
-    rows: Vec<Row>,
+    rows: Vec<RowState>,
 }
 
 /// What is known of a row of the product.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Row {
+enum RowState {
     /// Nothing yet.
     Open,
     /// It is right, as far as differences tell.
@@ -70,7 +70,7 @@ impl JacobianCheck {
             base: zeros(),
             ahead: zeros(),
             behind: zeros(),
-            rows: vec![Row::Open; n],
+            rows: vec![RowState::Open; n],
         }
     }
 
@@ -189,7 +189,7 @@ impl JacobianCheck {
     ) -> Option<(usize, f64)> {
         let Self { direction, moved, products, terms, base, ahead, behind, rows, .. } = self;
         let product = &products[half];
-        rows.fill(Row::Open);
+        rows.fill(RowState::Open);
         for shift in SHIFTS {
             if !at(system, moved, direction, shift, ahead) {
                 continue;
@@ -197,30 +197,31 @@ impl JacobianCheck {
             for (i, row) in rows.iter_mut().enumerate() {
                 let right = (ahead[i] - base[i]) / shift;
                 if fits(product[i], right, rounding([base[i], ahead[i], terms[i]], shift)) {
-                    *row = Row::Right;
+                    *row = RowState::Right;
                 }
             }
-            if rows.iter().all(|row| *row == Row::Right) {
+            if rows.iter().all(|row| *row == RowState::Right) {
                 return None;
             }
             // the other side of a kink may be meant
             if !at(system, moved, direction, -shift, behind) {
                 continue;
             }
-            for (i, row) in rows.iter_mut().enumerate().filter(|(_, row)| **row != Row::Right) {
+            for (i, row) in rows.iter_mut().enumerate().filter(|(_, row)| **row != RowState::Right)
+            {
                 let (right, left) = ((ahead[i] - base[i]) / shift, (base[i] - behind[i]) / shift);
                 let mean = 0.5 * (right + left);
                 let rounding = rounding([base[i], ahead[i], terms[i]], shift);
                 let noise = (right - left).abs() + rounding;
                 let before = *row;
                 *row = if fits(product[i], left, rounding) || fits(product[i], mean, rounding) {
-                    Row::Right
+                    RowState::Right
                 } else if noise > 0.5 * (product[i] - mean).abs() {
-                    Row::Open
+                    RowState::Open
                 } else {
-                    Row::Suspicious(mean)
+                    RowState::Suspicious(mean)
                 };
-                if let (Row::Suspicious(before), Row::Suspicious(mean)) = (before, *row)
+                if let (RowState::Suspicious(before), RowState::Suspicious(mean)) = (before, *row)
                     && fits(before, mean, noise)
                 {
                     return Some((i, mean));

@@ -290,8 +290,8 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
         let March { t: end, t_old: start, y, .. } = &self.march;
         check_length("length of out", out.len(), y.len())?;
         if !(start <= &t && &t <= end) {
-            let mend = format!("it lies outside the last step, [{start}, {end}]");
-            return Err(Error::input("t", t, mend));
+            let help = format!("it lies outside the last step, [{start}, {end}]");
+            return Err(Error::input("t", t, help));
         }
         match derivative {
             0 => self.interpolate_state(t, out),

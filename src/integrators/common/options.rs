@@ -22,8 +22,8 @@ impl StepOptions {
         if let Some(h) = self.max_step
             && !(SHORTEST..=LONGEST).contains(&h)
         {
-            let mend = format!("it lies between {SHORTEST:e} and {LONGEST:e}");
-            return Err(InputError::new("max_step", h, mend));
+            let help = format!("it lies between {SHORTEST:e} and {LONGEST:e}");
+            return Err(InputError::new("max_step", h, help));
         }
         self.initial_step.map_or(Ok(()), |h| check_step("initial_step", h))?;
         check_count("max_steps", self.max_steps)
@@ -87,17 +87,17 @@ pub(crate) fn check_step(input: &str, h: f64) -> Result<(), InputError> {
     if (SHORTEST..=LONGEST).contains(&h.abs()) {
         return Ok(());
     }
-    let mend = format!(
+    let help = format!(
         "its size lies between {SHORTEST:e} and {LONGEST:e}; negative when integrating backwards"
     );
-    Err(InputError::new(input, h, mend))
+    Err(InputError::new(input, h, help))
 }
 
 /// Checks that a system is of the form y' = rhs(t, y) and no other.
 pub(crate) fn check_form(system: &impl Ode) -> Result<(), InputError> {
     if system.mass_kind() != MassKind::Identity {
-        let mend = "this integrator takes none: take Arkode, or Ida with MassForm";
-        return Err(InputError::new("mass matrix", format!("{:?}", system.mass_kind()), mend));
+        let help = "this integrator takes none: take Arkode, or Ida with MassForm";
+        return Err(InputError::new("mass matrix", format!("{:?}", system.mass_kind()), help));
     }
     check_whole(system)
 }
@@ -105,8 +105,8 @@ pub(crate) fn check_form(system: &impl Ode) -> Result<(), InputError> {
 /// Checks that the right-hand side of a system is not split.
 pub(crate) fn check_whole(system: &impl Ode) -> Result<(), InputError> {
     if system.is_split() {
-        let mend = "it is for Arkode with ButcherTable::imex; others need it as a whole";
-        return Err(InputError::new("right-hand side", "split", mend));
+        let help = "it is for Arkode with ButcherTable::imex; others need it as a whole";
+        return Err(InputError::new("right-hand side", "split", help));
     }
     Ok(())
 }

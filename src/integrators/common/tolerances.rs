@@ -57,8 +57,8 @@ impl Tolerances {
     /// Checks that they can be used for an integration that starts from `y0`.
     pub(crate) fn check(&self, y0: &[f64]) -> Result<(), InputError> {
         if !(self.rtol > 0.0 && self.rtol < 1.0) {
-            let mend = "it lies between 0 and 1, such as 1e-6";
-            return Err(InputError::new("rtol", self.rtol, mend));
+            let help = "it lies between 0 and 1, such as 1e-6";
+            return Err(InputError::new("rtol", self.rtol, help));
         }
         if let AbsoluteTolerance::Vector(atol) = &self.atol
             && atol.len() != y0.len()

@@ -313,8 +313,8 @@ impl Storage<'_> {
                 if ends && rows && column_pointers.len() == n + 1 && column_pointers[n] == all {
                     return Ok(());
                 }
-                let mend = format!("they are those of a Pattern of {n} unknowns");
-                Err(InputError::new("column_pointers and row_indices", "given", mend))
+                let help = format!("they are those of a Pattern of {n} unknowns");
+                Err(InputError::new("column_pointers and row_indices", "given", help))
             }
             _ => Ok(()),
         }

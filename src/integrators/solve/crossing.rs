@@ -103,8 +103,8 @@ impl<'a> Run<'a> {
         }
         slope.resize(self.y.len(), 0.0);
         self.engine.slope(self.t, &self.y, &mut slope).map_err(|failure| {
-            let mend = "it is needed to see whether the action of an event turns the solution back";
-            InputError::new("right-hand side behind a jump", failure.into_error(), mend)
+            let help = "it is needed to see whether the action of an event turns the solution back";
+            InputError::new("right-hand side behind a jump", failure.into_error(), help)
         })?;
         let unit = self.sign * self.unit_of_time(&self.y, &slope);
         let Self { events, scratch, parameters, y, t, .. } = self;
@@ -229,8 +229,8 @@ impl<'a> Run<'a> {
         for (slope, y) in [(&mut left, &before.y), (&mut right, &self.y)] {
             slope.resize(y.len(), 0.0);
             self.engine.slope(self.t, y, slope).map_err(|failure| {
-                let mend = "sensitivities need it on both sides of a jump";
-                InputError::new("right-hand side at a jump", failure.into_error(), mend)
+                let help = "sensitivities need it on both sides of a jump";
+                InputError::new("right-hand side at a jump", failure.into_error(), help)
             })?;
         }
         let (t, slopes, p) = (self.t, [&left[..], &right], &self.parameters);
@@ -311,8 +311,8 @@ fn check_unchanged(before: &[f64], after: &[f64]) -> Result<(), InputError> {
     match before.iter().zip(after).position(|(before, after)| before != after) {
         None => Ok(()),
         Some(i) => {
-            let mend = "with sensitivities an action changes the state alone";
-            Err(InputError::new(format!("parameter {i} after the jump"), after[i], mend))
+            let help = "with sensitivities an action changes the state alone";
+            Err(InputError::new(format!("parameter {i} after the jump"), after[i], help))
         }
     }
 }

@@ -179,22 +179,22 @@ impl Event<'_> {
     /// Checks the event of number `i`.
     pub(super) fn check(&self, i: usize) -> Result<(), InputError> {
         if !(1..=10_000).contains(&self.samples) {
-            let mend = "it lies between 1 and 10,000";
-            return Err(InputError::new(format!("samples of event {i}"), self.samples, mend));
+            let help = "it lies between 1 and 10,000";
+            return Err(InputError::new(format!("samples of event {i}"), self.samples, help));
         }
         if let Some(most) = self.touching
             && !(most >= 0.0 && most.is_finite())
         {
-            let mend = "it is a small number, not negative";
-            return Err(InputError::new(format!("touching of event {i}"), most, mend));
+            let help = "it is a small number, not negative";
+            return Err(InputError::new(format!("touching of event {i}"), most, help));
         }
         if self.at_accumulation.is_some() && self.action.is_none() {
-            let mend = "it belongs to an action, which turns the solution back";
-            return Err(InputError::new(format!("at_accumulation of event {i}"), "given", mend));
+            let help = "it belongs to an action, which turns the solution back";
+            return Err(InputError::new(format!("at_accumulation of event {i}"), "given", help));
         }
         if self.last == Some(0) {
-            let mend = "events are counted from 1";
-            return Err(InputError::new(format!("terminal_after of event {i}"), 0, mend));
+            let help = "events are counted from 1";
+            return Err(InputError::new(format!("terminal_after of event {i}"), 0, help));
         }
         Ok(())
     }
@@ -226,16 +226,16 @@ pub(super) fn check_crosses(event: usize, t: f64, crosses: bool) -> Result<(), I
     if crosses {
         return Ok(());
     }
-    let mend = "where its function only touches zero, the solution has no derivatives";
-    Err(InputError::new(format!("event {event} at t = {t:?}"), "touching", mend))
+    let help = "where its function only touches zero, the solution has no derivatives";
+    Err(InputError::new(format!("event {event} at t = {t:?}"), "touching", help))
 }
 
 /// Stops derivatives that are not finite behind an action: one that reads y', of a DAE, was given NaN for it, as differences
 /// along the state know nothing of how that changes.
 pub(super) fn check_landed(input: &str, slopes: &[f64], of_dae: bool) -> Result<(), InputError> {
     if of_dae && slopes.iter().any(|slope| slope.is_nan()) {
-        let mend = "with derivatives of a DAE an action reads y, t and p alone, not yp";
-        return Err(InputError::new(input, "NaN", mend));
+        let help = "with derivatives of a DAE an action reads y, t and p alone, not yp";
+        return Err(InputError::new(input, "NaN", help));
     }
     check_finite(input, slopes)
 }

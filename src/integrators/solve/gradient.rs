@@ -3,7 +3,7 @@
 use super::{
     error::Reason,
     event::{Jump, check_crosses, check_landed},
-    history::{Act, Passage, Place, Stage, follow},
+    history::{Act, HistoryPart, Passage, Place, follow},
     method::Method,
     options::Options,
     problem::{Equations, Problem},
@@ -85,12 +85,12 @@ pub fn gradient(
     back: &AdjointOptions,
 ) -> Result<Gradient, Reason> {
     if !matches!(method, Method::Bdf | Method::Adams | Method::Ida) {
-        let mend = "a gradient takes Bdf or Adams, or Ida for a DAE";
-        return Err(InputError::new("method", format!("{method:?}"), mend).into());
+        let help = "a gradient takes Bdf or Adams, or Ida for a DAE";
+        return Err(InputError::new("method", format!("{method:?}"), help).into());
     }
     if options.sensitivities.is_some() || problem.initial_sensitivities.is_some() {
-        let mend = "the run forward of a gradient needs none; what the start depends on adds (dy0/dp)^T dG/dy0";
-        return Err(InputError::new("sensitivities", "given", mend).into());
+        let help = "the run forward of a gradient needs none; what the start depends on adds (dy0/dp)^T dG/dy0";
+        return Err(InputError::new("sensitivities", "given", help).into());
     }
     let mut problem = problem;
     let (start, n) = (span.0, problem.y.len());
@@ -146,14 +146,14 @@ impl<F: Functional> Functional for Piece<'_, F> {
 
 impl<F: Functional> WayBack<'_, '_, F> {
     /// From the end to the start.
-    fn gradient(&mut self, stages: &[Stage], end: &Place) -> Result<Gradient, Reason> {
+    fn gradient(&mut self, stages: &[HistoryPart], end: &Place) -> Result<Gradient, Reason> {
         let start = Gradient::at_end(&mut self.functional, end.t, &end.y, &end.p);
         let start = start.map_err(|failure| unknown("terminal functional", failure))?;
         let mut gradient = start.check()?;
         for stage in stages.iter().rev() {
             match stage {
-                Stage::Smooth { from, to } => self.integrate(from, *to, &mut gradient)?,
-                Stage::Jump(passage) => self.cross(passage, &mut gradient)?,
+                HistoryPart::Smooth { from, to } => self.integrate(from, *to, &mut gradient)?,
+                HistoryPart::Jump(passage) => self.cross(passage, &mut gradient)?,
             }
         }
         Ok(gradient)

@@ -23,7 +23,7 @@ pub(super) struct Place {
 }
 
 /// One part of a solution.
-pub(super) enum Stage {
+pub(super) enum HistoryPart {
     /// From a place to a time, without a jump.
     Smooth {
         from: Place,
@@ -114,7 +114,7 @@ pub(super) fn follow(
     method: Method,
     span: (f64, f64),
     options: &Options,
-) -> Result<(Vec<Stage>, Place), Reason> {
+) -> Result<(Vec<HistoryPart>, Place), Reason> {
     let log = RefCell::new(Vec::new());
     let mut run = Run::new(lend(problem, &log), method, span, options)?;
     let mut stages = Vec::new();
@@ -126,7 +126,7 @@ pub(super) fn follow(
         let Some((act, first)) = noted.first() else { continue };
         let to = if act.is_of_event() { first.t } else { run.just_before(first.t) };
         let here = Place::of(&run);
-        stages.push(Stage::Smooth { from, to });
+        stages.push(HistoryPart::Smooth { from, to });
         let mut groups =
             noted.chunk_by(|(a, _), (b, _)| a.is_of_event() == b.is_of_event()).peekable();
         while let Some(group) = groups.next() {
@@ -139,7 +139,14 @@ pub(super) fn follow(
             let crosses = timed_by.is_none_or(|i| !touched.contains(&i));
             let before = group[0].1.clone();
             let ends = false;
-            stages.push(Stage::Jump(Passage { timed_by, crosses, acts, before, after, ends }));
+            stages.push(HistoryPart::Jump(Passage {
+                timed_by,
+                crosses,
+                acts,
+                before,
+                after,
+                ends,
+            }));
         }
         from = here;
     }
@@ -149,12 +156,12 @@ pub(super) fn follow(
         _ => None,
     };
     match (stages.last_mut(), ending) {
-        (Some(Stage::Jump(last)), Some(_)) if from.t == here.t => {
+        (Some(HistoryPart::Jump(last)), Some(_)) if from.t == here.t => {
             last.ends = last.timed_by.is_some();
         }
         _ => {
             if from.t != here.t {
-                stages.push(Stage::Smooth { from, to: here.t });
+                stages.push(HistoryPart::Smooth { from, to: here.t });
             }
             if let Some(i) = ending {
                 let crosses = run.occurred.iter().all(|at| at.event != i || at.sign != 0);
@@ -162,7 +169,7 @@ pub(super) fn follow(
                 let acts = Vec::new();
                 let timed_by = Some(i);
                 let last = Passage { timed_by, crosses, acts, before, after, ends: true };
-                stages.push(Stage::Jump(last));
+                stages.push(HistoryPart::Jump(last));
             }
         }
     }

@@ -103,17 +103,17 @@ impl Method {
             Equations::Dae { .. } => (true, false),
             Equations::Ode(system) => (false, system.mass_kind() != MassKind::Identity),
         };
-        let refused = |input: &str, value: String, mend: &str| {
-            Err(InputError::new(input, value, format!("{} {mend}", self.name())))
+        let refused = |input: &str, value: String, help: &str| {
+            Err(InputError::new(input, value, format!("{} {help}", self.name())))
         };
         if is_dae != (self == Self::Ida) && !has_mass {
-            let mend = match is_dae {
+            let help = match is_dae {
                 true => "integrates ODEs: take Method::Ida for a DAE",
                 false => {
                     "integrates DAEs, and ODEs with a mass matrix: take another method for this ODE"
                 }
             };
-            return refused("method", format!("{self:?}"), mend);
+            return refused("method", format!("{self:?}"), help);
         }
         let multistep = matches!(self, Self::Bdf | Self::Adams | Self::Ida);
         // those of Rust
@@ -136,8 +136,8 @@ impl Method {
             return refused("sensitivities", "given".into(), "has none: take Bdf, Adams or Ida");
         }
         if equations.quadrature_count() > 0 && !multistep {
-            let mend = "computes none: make them unknowns, or take Bdf, Adams or Ida";
-            return refused("integrals", equations.quadrature_count().to_string(), mend);
+            let help = "computes none: make them unknowns, or take Bdf, Adams or Ida";
+            return refused("integrals", equations.quadrature_count().to_string(), help);
         }
         if let (Some(h), true) = (options.min_step, internal) {
             return refused("min_step", h.to_string(), "has no such limit");

@@ -160,8 +160,8 @@ impl Options {
         if let Some(h) = self.initial_step
             && (h.is_nan() || h <= 0.0)
         {
-            let mend = "it is positive; the span tells the direction of time";
-            return Err(InputError::new("initial_step", h, mend));
+            let help = "it is positive; the span tells the direction of time";
+            return Err(InputError::new("initial_step", h, help));
         }
         if let Output::Times(times) = &self.output {
             check_finite("output times", times)?;
@@ -170,8 +170,8 @@ impl Options {
             let mut last = start;
             for t in times {
                 if (t - last) * sign < 0.0 || (end - t) * sign < 0.0 {
-                    let mend = format!("they go from {start} to {end} in order");
-                    return Err(InputError::new("output times", t, mend));
+                    let help = format!("they go from {start} to {end} in order");
+                    return Err(InputError::new("output times", t, help));
                 }
                 last = *t;
             }

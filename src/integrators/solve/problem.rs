@@ -40,8 +40,8 @@ impl Equations<'_> {
         if count == values.len() {
             return Ok(());
         }
-        let mend = format!("the equations have {count} parameters");
-        Err(InputError::new("length of parameters in the saved run", values.len(), mend))
+        let help = format!("the equations have {count} parameters");
+        Err(InputError::new("length of parameters in the saved run", values.len(), help))
     }
 
     pub(super) fn set_parameters(&mut self, values: &[f64]) {

@@ -17,8 +17,8 @@ use super::{
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
     sensitivities::Carried,
-    solution::{End, Occurrence, Row},
-    watch::Watch,
+    solution::{End, Occurrence, Record},
+    watch::EventTracker,
 };
 use crate::base::input::InputError;
 use crate::integrators::common::{
@@ -46,7 +46,7 @@ use crate::integrators::common::{
 pub struct Run<'a> {
     pub(super) engine: Box<dyn Engine + 'a>,
     pub(super) events: Vec<Event<'a>>,
-    pub(super) watches: Vec<Watch>,
+    pub(super) watches: Vec<EventTracker>,
     pub(super) counts: Vec<u32>,
     /// Those ahead, the next one last.
     pub(super) breaks: Vec<Break<'a>>,
@@ -124,8 +124,8 @@ impl<'a> Run<'a> {
             return Err(InputError::new("end of the span", end, "it differs from the start").into());
         }
         if (end - start).abs() < SHORTEST {
-            let mend = format!("it lies at least {SHORTEST:e} from the start, {start:?}");
-            return Err(InputError::new("end of the span", format!("{end:e}"), mend).into());
+            let help = format!("it lies at least {SHORTEST:e} from the start, {start:?}");
+            return Err(InputError::new("end of the span", format!("{end:e}"), help).into());
         }
         let sign = (end - start).signum();
         options.check(span)?;
@@ -144,8 +144,8 @@ impl<'a> Run<'a> {
             };
             saved.check([y.len(), derivatives, events.len(), equations.quadrature_count()])?;
             if start != saved.t {
-                let mend = format!("the saved run stands at {:?}", saved.t);
-                return Err(InputError::new("start of the span", start, mend).into());
+                let help = format!("the saved run stands at {:?}", saved.t);
+                return Err(InputError::new("start of the span", start, help).into());
             }
             equations.check_parameters(&saved.parameters)?;
             equations.set_parameters(&saved.parameters);
@@ -155,24 +155,24 @@ impl<'a> Run<'a> {
         for Break { t, .. } in &breaks {
             check_time("break", *t)?;
             if (t - start) * sign <= 0.0 || (end - t) * sign <= 0.0 {
-                let mend = format!("it lies between {start} and {end}");
-                return Err(InputError::new("break", t, mend).into());
+                let help = format!("it lies between {start} and {end}");
+                return Err(InputError::new("break", t, help).into());
             }
         }
         breaks.sort_by(|a, b| ((b.t - a.t) * sign).total_cmp(&0.0));
         let mut engine = method.engine(equations, (start, sign), &y, options)?;
         let jumps = events.iter().any(|event| event.action.is_some()) || !breaks.is_empty();
         if options.sensitivities.is_some() && jumps && !engine.can_be_consistent() {
-            let mend = "to go on across actions and breaks, Problem::differential tells which unknowns are differential";
-            return Err(InputError::new("sensitivities", "given for a DAE", mend).into());
+            let help = "to go on across actions and breaks, Problem::differential tells which unknowns are differential";
+            return Err(InputError::new("sensitivities", "given for a DAE", help).into());
         }
         let mut carried = options.sensitivities.as_ref().map(|s| Carried::new(s, y.len()));
         let saved_sensitivities = saved.as_ref().map(|saved| &saved.sensitivities);
         match (&mut carried, saved_sensitivities.or(initial_sensitivities.as_ref())) {
             (Some(carried), Some(s)) => carried.start(s, engine.as_mut())?,
             (None, Some(_)) if initial_sensitivities.is_some() => {
-                let mend = "Options::sensitivities tells which parameters they belong to";
-                return Err(InputError::new("initial_sensitivities", "given", mend).into());
+                let help = "Options::sensitivities tells which parameters they belong to";
+                return Err(InputError::new("initial_sensitivities", "given", help).into());
             }
             _ => {}
         }
@@ -188,7 +188,7 @@ impl<'a> Run<'a> {
                 Some(saved) => saved.event_values[i],
                 None => event.value(i, start, &y, &parameters)?,
             };
-            watches.push(Watch::new(event, start, g));
+            watches.push(EventTracker::new(event, start, g));
         }
         let mut quadratures = vec![0.0; engine.quadrature_count()];
         if let Some(saved) = &saved {
@@ -287,7 +287,7 @@ impl<'a> Run<'a> {
             counts: self.counts.clone(),
             sensitivities: self.carried.as_ref().map_or(Vec::new(), |carried| carried.s.clone()),
             quadratures: self.quadratures().to_vec(),
-            event_values: self.watches.iter().map(Watch::value).collect(),
+            event_values: self.watches.iter().map(EventTracker::value).collect(),
         }
     }
 
@@ -307,9 +307,9 @@ impl<'a> Run<'a> {
     }
 
     /// What there is at the present time, after any jump.
-    pub(super) fn row(&self) -> Row<'_> {
+    pub(super) fn row(&self) -> Record<'_> {
         let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
-        Row { y: &self.y, s, q: self.quadratures() }
+        Record { y: &self.y, s, q: self.quadratures() }
     }
 
     /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there was none.
@@ -344,8 +344,8 @@ impl<'a> Run<'a> {
     pub fn interpolate(&mut self, t: f64, out: &mut [f64]) -> Result<(), common::Error> {
         let [low, high] = if self.sign > 0.0 { [self.t_old, self.t] } else { [self.t, self.t_old] };
         if !(low <= t && t <= high) {
-            let mend = format!("the last step is [{low}, {high}]");
-            return Err(InputError::new("t", t, mend).into());
+            let help = format!("the last step is [{low}, {high}]");
+            return Err(InputError::new("t", t, help).into());
         }
         // the number before a break is as far as the integrator went
         let reached = self.engine.t();

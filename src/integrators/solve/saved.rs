@@ -40,23 +40,23 @@ impl Saved {
         check_finite("parameters of the saved run", &self.parameters)?;
         check_finite("quadratures of the saved run", &self.quadratures)?;
         if self.quadratures.len() != integrals {
-            let mend = format!("the equations have {integrals}");
+            let help = format!("the equations have {integrals}");
             let input = "length of quadratures in the saved run";
-            return Err(InputError::new(input, self.quadratures.len(), mend));
+            return Err(InputError::new(input, self.quadratures.len(), help));
         }
         if self.yp.len() != derivatives {
-            let mend = "a DAE has as many as unknowns, an ODE none";
-            return Err(InputError::new("length of yp in the saved run", self.yp.len(), mend));
+            let help = "a DAE has as many as unknowns, an ODE none";
+            return Err(InputError::new("length of yp in the saved run", self.yp.len(), help));
         }
         for (what, count) in
             [("counts", self.counts.len()), ("event_values", self.event_values.len())]
         {
             if count != events {
-                let mend = format!("the problem has {events} events");
+                let help = format!("the problem has {events} events");
                 return Err(InputError::new(
                     format!("length of {what} in the saved run"),
                     count,
-                    mend,
+                    help,
                 ));
             }
         }

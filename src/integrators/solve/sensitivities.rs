@@ -123,9 +123,9 @@ impl Carried {
     /// Starts from others than zero.
     pub(super) fn start(&mut self, s: &[f64], engine: &mut dyn Engine) -> Result<(), Reason> {
         if s.len() != self.s.len() {
-            let mend = format!("there are {} of them, n for each parameter", self.s.len());
+            let help = format!("there are {} of them, n for each parameter", self.s.len());
             let input = "length of the sensitivities at the start";
-            return Err(InputError::new(input, s.len(), mend).into());
+            return Err(InputError::new(input, s.len(), help).into());
         }
         self.s.copy_from_slice(s);
         self.hand_over(engine)

@@ -75,7 +75,7 @@ impl fmt::Debug for Solution {
 
 /// What is kept of one time: state, sensitivities (one column after the other) and integrals.
 #[derive(Clone, Copy)]
-pub(super) struct Row<'r> {
+pub(super) struct Record<'r> {
     pub(super) y: &'r [f64],
     pub(super) s: &'r [f64],
     pub(super) q: &'r [f64],
@@ -91,7 +91,7 @@ fn node(k: usize, degree: usize) -> f64 {
 }
 
 impl Solution {
-    pub(super) fn new(t: f64, row: Row<'_>, dense: bool) -> Self {
+    pub(super) fn new(t: f64, row: Record<'_>, dense: bool) -> Self {
         Self {
             n: row.y.len(),
             t: vec![t],
@@ -111,7 +111,7 @@ impl Solution {
     pub(super) fn push<E>(
         &mut self,
         t: f64,
-        row: Row<'_>,
+        row: Record<'_>,
         degree: u32,
         mut at: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -132,7 +132,7 @@ impl Solution {
         Ok(())
     }
 
-    fn add(&mut self, t: f64, row: Row<'_>) {
+    fn add(&mut self, t: f64, row: Record<'_>) {
         self.t.push(t);
         self.states.extend_from_slice(row.y);
         self.sensitivities.extend_from_slice(row.s);
@@ -140,7 +140,7 @@ impl Solution {
     }
 
     /// Adds the state after a jump.
-    pub(super) fn push_jump(&mut self, t: f64, row: Row<'_>) {
+    pub(super) fn push_jump(&mut self, t: f64, row: Record<'_>) {
         if let Some(inner) = &mut self.inner {
             inner.push(self.nodes.len());
         }
@@ -232,8 +232,8 @@ impl Solution {
         check_length("length of out", out.len(), self.n)?;
         check_time("t", t)?;
         let Some(inner) = &self.inner else {
-            let mend = "what lies between the times was not kept: take Output::Steps";
-            return Err(InputError::new("output", "Times or End", mend));
+            let help = "what lies between the times was not kept: take Output::Steps";
+            return Err(InputError::new("output", "Times or End", help));
         };
         let (start, end) = (self.t[0], self.t[self.t.len() - 1]);
         let sign = if end < start { -1.0 } else { 1.0 };

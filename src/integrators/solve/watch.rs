@@ -19,7 +19,7 @@ pub(super) struct Root {
 
 /// How far an event function was followed.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Watch {
+pub(super) struct EventTracker {
     direction: Direction,
     samples: u32,
     touching: Option<f64>,
@@ -63,7 +63,7 @@ impl Sight {
     }
 }
 
-impl Watch {
+impl EventTracker {
     /// Follows `event` from time `t`, where its function is `g`.
     pub(super) fn new(event: &Event<'_>, t: f64, g: f64) -> Self {
         let Event { direction, samples, touching, .. } = *event;
@@ -268,7 +268,7 @@ mod tests {
 
     /// Follows g over steps of one unit; the roots with their signs.
     fn roots(event: Event<'_>, g: impl Fn(f64) -> f64, steps: u32) -> Vec<(f64, i32)> {
-        let mut watch = Watch::new(&event, 0.0, g(0.0));
+        let mut watch = EventTracker::new(&event, 0.0, g(0.0));
         let mut found = Vec::new();
         for step in 1..=steps {
             while let Sight::Root(root) = watch

@@ -92,7 +92,7 @@ pub(super) struct Troubles {
 }
 
 /// The error of the user's system, for the integrator's own error.
-pub(super) type Source = Option<Box<dyn error::Error + Send + Sync>>;
+pub(super) type ErrorSource = Option<Box<dyn error::Error + Send + Sync>>;
 
 impl Troubles {
     /// Notes a request for a smaller step, and gives it up where it does not help any more: near
@@ -143,7 +143,7 @@ impl Troubles {
         (t, h): (f64, f64),
         blame_retries: bool,
         otherwise: Cause,
-    ) -> (Cause, Source) {
+    ) -> (Cause, ErrorSource) {
         if let Some((callback, source)) = self.fatal.take() {
             return (Cause::Fatal(callback), Some(source));
         }

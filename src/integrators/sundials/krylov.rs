@@ -142,8 +142,8 @@ impl Krylov {
     pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
         match &self.preconditioner {
             Some((Side::Right, _)) => {
-                let mend = "IDA has preconditioners on the left alone";
-                Err(InputError::new("side of the preconditioner", "Side::Right", mend))
+                let help = "IDA has preconditioners on the left alone";
+                Err(InputError::new("side of the preconditioner", "Side::Right", help))
             }
             _ => Ok(()),
         }

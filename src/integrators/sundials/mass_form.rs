@@ -79,8 +79,8 @@ impl Mass {
                 Ok(Self::Sparse { pattern: pattern.clone(), values })
             }
             other => {
-                let mend = "with a mass matrix it is dense, of band form or sparse (KLU)";
-                Err(InputError::new("linear solver", format!("{other:?}"), mend))
+                let help = "with a mass matrix it is dense, of band form or sparse (KLU)";
+                Err(InputError::new("linear solver", format!("{other:?}"), help))
             }
         }
     }
@@ -139,8 +139,8 @@ impl<S: Ode> MassForm<S> {
     /// If the system has no [mass matrix](Ode::mass_kind), or the linear solver works on no matrix that is stored.
     pub fn new(system: S, n: usize, solver: &LinearSolver) -> Result<Self, Error> {
         if system.mass_kind() == MassKind::Identity {
-            let mend = "the system has to give one: see `mass_kind` and `with_mass`";
-            return Err(Error::input("mass matrix", "none", mend));
+            let help = "the system has to give one: see `mass_kind` and `with_mass`";
+            return Err(Error::input("mass matrix", "none", help));
         }
         check_whole(&system)?;
         let mass = Mass::new(n, solver)?;
@@ -160,8 +160,8 @@ impl<S: Ode> MassForm<S> {
     /// If the system does not give its mass matrix.
     pub fn differential(&mut self, t: f64) -> Result<Vec<bool>, Error> {
         self.update(t).map_err(|failure| {
-            let mend = "the system has to give it in the form of the linear solver";
-            Error::input("mass matrix", failure.into_error(), mend)
+            let help = "the system has to give it in the form of the linear solver";
+            Error::input("mass matrix", failure.into_error(), help)
         })?;
         let mut differential = vec![false; self.f.len()];
         self.mass.visit(|_, j, value| differential[j] |= value != 0.0);

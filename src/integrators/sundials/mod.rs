@@ -43,7 +43,7 @@
 
 mod adjoint;
 mod arkode;
-mod beside;
+mod auxiliary;
 mod colouring;
 mod context;
 mod cvode;

@@ -41,9 +41,9 @@ impl NewtonMatrix {
         tolerances: &Tolerances,
     ) -> Result<Self, Error> {
         if matches!(solver, LinearSolver::Krylov(_) | LinearSolver::Custom) {
-            let mend =
+            let help =
                 "this method factorizes its matrix: take a dense, a band or a sparse one (KLU)";
-            return Err(InputError::new("linear solver", format!("{solver:?}"), mend).into());
+            return Err(InputError::new("linear solver", format!("{solver:?}"), help).into());
         }
         let context = Context::new()?;
         let rhs = Vector::from_slice(&vec![0.0; n], &context)?;

@@ -34,8 +34,8 @@ impl NonlinearOptions {
         }
         match &self.solver {
             NonlinearSolver::FixedPoint { acceleration } if *acceleration > 100 => {
-                let mend = "a few iterates are enough, at most 100";
-                Err(InputError::new("acceleration", acceleration, mend))
+                let help = "a few iterates are enough, at most 100";
+                Err(InputError::new("acceleration", acceleration, help))
             }
             NonlinearSolver::FixedPoint { .. } => Ok(()),
             NonlinearSolver::Newton(solver) => solver.check(n),

@@ -41,8 +41,8 @@ impl Limits {
         if let (Some(min), Some(max)) = (self.min_step, max_step)
             && min > max
         {
-            let mend = format!("it is at most max_step, {max}");
-            return Err(InputError::new("min_step", min, mend));
+            let help = format!("it is at most max_step, {max}");
+            return Err(InputError::new("min_step", min, help));
         }
         if let Some(coefficient) = self.convergence_coefficient
             && !(coefficient > 0.0 && coefficient.is_finite())
@@ -57,8 +57,8 @@ impl Limits {
     pub(super) fn check_order(&self, highest: u32) -> Result<(), InputError> {
         match self.max_order {
             Some(order) if !(1..=highest).contains(&order) => {
-                let mend = format!("this method has orders 1 to {highest}");
-                Err(InputError::new("max_order", order, mend))
+                let help = format!("this method has orders 1 to {highest}");
+                Err(InputError::new("max_order", order, help))
             }
             _ => Ok(()),
         }

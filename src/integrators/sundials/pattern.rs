@@ -49,8 +49,8 @@ impl Pattern {
         entries: impl IntoIterator<Item = (usize, usize)>,
     ) -> Result<Self, InputError> {
         if n == 0 {
-            let mend = "a matrix has at least one row and column";
-            return Err(InputError::new("number of unknowns", n, mend));
+            let help = "a matrix has at least one row and column";
+            return Err(InputError::new("number of unknowns", n, help));
         }
         let mut columns: Vec<Vec<usize>> = (0..n).map(|j| vec![j]).collect();
         for (row, column) in entries {
@@ -182,8 +182,8 @@ impl Pattern {
         let mut values = vec![0.0; self.entry_count()];
         for (row, column, value) in entries {
             let place = self.position(row, column).ok_or_else(|| {
-                let mend = "the sparsity pattern has to have it, with those of all matrices";
-                InputError::new("entry", format!("({row}, {column})"), mend)
+                let help = "the sparsity pattern has to have it, with those of all matrices";
+                InputError::new("entry", format!("({row}, {column})"), help)
             })?;
             values[place] += value;
         }

@@ -108,9 +108,9 @@ where
         for j in 0..n {
             set(&mut y, &mut yp, j, (f64::NAN, f64::NAN));
             (self.evaluate)(&y, &yp, &mut f).map_err(|failure| {
-                let mend = "equations that refuse NaN are asked by sampling";
+                let help = "equations that refuse NaN are asked by sampling";
                 let input = format!("equations with NaN for unknown {j}");
-                InputError::new(input, failure.into_error(), mend)
+                InputError::new(input, failure.into_error(), help)
             })?;
             set(&mut y, &mut yp, j, (self.y[j], self.yp.get(j).copied().unwrap_or_default()));
             self.entries.extend((0..n).filter(|&i| f[i].is_nan()).map(|i| (i, j)));
@@ -134,18 +134,18 @@ where
         };
         let (mut y, mut yp) = (self.y.to_vec(), self.yp.to_vec());
         let [mut before, mut after] = [vec![0.0; n], vec![0.0; n]];
-        let mend = "choose a smaller spread, or another point";
+        let help = "choose a smaller spread, or another point";
         for _ in 0..points {
             for j in 0..n {
                 let to = (near(self.y, spread, j), near(self.yp, yp_spread, j));
                 set(&mut y, &mut yp, j, to);
             }
-            self.finite_value(&y, &yp, &mut before, mend)?;
+            self.finite_value(&y, &yp, &mut before, help)?;
             for j in 0..n {
                 let old = (y[j], yp.get(j).copied().unwrap_or_default());
                 let new = (near(self.y, spread, j), near(self.yp, yp_spread, j));
                 set(&mut y, &mut yp, j, new);
-                self.finite_value(&y, &yp, &mut after, mend)?;
+                self.finite_value(&y, &yp, &mut after, help)?;
                 set(&mut y, &mut yp, j, old);
                 self.entries.extend((0..n).filter(|&i| before[i] != after[i]).map(|i| (i, j)));
             }
@@ -159,15 +159,15 @@ where
         y: &[f64],
         yp: &[f64],
         f: &mut [f64],
-        mend: &str,
+        help: &str,
     ) -> Result<(), InputError> {
         (self.evaluate)(y, yp, f).map_err(|failure| {
-            InputError::new("equations at the point", failure.into_error(), mend)
+            InputError::new("equations at the point", failure.into_error(), help)
         })?;
         match f.iter().position(|f| !f.is_finite()) {
             Some(i) => {
                 let input = format!("component {i} of the equations at the point");
-                Err(InputError::new(input, f[i], mend))
+                Err(InputError::new(input, f[i], help))
             }
             None => Ok(()),
         }

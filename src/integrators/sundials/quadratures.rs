@@ -3,7 +3,7 @@
 use std::ffi::c_void;
 
 use super::{
-    beside::Quadratures, ffi, functions::Named, options::QuadratureOptions, session::Session,
+    auxiliary::Quadratures, ffi, functions::Named, options::QuadratureOptions, session::Session,
     vector::Vector,
 };
 use crate::base::input::InputError;
@@ -142,8 +142,8 @@ impl<K, S> Session<K, S> {
 fn check_tolerances(count: usize, tolerances: Option<&Tolerances>) -> Result<(), InputError> {
     let Some(tolerances) = tolerances else { return Ok(()) };
     if count == 0 {
-        let mend = "the system has no integrals: quadrature_count says how many";
-        return Err(InputError::new("quadrature_tolerances", "given", mend));
+        let help = "the system has no integrals: quadrature_count says how many";
+        return Err(InputError::new("quadrature_tolerances", "given", help));
     }
     tolerances.check(&vec![0.0; count])
 }

@@ -4,7 +4,7 @@ use std::ffi::c_void;
 
 use super::{
     ffi,
-    host::Source,
+    host::ErrorSource,
     index::Index,
     progress::STRETCH,
     session::{Memory, Session},
@@ -185,7 +185,7 @@ impl<K, S> Session<K, S> {
         statistics: &Statistics,
         cause: Cause,
         message: String,
-        source: Source,
+        source: ErrorSource,
     ) -> Error {
         IntegrationError {
             integrator: self.memory.functions.integrator,

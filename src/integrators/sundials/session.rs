@@ -3,7 +3,7 @@
 use std::{ffi::c_void, ptr};
 
 use super::{
-    beside::{Backward, Quadratures, Sensitivity},
+    auxiliary::{Backward, Quadratures, Sensitivity},
     context::Context,
     differences::{Differences, Scales},
     ffi,

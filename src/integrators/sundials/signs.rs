@@ -62,8 +62,8 @@ pub(super) fn check_state(signs: &[Sign], input: &str, y: &[f64]) -> Result<(), 
     match signs.iter().zip(y).position(|(sign, y)| !sign.allows(*y)) {
         None => Ok(()),
         Some(i) => {
-            let mend = format!("sign_constraints ask for {} there", signs[i]);
-            Err(InputError::new(input, format!("{:?} in component {i}", y[i]), mend))
+            let help = format!("sign_constraints ask for {} there", signs[i]);
+            Err(InputError::new(input, format!("{:?} in component {i}", y[i]), help))
         }
     }
 }

@@ -59,8 +59,8 @@ impl<K, S> Integrator for Session<K, S> {
             return Ok(());
         }
         if let Some(degree) = self.interpolant_degree.filter(|degree| derivative > *degree) {
-            let mend = format!("the polynomials between the steps are of degree {degree}");
-            return Err(Error::input("derivative", derivative, mend));
+            let help = format!("the polynomials between the steps are of degree {degree}");
+            return Err(Error::input("derivative", derivative, help));
         }
         let (name, get_dky) = self.memory.functions.get_dky;
         let scratch = self.scratch.raw();
@@ -78,8 +78,8 @@ impl<K, S> Integrator for Session<K, S> {
             check_time("stop time", t)?;
             let statistics = self.step_statistics();
             if (t - statistics.current_time) * statistics.last_step < 0.0 || t == self.t {
-                let mend = format!("the steps have reached {} already", statistics.current_time);
-                return Err(Error::input("stop time", t, mend));
+                let help = format!("the steps have reached {} already", statistics.current_time);
+                return Err(Error::input("stop time", t, help));
             }
         }
         self.stop_time.set(t);
@@ -228,7 +228,7 @@ impl<K, S> Session<K, S> {
         if code < 0 {
             self.forget_factors();
         }
-        if code >= 0 || self.has_step && self.is_finite_beside() {
+        if code >= 0 || self.has_step && self.is_auxiliary_finite() {
             mem::swap(&mut self.y, &mut self.scratch);
             mem::swap(&mut self.yp, &mut self.slope_scratch);
         } else if !self.has_step {
@@ -321,7 +321,7 @@ impl<K, S> Session<K, S> {
     }
 
     /// Whether the state that C has written is one.
-    fn is_finite_beside(&self) -> bool {
+    fn is_auxiliary_finite(&self) -> bool {
         let vectors = [Some(&self.scratch), self.slope_scratch.as_ref()];
         vectors.into_iter().flatten().all(|vector| vector.as_slice().iter().all(|y| y.is_finite()))
     }
@@ -358,12 +358,12 @@ impl<K, S> Session<K, S> {
             _ => statistics.current_time - statistics.last_step,
         };
         if statistics.steps == 0 && (target - self.t).abs() < SHORTEST {
-            let mend = format!("it lies at least {SHORTEST:e} from the start, {:?}", self.t);
-            return Err(Error::input("target time", target, mend));
+            let help = format!("it lies at least {SHORTEST:e} from the start, {:?}", self.t);
+            return Err(Error::input("target time", target, help));
         }
         if (target - earliest) * statistics.last_step < 0.0 {
-            let mend = format!("it lies behind {earliest:?}; reinit turns the direction of time");
-            return Err(Error::input("target time", target, mend));
+            let help = format!("it lies behind {earliest:?}; reinit turns the direction of time");
+            return Err(Error::input("target time", target, help));
         }
         Ok(())
     }
@@ -386,8 +386,8 @@ impl<K, S> Session<K, S> {
             return Err(Error::input("t", t, format!("the last step is [{start}, {end}]")));
         }
         if code == functions.bad_derivative {
-            let mend = format!("the last step was of order {}", self.last_order());
-            return Err(Error::input("derivative", derivative, mend));
+            let help = format!("the last step was of order {}", self.last_order());
+            return Err(Error::input("derivative", derivative, help));
         }
         if code == ffi::CV_RHSFUNC_FAIL {
             return Err(self.stopped(code, t));
@@ -398,13 +398,13 @@ impl<K, S> Session<K, S> {
     /// Checks that nothing but the present values is asked for, where there is no step to look into.
     pub(super) fn check_start_only(&self, t: f64, derivative: u32) -> Result<(), Error> {
         if t != self.t {
-            let mend =
+            let help =
                 format!("without a step to look into only the state at {:?} is known", self.t);
-            return Err(Error::input("t", t, mend));
+            return Err(Error::input("t", t, help));
         }
         if derivative > 0 {
-            let mend = "it takes a step: without one only the state itself is known";
-            return Err(Error::input("derivative", derivative, mend));
+            let help = "it takes a step: without one only the state itself is known";
+            return Err(Error::input("derivative", derivative, help));
         }
         Ok(())
     }

@@ -57,9 +57,9 @@ impl StoredJacobian {
                 Ok(LinearSolver::Klu { pattern, jacobian: Jacobian::Supplied })
             }
             other => {
-                let mend = "an adjoint gradient needs entries of the Jacobian: choose a dense, a band or a \
+                let help = "an adjoint gradient needs entries of the Jacobian: choose a dense, a band or a \
                             sparse linear solver";
-                Err(InputError::new("linear solver", format!("{other:?}"), mend))
+                Err(InputError::new("linear solver", format!("{other:?}"), help))
             }
         }
     }

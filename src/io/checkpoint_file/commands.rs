@@ -10,7 +10,7 @@ use crate::base::formula::Formula;
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
 use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline, Turn};
-use crate::scene::forces::{Course, Signal, TimeTable, VectorSignal};
+use crate::scene::forces::{Signal, SignalKind, TimeTable, VectorSignal};
 use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 
 /// What is in force.
@@ -138,7 +138,7 @@ impl InForce {
                 ContactWith::These(names) => Some(names.clone()),
             },
             moving: phase
-                .turned
+                .redirected
                 .iter()
                 .map(|obstacle| {
                     (obstacle.name().into(), obstacle.offset(), obstacle.constant_velocity())
@@ -185,15 +185,15 @@ impl InForce {
             actuations: actuations.collect::<Result<_, String>>()?,
             pressures: pressures.collect::<Result<_, String>>()?,
             contact: self.contact.map_or(ContactWith::All, ContactWith::These),
-            turned: moving.collect::<Result<_, String>>()?,
+            redirected: moving.collect::<Result<_, String>>()?,
             ..own.clone()
         })
     }
 }
 
 fn is_function(input: String) -> InputError {
-    let mend = "a file cannot hold it; command a constant or a table before";
-    InputError::new(input, "a function of time", mend)
+    let help = "a file cannot hold it; command a constant or a table before";
+    InputError::new(input, "a function of time", help)
 }
 
 /// The item that the scene has at a place.
@@ -255,9 +255,9 @@ impl What {
             Constrained::Nodes(nodes, Axes::These(axes)) => {
                 Self::Nodes(Nodes::of(nodes), Some(axes.iter().map(|axis| letter(*axis)).collect()))
             }
-            Constrained::Row(terms) => {
-                Self::Row(terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect())
-            }
+            Constrained::Row(terms) => Self::Row(
+                terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect(),
+            ),
             Constrained::Along(nodes, normal) => Self::Along(Nodes::of(nodes), normal.clone()),
         }
     }
@@ -357,14 +357,14 @@ impl Vector {
 impl Number {
     fn of<'a>(signal: &Signal, mut own: impl Iterator<Item = &'a Signal>) -> Option<Self> {
         Some(match &signal.0 {
-            Course::Constant(_) | Course::Live(_) => Self::Constant(signal.at(0.0)),
-            Course::TimeTable(TimeTable { times, values }) => {
+            SignalKind::Constant(_) | SignalKind::Live(_) => Self::Constant(signal.at(0.0)),
+            SignalKind::TimeTable(TimeTable { times, values }) => {
                 Self::Table { times: times.clone(), values: values.clone() }
             }
-            Course::Formula(formula) => Self::Formula(formula.text().into()),
-            Course::Function { function, breaks } => {
+            SignalKind::Formula(formula) => Self::Formula(formula.text().into()),
+            SignalKind::Function { function, breaks } => {
                 Self::OfScene(own.position(|own| match &own.0 {
-                    Course::Function { function: own, breaks: theirs } => {
+                    SignalKind::Function { function: own, breaks: theirs } => {
                         Arc::ptr_eq(own, function) && theirs == breaks
                     }
                     _ => false,
@@ -381,9 +381,9 @@ impl Number {
         Ok(match self {
             Self::Constant(value) => Signal::constant(value),
             Self::Table { times, values } => {
-                Signal(Course::TimeTable(TimeTable::new(times, values)))
+                Signal(SignalKind::TimeTable(TimeTable::new(times, values)))
             }
-            Self::Formula(text) => Signal(Course::Formula(Arc::new(Formula::parse(&text)?))),
+            Self::Formula(text) => Signal(SignalKind::Formula(Arc::new(Formula::parse(&text)?))),
             Self::OfScene(place) => own(what, place, signals.cloned())?,
         })
     }

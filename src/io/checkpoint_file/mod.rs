@@ -32,9 +32,9 @@ impl Checkpoint {
         })?;
         let most = most_bytes(self.scene().body().dofs());
         if text.len() as u64 > most {
-            let mend = format!("files of checkpoints may have {most}: command smaller tables");
+            let help = format!("files of checkpoints may have {most}: command smaller tables");
             let input = format!("checkpoint at {} s", self.time());
-            return Err(InputError::new(input, format!("{} bytes", text.len()), mend).into());
+            return Err(InputError::new(input, format!("{} bytes", text.len()), help).into());
         }
         write_file(path.as_ref(), |file| {
             file.write_all(&text)?;
@@ -73,7 +73,7 @@ impl Simulation {
     /// version cannot read, damaged, or of another scene: the message names what differs.
     pub fn read_checkpoint(&self, path: impl AsRef<Path>) -> Result<Checkpoint, Error> {
         let path = path.as_ref();
-        let refuse = |mend| InputError::new("checkpoint file", path.display(), mend).into();
+        let refuse = |help| InputError::new("checkpoint file", path.display(), help).into();
         let file = open(path, most_bytes(self.scene().body().dofs()))
             .map_err(|source| Error::Read { path: path.into(), source })?;
         file.and_then(|text| parse(&text, self)).map_err(refuse)
@@ -92,8 +92,8 @@ fn open(path: &Path, most: u64) -> std::io::Result<Result<Vec<u8>, String>> {
     if !fs::metadata(path)?.is_file() {
         return Ok(Err("it is no regular file: name one".into()));
     }
-    let mend = "it is no checkpoint of this scene, or was damaged: write it anew";
-    let too_long = || format!("it has more than {most} bytes: {mend}");
+    let help = "it is no checkpoint of this scene, or was damaged: write it anew";
+    let too_long = || format!("it has more than {most} bytes: {help}");
     Ok(read_if_at_most(path, most)?.ok_or_else(too_long))
 }
 

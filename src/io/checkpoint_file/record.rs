@@ -89,8 +89,8 @@ impl Head {
             return Err(format!("it does not say \"{WHAT}\": name a file of `Checkpoint::write`"));
         }
         if *format != FORMAT {
-            let mend = format!("this version, {VERSION}, reads format {FORMAT}");
-            return Err(format!("it has format {format} of pliant {version}: {mend}"));
+            let help = format!("this version, {VERSION}, reads format {FORMAT}");
+            return Err(format!("it has format {format} of pliant {version}: {help}"));
         }
         Ok(())
     }

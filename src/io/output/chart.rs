@@ -152,9 +152,9 @@ impl Chart {
         }
         let [log_x, log_y] = self.logarithmic;
         for Series { name, points, .. } in &self.series {
-            let refuse = |point: &(f64, f64), mend: &str| {
+            let refuse = |point: &(f64, f64), help: &str| {
                 let (input, value) = (format!("point of series \"{name}\""), format!("{point:?}"));
-                Err(InputError::new(input, value, mend).into())
+                Err(InputError::new(input, value, help).into())
             };
             if let Some(point) = points.iter().find(|(x, y)| !(x.is_finite() && y.is_finite())) {
                 return refuse(point, "it must be a pair of finite numbers");

@@ -172,8 +172,8 @@ impl Columns {
         match trajectory.sensors().iter().find(is_double) {
             None => Ok(columns),
             Some(Quantity { name, .. }) => {
-                let mend = "a column of tables has it: name the sensor otherwise";
-                Err(InputError::new("name of a sensor", format!("\"{name}\""), mend))
+                let help = "a column of tables has it: name the sensor otherwise";
+                Err(InputError::new("name of a sensor", format!("\"{name}\""), help))
             }
         }
     }

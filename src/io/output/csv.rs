@@ -78,9 +78,9 @@ impl GrowingTable {
         let text = self.text()?;
         let first = csv::Reader::from_reader(text.as_bytes()).headers().cloned();
         if !first.is_ok_and(|first| first == header(&self.columns, trajectory)) {
-            let mend =
+            let help =
                 "its columns are others: resume with the same nodes and sensors, or run anew";
-            return Err(InputError::new("table to go on with", self.path.display(), mend).into());
+            return Err(InputError::new("table to go on with", self.path.display(), help).into());
         }
         Ok(Self { began: Some(began), ..self })
     }

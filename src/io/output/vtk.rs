@@ -59,8 +59,8 @@ pub fn write_vtk(
 ) -> Result<(), Error> {
     let plain = |c: char| c.is_ascii_alphanumeric() || ".-_".contains(c);
     if name.is_empty() || !name.chars().all(plain) {
-        let mend = "file names are made of letters, digits, '.', '-' and '_'";
-        return Err(InputError::new("name of the VTK files", format!("\"{name}\""), mend).into());
+        let help = "file names are made of letters, digits, '.', '-' and '_'";
+        return Err(InputError::new("name of the VTK files", format!("\"{name}\""), help).into());
     }
     let directory = directory.as_ref();
     let file_name = |number: usize| format!("{name}_{number:04}.vtu");

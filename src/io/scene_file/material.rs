@@ -4,7 +4,7 @@ use super::keys::{Holds, Key, Kind, TableKeys};
 use super::table::Table;
 use super::value::Value;
 use crate::dynamics::error::Error;
-use crate::elements::material::{Course, Fibres, Law, Material, MaxwellBranch, Substance};
+use crate::elements::material::{FibreDirection, Fibres, Law, Material, MaxwellBranch, Substance};
 
 pub(super) const MATERIAL: TableKeys = TableKeys::new(
     "material",
@@ -244,8 +244,8 @@ fn ogden(table: &Table<'_>) -> Result<(Law, f64), Error> {
 
 fn fibres(table: &Table<'_>) -> Result<Fibres, Error> {
     let course = match table.optional("along", Value::numbers)? {
-        Some(direction) => Course::Along(direction),
-        None => Course::Around {
+        Some(direction) => FibreDirection::Along(direction),
+        None => FibreDirection::Around {
             centre: table.required("centre", Value::numbers)?,
             axis: table.optional("axis", Value::numbers)?.unwrap_or_default(),
             pitch: table.optional("pitch", Value::number)?.unwrap_or(0.0),

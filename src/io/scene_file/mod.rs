@@ -76,7 +76,7 @@ pub use self::reference::{laws, reference};
 #[cfg(feature = "play")]
 pub(crate) use self::rewrite::{Rewritten, rewritten};
 pub use self::schema::schema;
-use self::source::Source;
+use self::source::SourceText;
 use self::table::Table;
 use self::top::TOP;
 #[cfg(any(feature = "play", feature = "study"))]
@@ -145,7 +145,7 @@ fn parse(mut text: String, path: &Path, overrides: &[String]) -> Result<SceneFil
         padded.push(" ".repeat(text.len()) + &toml);
         text.push_str(&toml);
     }
-    let source = Source { path, text: &text, own, notes: RefCell::default() };
+    let source = SourceText { path, text: &text, own, notes: RefCell::default() };
     let no_toml = |error: toml::de::Error| {
         let at = error.span().unwrap_or(0..0);
         let line = source.line(at.start);

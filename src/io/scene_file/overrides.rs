@@ -8,8 +8,8 @@ use crate::dynamics::error::Error;
 
 /// The text of an override as TOML: `KEY=VALUE`, in which a text needs no quotes.
 pub(super) fn as_toml(text: &str) -> Result<String, Error> {
-    let mend = "write KEY=VALUE, as in body.material.young=2e5 or phase.2.until=1.5";
-    let bad = || Error::from(InputError::new("--set", text, mend));
+    let help = "write KEY=VALUE, as in body.material.young=2e5 or phase.2.until=1.5";
+    let bad = || Error::from(InputError::new("--set", text, help));
     let (key, value) = text.split_once('=').ok_or_else(bad)?;
     let quoted = || format!("{key} = {}", serde_json::Value::from(value.trim()));
     let candidates = [format!("{key} = {value}"), quoted()];

@@ -8,7 +8,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::written::insertion;
 use crate::elements::mesh::Selection;
-use crate::scene::forces::{Course, Signal, VectorSignal};
+use crate::scene::forces::{Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{Load, Phase};
 
 /// A phase whose signals are others than in the file.
@@ -137,7 +137,7 @@ fn list(entries: impl Iterator<Item = String>) -> String {
 }
 
 fn course(signal: &Signal, [one, many]: [&str; 2]) -> String {
-    if let Course::Formula(formula) = &signal.0 {
+    if let SignalKind::Formula(formula) = &signal.0 {
         return format!("{one} = {}", quoted(formula.text()));
     }
     let times = signal.breaks();

@@ -127,7 +127,7 @@ pub(super) fn accuracy(value: &Value) -> Result<AccuracyRequest, Error> {
             Ok(number) => number.to_string().parse(),
             Err(_) => value.string()?.parse(),
         };
-        fraction.map_err(|error: InputError| value.error(error.mend))
+        fraction.map_err(|error: InputError| value.error(error.help))
     };
     let within: Option<Fraction> = table.optional("accuracy", fraction)?;
     let quantity = table.optional("quantity", Value::string)?.map(String::from);

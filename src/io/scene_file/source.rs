@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::dynamics::error::Error;
 
 /// The text of a scene file and where it comes from.
-pub(super) struct Source<'a> {
+pub(super) struct SourceText<'a> {
     pub(super) path: &'a Path,
     /// With the overrides of its values behind it, one in each line.
     pub(super) text: &'a str,
@@ -18,7 +18,7 @@ pub(super) struct Source<'a> {
     pub(super) notes: RefCell<Vec<String>>,
 }
 
-impl Source<'_> {
+impl SourceText<'_> {
     /// An error about the part `at` of the text, the value of `key` (empty: of none).
     pub(super) fn error(&self, at: &Range<usize>, key: &str, message: impl Display) -> Error {
         let message = match key {

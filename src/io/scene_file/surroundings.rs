@@ -370,8 +370,8 @@ fn unique<'a>(
     match others.any(|other| other == name) {
         false => Ok(()),
         true => {
-            let mend = "another one has it already: give each a name of its own";
-            Err(table.blame(InputError::new("name", format!("\"{name}\""), mend)))
+            let help = "another one has it already: give each a name of its own";
+            Err(table.blame(InputError::new("name", format!("\"{name}\""), help)))
         }
     }
 }

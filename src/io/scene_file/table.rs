@@ -8,7 +8,7 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use super::absent::stand_in;
 use super::keys::{Key, Kind, Meaning, TableKeys};
-use super::source::Source;
+use super::source::SourceText;
 use super::value::Value;
 use crate::base::input::{InputError, list, unknown};
 use crate::dynamics::error::Error;
@@ -18,7 +18,7 @@ const KIND: &str = "kind";
 
 /// A table all of whose keys are known, and none of whose groups of keys is missing or there beside another.
 pub(super) struct Table<'a> {
-    source: &'a Source<'a>,
+    source: &'a SourceText<'a>,
     /// Its key, with those of the tables around it; empty for the whole file.
     key: String,
     at: Range<usize>,
@@ -31,7 +31,7 @@ impl<'a> Table<'a> {
     /// # Errors
     /// A key that is none of `keys`; groups of keys of which not exactly one is there.
     pub(super) fn new(
-        source: &'a Source<'a>,
+        source: &'a SourceText<'a>,
         key: String,
         at: Range<usize>,
         entries: &'a DeTable<'a>,
@@ -170,8 +170,8 @@ impl<'a> Table<'a> {
     }
 
     /// `key` should be there.
-    pub(super) fn missing(&self, key: &str, mend: impl Display) -> Error {
-        self.source.error(&self.at, &self.full(key), format!("missing; {mend}"))
+    pub(super) fn missing(&self, key: &str, help: impl Display) -> Error {
+        self.source.error(&self.at, &self.full(key), format!("missing; {help}"))
     }
 
     /// An error about the whole table.
@@ -187,18 +187,18 @@ impl<'a> Table<'a> {
     /// is known, or else on that of the table. An error that has its line already stays as it is.
     pub(super) fn blame(&self, error: impl Into<Error>) -> Error {
         let error = error.into();
-        let (input, value, mend) = match &error {
-            Error::Input(InputError { input, value, mend }) => (input, value, mend),
+        let (input, value, help) = match &error {
+            Error::Input(InputError { input, value, help }) => (input, value, help),
             Error::SceneFile { .. } => return error,
             _ => return self.error(error),
         };
         if value == "(missing)" {
-            return self.missing(input.rsplit(' ').next().unwrap_or(input), mend);
+            return self.missing(input.rsplit(' ').next().unwrap_or(input), help);
         }
         match self.culprit(input) {
             None => self.error(&error),
             Some(found) if is_name_of(input, &found.key) => {
-                found.error(format!("{} cannot be used: {mend}", found.found()))
+                found.error(format!("{} cannot be used: {help}", found.found()))
             }
             Some(found) => found.error(&error),
         }

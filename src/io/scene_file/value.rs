@@ -6,7 +6,7 @@ use std::ops::Range;
 use toml::de::{DeTable, DeValue};
 
 use super::keys::Meaning;
-use super::source::Source;
+use super::source::SourceText;
 use crate::base::formula::Formula;
 use crate::base::input::{list, unknown};
 use crate::dynamics::error::Error;
@@ -15,7 +15,7 @@ use crate::scene::forces::{Signal, VectorSignal};
 /// A value with all that an error about it needs.
 #[derive(Clone)]
 pub(super) struct Value<'a> {
-    pub(super) source: &'a Source<'a>,
+    pub(super) source: &'a SourceText<'a>,
     /// Its key, with those of the tables around it.
     pub(super) key: String,
     pub(super) meaning: Meaning,
@@ -162,7 +162,7 @@ impl<'a> Value<'a> {
     pub(super) fn signal(&self) -> Result<Signal, Error> {
         match self.value {
             DeValue::String(text) => {
-                Signal::formula(text).map_err(|error| self.no_formula(&error.mend))
+                Signal::formula(text).map_err(|error| self.no_formula(&error.help))
             }
             _ => Ok(self.changing(Self::finite)?.into()),
         }

@@ -19,8 +19,8 @@ pub(super) fn written(text: &str, over: &str) -> Result<String, Error> {
     let candidates = [changed(text, &toml), Some(format!("{toml}\n{text}"))];
     let mut new = candidates.into_iter().flatten().filter(|new| is_meant(new, text, &toml));
     new.next().ok_or_else(|| {
-        let mend = "the text of the scene file has no place for it: write it into the file";
-        InputError::new("--set", over, mend).into()
+        let help = "the text of the scene file has no place for it: write it into the file";
+        InputError::new("--set", over, help).into()
     })
 }
 

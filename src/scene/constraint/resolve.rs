@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::ptr;
 
 use super::prescribed::Prescribed;
-use super::row::{Row, RowMotion};
+use super::row::{ConstraintRow, RowMotion};
 use super::start::PhaseStart;
 use super::turn::Turning;
 use super::{Axes, Axis, Constrained, Constraint, Motion};
@@ -25,9 +25,9 @@ pub(crate) fn rows(
     mesh: &Mesh,
     phase: &str,
     start: &PhaseStart,
-) -> Result<Vec<Row>, InputError> {
+) -> Result<Vec<ConstraintRow>, InputError> {
     let dimension = mesh.dimension();
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<ConstraintRow> = Vec::new();
     for Constraint { what, how } in constraints {
         match how {
             Motion::Spline(spline) => spline.validate("displacements of a path", "m")?,
@@ -76,7 +76,7 @@ fn row(
     component: usize,
     start: &PhaseStart,
     mesh: &Mesh,
-) -> Row {
+) -> ConstraintRow {
     let linear = |velocity: f64| RowMotion::Linear {
         start: terms.iter().map(|&(dof, coefficient)| coefficient * start.u[dof]).sum(),
         since: start.time,
@@ -90,14 +90,14 @@ fn row(
         Motion::Formula(formula) => RowMotion::Formula(formula.clone()),
         Motion::Turn(turn) => RowMotion::Turning(Turning::new(turn, terms[0].0, mesh, start)),
     };
-    Row { terms, motion }
+    ConstraintRow { terms, motion }
 }
 
 fn check_axes(axes: &[Axis], dimension: usize) -> Result<(), InputError> {
     match axes.iter().find(|axis| axis.index() >= dimension) {
         Some(axis) => {
-            let mend = format!("the body has {dimension} dimension(s)");
-            Err(InputError::new("axis of a constraint", format!("{axis:?}"), mend))
+            let help = format!("the body has {dimension} dimension(s)");
+            Err(InputError::new("axis of a constraint", format!("{axis:?}"), help))
         }
         None => Ok(()),
     }
@@ -124,14 +124,14 @@ fn general_terms(
     for &(number, axis, coefficient) in terms {
         check_axes(&[axis], dimension)?;
         if !coefficient.is_finite() || coefficient == 0.0 {
-            let mend = "it must be a finite number other than 0";
-            return Err(InputError::new("coefficient of a constraint row", coefficient, mend));
+            let help = "it must be a finite number other than 0";
+            return Err(InputError::new("coefficient of a constraint row", coefficient, help));
         }
         let node = mesh.select(&[number].into())?[0];
         let dof = node * dimension + axis.index();
         if resolved.iter().any(|&(other, _)| other == dof) {
-            let mend = "it appears twice in one row; add its coefficients";
-            return Err(InputError::new("node of a constraint row", number, mend));
+            let help = "it appears twice in one row; add its coefficients";
+            return Err(InputError::new("node of a constraint row", number, help));
         }
         resolved.push((dof, coefficient));
     }
@@ -148,15 +148,20 @@ fn direction(normal: &[f64], dimension: usize) -> Result<Vec<(usize, f64)>, Inpu
     finite(input, normal)?;
     let (length, sign) = (norm(normal), normal.iter().find(|n| **n != 0.0).copied());
     if normal.len() != dimension || !(length > 0.0 && length.is_finite()) {
-        let mend = format!("it needs {dimension} component(s), not all of them 0");
-        return Err(InputError::new(input, format!("{normal:?}"), mend));
+        let help = format!("it needs {dimension} component(s), not all of them 0");
+        return Err(InputError::new(input, format!("{normal:?}"), help));
     }
     let length = sign.map_or(1.0, f64::signum) * length;
     let unit = normal.iter().map(|n| n / length).enumerate();
     Ok(unit.filter(|(_, n)| n.abs() > ROUND_OFF).collect())
 }
 
-fn check_path(row: &Row, phase: &str, dimension: usize, t: f64) -> Result<(), InputError> {
+fn check_path(
+    row: &ConstraintRow,
+    phase: &str,
+    dimension: usize,
+    t: f64,
+) -> Result<(), InputError> {
     let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
     if [displacement, velocity, acceleration].iter().all(|number| number.is_finite()) {
         return Ok(());
@@ -174,18 +179,18 @@ fn check_path(row: &Row, phase: &str, dimension: usize, t: f64) -> Result<(), In
 /// # Errors
 /// Demands on the same components that are not known to be the same.
 fn without_repetitions(
-    rows: Vec<Row>,
+    rows: Vec<ConstraintRow>,
     dimension: usize,
     phase: &str,
-) -> Result<Vec<Row>, InputError> {
-    let contradiction = |row: &Row, first: &str, second: &str| {
+) -> Result<Vec<ConstraintRow>, InputError> {
+    let contradiction = |row: &ConstraintRow, first: &str, second: &str| {
         let input = format!("constraints on {} in phase \"{phase}\"", row.label(dimension));
-        let mend = "they contradict each other: leave one of them out";
-        InputError::new(input, format!("{first}, and {second}"), mend)
+        let help = "they contradict each other: leave one of them out";
+        InputError::new(input, format!("{first}, and {second}"), help)
     };
     // by their degrees of freedom and, of general rows, coefficients
-    let mut known: BTreeMap<Vec<(usize, u64)>, &Row> = BTreeMap::new();
-    let key = |row: &Row| match row.nodal() {
+    let mut known: BTreeMap<Vec<(usize, u64)>, &ConstraintRow> = BTreeMap::new();
+    let key = |row: &ConstraintRow| match row.nodal() {
         Some((dof, _)) => vec![(dof, 0)],
         None => row.terms.iter().map(|&(dof, x)| (dof, x.to_bits())).collect(),
     };

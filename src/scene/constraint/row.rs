@@ -10,7 +10,7 @@ use crate::base::formula::Formula;
 
 /// One row of A^T with its b(t), resolved for one phase.
 #[derive(Clone)]
-pub(crate) struct Row {
+pub(crate) struct ConstraintRow {
     /// Degrees of freedom, ascending, and coefficients; a single one makes a nodal row.
     pub(crate) terms: Vec<(usize, f64)>,
     pub(super) motion: RowMotion,
@@ -53,7 +53,7 @@ impl RowMotion {
     }
 }
 
-impl Row {
+impl ConstraintRow {
     /// b, b', b'' at time `t`.
     #[inline]
     pub(crate) fn prescribed(&self, t: f64) -> Prescribed {
@@ -135,7 +135,7 @@ impl Row {
 
 /// Puts the nodes that `rows` prescribe where they should be at time `t`: a constraint that is
 /// continued does not take over the error of the stabilization.
-pub(crate) fn prescribe(rows: &[Row], t: f64, u: &mut [f64]) {
+pub(crate) fn prescribe(rows: &[ConstraintRow], t: f64, u: &mut [f64]) {
     for row in rows {
         if let Some((dof, coefficient)) = row.nodal() {
             u[dof] = row.prescribed(t).displacement / coefficient;

@@ -57,16 +57,16 @@ impl Spline {
         finite("the times of a path", times)?;
         finite(&format!("the {values}"), displacements)?;
         if times.len() < 2 {
-            let mend = "a path needs two points at least (s)";
-            return Err(InputError::new("times of a path", format!("{times:?}"), mend));
+            let help = "a path needs two points at least (s)";
+            return Err(InputError::new("times of a path", format!("{times:?}"), help));
         }
         if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
-            let mend = format!("times must ascend: it must lie after {} s", pair[0]);
-            return Err(InputError::new("times of a path", format!("{} s", pair[1]), mend));
+            let help = format!("times must ascend: it must lie after {} s", pair[0]);
+            return Err(InputError::new("times of a path", format!("{} s", pair[1]), help));
         }
         if displacements.len() != times.len() {
-            let mend = format!("one is needed for each of the {} times ({unit})", times.len());
-            return Err(InputError::new(values, format!("{displacements:?}"), mend));
+            let help = format!("one is needed for each of the {} times ({unit})", times.len());
+            return Err(InputError::new(values, format!("{displacements:?}"), help));
         }
         Ok(())
     }

@@ -24,12 +24,12 @@ pub(crate) fn angular(
         (2, &[omega]) => Ok([0.0, 0.0, omega]),
         (3, &[x, y, z]) => Ok([x, y, z]),
         _ => {
-            let mend = match dimension {
+            let help = match dimension {
                 2 => "it needs 1 component, counter-clockwise",
                 3 => "it needs 3 components",
                 _ => "a body of 1 dimension cannot turn",
             };
-            Err(InputError::new(input, format!("{given:?}"), mend))
+            Err(InputError::new(input, format!("{given:?}"), help))
         }
     }
 }
@@ -56,9 +56,9 @@ impl Turn {
     /// numbers that are not finite, times of a path that do not ascend.
     pub(super) fn validate(&self, dimension: usize) -> Result<(), InputError> {
         if self.centre.len() != dimension {
-            let mend = format!("it needs {dimension} component(s) (m)");
+            let help = format!("it needs {dimension} component(s) (m)");
             let input = "centre of turned nodes";
-            return Err(InputError::new(input, format!("{:?}", self.centre), mend));
+            return Err(InputError::new(input, format!("{:?}", self.centre), help));
         }
         finite("centre of turned nodes", &self.centre)?;
         let Some(angles) = &self.angles else {
@@ -66,8 +66,8 @@ impl Turn {
         };
         let axis = angular("axis of turned nodes", &self.axis, dimension)?;
         if norm(&axis) == 0.0 {
-            let mend = "it must have a direction";
-            return Err(InputError::new("axis of turned nodes", format!("{:?}", self.axis), mend));
+            let help = "it must have a direction";
+            return Err(InputError::new("axis of turned nodes", format!("{:?}", self.axis), help));
         }
         angles.validate("angles of a rotation", "rad")
     }

@@ -116,12 +116,12 @@ impl Chamber {
         pressure: Vec<Signal>,
     ) -> Result<ChamberForce, InputError> {
         if self.is_closed_by_line && body.dimension() != 2 {
-            let mend = "a line closes walls in the plane only: in space say closed_by_lid, or give a closed surface";
-            return Err(InputError::new(self.input("closed_by_line"), true, mend));
+            let help = "a line closes walls in the plane only: in space say closed_by_lid, or give a closed surface";
+            return Err(InputError::new(self.input("closed_by_line"), true, help));
         }
         if self.is_closed_by_lid && body.dimension() != 3 {
-            let mend = "a lid closes walls in space only: in the plane say closed_by_line";
-            return Err(InputError::new(self.input("closed_by_lid"), true, mend));
+            let help = "a lid closes walls in space only: in the plane say closed_by_line";
+            return Err(InputError::new(self.input("closed_by_lid"), true, help));
         }
         let geometry = match (&self.walls, body.dimension()) {
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
@@ -140,11 +140,11 @@ impl Chamber {
                 Geometry::Surface(surface, sign)
             }
             (walls, dimension) => {
-                let mend = match walls {
+                let help = match walls {
                     Walls::Nodes(_) => "nodes enclose a chamber in 2 or 3 dimensions only",
                     Walls::Triangles(_) => "a surface encloses a chamber in 3 dimensions only",
                 };
-                return Err(InputError::new(self.input("in dimension"), dimension, mend));
+                return Err(InputError::new(self.input("in dimension"), dimension, help));
             }
         };
         let mut force =
@@ -212,15 +212,15 @@ impl Chamber {
             (Some(thickness), _) => positive(&self.input("thickness"), thickness, "m"),
             (None, 2) => Ok(body.section()),
             (None, _) => {
-                let mend = "the body has no thickness of its own: give that of the chamber (m)";
-                Err(InputError::new(self.input("thickness"), "(missing)", mend))
+                let help = "the body has no thickness of its own: give that of the chamber (m)";
+                Err(InputError::new(self.input("thickness"), "(missing)", help))
             }
         }
     }
 
     fn encloses_nothing(&self, measure: &str, enclosed: f64) -> InputError {
-        let mend = "its walls enclose nothing: give its nodes in their order around";
-        InputError::new(self.input(measure), format!("{enclosed:.1e}"), mend)
+        let help = "its walls enclose nothing: give its nodes in their order around";
+        InputError::new(self.input(measure), format!("{enclosed:.1e}"), help)
     }
 }
 

@@ -93,8 +93,8 @@ impl Contact {
             false => boundary_nodes(body),
             true => gauss_points(body).ok_or_else(|| {
                 let input = format!("obstacle \"{}\" stiffness_density", obstacle.name());
-                let mend = "a string has no surface: give a stiffness per node";
-                InputError::new(input, "given", mend)
+                let help = "a string has no surface: give a stiffness per node";
+                InputError::new(input, "given", help)
             })?,
         };
         let positions = body.mesh().positions();

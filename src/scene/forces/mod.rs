@@ -28,9 +28,9 @@ pub(crate) use pressure::FacePressure;
 #[cfg(feature = "output")]
 pub(crate) use shape::Kind as ShapeKind;
 pub use shape::Shape;
-#[cfg(any(feature = "checkpoint", feature = "play"))]
-pub(crate) use signal::Course;
 pub use signal::Signal;
+#[cfg(any(feature = "checkpoint", feature = "play"))]
+pub(crate) use signal::SignalKind;
 pub(crate) use signal::{Live, TimeTable, VectorSignal};
 #[cfg(feature = "output")]
 pub(crate) use spring::Joint;

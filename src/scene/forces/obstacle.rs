@@ -281,8 +281,8 @@ impl Obstacle {
             not_negative(&input("friction_coefficient"), sliding, "")?;
             if sliding > at_rest {
                 let value = format!("{at_rest} at rest, {sliding} sliding");
-                let mend = "the kinetic coefficient must not be above the static one";
-                return Err(InputError::new(input("friction_coefficient"), value, mend));
+                let help = "the kinetic coefficient must not be above the static one";
+                return Err(InputError::new(input("friction_coefficient"), value, help));
             }
         }
         let Some(speed) = self.sticking_speed else { return Ok(()) };
@@ -290,8 +290,8 @@ impl Obstacle {
         match self.friction {
             Some(_) => Ok(()),
             None => {
-                let mend = "it belongs to friction: give a friction coefficient, too";
-                Err(InputError::new(input("sticking_speed"), speed, mend))
+                let help = "it belongs to friction: give a friction coefficient, too";
+                Err(InputError::new(input("sticking_speed"), speed, help))
             }
         }
     }

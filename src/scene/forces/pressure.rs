@@ -48,8 +48,8 @@ impl FacePressure {
             (2, 1, Some(thickness)) => Some([0.0, 0.0, thickness]),
             (3, 2, _) => None,
             _ => {
-                let mend = "there is no face with a normal between them: give a traction or forces";
-                return Err(bad(mend.into()));
+                let help = "there is no face with a normal between them: give a traction or forces";
+                return Err(bad(help.into()));
             }
         };
         let faces = loaded.faces.into_iter().map(|nodes| {

@@ -183,8 +183,8 @@ impl Shape {
     ) -> Result<Self, InputError> {
         let vector = |key: &str, vector: &[f64]| {
             if vector.len() != dimension {
-                let mend = format!("it needs {dimension} component(s)");
-                return Err(InputError::new(input(key), format!("{vector:?}"), mend));
+                let help = format!("it needs {dimension} component(s)");
+                return Err(InputError::new(input(key), format!("{vector:?}"), help));
             }
             finite(&input(key), vector)
         };
@@ -208,8 +208,8 @@ impl Shape {
                 vector("min", min)?;
                 vector("max", max)?;
                 if min.iter().zip(&*max).any(|(min, max)| min >= max) {
-                    let mend = format!("it must lie above min, {min:?}, in all components");
-                    return Err(InputError::new(input("max"), format!("{max:?}"), mend));
+                    let help = format!("it must lie above min, {min:?}, in all components");
+                    return Err(InputError::new(input("max"), format!("{max:?}"), help));
                 }
             }
             Kind::Capsule { from, to, radius } => {
@@ -217,18 +217,18 @@ impl Shape {
                 vector("to", to)?;
                 positive(&input("radius"), *radius, "m")?;
                 if dimension == 1 {
-                    let mend = "in one dimension use a box";
-                    return Err(InputError::new(input("kind"), "capsule", mend));
+                    let help = "in one dimension use a box";
+                    return Err(InputError::new(input("kind"), "capsule", help));
                 }
                 if from == to {
-                    let mend = "it must not be where the capsule begins: use a disc";
-                    return Err(InputError::new(input("to"), format!("{to:?}"), mend));
+                    let help = "it must not be where the capsule begins: use a disc";
+                    return Err(InputError::new(input("to"), format!("{to:?}"), help));
                 }
             }
             Kind::Union(parts) => {
                 if parts.is_empty() {
-                    let mend = "it needs one part at least";
-                    return Err(InputError::new(input("number of parts"), 0, mend));
+                    let help = "it needs one part at least";
+                    return Err(InputError::new(input("number of parts"), 0, help));
                 }
                 for (k, part) in parts.iter_mut().enumerate() {
                     *part =

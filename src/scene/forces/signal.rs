@@ -42,20 +42,20 @@ impl TimeTable {
         let input_times = format!("times of {input}");
         finite(&input_times, times)?;
         if times.is_empty() || values.len() != times.len() {
-            let mend = format!("one value is needed for each time, there are {}", values.len());
-            return Err(InputError::new(input_times, format!("{times:?}"), mend));
+            let help = format!("one value is needed for each time, there are {}", values.len());
+            return Err(InputError::new(input_times, format!("{times:?}"), help));
         }
         if let Some(pair) = times.windows(2).find(|pair| pair[0] >= pair[1]) {
-            let mend = format!(
+            let help = format!(
                 "times must ascend: it must lie after {} s (for a jump, begin another phase)",
                 pair[0]
             );
-            return Err(InputError::new(input_times, format!("{} s", pair[1]), mend));
+            return Err(InputError::new(input_times, format!("{} s", pair[1]), help));
         }
         for value in values {
             if value.len() != dimension {
-                let mend = format!("it needs {dimension} component(s)");
-                return Err(InputError::new(input, format!("{value:?}"), mend));
+                let help = format!("it needs {dimension} component(s)");
+                return Err(InputError::new(input, format!("{value:?}"), help));
             }
             finite(input, value)?;
         }
@@ -67,11 +67,11 @@ impl TimeTable {
 ///
 /// A number converts into a constant one.
 #[derive(Clone)]
-pub struct Signal(pub(crate) Course);
+pub struct Signal(pub(crate) SignalKind);
 
 /// What a [`Signal`] is.
 #[derive(Clone)]
-pub(crate) enum Course {
+pub(crate) enum SignalKind {
     Constant(f64),
     Function { function: Arc<dyn Fn(f64) -> f64 + Send + Sync>, breaks: Vec<f64> },
     TimeTable(TimeTable),
@@ -108,12 +108,12 @@ impl Live {
 impl Signal {
     /// A constant.
     pub fn constant(value: f64) -> Self {
-        Self(Course::Constant(value))
+        Self(SignalKind::Constant(value))
     }
 
     /// A function of time (s), smooth but for [`with_breaks`](Self::with_breaks).
     pub fn function(f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
-        Self(Course::Function { function: Arc::new(f), breaks: Vec::new() })
+        Self(SignalKind::Function { function: Arc::new(f), breaks: Vec::new() })
     }
 
     /// A formula of time `t` (s): `"2000 * sin(2*pi*3*t)"`.
@@ -128,14 +128,14 @@ impl Signal {
     pub fn formula(text: &str) -> Result<Self, InputError> {
         let formula = Formula::parse(text);
         let formula = formula.map_err(|problem| InputError::new("formula", text, problem))?;
-        Ok(Self(Course::Formula(Arc::new(formula))))
+        Ok(Self(SignalKind::Formula(Arc::new(formula))))
     }
 
     /// The `values` at the `times` (s, ascending). In between it is interpolated linearly; before and
     /// after it is constant.
     pub fn table(times: impl Into<Vec<f64>>, values: impl Into<Vec<f64>>) -> Self {
         let values = values.into().into_iter().map(|value| vec![value]).collect();
-        Self(Course::TimeTable(TimeTable::new(times.into(), values)))
+        Self(SignalKind::TimeTable(TimeTable::new(times.into(), values)))
     }
 
     /// From the value `from` at time `start` (s) to the value `to`, which it keeps, `duration` (s) later,
@@ -146,7 +146,7 @@ impl Signal {
 
     /// The same function, with the times (s, ascending) at which it has a kink or a jump: steps end there.
     pub fn with_breaks(mut self, times: impl Into<Vec<f64>>) -> Self {
-        if let Course::Function { breaks, .. } = &mut self.0 {
+        if let SignalKind::Function { breaks, .. } = &mut self.0 {
             *breaks = times.into();
         }
         self
@@ -155,18 +155,18 @@ impl Signal {
     /// The value at time `t` (s).
     pub fn at(&self, t: f64) -> f64 {
         match &self.0 {
-            Course::Constant(value) => *value,
-            Course::Function { function, .. } => function(t),
-            Course::TimeTable(table) => table.at(t, 0),
-            Course::Formula(formula) => formula.at(t).0[0],
-            Course::Live(live) => live.at(0),
+            SignalKind::Constant(value) => *value,
+            SignalKind::Function { function, .. } => function(t),
+            SignalKind::TimeTable(table) => table.at(t, 0),
+            SignalKind::Formula(formula) => formula.at(t).0[0],
+            SignalKind::Live(live) => live.at(0),
         }
     }
 
     /// The value of a constant.
     pub(crate) fn value(&self) -> Option<f64> {
         match &self.0 {
-            Course::Constant(value) => Some(*value),
+            SignalKind::Constant(value) => Some(*value),
             _ => None,
         }
     }
@@ -174,14 +174,14 @@ impl Signal {
     /// The number that a command can set, if it is one.
     pub(crate) fn live(&self) -> Option<&Live> {
         match &self.0 {
-            Course::Live(live) => Some(live),
+            SignalKind::Live(live) => Some(live),
             _ => None,
         }
     }
 
     /// The same signal, as a number that a command can set if it is a constant.
     pub(crate) fn thawed(self) -> Self {
-        self.value().map_or(self, |value| Self(Course::Live(Live::new(&[value]))))
+        self.value().map_or(self, |value| Self(SignalKind::Live(Live::new(&[value]))))
     }
 
     /// The same signal, as a constant if it is a number that a command can set.
@@ -192,20 +192,20 @@ impl Signal {
     /// Times (s) at which the signal changes its law.
     pub(crate) fn breaks(&self) -> &[f64] {
         match &self.0 {
-            Course::Constant(_) | Course::Formula(_) | Course::Live(_) => &[],
-            Course::Function { breaks, .. } => breaks,
-            Course::TimeTable(table) => &table.times,
+            SignalKind::Constant(_) | SignalKind::Formula(_) | SignalKind::Live(_) => &[],
+            SignalKind::Function { breaks, .. } => breaks,
+            SignalKind::TimeTable(table) => &table.times,
         }
     }
 
     /// Checks what can be known beforehand.
     pub(crate) fn validate(&self, input: &str) -> Result<(), InputError> {
         match &self.0 {
-            Course::Constant(value) => finite(input, &[*value]),
-            Course::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
-            Course::TimeTable(table) => table.validate(input, 1),
-            Course::Formula(_) => Ok(()),
-            Course::Live(live) => finite(input, &[live.at(0)]),
+            SignalKind::Constant(value) => finite(input, &[*value]),
+            SignalKind::Function { breaks, .. } => finite(&format!("breaks of {input}"), breaks),
+            SignalKind::TimeTable(table) => table.validate(input, 1),
+            SignalKind::Formula(_) => Ok(()),
+            SignalKind::Live(live) => finite(input, &[live.at(0)]),
         }
     }
 }
@@ -219,11 +219,11 @@ impl From<f64> for Signal {
 impl fmt::Debug for Signal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match &self.0 {
-            Course::Constant(value) => write!(f, "{value}"),
-            Course::Function { .. } => f.write_str("function of time"),
-            Course::TimeTable(table) => table.fmt(f),
-            Course::Formula(formula) => formula.fmt(f),
-            Course::Live(live) => write!(f, "{}", live.at(0)),
+            SignalKind::Constant(value) => write!(f, "{value}"),
+            SignalKind::Function { .. } => f.write_str("function of time"),
+            SignalKind::TimeTable(table) => table.fmt(f),
+            SignalKind::Formula(formula) => formula.fmt(f),
+            SignalKind::Live(live) => write!(f, "{}", live.at(0)),
         }
     }
 }
@@ -316,8 +316,8 @@ impl VectorSignal {
     ) -> Result<(), InputError> {
         let numbers = |values: &[f64]| {
             if values.len() != needed {
-                let mend = format!("it needs {needed} component(s) ({unit})");
-                return Err(InputError::new(input, format!("{values:?}"), mend));
+                let help = format!("it needs {needed} component(s) ({unit})");
+                return Err(InputError::new(input, format!("{values:?}"), help));
             }
             finite(input, values)
         };
@@ -332,8 +332,8 @@ impl VectorSignal {
             Self::TimeTable(table) => table.validate(input, needed),
             Self::Formulas(formulas) if formulas.len() == needed => Ok(()),
             Self::Formulas(formulas) => {
-                let mend = format!("it needs {needed} component(s) ({unit})");
-                Err(InputError::new(input, format!("{formulas:?}"), mend))
+                let help = format!("it needs {needed} component(s) ({unit})");
+                Err(InputError::new(input, format!("{formulas:?}"), help))
             }
             Self::Live(live) => numbers(&live.get()),
         }

@@ -141,12 +141,12 @@ impl Spring {
             None => distance,
         };
         if distance <= COLLAPSED * length {
-            let mend =
+            let help =
                 "its ends are in the same place, so that it has no direction: move them apart";
             return Err(InputError::new(
                 input("distance of its ends"),
                 format!("{distance} m"),
-                mend,
+                help,
             ));
         }
         let (name, dimension, nodes) =
@@ -173,8 +173,8 @@ impl Spring {
                 Ok(Joint::Point(std::array::from_fn(|i| point.get(i).copied().unwrap_or(0.0))))
             }
             End::Point(point) => {
-                let mend = format!("it needs {} coordinates (m)", mesh.dimension());
-                Err(InputError::new(self.input(which), format!("{point:?}"), mend))
+                let help = format!("it needs {} coordinates (m)", mesh.dimension());
+                Err(InputError::new(self.input(which), format!("{point:?}"), help))
             }
         };
         Ok([joint("first end", &self.ends[0])?, joint("second end", &self.ends[1])?])

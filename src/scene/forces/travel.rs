@@ -64,8 +64,8 @@ impl Travel {
             Self::Uniform(velocity) if velocity.is_empty() => Ok(()),
             Self::Uniform(velocity) => {
                 if velocity.len() != dimension {
-                    let mend = format!("it needs {dimension} component(s) (m/s)");
-                    return Err(InputError::new(input("velocity"), format!("{velocity:?}"), mend));
+                    let help = format!("it needs {dimension} component(s) (m/s)");
+                    return Err(InputError::new(input("velocity"), format!("{velocity:?}"), help));
                 }
                 finite(&input("velocity"), velocity)
             }
@@ -73,29 +73,29 @@ impl Travel {
                 let input = input("path");
                 for displacement in &path.displacements {
                     if displacement.len() != dimension {
-                        let mend = format!("each displacement needs {dimension} component(s) (m)");
-                        return Err(InputError::new(input, format!("{displacement:?}"), mend));
+                        let help = format!("each displacement needs {dimension} component(s) (m)");
+                        return Err(InputError::new(input, format!("{displacement:?}"), help));
                     }
                 }
                 let mut splines = path.splines.iter();
                 splines.try_for_each(|spline| spline.validate(&input, "m"))?;
                 if path.splines.is_empty() {
-                    let mend = "a path needs two points at least (s, m)";
-                    return Err(InputError::new(input, "[]", mend));
+                    let help = "a path needs two points at least (s, m)";
+                    return Err(InputError::new(input, "[]", help));
                 }
                 Ok(())
             }
             Self::Formulas(formulas) => {
                 let input = input("path");
                 if formulas.len() != dimension {
-                    let mend = format!("it needs {dimension} component(s) (m)");
-                    return Err(InputError::new(input, format!("{formulas:?}"), mend));
+                    let help = format!("it needs {dimension} component(s) (m)");
+                    return Err(InputError::new(input, format!("{formulas:?}"), help));
                 }
                 for formula in &**formulas {
                     formula.check_smooth()?;
                     if formula.at(0.0).0.iter().any(|x| !x.is_finite()) {
-                        let mend = "it must be a finite number at t = 0, with its derivatives";
-                        return Err(InputError::new(input, formula.text(), mend));
+                        let help = "it must be a finite number at t = 0, with its derivatives";
+                        return Err(InputError::new(input, formula.text(), help));
                     }
                 }
                 Ok(())

@@ -65,8 +65,8 @@ impl Settings {
     /// The first number out of its range.
     pub fn validate(&self) -> Result<(), InputError> {
         if !(self.rtol > 0.0 && self.rtol < 1.0) {
-            let mend = "it must lie above 0 and below 1 (1e-3 is rough, 1e-8 fine)";
-            return Err(InputError::new("rtol", self.rtol, mend));
+            let help = "it must lie above 0 and below 1 (1e-3 is rough, 1e-8 fine)";
+            return Err(InputError::new("rtol", self.rtol, help));
         }
         positive("alpha", self.alpha, "1/s")?;
         self.atol_position.map_or(Ok(1.0), |atol| positive("atol_position", atol, "m"))?;
@@ -75,19 +75,19 @@ impl Settings {
         let orders = self.method.orders();
         match self.max_order {
             Some(order) if matches!(self.method, Method::Rk | Method::CentralDifference) => {
-                let mend = format!("{} has one order only: leave it out", self.method);
-                Err(InputError::new("max_order", order, mend))
+                let help = format!("{} has one order only: leave it out", self.method);
+                Err(InputError::new("max_order", order, help))
             }
             Some(order) if !orders.contains(&order) => {
                 let (lowest, highest) = (orders.start(), orders.end());
-                let mend = format!("{} has the orders {lowest} to {highest}", self.method);
-                Err(InputError::new("max_order", order, mend))
+                let help = format!("{} has the orders {lowest} to {highest}", self.method);
+                Err(InputError::new("max_order", order, help))
             }
             _ if self.stability_limit_detection
                 && !matches!(self.method, Method::Auto | Method::CvodeBdf) =>
             {
-                let mend = format!("{} has no such limits: leave it out", self.method);
-                Err(InputError::new("stability_limit_detection", true, mend))
+                let help = format!("{} has no such limits: leave it out", self.method);
+                Err(InputError::new("stability_limit_detection", true, help))
             }
             _ if self.max_steps == 0 => {
                 Err(InputError::new("max_steps", 0, "allow one step at least"))

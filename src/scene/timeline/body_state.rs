@@ -22,11 +22,11 @@ const SAME: f64 = 1e-9;
 /// Undeformed positions other than those of `body`.
 pub(super) fn check_positions(positions: &[f64], body: &Body) -> Result<(), InputError> {
     let (mesh, dimension) = (body.mesh(), body.dimension());
-    let mend = "start from a state of a body with the same mesh";
+    let help = "start from a state of a body with the same mesh";
     if positions.len() != mesh.positions().len() {
         let count = positions.len() / dimension;
-        let mend = format!("this body has {}: {mend}", mesh.node_count());
-        return Err(InputError::new("state at the start", format!("{count} nodes"), mend));
+        let help = format!("this body has {}: {help}", mesh.node_count());
+        return Err(InputError::new("state at the start", format!("{count} nodes"), help));
     }
     let pairs = positions.chunks_exact(dimension).zip(mesh.positions().chunks_exact(dimension));
     let far = |(_, (theirs, ours)): &(usize, (&[f64], &[f64]))| {
@@ -38,7 +38,7 @@ pub(super) fn check_positions(positions: &[f64], body: &Body) -> Result<(), Inpu
         Some((node, (theirs, ours))) => Err(InputError::new(
             "state at the start",
             format!("node {node} at {theirs:?} undeformed"),
-            format!("this body has it at {ours:?}: {mend}"),
+            format!("this body has it at {ours:?}: {help}"),
         )),
     }
 }

@@ -31,11 +31,11 @@ impl Scene {
     ) -> Result<Self, InputError> {
         let body = change(self.body.to_builder()).build()?;
         if body.dofs() != self.body.dofs() {
-            let mend = format!(
+            let help = format!(
                 "the scene's body has {}: only the mesh may not be another",
                 self.body.dofs()
             );
-            return Err(InputError::new("displacement components of the body", body.dofs(), mend));
+            return Err(InputError::new("displacement components of the body", body.dofs(), help));
         }
         Ok(Self { body: Arc::new(body), ..self.clone() })
     }
@@ -73,22 +73,22 @@ impl Scene {
         make: impl FnOnce(&Mesh) -> Result<Finer, InputError>,
     ) -> Result<(Self, Finer), InputError> {
         if !self.forces.is_empty() {
-            let mend =
+            let help =
                 "they know the nodes of this mesh alone: build the scene anew on the finer one";
             return Err(InputError::new(
                 "forces that are not of this crate",
                 self.forces.len(),
-                mend,
+                help,
             ));
         }
         let builder = self.body.to_builder();
         let nodes = builder.own_mesh().node_count() << builder.own_mesh().kind().dimension();
-        let mend = "take coarser cells, or halve them less often";
+        let help = "take coarser cells, or halve them less often";
         check_memory(
             "finer mesh",
             format!("{nodes} nodes or so"),
             BYTES_PER_NODE * nodes as f64,
-            mend,
+            help,
         )?;
         let coarse = builder.own_mesh().clone();
         let finer = make(&coarse)?;
@@ -110,7 +110,7 @@ impl Scene {
         scene.obstacles = self.obstacles.iter().map(shared).collect();
         for phase in &mut scene.phases {
             change.phase(phase)?;
-            phase.turned = phase.turned.iter().map(shared).collect();
+            phase.redirected = phase.redirected.iter().map(shared).collect();
         }
         scene.body = Arc::new(body);
         Ok((scene, finer))
@@ -131,8 +131,8 @@ impl Change<'_> {
         match numbers.iter().find(|number| **number > self.coarse.node_count()) {
             None => Ok(()),
             Some(number) => {
-                let mend = "it is a point mass, which has another number on a finer mesh: name it by its name";
-                Err(InputError::new("node", number, mend))
+                let help = "it is a point mass, which has another number on a finer mesh: name it by its name";
+                Err(InputError::new("node", number, help))
             }
         }
     }
@@ -153,11 +153,11 @@ impl Change<'_> {
         self.check(nodes)?;
         let nodes = self.body.mesh().select(nodes)?;
         if nodes.iter().any(|&node| node >= self.coarse.node_count()) {
-            let mend = "it holds point masses: give those by themselves";
+            let help = "it holds point masses: give those by themselves";
             return Err(InputError::new(
                 "nodes of a force on each",
                 format!("{} nodes", nodes.len()),
-                mend,
+                help,
             ));
         }
         Ok(nodes.iter().map(|node| node + 1).collect::<Vec<_>>().into())

@@ -26,7 +26,7 @@ use crate::base::vector::largest;
 use crate::elements::body::Body;
 use crate::elements::force::{Force, Forces, NodalForces};
 use crate::integrators::ode::Failure;
-use crate::scene::constraint::{PhaseStart, Row, prescribe, rows};
+use crate::scene::constraint::{ConstraintRow, PhaseStart, prescribe, rows};
 use crate::scene::forces::{Chamber, Contact, Obstacle, Spring};
 
 /// A body, gravity, springs, chambers, obstacles, and what happens when.
@@ -291,8 +291,8 @@ impl Scene {
             let input = format!("end of phase \"{}\"", phase.name);
             finite(&input, &[phase.until])?;
             if phase.until <= start {
-                let mend = format!("phases run one after the other: it must lie after {start} s");
-                return Err(InputError::new(input, format!("{} s", phase.until), mend));
+                let help = format!("phases run one after the other: it must lie after {start} s");
+                return Err(InputError::new(input, format!("{} s", phase.until), help));
             }
             start = phase.until;
         }
@@ -316,7 +316,11 @@ impl Scene {
     }
 
     /// The rows of the constraints of a phase.
-    pub(crate) fn rows(&self, phase: &Phase, start: &PhaseStart) -> Result<Vec<Row>, InputError> {
+    pub(crate) fn rows(
+        &self,
+        phase: &Phase,
+        start: &PhaseStart,
+    ) -> Result<Vec<ConstraintRow>, InputError> {
         rows(&phase.constraints, self.body.mesh(), &phase.name, start)
     }
 }

@@ -31,7 +31,7 @@ pub struct Phase {
     pub(crate) projects_velocity: bool,
     pub(crate) contact: ContactWith,
     /// Obstacles that do not move as the scene has it.
-    pub(crate) turned: Vec<Obstacle>,
+    pub(crate) redirected: Vec<Obstacle>,
 }
 
 /// The obstacles that act.
@@ -56,7 +56,7 @@ impl Phase {
             face_pressures: Vec::new(),
             projects_velocity: false,
             contact: ContactWith::All,
-            turned: Vec::new(),
+            redirected: Vec::new(),
         }
     }
 
@@ -325,30 +325,33 @@ impl Phase {
 
     /// An obstacle of the scene as it moves in this phase.
     pub(crate) fn moving<'a>(&'a self, obstacle: &'a Obstacle) -> &'a Obstacle {
-        self.turned.iter().find(|turned| turned.name() == obstacle.name()).unwrap_or(obstacle)
+        self.redirected
+            .iter()
+            .find(|redirected| redirected.name() == obstacle.name())
+            .unwrap_or(obstacle)
     }
 
     /// Whether there are obstacles that do not move as the scene has it.
-    pub(crate) fn is_turned(&self) -> bool {
-        !self.turned.is_empty()
+    pub(crate) fn is_redirected(&self) -> bool {
+        !self.redirected.is_empty()
     }
 
     /// Lets an obstacle of the scene move on with `velocity` (m/s) from where it is at time `t` (s).
-    pub(crate) fn turn(&mut self, obstacle: &Obstacle, t: f64, velocity: Vec<f64>) {
+    pub(crate) fn redirect(&mut self, obstacle: &Obstacle, t: f64, velocity: Vec<f64>) {
         let here = self.moving(obstacle).displacement(t);
-        let turned = obstacle.clone().velocity(velocity).placed(t, here);
-        self.turned.retain(|other| other.name() != turned.name());
-        self.turned.push(turned);
+        let redirected = obstacle.clone().velocity(velocity).placed(t, here);
+        self.redirected.retain(|other| other.name() != redirected.name());
+        self.redirected.push(redirected);
     }
 
     /// The phase as it follows `before` at time `t` (s): `obstacles` that were turned go on from where they are.
     pub(crate) fn after(mut self, before: &Self, obstacles: &[Obstacle], t: f64) -> Self {
-        let is_turned = |obstacle: &&Obstacle| {
-            before.turned.iter().any(|turned| turned.name() == obstacle.name())
+        let is_redirected = |obstacle: &&Obstacle| {
+            before.redirected.iter().any(|redirected| redirected.name() == obstacle.name())
         };
-        for obstacle in obstacles.iter().filter(is_turned) {
+        for obstacle in obstacles.iter().filter(is_redirected) {
             let here = before.moving(obstacle).displacement(t);
-            self.turned.push(obstacle.clone().placed(t, here));
+            self.redirected.push(obstacle.clone().placed(t, here));
         }
         self
     }
@@ -407,7 +410,7 @@ impl Phase {
         let reached = fraction * end;
         for obstacle in obstacles {
             if self.moving(obstacle).velocity_at(reached) != [0.0; 3] {
-                rest.turn(obstacle, reached, vec![0.0; dimension]);
+                rest.redirect(obstacle, reached, vec![0.0; dimension]);
             }
         }
         rest
@@ -518,6 +521,6 @@ pub(super) fn check_vector(
     if vector.len() == dimension {
         return Ok(());
     }
-    let mend = format!("it needs {dimension} component(s) ({unit})");
-    Err(InputError::new(input, format!("{vector:?}"), mend))
+    let help = format!("it needs {dimension} component(s) ({unit})");
+    Err(InputError::new(input, format!("{vector:?}"), help))
 }

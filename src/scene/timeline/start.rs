@@ -50,9 +50,9 @@ impl Start {
             [("initial displacement", displacements), ("initial velocity", velocities)]
         {
             if vector.len() != body.dofs() {
-                let mend = format!("it needs {dimension} components at each node");
+                let help = format!("it needs {dimension} components at each node");
                 let value = format!("{} numbers in all", vector.len());
-                return Err(InputError::new(name, value, mend));
+                return Err(InputError::new(name, value, help));
             }
             finite(name, vector)?;
         }

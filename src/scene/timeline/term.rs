@@ -65,15 +65,15 @@ impl Scene {
                 scene.body = Arc::new(body);
             }
             Term::Friction => {
-                let turned = scene.phases.iter_mut().flat_map(|phase| &mut phase.turned);
-                for obstacle in scene.obstacles.iter_mut().chain(turned) {
+                let redirected = scene.phases.iter_mut().flat_map(|phase| &mut phase.redirected);
+                for obstacle in scene.obstacles.iter_mut().chain(redirected) {
                     *obstacle = obstacle.clone().without_friction();
                 }
             }
             Term::Obstacle(name) => {
                 scene.obstacles.remove(self.obstacle_number(name, "obstacle")?);
                 for phase in &mut scene.phases {
-                    phase.turned.retain(|obstacle| obstacle.name() != name);
+                    phase.redirected.retain(|obstacle| obstacle.name() != name);
                     if let ContactWith::These(names) = &mut phase.contact {
                         names.retain(|other| other != name);
                     }

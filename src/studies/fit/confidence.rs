@@ -23,9 +23,9 @@ pub(super) fn confidence(
     let norms: Vec<f64> = slopes.iter().map(|column| norm(column)).collect();
     let largest = norms.iter().copied().fold(0.0, f64::max);
     if let Some(at) = norms.iter().position(|norm| norm.is_nan() || *norm <= noise * largest) {
-        let mend = "what is measured hardly changes with it, or less than the tolerance of the runs: leave it out, measure what \
+        let help = "what is measured hardly changes with it, or less than the tolerance of the runs: leave it out, measure what \
                     depends on it, or tighten rtol";
-        return Err(InputError::new("unknown", &unknowns[at].name, mend));
+        return Err(InputError::new("unknown", &unknowns[at].name, help));
     }
     let (rows, columns) = (residuals.len(), slopes.len());
     let scaled = DMatrix::from_fn(rows, columns, |row, column| slopes[column][row] / norms[column]);
@@ -38,9 +38,9 @@ pub(super) fn confidence(
         let together = directions.row(least);
         let together = unknowns.iter().zip(together.iter()).filter(|(_, part)| part.abs() > 0.1);
         let names = together.map(|(unknown, _)| &unknown.name[..]).collect::<Vec<_>>().join(", ");
-        let mend = "changes of one are made up for by the others, so that what is measured does not tell them apart: leave one \
+        let help = "changes of one are made up for by the others, so that what is measured does not tell them apart: leave one \
                     of them out, or measure more";
-        return Err(InputError::new("unknowns", names, mend));
+        return Err(InputError::new("unknowns", names, help));
     }
     let free = independent - columns as f64;
     if free < 1.0 {

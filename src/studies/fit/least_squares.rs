@@ -92,8 +92,8 @@ pub fn least_squares(
     tell: &mut dyn FnMut(usize, f64),
 ) -> Result<Fitted, Error> {
     if unknowns.is_empty() {
-        let mend = "name what is to be found, with its range";
-        return Err(InputError::new("number of unknowns", 0, mend).into());
+        let help = "name what is to be found, with its range";
+        return Err(InputError::new("number of unknowns", 0, help).into());
     }
     unknowns.iter().try_for_each(Unknown::validate)?;
     let mut parts = vec![0.5; unknowns.len()];
@@ -101,8 +101,8 @@ pub fn least_squares(
     let mut search = Search::new(unknowns, residuals, step, tell);
     let first = search.run(&parts)?;
     if first.len() <= unknowns.len() {
-        let mend = format!("it must be above the number of unknowns, {}", unknowns.len());
-        return Err(InputError::new("number of measured values", first.len(), mend).into());
+        let help = format!("it must be above the number of unknowns, {}", unknowns.len());
+        return Err(InputError::new("number of measured values", first.len(), help).into());
     }
     search.bad = BAD * norm(&first);
     // what cannot be found is told before it is sought
@@ -131,8 +131,8 @@ pub fn least_squares(
 
 /// A search that came to nothing by no error of the residuals.
 fn stuck(error: &MPError) -> Error {
-    let mend = "what is left over must be a finite number everywhere in the ranges: narrow them";
-    InputError::new("residuals", error, mend).into()
+    let help = "what is left over must be a finite number everywhere in the ranges: narrow them";
+    InputError::new("residuals", error, help).into()
 }
 
 pub(super) fn rms(values: &[f64]) -> f64 {
@@ -219,9 +219,9 @@ impl<'a> Search<'a> {
         if !series.iter().map(Vec::len).eq(self.counts.iter().copied()) {
             let found = series.iter().map(Vec::len).sum::<usize>();
             let count = self.number_of_points();
-            let mend =
+            let help =
                 format!("there were {count} at other values of the unknowns: leave none out");
-            return Err(InputError::new("number of residuals", found, mend).into());
+            return Err(InputError::new("number of residuals", found, help).into());
         }
         Ok(series.concat())
     }

@@ -74,10 +74,10 @@ impl SceneFit {
                 [first, .., last] => format!("{first} s to {last} s"),
                 [only] => format!("{only} s"),
             };
-            let mend = format!(
+            let help = format!(
                 "the scene lasts from 0 to {end} s: move them, or let a phase go on until then"
             );
-            return Err(InputError::new("times of the data", told, mend).into());
+            return Err(InputError::new("times of the data", told, help).into());
         }
         let times: Vec<f64> = rows.iter().map(|&row| measured.times[row]).collect();
         let known = sensors(&file)?;
@@ -86,8 +86,8 @@ impl SceneFit {
             let quantity = quantity.ok_or_else(|| {
                 let known: Vec<String> = known.iter().map(Quantity::heading).collect();
                 let known: Vec<&str> = known.iter().map(String::as_str).collect();
-                let mend = unknown_among(name, &known, "scene", "sensors");
-                Error::from(InputError::new("column of the data", format!("\"{name}\""), mend))
+                let help = unknown_among(name, &known, "scene", "sensors");
+                Error::from(InputError::new("column of the data", format!("\"{name}\""), help))
             })?;
             Ok((quantity.clone(), rows.iter().map(|&row| values[row]).collect()))
         });
@@ -152,8 +152,8 @@ impl SceneFit {
                 let place = sensors.clone().position(|sensor| sensor.name == quantity.name);
                 let place = place.ok_or_else(|| {
                     let known: Vec<&str> = sensors.map(|sensor| &sensor.name[..]).collect();
-                    let mend = unknown_among(&quantity.name, &known, "scene", "sensors");
-                    InputError::new("column of the data", format!("\"{}\"", quantity.name), mend)
+                    let help = unknown_among(&quantity.name, &known, "scene", "sensors");
+                    InputError::new("column of the data", format!("\"{}\"", quantity.name), help)
                 })?;
                 let pairs = self.times.iter().zip(measured);
                 Ok(pairs.map(|(time, measured)| read(&motion, *time, place) - measured).collect())

@@ -28,8 +28,8 @@ impl Unknown {
         if range[0] < range[1] {
             return Ok(());
         }
-        let mend = "its first end must be below its second: leave what is known out";
-        Err(InputError::new(input(), format!("{:?}..{:?}", range[0], range[1]), mend))
+        let help = "its first end must be below its second: leave what is known out";
+        Err(InputError::new(input(), format!("{:?}..{:?}", range[0], range[1]), help))
     }
 
     /// The value at a `part` of the range: 0 its least, 1 its most.

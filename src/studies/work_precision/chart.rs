@@ -55,8 +55,8 @@ impl<'a> Chart<'a> {
         let points: Vec<_> =
             findings.lines().iter().flat_map(LineFindings::points).flatten().collect();
         if points.is_empty() {
-            let mend = "a chart needs one at least: its notes say why they failed";
-            return Err(InputError::new("number of successful runs", 0, mend).into());
+            let help = "a chart needs one at least: its notes say why they failed";
+            return Err(InputError::new("number of successful runs", 0, help).into());
         }
         let (times, errors) =
             (points.iter().map(|point| point.1), points.iter().map(|point| point.0));
@@ -73,8 +73,8 @@ impl<'a> Chart<'a> {
                 file.write_all(&png(&document.to_string()).map_err(io::Error::other)?)
             }),
             _ => {
-                let mend = "its name must end in .svg or .png";
-                Err(InputError::new("file of a chart", path.display(), mend).into())
+                let help = "its name must end in .svg or .png";
+                Err(InputError::new("file of a chart", path.display(), help).into())
             }
         }
     }

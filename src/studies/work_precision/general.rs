@@ -317,7 +317,7 @@ impl Problem for General {
         let failed = |failures: String| Error::Reference {
             rtol: REFERENCE,
             failures,
-            mend: "allow more time, or choose other lines for it".into(),
+            help: "allow more time, or choose other lines for it".into(),
         };
         let mut end = |name: &String| {
             tell(&format!("reference: {name}"));

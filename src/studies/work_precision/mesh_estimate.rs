@@ -70,9 +70,9 @@ impl MeshEstimate {
         let clock = Instant::now();
         let trajectory = equilibrium.trajectory();
         let (scene, sample) = (trajectory.scene(), equilibrium.sample());
-        let refused = |value: &str, mend: &str| {
+        let refused = |value: &str, help: &str| {
             let value = format!("\"{quantity}\" {value}");
-            Error::from(InputError::new("quantity of a mesh estimate", value, mend))
+            Error::from(InputError::new("quantity of a mesh estimate", value, help))
         };
         let reading = quantity.of_equilibrium(scene)?;
         if !equilibrium.removed.is_empty() {
@@ -107,9 +107,9 @@ impl MeshEstimate {
         if !(rest.factorize_any()
             && rest.solve_dual([&by_displacements, &by_multipliers], &mut z, &mut nu))
         {
-            let mend =
+            let help =
                 "hold it so that it cannot move as a whole, load it less, or take a finer mesh";
-            return Err(refused("with a tangent that cannot be inverted on a richer mesh", mend));
+            return Err(refused("with a tangent that cannot be inverted on a richer mesh", help));
         }
         let mut lacking = vec![0.0; rows.len()];
         rest.lacking(1.0, &u, &mut lacking);

@@ -94,14 +94,14 @@ impl Quantity {
         scene: &Scene,
         sensors: &[(String, Reading)],
     ) -> Result<Self, InputError> {
-        let bad = |mend: String| InputError::new("quantity", format!("\"{text}\""), mend);
+        let bad = |help: String| InputError::new("quantity", format!("\"{text}\""), help);
         let (name, part) = match text.rsplit_once(':') {
             None => (text, Part::OverTime),
             Some((name, word)) => {
                 let known = Part::WORDS.map(|(word, _)| word);
                 let part = Part::WORDS.iter().find(|(known, _)| *known == word);
-                let mend = || bad(unknown_among(word, &known, "quantity", "parts"));
-                (name, part.ok_or_else(mend)?.1)
+                let help = || bad(unknown_among(word, &known, "quantity", "parts"));
+                (name, part.ok_or_else(help)?.1)
             }
         };
         let quantity = Self { name: name.into(), part, reading: None };
@@ -111,7 +111,7 @@ impl Quantity {
                 _ => Err(bad("the whole motion is no single number: name a reading".into())),
             };
         }
-        let reading = reading(name, scene, sensors).ok_or_else(|| bad(mend(scene, sensors)))?;
+        let reading = reading(name, scene, sensors).ok_or_else(|| bad(help(scene, sensors)))?;
         let quantity = Self { reading: Some(reading), ..quantity };
         quantity.check(scene)?;
         Ok(quantity)
@@ -121,8 +121,8 @@ impl Quantity {
     /// A reading that `scene` does not have, or one of which a part is asked though it has several components.
     pub(super) fn check(&self, scene: &Scene) -> Result<(), InputError> {
         if self.columns(scene)? > 1 && !self.is_over_time() {
-            let mend = "it has several components: choose one, as in tip.y:end";
-            return Err(InputError::new("quantity", format!("\"{self}\""), mend));
+            let help = "it has several components: choose one, as in tip.y:end";
+            return Err(InputError::new("quantity", format!("\"{self}\""), help));
         }
         Ok(())
     }
@@ -133,7 +133,7 @@ impl Quantity {
     /// Anything else: a motion, a part that equilibria do not have, several components, a reading without a known derivative.
     pub(super) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
         let refused =
-            |mend: &str| InputError::new("quantity of an equilibrium", format!("\"{self}\""), mend);
+            |help: &str| InputError::new("quantity of an equilibrium", format!("\"{self}\""), help);
         let Some(reading) = &self.reading else {
             return Err(refused("the whole motion is no single number: name a reading, as tip.y"));
         };
@@ -146,9 +146,9 @@ impl Quantity {
             return Err(refused("it has several components: choose one, as in tip.y"));
         }
         if !reading.has_derivative() {
-            let mend = "the error of the mesh is estimated of positions, displacements, distances, angles between lines, \
+            let help = "the error of the mesh is estimated of positions, displacements, distances, angles between lines, \
                         centres of mass, volumes of chambers and constraint forces";
-            return Err(refused(mend));
+            return Err(refused(help));
         }
         Ok(reading)
     }
@@ -328,7 +328,7 @@ fn reading(name: &str, scene: &Scene, sensors: &[(String, Reading)]) -> Option<R
 }
 
 /// What may be named.
-fn mend(scene: &Scene, sensors: &[(String, Reading)]) -> String {
+fn help(scene: &Scene, sensors: &[(String, Reading)]) -> String {
     let mut known: Vec<&str> = sensors.iter().map(|(name, _)| &name[..]).collect();
     known.extend(scene.body().mesh().sets().keys().map(String::as_str));
     format!(

@@ -100,7 +100,7 @@ impl<'a> Study<'a> {
         let mut ready = None;
         let runs = all_runs(problem);
         let all = runs.len();
-        for (done, Run { line, point, mut row }) in runs.into_iter().enumerate() {
+        for (done, PlannedRun { line, point, mut row }) in runs.into_iter().enumerate() {
             if let Some(known) = kept.iter().find(|known| known.is_same_run(&row)) {
                 rows.push(known.clone());
                 continue;
@@ -135,21 +135,21 @@ impl<'a> Study<'a> {
         positive("patience", self.patience, "")?;
         positive("limit", self.limit, "s")?;
         if self.limit > LONGEST_LIMIT {
-            let mend = format!("it is at most {LONGEST_LIMIT:e} s");
-            return Err(InputError::new("limit", self.limit, mend).into());
+            let help = format!("it is at most {LONGEST_LIMIT:e} s");
+            return Err(InputError::new("limit", self.limit, help).into());
         }
         Ok(())
     }
 }
 
-struct Run {
+struct PlannedRun {
     line: usize,
     point: usize,
     row: Row,
 }
 
 /// All runs, the rough points of all lines first, with what is known of their rows.
-fn all_runs(problem: &dyn Problem) -> Vec<Run> {
+fn all_runs(problem: &dyn Problem) -> Vec<PlannedRun> {
     let lines = problem.lines();
     let longest = lines.iter().map(|line| line.points.len()).max().unwrap_or(0);
     let mut runs = Vec::new();
@@ -165,7 +165,7 @@ fn all_runs(problem: &dyn Problem) -> Vec<Run> {
                 fingerprint: format!("{:016x}", problem.fingerprint(k, number)),
                 ..Row::default()
             };
-            runs.push(Run { line: k, point: number, row });
+            runs.push(PlannedRun { line: k, point: number, row });
         }
     }
     runs

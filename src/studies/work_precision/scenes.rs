@@ -25,7 +25,7 @@ pub struct Scenes {
     tolerances: Vec<f64>,
     lines: Vec<Line>,
     /// As `lines`, point by point.
-    runs: Vec<Vec<Run>>,
+    runs: Vec<Vec<SceneRun>>,
     /// The scene of the reference first.
     scenes: Vec<Scene>,
     fingerprints: Vec<u64>,
@@ -36,7 +36,7 @@ pub struct Scenes {
 
 /// What is run at a point.
 #[derive(Debug)]
-struct Run {
+struct SceneRun {
     /// Position among the scenes.
     scene: usize,
     settings: Settings,
@@ -139,7 +139,7 @@ impl Scenes {
         let (mut points, mut runs) = (Vec::new(), Vec::new());
         for (mesh, scene) in meshes {
             points.push(Point { name: mesh.into(), rtol: settings.rtol });
-            runs.push(Run { scene: self.add(scene), settings: settings.clone() });
+            runs.push(SceneRun { scene: self.add(scene), settings: settings.clone() });
         }
         self.lines.push(Line { family: name.clone(), name, points });
         self.runs.push(runs);
@@ -169,7 +169,7 @@ impl Scenes {
     ) -> Self {
         let point = |&rtol: &f64| Point { name: format!("{rtol:e}"), rtol };
         let points = self.tolerances.iter().map(point).collect();
-        let run = |&rtol: &f64| Run { scene, settings: Settings { rtol, ..settings.clone() } };
+        let run = |&rtol: &f64| SceneRun { scene, settings: Settings { rtol, ..settings.clone() } };
         self.runs.push(self.tolerances.iter().map(run).collect());
         self.lines.push(Line { name, family: family.into(), points });
         self
@@ -177,8 +177,8 @@ impl Scenes {
 
     fn validate(&self) -> Result<(), InputError> {
         if !(self.finest > 0.0 && self.finest < 1.0) {
-            let mend = "a relative error lies above 0 and below 1 (1e-7 is usual)";
-            return Err(InputError::new("finest", self.finest, mend));
+            let help = "a relative error lies above 0 and below 1 (1e-7 is usual)";
+            return Err(InputError::new("finest", self.finest, help));
         }
         positive("alpha", self.alpha, "1/s")?;
         let end = self.scenes[0].end();
@@ -186,14 +186,14 @@ impl Scenes {
             scene.validate()?;
             self.quantity.check(scene)?;
             if scene.end() != end {
-                let mend = format!("all scenes that are compared end together, at {end} s here");
-                return Err(InputError::new("end of a scene", format!("{} s", scene.end()), mend));
+                let help = format!("all scenes that are compared end together, at {end} s here");
+                return Err(InputError::new("end of a scene", format!("{} s", scene.end()), help));
             }
         }
         for (number, line) in self.lines.iter().enumerate() {
             if self.lines[..number].iter().any(|other| other.name == line.name) {
-                let mend = "another line has it: name it otherwise";
-                return Err(InputError::new("name of a line", format!("\"{}\"", line.name), mend));
+                let help = "another line has it: name it otherwise";
+                return Err(InputError::new("name of a line", format!("\"{}\"", line.name), help));
             }
         }
         self.runs.iter().flatten().try_for_each(|run| run.settings.validate())
@@ -256,7 +256,7 @@ impl Problem for Scenes {
     }
 
     fn fingerprint(&self, line: usize, point: usize) -> u64 {
-        let Run { scene, settings } = &self.runs[line][point];
+        let SceneRun { scene, settings } = &self.runs[line][point];
         let scenes = [*scene, 0].into_iter().chain(self.check);
         let fingerprints: Vec<u64> = scenes.map(|scene| self.fingerprints[scene]).collect();
         fingerprint::of_text(
@@ -271,7 +271,7 @@ impl Problem for Scenes {
     }
 
     fn measure(&mut self, line: usize, point: usize, limit: Duration) -> Result<Measured, Failed> {
-        let Run { scene, settings } = &self.runs[line][point];
+        let SceneRun { scene, settings } = &self.runs[line][point];
         let Reference { truth, probes } =
             self.reference.as_ref().ok_or("the study was not prepared")?;
         let (seen, trajectory) =
@@ -291,7 +291,7 @@ impl Problem for Scenes {
     }
 
     fn time(&mut self, line: usize, point: usize) -> Result<f64, Failed> {
-        let Run { scene, settings } = &self.runs[line][point];
+        let SceneRun { scene, settings } = &self.runs[line][point];
         let trajectory =
             self.scenes[*scene].simulate(settings, &Sampling::phase_ends()).map_err(reason)?;
         Ok(trajectory.report().wall_seconds)

@@ -213,7 +213,7 @@ fn fastest_two(
     <[Way; 2]>::try_from(found).map_err(|_| Error::Reference {
         rtol: settings.rtol,
         failures: failures.join("; "),
-        mend: "allow more time, or ask for less accuracy".into(),
+        help: "allow more time, or ask for less accuracy".into(),
     })
 }
 
@@ -245,8 +245,8 @@ pub(super) fn shared_nodes(scenes: &[&Scene]) -> Result<Vec<Vec<usize>>, Error> 
         shared.iter_mut().zip(numbers).for_each(|(list, number)| list.push(number));
     }
     if shared[0].is_empty() {
-        let mend = "errors are measured at nodes that all meshes share: let them have some";
-        return Err(InputError::new("number of nodes that all meshes share", 0, mend).into());
+        let help = "errors are measured at nodes that all meshes share: let them have some";
+        return Err(InputError::new("number of nodes that all meshes share", 0, help).into());
     }
     Ok(shared)
 }

@@ -39,12 +39,12 @@ pub struct Verification<'a> {
     quantity: Quantity,
     runs: usize,
     /// The tightest run so far.
-    last: Option<Run>,
+    last: Option<TightenedRun>,
 }
 
 /// A run, and what was seen in it.
 #[derive(Debug)]
-struct Run {
+struct TightenedRun {
     settings: Settings,
     /// The samples that were asked for.
     trajectory: Trajectory,
@@ -132,7 +132,7 @@ impl<'a> Verification<'a> {
         let looks = looks.collect();
         trajectory.keep_samples(|sample| is_kept(sample.time));
         let mut run =
-            Run { settings, trajectory, looks, asked, motion, sensors, is_bounded: false };
+            TightenedRun { settings, trajectory, looks, asked, motion, sensors, is_bounded: false };
         let difference = self.last.as_ref().map(|before| self.compare(before, &mut run));
         let is_tightest = tightening::is_tightest(run.settings.rtol);
         self.last = Some(run);
@@ -164,8 +164,8 @@ impl<'a> Verification<'a> {
         let is_ours = |name: &str| name == DIFFERENCE || name.ends_with(OF_SENSOR);
         let sensors = self.sampling.columns(self.scene)?;
         if let Some(Column { name, .. }) = sensors.iter().find(|column| is_ours(&column.name)) {
-            let mend = "a column of differences has it: name the sensor otherwise";
-            return Err(InputError::new("name of a sensor", format!("\"{name}\""), mend).into());
+            let help = "a column of differences has it: name the sensor otherwise";
+            return Err(InputError::new("name of a sensor", format!("\"{name}\""), help).into());
         }
         let contact_events = match self.settings.contact_events {
             ContactEvents::Auto => ContactEvents::Locate,
@@ -176,7 +176,7 @@ impl<'a> Verification<'a> {
     }
 
     /// The settings of the run after `last`.
-    fn tighter(&self, last: &Run) -> Settings {
+    fn tighter(&self, last: &TightenedRun) -> Settings {
         let mut settings = last.settings.clone();
         settings.rtol = tightening::tighter(settings.rtol);
         if last.is_bounded {
@@ -188,7 +188,7 @@ impl<'a> Verification<'a> {
     }
 
     /// Puts what a run differs by from the one before into its trajectory. Gives the relative difference.
-    fn compare(&self, before: &Run, run: &mut Run) -> f64 {
+    fn compare(&self, before: &TightenedRun, run: &mut TightenedRun) -> f64 {
         let scale = run.asked.scale;
         let difference = run.asked.error(&before.asked).mean;
         let steps = [before, run].map(|run| run.trajectory.report().steps() as f64);

@@ -12,13 +12,13 @@ fn material(poisson: f64) -> Material {
     Material { density: 1e3, young: 1e6, poisson, viscosity: 0.0 }
 }
 
-/// Equilibria of linear bodies are found whatever their Poisson's ratio. With 0.4999 and above the forces of quadratic cells are so much smaller
+/// Equilibria of linear bodies are found whatever their Poisson's ratio. With 0.49999 the forces of quadratic cells are so much smaller
 /// than the terms that add up to them that round-off is above the tolerance, 1e-10 of the largest force: a third
 /// iteration finds out that nothing becomes better.
 #[test]
 fn linear_bodies_come_to_rest() {
     for kind in Kind::ALL {
-        for poisson in [0.3, 0.4999, 0.49999] {
+        for poisson in [0.3, 0.49999] {
             for dilatation in [Dilatation::AtPoints, Dilatation::Mean] {
                 if dilatation == Dilatation::Mean && !kind.can_be_mean() {
                     continue;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::*;
-use crate::dynamics::matrices::Model;
+use crate::dynamics::matrices::Matrices;
 use crate::elements::body::{Body, Strain};
 use crate::elements::force::Tangents;
 use crate::elements::mesh::{Cells, Mesh};
@@ -51,7 +51,7 @@ fn partial_loads_have_partial_tangents() {
         if let Some(elastic) = body.elastic() {
             forces.push(Arc::new(elastic));
         }
-        let model = Arc::new(Model::new(&body, forces.iter().map(|force| &**force)));
+        let model = Arc::new(Matrices::new(&body, forces.iter().map(|force| &**force)));
         let system = System::new(model, forces, Vec::new(), 0.0, "test").unwrap();
         let mut rest = AtRest::new(system, 1.0, "test").unwrap();
         let (u, part) = ([0.001, 0.004, 0.01], 0.3);

@@ -3,8 +3,8 @@
 use faer::Mat;
 use faer::prelude::Solve;
 
-use super::{Coupling, EXACT, Reduced, Source, nodal_multipliers};
-use crate::scene::constraint::{Axis, PhaseStart, Row};
+use super::{Coupling, EXACT, EntrySource, Reduced, nodal_multipliers};
+use crate::scene::constraint::{Axis, ConstraintRow, PhaseStart};
 use crate::studies::samples::SQUARE_MATERIAL;
 use crate::{Body, Cells, Inertia, Mesh, Phase, Scene, Strain};
 
@@ -42,10 +42,10 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
     let model = scene.model(&forces);
     let (body, n) = (scene.body(), scene.body().dofs());
     let natural = vec![0.0; n];
-    let rows: Vec<Row> =
+    let rows: Vec<ConstraintRow> =
         scene.rows(&scene.phases()[0], &PhaseStart { time: 0.0, u: &natural }).unwrap();
     let mut reduced = Reduced::new(&model, &rows, coupling);
-    let value = |source: Source| {
+    let value = |source: EntrySource| {
         let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
         let own = if axes[0] == axes[1] { mass * model.inertia.values[entry] } else { 0.0 };
         match stiffness {
@@ -167,7 +167,7 @@ fn iterations_meet_directions_of_negative_curvature() {
     let start = PhaseStart { time: 0.0, u: &natural };
     let rows = held.rows(&held.phases()[0], &start).unwrap();
     // K less a part of its diagonal: modes softer than that part are turned over
-    let value = |source: Source| {
+    let value = |source: EntrySource| {
         let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
         let k = held.body().stiffness().symmetric(entry, transposed, axes);
         if entry == transposed && axes[0] == axes[1] { 0.7 * k } else { k }

@@ -7,7 +7,7 @@ use std::ops::Range;
 use pulp::{Simd, WithSimd};
 
 use super::slope::{OfMean, Slope};
-use crate::base::lane::{Abreast, Lane, SIDE_BY_SIDE};
+use crate::base::lane::{Lane, Packed, SIDE_BY_SIDE};
 use crate::base::sparse::Rows;
 use crate::elements::body::elements::{ElementsOf, gradients};
 use crate::elements::material::{Block, Blocks, Deformation};
@@ -31,7 +31,7 @@ pub(super) struct Pass<
 }
 
 /// The tangents of several cells. Of symmetric ones blocks below the diagonal are left out.
-type OfCells<const N: usize, const D: usize> = [[Block<Abreast, D>; N]; N];
+type OfCells<const N: usize, const D: usize> = [[Block<Packed, D>; N]; N];
 
 impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize>
     WithSimd for Pass<'_, '_, P, N, M, D, Q, K>
@@ -43,7 +43,7 @@ impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize
         let Self { elements, rows, cells, fields, slope } = self;
         let abreast = elements.abreast();
         let zero = Lane::splat(simd, 0.0);
-        let mut sums = [[[[Abreast([0.0; SIDE_BY_SIDE]); D]; D]; N]; N];
+        let mut sums = [[[[Packed([0.0; SIDE_BY_SIDE]); D]; D]; N]; N];
         for register in cells.start / S::F64_LANES..cells.end.div_ceil(S::F64_LANES) {
             let start = register * S::F64_LANES;
             let (block, part) = (start / SIDE_BY_SIDE, start % SIDE_BY_SIDE / S::F64_LANES);
@@ -108,7 +108,7 @@ fn sum_up<S: Simd, const D: usize>(
     simd: S,
     is_first: bool,
     block: &Block<Lane<S>, D>,
-    sum: &mut Block<Abreast, D>,
+    sum: &mut Block<Packed, D>,
 ) {
     for i in 0..D {
         for k in 0..D {

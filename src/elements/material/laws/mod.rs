@@ -87,29 +87,29 @@ impl Law {
             Self::MooneyRivlin { second } => match (0.0..=1.0).contains(&second) {
                 true => Ok(()),
                 false => {
-                    let mend = "c2 / (c1 + c2) lies between 0 and 1: neither c1 nor c2 is below 0, and their sum is above";
-                    Err(InputError::new("law.second", second, mend))
+                    let help = "c2 / (c1 + c2) lies between 0 and 1: neither c1 nor c2 is below 0, and their sum is above";
+                    Err(InputError::new("law.second", second, help))
                 }
             },
             Self::Ogden { exponents, shares } => {
                 finite("law.exponents", &exponents)?;
                 if let Some(share) = shares.iter().find(|share| !(0.0..=1.0).contains(*share)) {
-                    let mend = "a share mu_p alpha_p / (2 mu) lies between 0 and 1: below 0 its term would pull back where rubber is stretched";
-                    return Err(InputError::new("law.shares", share, mend));
+                    let help = "a share mu_p alpha_p / (2 mu) lies between 0 and 1: below 0 its term would pull back where rubber is stretched";
+                    return Err(InputError::new("law.shares", share, help));
                 }
                 let sum: f64 = shares.iter().sum();
                 if (sum - 1.0).abs() > 1e-9 {
-                    let mend = format!(
+                    let help = format!(
                         "the shares mu_p alpha_p / (2 mu) of all terms add up to 1, and these to {sum}"
                     );
-                    return Err(InputError::new("law.shares", format!("{shares:?}"), mend));
+                    return Err(InputError::new("law.shares", format!("{shares:?}"), help));
                 }
                 let is_flat = |(exponent, share): (&f64, &f64)| *exponent == 0.0 && *share > 0.0;
                 match exponents.iter().zip(&shares).any(is_flat) {
                     true => {
-                        let mend =
+                        let help =
                             "an exponent of 0 has no energy: leave the term out by a share of 0";
-                        Err(InputError::new("law.exponents", format!("{exponents:?}"), mend))
+                        Err(InputError::new("law.exponents", format!("{exponents:?}"), help))
                     }
                     false => Ok(()),
                 }
@@ -121,10 +121,10 @@ impl Law {
                 match grows {
                     true => finite("law.third", &[third]),
                     false => {
-                        let mend = format!(
+                        let help = format!(
                             "with c2 / c1 = {second} stress falls with strain somewhere: c3 / c1 has to be 0 or above, and above (c2 / c1)^2 / 3 if c2 is below 0"
                         );
-                        Err(InputError::new("law.third", third, mend))
+                        Err(InputError::new("law.third", third, help))
                     }
                 }
             }

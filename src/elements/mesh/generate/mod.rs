@@ -22,8 +22,8 @@ fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(),
                 1 => format!("{generator}.nodes"),
                 _ => format!("{generator}.nodes[{axis}]"),
             };
-            let mend = "at least 2 nodes are needed along each side";
-            return Err(InputError::new(input, count, mend));
+            let help = "at least 2 nodes are needed along each side";
+            return Err(InputError::new(input, count, help));
         }
     }
     let total: f64 = nodes.iter().map(|&count| count as f64).product();
@@ -43,7 +43,7 @@ fn check_grading<const D: usize>(
     for (axis, (&ratio, count)) in grading.iter().zip(nodes).enumerate() {
         let input = format!("{generator}.grading[{axis}]");
         positive(&input, ratio, "")?;
-        let mend = match count {
+        let help = match count {
             2 if ratio != 1.0 => {
                 "one cell alone has no grading: give more nodes along this side, or 1".into()
             }
@@ -52,7 +52,7 @@ fn check_grading<const D: usize>(
             }
             _ => continue,
         };
-        return Err(InputError::new(input, ratio, mend));
+        return Err(InputError::new(input, ratio, help));
     }
     Ok(())
 }

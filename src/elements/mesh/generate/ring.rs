@@ -30,12 +30,12 @@ impl Mesh {
         check_radii("ring", inner, outer)?;
         check_nodes("ring", nodes)?;
         if around < 3 {
-            let mend = "a ring needs at least 3 nodes around";
-            return Err(InputError::new("ring.nodes[0]", around, mend));
+            let help = "a ring needs at least 3 nodes around";
+            return Err(InputError::new("ring.nodes[0]", around, help));
         }
         if cells == Cells::Crossed && !around.is_multiple_of(2) {
-            let mend = "crossed diagonals alternate around a ring only if the number is even";
-            return Err(InputError::new("ring.nodes[0]", around, mend));
+            let help = "crossed diagonals alternate around a ring only if the number is even";
+            return Err(InputError::new("ring.nodes[0]", around, help));
         }
         let grid = Grid::new([radial - 1, around], true, cells.mid_nodes());
         let from_below = |step: usize, steps: usize| direction(4 * step + 3 * steps, steps);
@@ -107,8 +107,8 @@ fn check_radii(generator: &str, inner: f64, outer: f64) -> Result<(), InputError
     positive(&format!("{generator}.inner"), inner, "m")?;
     positive(&format!("{generator}.outer"), outer, "m")?;
     if inner >= outer {
-        let mend = format!("it must be above the inner radius, {inner} (m)");
-        return Err(InputError::new(format!("{generator}.outer"), outer, mend));
+        let help = format!("it must be above the inner radius, {inner} (m)");
+        return Err(InputError::new(format!("{generator}.outer"), outer, help));
     }
     Ok(())
 }

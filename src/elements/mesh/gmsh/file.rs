@@ -91,8 +91,8 @@ fn check_format(file: &[u8]) -> Result<bool, String> {
             Err(format!("its format is \"{format}\": only \"4.1 0 8\" and \"4.1 1 8\" are known"))
         }
         [version, ..] => {
-            let mend = "export it as 4.1: `gmsh -format msh41`, or \"Version 4 ASCII\" when saving";
-            Err(format!("it has version {version} of the format: {mend}"))
+            let help = "export it as 4.1: `gmsh -format msh41`, or \"Version 4 ASCII\" when saving";
+            Err(format!("it has version {version} of the format: {help}"))
         }
         [] => Err("its format is missing".into()),
     }
@@ -154,8 +154,8 @@ fn broken(file: &[u8], binary: bool, error: &MshParserError<&[u8]>) -> String {
     let reading = if reading.is_empty() { "sections".into() } else { reading.join(", ") };
     match kinds().any(|kind| *kind == MshParserErrorKind::Unimplemented) {
         true => {
-            let mend = "save it with Mesh.SaveParametric = 0, and with simple cells";
-            format!("it cannot be read at {place}, in its {reading}: {mend}")
+            let help = "save it with Mesh.SaveParametric = 0, and with simple cells";
+            format!("it cannot be read at {place}, in its {reading}: {help}")
         }
         false => format!("it is broken at {place}, in its {reading}"),
     }

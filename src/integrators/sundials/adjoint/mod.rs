@@ -1,11 +1,11 @@
 //! Gradients of a functional of the solution with respect to many parameters, by one run back in time.
 
+mod backward;
 mod dae;
 mod equations;
 mod gradient;
 mod ode;
 mod options;
-mod way_back;
 
 pub use dae::DaeAdjoint;
 pub use gradient::Gradient;

@@ -60,8 +60,8 @@ impl AdjointOptions {
         self.tolerances.check(&vec![0.0; n])?;
         if let Some(tolerances) = &self.gradient_tolerances {
             if parameters == 0 {
-                let mend = "the system has no parameters";
-                return Err(InputError::new("gradient_tolerances", "given", mend));
+                let help = "the system has no parameters";
+                return Err(InputError::new("gradient_tolerances", "given", help));
             }
             tolerances.check(&vec![0.0; parameters])?;
         }

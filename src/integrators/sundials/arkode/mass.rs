@@ -23,12 +23,12 @@ pub(super) fn check(solver: Option<&LinearSolver>) -> Result<LinearSolver, Error
             @ (LinearSolver::Dense(_) | LinearSolver::Band { .. } | LinearSolver::Klu { .. }),
         ) => Ok(solver.clone()),
         Some(other) => {
-            let mend = "with a mass matrix it is dense, of band form or sparse (KLU)";
-            Err(Error::input("linear solver", format!("{other:?}"), mend))
+            let help = "with a mass matrix it is dense, of band form or sparse (KLU)";
+            Err(Error::input("linear solver", format!("{other:?}"), help))
         }
         None => {
-            let mend = "a mass matrix needs a linear solver: choose `newton`";
-            Err(Error::input("nonlinear solver", "fixed_point", mend))
+            let help = "a mass matrix needs a linear solver: choose `newton`";
+            Err(Error::input("nonlinear solver", "fixed_point", help))
         }
     }
 }

@@ -131,8 +131,8 @@ impl ArkodeOptions {
         self.limits.check(self.steps.max_step, y0)?;
         self.fixed_step.map_or(Ok(()), |h| check_step("fixed_step", h))?;
         if self.fixed_step.is_some() && self.limits.signs.iter().any(|sign| *sign != Sign::Free) {
-            let mend = "signs are kept by smaller steps: let the tolerances choose the steps";
-            return Err(InputError::new("sign_constraints", "given with fixed_step", mend));
+            let help = "signs are kept by smaller steps: let the tolerances choose the steps";
+            return Err(InputError::new("sign_constraints", "given with fixed_step", help));
         }
         for (input, value) in [
             ("max_steps_between_jacobians", self.max_steps_between_jacobians),

@@ -216,8 +216,8 @@ impl<S: Ode> Session<ArkodeKind, S> {
         if !options.table.is_imex() {
             check_whole(&system)?;
         } else if !system.is_split() {
-            let mend = "a pair of tables is for a right-hand side of two parts: see `is_split` and `split`";
-            return Err(Error::input("table", options.table, mend));
+            let help = "a pair of tables is for a right-hand side of two parts: see `is_split` and `split`";
+            return Err(Error::input("table", options.table, help));
         }
 
         let start = InitialState { t: t0, y: y0, yp: None, root_count: system.root_count() };

@@ -97,16 +97,16 @@ impl CvodeOptions {
     ) -> Result<(&LinearSolver, &Tolerances), InputError> {
         self.check(y0)?;
         if self.sensitivities.is_some() {
-            let mend = "the run forward of an adjoint gradient needs none";
-            return Err(InputError::new("sensitivities", "given", mend));
+            let help = "the run forward of an adjoint gradient needs none";
+            return Err(InputError::new("sensitivities", "given", help));
         }
         if self.project {
-            let mend = "an adjoint gradient knows nothing of projections: leave them out";
-            return Err(InputError::new("project", true, mend));
+            let help = "an adjoint gradient knows nothing of projections: leave them out";
+            return Err(InputError::new("project", true, help));
         }
         let Some(solver) = self.nonlinear.linear_solver() else {
-            let mend = "an adjoint gradient needs a Newton iteration";
-            return Err(InputError::new("nonlinear solver", "fixed_point", mend));
+            let help = "an adjoint gradient needs a Newton iteration";
+            return Err(InputError::new("nonlinear solver", "fixed_point", help));
         };
         Ok((solver, &self.tolerances))
     }
@@ -128,13 +128,13 @@ impl CvodeOptions {
         if self.sensitivities.is_some() {
             match &self.nonlinear.solver {
                 NonlinearSolver::Newton(LinearSolver::Custom) => {
-                    let mend = "with sensitivities another linear solver is needed: newton_solve may \
+                    let help = "with sensitivities another linear solver is needed: newton_solve may \
                                 add what newton_rhs leaves out, which is not theirs";
-                    return Err(InputError::new("linear solver", "Custom", mend));
+                    return Err(InputError::new("linear solver", "Custom", help));
                 }
                 NonlinearSolver::FixedPoint { .. } => {
-                    let mend = "with sensitivities a Newton iteration is needed";
-                    return Err(InputError::new("nonlinear solver", "fixed_point", mend));
+                    let help = "with sensitivities a Newton iteration is needed";
+                    return Err(InputError::new("nonlinear solver", "fixed_point", help));
                 }
                 NonlinearSolver::Newton(_) => {}
             }

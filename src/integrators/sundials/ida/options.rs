@@ -77,12 +77,12 @@ impl IdaOptions {
     ) -> Result<(&LinearSolver, &Tolerances, &[bool]), InputError> {
         self.check(y0)?;
         if self.sensitivities.is_some() {
-            let mend = "the run forward of an adjoint gradient needs none";
-            return Err(InputError::new("sensitivities", "given", mend));
+            let help = "the run forward of an adjoint gradient needs none";
+            return Err(InputError::new("sensitivities", "given", help));
         }
         let Some(differential) = &self.differential else {
-            let mend = "an adjoint gradient needs to know which unknowns are algebraic";
-            return Err(InputError::new("differential", "not given", mend));
+            let help = "an adjoint gradient needs to know which unknowns are algebraic";
+            return Err(InputError::new("differential", "not given", help));
         };
         Ok((&self.linear_solver, &self.tolerances, differential))
     }
@@ -95,8 +95,8 @@ impl IdaOptions {
         if let Some(differential) = &self.differential {
             check_length("length of differential", differential.len(), y0.len())?;
         } else if self.suppress_algebraic {
-            let mend = "it needs `differential` to say which unknowns are algebraic";
-            return Err(InputError::new("suppress_algebraic", true, mend));
+            let help = "it needs `differential` to say which unknowns are algebraic";
+            return Err(InputError::new("suppress_algebraic", true, help));
         }
         if let Some(sensitivities) = &self.sensitivities {
             sensitivities.check_for_dae()?;

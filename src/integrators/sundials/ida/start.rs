@@ -12,7 +12,7 @@ use crate::integrators::{
     },
     ode::{Dae, Failure},
     sundials::{
-        beside::Vectors,
+        auxiliary::Vectors,
         ffi,
         index::{Index, index},
         sensitivity::CarriesSensitivities,
@@ -66,21 +66,21 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
     ) -> Result<(), Error> {
         check_time("first_output", first_output)?;
         if first_output == self.t {
-            let mend = "it is a later time than the start";
-            return Err(Error::input("first_output", first_output, mend));
+            let help = "it is a later time than the start";
+            return Err(Error::input("first_output", first_output, help));
         }
         if unknown == InitialCondition::Algebraic && !self.kind.knows_algebraic {
-            let mend = "the option `differential` has to say which unknowns are algebraic";
-            return Err(Error::input("unknown", "InitialCondition::Algebraic", mend));
+            let help = "the option `differential` has to say which unknowns are algebraic";
+            return Err(Error::input("unknown", "InitialCondition::Algebraic", help));
         }
         if unknown == InitialCondition::State && self.sensitivities.is_some() {
-            let mend =
+            let help =
                 "with sensitivities it is Algebraic: IDAS 6.4.1 reads numbers that it never wrote";
-            return Err(Error::input("unknown", "InitialCondition::State", mend));
+            return Err(Error::input("unknown", "InitialCondition::State", help));
         }
         if self.statistics().steps > 0 {
-            let mend = "initial values can only be corrected before the first step";
-            return Err(Error::input("steps taken", self.statistics().steps, mend));
+            let help = "initial values can only be corrected before the first step";
+            return Err(Error::input("steps taken", self.statistics().steps, help));
         }
         let task = match unknown {
             InitialCondition::Algebraic => ffi::IDA_YA_YDP_INIT,
@@ -121,8 +121,8 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
         const MOST_UNKNOWNS: usize = 1000;
         let n = self.y().len();
         if n > MOST_UNKNOWNS {
-            let mend = format!("the index is checked in dense matrices: at most {MOST_UNKNOWNS}");
-            return Err(Error::input("number of unknowns", n, mend));
+            let help = format!("the index is checked in dense matrices: at most {MOST_UNKNOWNS}");
+            return Err(Error::input("number of unknowns", n, help));
         }
         let (host, y) = (self.host.get_mut(), self.y.as_slice());
         let yp = self.yp.as_ref().map_or(&[][..], Vector::as_slice);

@@ -113,8 +113,8 @@ impl Sensitivities {
     /// Stops what IDAS has not.
     pub(in crate::integrators::sundials) fn check_for_dae(&self) -> Result<(), InputError> {
         if self.method == SensitivityMethod::StaggeredOneByOne {
-            let mend = "IDA has Simultaneous and Staggered";
-            return Err(InputError::new("method of sensitivities", "StaggeredOneByOne", mend));
+            let help = "IDA has Simultaneous and Staggered";
+            return Err(InputError::new("method of sensitivities", "StaggeredOneByOne", help));
         }
         Ok(())
     }
@@ -122,13 +122,13 @@ impl Sensitivities {
     /// The scales, for a system with these parameters.
     pub(super) fn check(&self, parameters: &[f64]) -> Result<Vec<f64>, InputError> {
         if self.parameters.is_empty() {
-            let mend = "name at least one, or leave the option out";
-            return Err(InputError::new("parameters of sensitivities", "none", mend));
+            let help = "name at least one, or leave the option out";
+            return Err(InputError::new("parameters of sensitivities", "none", help));
         }
         let count = parameters.len();
         if let Some(place) = self.parameters.iter().find(|&&place| place >= count) {
-            let mend = format!("the system has {count} parameters, counted from 0");
-            return Err(InputError::new("parameter of sensitivities", place, mend));
+            let help = format!("the system has {count} parameters, counted from 0");
+            return Err(InputError::new("parameter of sensitivities", place, help));
         }
         check_finite("parameters", parameters)?;
         let Some(scales) = &self.scales else {
@@ -136,8 +136,8 @@ impl Sensitivities {
             return Ok(self.parameters.iter().map(scale).collect());
         };
         if scales.len() != self.parameters.len() {
-            let mend = format!("give one for each of the {} parameters", self.parameters.len());
-            return Err(InputError::new("length of scales", scales.len(), mend));
+            let help = format!("give one for each of the {} parameters", self.parameters.len());
+            return Err(InputError::new("length of scales", scales.len(), help));
         }
         match scales.iter().find(|&&scale| !(scale > 0.0 && scale.is_finite())) {
             Some(scale) => Err(InputError::new("scale", scale, "it is positive and finite")),

@@ -71,9 +71,9 @@ impl SensitivityRhs {
         if changed && (access.get)(system) == self.p {
             return Ok(());
         }
-        let mend = "set_parameters has to change what parameters gives, or the equations of the \
+        let help = "set_parameters has to change what parameters gives, or the equations of the \
                     sensitivities have to be supplied";
-        Err(InputError::new("parameters of the system", format!("{:?}", self.p), mend))
+        Err(InputError::new("parameters of the system", format!("{:?}", self.p), help))
     }
 
     pub(super) fn scales(&self) -> &[f64] {

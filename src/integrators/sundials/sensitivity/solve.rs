@@ -11,7 +11,7 @@ use super::{
 use crate::integrators::{
     common::{Error, Integrator, Tolerances, check_finite, check_time},
     sundials::{
-        beside::{Sensitivity, Vectors},
+        auxiliary::{Sensitivity, Vectors},
         ffi,
         quadratures::CarriesIntegrals,
         session::Session,
@@ -83,8 +83,8 @@ impl<K, S> Session<K, S> {
         sp: Option<MatRef<'_, f64>>,
     ) -> Result<(), Error> {
         if self.has_step {
-            let mend = "sensitivities are set before the first step, or after reinit";
-            return Err(Error::input("steps taken", self.statistics().steps, mend));
+            let help = "sensitivities are set before the first step, or after reinit";
+            return Err(Error::input("steps taken", self.statistics().steps, help));
         }
         self.check_shape("shape of s", s.nrows(), s.ncols())?;
         let s = columns(s);
@@ -112,8 +112,8 @@ impl<K, S> Session<K, S> {
         if (rows, columns) == wanted {
             return Ok(());
         }
-        let mend = format!("there are {} unknowns and {} sensitivities", wanted.0, wanted.1);
-        Err(Error::input(input, format!("{rows} x {columns}"), mend))
+        let help = format!("there are {} unknowns and {} sensitivities", wanted.0, wanted.1);
+        Err(Error::input(input, format!("{rows} x {columns}"), help))
     }
 }
 

@@ -153,8 +153,8 @@ pub fn join_animations<P: AsRef<Path>>(
 
 fn write_page(motions: Vec<Value>, path: &Path, title: &str) -> Result<(), Error> {
     if motions.is_empty() {
-        let mend = "name at least one motion to be shown";
-        return Err(InputError::new("motions", "none", mend).into());
+        let help = "name at least one motion to be shown";
+        return Err(InputError::new("motions", "none", help).into());
     }
     let page = page(&Above::default(), motions, title);
     write_file(path, |file| file.write_all(page.as_bytes()))

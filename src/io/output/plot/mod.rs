@@ -77,8 +77,8 @@ impl Plot {
             Some("png") => super::png::png(&drawing).map_err(io::Error::other),
             _ => {
                 let known = if cfg!(feature = "png") { ".svg or .png" } else { ".svg" };
-                let mend = format!("its name must end in {known}");
-                return Err(InputError::new("file of a plot", path.display(), mend).into());
+                let help = format!("its name must end in {known}");
+                return Err(InputError::new("file of a plot", path.display(), help).into());
             }
         };
         let picture =

@@ -135,8 +135,8 @@ impl Table {
             found.ok_or_else(|| {
                 let known: Vec<&str> =
                     self.columns.iter().map(|column| &column.quantity.name[..]).collect();
-                let mend = unknown_among(name, &known, "table", "columns");
-                InputError::new("column", format!("\"{name}\""), mend)
+                let help = unknown_among(name, &known, "table", "columns");
+                InputError::new("column", format!("\"{name}\""), help)
             })
         };
         names.iter().map(find).collect()

@@ -140,7 +140,7 @@ pub(super) struct Layout {
     columns: usize,
     /// Width of a panel (px).
     width: f64,
-    rows: Vec<Row>,
+    rows: Vec<PanelRow>,
     /// Pixels per metre.
     scale: f64,
     /// Left edge of what the panels show (m).
@@ -148,7 +148,7 @@ pub(super) struct Layout {
 }
 
 /// A row of panels, as high as what it shows.
-struct Row {
+struct PanelRow {
     /// Upper and lower edge on the page (px), without the captions.
     edges: [f64; 2],
     /// Upper edge of what its panels show (m).
@@ -169,7 +169,7 @@ impl Layout {
                 let top = tops.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
                 let edges = [y, y + (top - view.low[1]) * scale];
                 y = edges[1] + CAPTION + GAP;
-                Row { edges, top }
+                PanelRow { edges, top }
             });
             Self { columns, width, rows: rows.collect(), scale, left: view.low[0] }
         };
@@ -208,7 +208,7 @@ impl Layout {
         self.rows.last().map_or(MARGIN, |row| row.edges[1]) + CAPTION + KEY
     }
 
-    fn row(&self, panel: usize) -> &Row {
+    fn row(&self, panel: usize) -> &PanelRow {
         &self.rows[panel / self.columns]
     }
 

@@ -113,8 +113,8 @@ impl Snapshots {
 
     fn validate(&self) -> Result<(), Error> {
         if self.times.is_empty() {
-            let mend = "name one time at least";
-            return Err(InputError::new("snapshot times", "[]", mend).into());
+            let help = "name one time at least";
+            return Err(InputError::new("snapshot times", "[]", help).into());
         }
         finite("the snapshot times", &self.times)?;
         match self.columns {

@@ -17,8 +17,8 @@ impl Chamber {
     ) -> Result<Vec<Face>, InputError> {
         let nodes = mesh.select(selection)?;
         if nodes.len() < 3 {
-            let mend = "a polygon needs 3 nodes at least";
-            return Err(InputError::new(self.input("number of nodes"), nodes.len(), mend));
+            let help = "a polygon needs 3 nodes at least";
+            return Err(InputError::new(self.input("number of nodes"), nodes.len(), help));
         }
         match selection {
             Selection::Numbers(_) => Ok(polygon(mesh, &nodes)),
@@ -200,9 +200,9 @@ fn closed(mut edges: Vec<Face>, by_line: bool) -> Result<Vec<Face>, String> {
         )),
         _ => {
             let ends: Vec<usize> = surplus.into_keys().collect();
-            let mend = "they must be closed, but for one; and the cells of a string must all run \
+            let help = "they must be closed, but for one; and the cells of a string must all run \
                         the same way";
-            Err(format!("they make open chains with ends at {}: {mend}", list(&ends)))
+            Err(format!("they make open chains with ends at {}: {help}", list(&ends)))
         }
     }
 }
@@ -221,9 +221,9 @@ fn open_edges(outlines: impl Iterator<Item = Vec<Face>>) -> Result<Vec<Face>, St
     for edge in outlines.flatten() {
         let ends = [edge[0], edge[1]];
         if edges.insert(ends, edge).is_some() {
-            let mend = "turn the cells on one side of it round";
+            let help = "turn the cells on one side of it round";
             let nodes = list(&ends);
-            return Err(format!("two faces run along the edge of {nodes} the same way: {mend}"));
+            return Err(format!("two faces run along the edge of {nodes} the same way: {help}"));
         }
     }
     let is_open = |[a, b]: &[usize; 2]| !edges.contains_key(&[*b, *a]);

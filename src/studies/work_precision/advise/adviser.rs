@@ -138,9 +138,9 @@ impl<'a> Adviser<'a> {
         };
         let written = found.written.as_ref().map(candidate);
         let Some(written) = written.or_else(|| search.failures.first().cloned().map(named)) else {
-            let mend = "not one run came to its end: allow more time";
+            let help = "not one run came to its end: allow more time";
             return Err(
-                InputError::new("budget", format!("{} s", self.request.budget), mend).into()
+                InputError::new("budget", format!("{} s", self.request.budget), help).into()
             );
         };
         let mut candidates: Vec<Candidate> = found.all().map(candidate).collect();

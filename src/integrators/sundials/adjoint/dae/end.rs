@@ -18,7 +18,7 @@ use crate::integrators::{
 /// With K = dF/dy' in the differential equations and dF/dy in the algebraic ones, which is regular if the index is 1:
 /// K^T (lambda_d, mu) = dg/dy, where mu is what g changes by with the algebraic equations, so that dG/dp gets
 /// -mu^T dF_a/dp; then K^T (lambda'_d, -lambda_a) = (dF_d/dy)^T lambda_d - dh/dy, the equations of the way back.
-pub(super) fn start_of_way_back<S: Dae, F: Functional>(
+pub(super) fn start_of_backward_problem<S: Dae, F: Functional>(
     system: &mut AdjointDae<S, F>,
     (t, y, yp): Point<'_>,
     end: &mut Gradient,

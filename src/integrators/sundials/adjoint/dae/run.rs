@@ -2,7 +2,7 @@
 
 use super::{
     callbacks::{jacobian, quadratures, residual},
-    end::start_of_way_back,
+    end::start_of_backward_problem,
     system::AdjointDae,
 };
 use crate::integrators::{
@@ -10,7 +10,7 @@ use crate::integrators::{
     ode::{Borrowed, Dae, Functional},
     sundials::{
         IdaOptions, InitialCondition,
-        adjoint::{gradient::Gradient, options::AdjointOptions, way_back::Callbacks},
+        adjoint::{backward::Callbacks, gradient::Gradient, options::AdjointOptions},
         ffi,
         ida::{BACKWARD, IdaKind, StartsDae},
         linear::Linear,
@@ -23,13 +23,13 @@ use crate::integrators::{
 pub(super) type Start = (f64, Vec<f64>, Vec<f64>);
 
 /// The solver of one run forward and back, as for an ODE.
-pub(super) struct Run<'a, S, F> {
+pub(super) struct AdjointRun<'a, S, F> {
     solver: Session<IdaKind, Borrowed<'a, AdjointDae<S, F>>>,
     options: &'a AdjointOptions,
     t0: f64,
 }
 
-impl<'a, S: Dae, F: Functional> Run<'a, S, F> {
+impl<'a, S: Dae, F: Functional> AdjointRun<'a, S, F> {
     pub(super) fn new(
         system: &'a mut AdjointDae<S, F>,
         (t0, y0, yp0): &Start,
@@ -78,7 +78,8 @@ impl<'a, S: Dae, F: Functional> Run<'a, S, F> {
             let kind = &system.equations.backward;
             Linear::new::<Borrowed<'a, AdjointDae<S, F>>>(kind, &self.solver.y, context, data)?
         };
-        let (lambda, slope) = start_of_way_back(system, (t, y, yp), end, &mut linear, context)?;
+        let (lambda, slope) =
+            start_of_backward_problem(system, (t, y, yp), end, &mut linear, context)?;
         // SAFETY: memory and vectors are alive when these are called, and the callbacks fit the host that is their data.
         unsafe {
             let callbacks = Callbacks {

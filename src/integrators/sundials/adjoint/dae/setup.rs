@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{
-    run::{Run, Start},
+    run::{AdjointRun, Start},
     system::AdjointDae,
 };
 use crate::integrators::{
@@ -110,8 +110,8 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
         options.check(y0.len(), system.parameters().len())?;
         options.check_for_dae()?;
         if system.root_count() > 0 {
-            let mend = "an adjoint gradient does not stop at events: leave them out";
-            return Err(Error::input("root_count", system.root_count(), mend));
+            let help = "an adjoint gradient does not stop at events: leave them out";
+            return Err(Error::input("root_count", system.root_count(), help));
         }
         let equations = forward.for_adjoint(y0)?;
         let system = AdjointDae::new(system, functional, y0.len(), equations)?;
@@ -136,17 +136,17 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
         check_time("end time", t)?;
         let t0 = self.start.0;
         if t <= t0 {
-            let mend = format!(
+            let help = format!(
                 "it is later than the start, {t0:?}: IDAS has no way back from an earlier time, for which the equations \
                  can be written in -t"
             );
-            return Err(Error::input("end time", t, mend));
+            return Err(Error::input("end time", t, help));
         }
         self.run()?.gradient(t)
     }
 
-    fn run(&mut self) -> Result<Run<'_, S, F>, Error> {
-        Run::new(&mut self.system, &self.start, &self.forward, &self.options)
+    fn run(&mut self) -> Result<AdjointRun<'_, S, F>, Error> {
+        AdjointRun::new(&mut self.system, &self.start, &self.forward, &self.options)
     }
 
     /// The system.

@@ -76,17 +76,17 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
             }
         });
         if let Some((i, j)) = wrong {
-            let mend = format!("its derivative occurs in equation {i}");
-            return Err(Error::input("differential", format!("false of unknown {j}"), mend));
+            let help = format!("its derivative occurs in equation {i}");
+            return Err(Error::input("differential", format!("false of unknown {j}"), help));
         }
         let unknowns = self.differential.iter().filter(|differential| !*differential).count();
         let equations = self.algebraic.iter().filter(|algebraic| **algebraic).count();
         if unknowns != equations {
-            let mend = format!(
+            let help = format!(
                 "of the equations {equations} are without derivatives: an adjoint gradient needs as many of them as \
                  there are algebraic unknowns"
             );
-            return Err(Error::input("differential", format!("{unknowns} times false"), mend));
+            return Err(Error::input("differential", format!("{unknowns} times false"), help));
         }
         Ok(())
     }

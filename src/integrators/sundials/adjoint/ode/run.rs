@@ -9,7 +9,7 @@ use crate::integrators::{
     ode::{Borrowed, Functional, Ode},
     sundials::{
         CvodeOptions,
-        adjoint::{gradient::Gradient, options::AdjointOptions, way_back::Callbacks},
+        adjoint::{backward::Callbacks, gradient::Gradient, options::AdjointOptions},
         cvode::{BACKWARD, CvodeKind},
         ffi,
         linear::Linear,
@@ -21,13 +21,13 @@ use crate::integrators::{
 
 /// The solver of one run forward and back. A further one would begin with the first step of this one, whatever
 /// has changed: the way back leaves it in C (6.4.1).
-pub(super) struct Run<'a, S, F> {
+pub(super) struct AdjointRun<'a, S, F> {
     solver: Session<CvodeKind, Borrowed<'a, AdjointSystem<S, F>>>,
     options: &'a AdjointOptions,
     t0: f64,
 }
 
-impl<'a, S: Ode, F: Functional> Run<'a, S, F> {
+impl<'a, S: Ode, F: Functional> AdjointRun<'a, S, F> {
     pub(super) fn new(
         system: &'a mut AdjointSystem<S, F>,
         (t0, y0): &(f64, Vec<f64>),

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{run::Run, system::AdjointSystem};
+use super::{run::AdjointRun, system::AdjointSystem};
 use crate::integrators::{
     common::{Error, check_start, check_time},
     ode::{Functional, Ode},
@@ -87,8 +87,8 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         check_start(t0, y0)?;
         options.check(y0.len(), system.parameters().len())?;
         if system.root_count() > 0 {
-            let mend = "an adjoint gradient does not stop at events: leave them out";
-            return Err(Error::input("root_count", system.root_count(), mend));
+            let help = "an adjoint gradient does not stop at events: leave them out";
+            return Err(Error::input("root_count", system.root_count(), help));
         }
         let equations = forward.for_adjoint(y0)?;
         let system = AdjointSystem::new(system, functional, y0.len(), equations, options)?;
@@ -116,8 +116,8 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         self.run()?.gradient(t)
     }
 
-    fn run(&mut self) -> Result<Run<'_, S, F>, Error> {
-        Run::new(&mut self.system, &self.start, &self.forward, &self.options)
+    fn run(&mut self) -> Result<AdjointRun<'_, S, F>, Error> {
+        AdjointRun::new(&mut self.system, &self.start, &self.forward, &self.options)
     }
 
     /// The system.

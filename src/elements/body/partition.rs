@@ -17,14 +17,14 @@ const TWICE: f64 = 0.25;
 
 /// The shares of a mesh: one, if it is small or its nodes are numbered in no good order.
 #[derive(Debug)]
-pub(super) struct Shares {
+pub(super) struct Partition {
     /// Nodes of each share but the last, which may have fewer.
     pub(super) nodes: usize,
     /// Cells that touch each share, in ascending order.
     pub(super) cells: Vec<Vec<Range<usize>>>,
 }
 
-impl Shares {
+impl Partition {
     /// The shares of `cells` on `nodes` nodes.
     pub(super) fn new<const N: usize>(cells: &[[usize; N]], nodes: usize) -> Self {
         let whole = Self { nodes, cells: vec![vec![0..cells.len()]] };
@@ -93,7 +93,7 @@ mod tests {
     fn every_cell_is_in_the_shares_of_its_nodes() {
         let mesh = Mesh::rectangle([1.0, 1.0], [150, 70], Cells::Triangles).unwrap();
         let cells: Vec<[usize; 3]> = mesh.cells().map(|cell| cell.try_into().unwrap()).collect();
-        let shares = Shares::new(&cells, mesh.node_count());
+        let shares = Partition::new(&cells, mesh.node_count());
         assert_eq!(shares.cells.len(), 16);
         for (share, runs) in shares.cells.iter().enumerate() {
             let listed: Vec<usize> = runs.iter().cloned().flatten().collect();
@@ -105,6 +105,6 @@ mod tests {
         let step = 7919;
         let shuffled: Vec<_> =
             cells.iter().map(|cell| cell.map(|node| node * step % mesh.node_count())).collect();
-        assert_eq!(Shares::new(&shuffled, mesh.node_count()).cells.len(), 1);
+        assert_eq!(Partition::new(&shuffled, mesh.node_count()).cells.len(), 1);
     }
 }

@@ -110,8 +110,8 @@ impl Simulation {
         let Kept { number, time, ref state, .. } = kept;
         let mut system = kept.equations(run)?;
         if ![0, system.rows().len()].contains(&kept.origins.len()) {
-            let mend = format!("the phase has {} rows of constraints", system.rows().len());
-            return Err(InputError::new("number of origins", kept.origins.len(), mend).into());
+            let help = format!("the phase has {} rows of constraints", system.rows().len());
+            return Err(InputError::new("number of origins", kept.origins.len(), help).into());
         }
         let reason = match records::sample(number, &mut system, time, state) {
             Ok(sample) if sample.energy.balance().is_finite() => None,

@@ -1,4 +1,4 @@
-//! Legs: the parts of a phase that are integrated without a new start, and what may end them.
+//! Intervals: the parts of a phase that are integrated without a new start, and what may end them.
 
 use super::angles::Angles;
 use super::auto::Plan;
@@ -7,7 +7,7 @@ use super::sampling::Schedule;
 
 /// A state to go back to.
 #[derive(Clone, Default)]
-pub(super) struct Good {
+pub(super) struct RollbackPoint {
     pub(super) time: f64,
     pub(super) state: Vec<f64>,
     /// Sampling times of the phase, and samples of the run, that have been taken.
@@ -21,7 +21,7 @@ pub(super) struct Good {
     pub(super) peaks: Vec<[f64; 2]>,
 }
 
-/// How a leg ended.
+/// How a interval ended.
 pub(super) enum Ending {
     /// At its end.
     Reached,
@@ -46,20 +46,20 @@ pub(super) enum Outcome {
 }
 
 /// A phase on its way.
-pub(super) struct Leg {
+pub(super) struct Interval {
     /// Sampling times of the phase, and the number of those that have been taken.
     pub(super) times: Schedule,
     pub(super) taken: usize,
-    /// End of the leg (s): of the phase, or where a force breaks off.
+    /// End of the interval (s): of the phase, or where a force breaks off.
     pub(super) stop: f64,
-    /// When a step that was not taken would have been within an obstacle (s): the leg pauses there.
+    /// When a step that was not taken would have been within an obstacle (s): the interval pauses there.
     pub(super) inside: Option<f64>,
     /// Steps that the phase may still take.
     pub(super) steps: usize,
     pub(super) events: Events,
 }
 
-impl Leg {
+impl Interval {
     /// The next sampling time (s).
     pub(super) fn next_sample(&self) -> Option<f64> {
         self.times.get(self.taken)

@@ -1,10 +1,10 @@
-//! A phase at work: its legs, the method that integrates them, and what that has cost so far.
+//! A phase at work: its intervals, the method that integrates them, and what that has cost so far.
 
 use std::time::Instant;
 
 use super::auto::{LONG, Plan, TRIALS};
 use super::events::Events;
-use super::leg::{Ending, Leg};
+use super::interval::{Ending, Interval};
 use super::sampling::Schedule;
 use super::stepper::Stepper;
 use crate::dynamics::report::{Counts, PhaseReport};
@@ -12,19 +12,19 @@ use crate::dynamics::system::System;
 use crate::scene::settings::Method;
 
 /// A phase at work.
-pub(super) struct Stage {
+pub(super) struct PhaseRun {
     clock: Instant,
     pub(super) plan: Plan,
-    pub(super) leg: Leg,
-    /// Ends of the legs that are left (s), the last one first.
+    pub(super) interval: Interval,
+    /// Ends of the intervals that are left (s), the last one first.
     pub(super) stops: Vec<f64>,
-    /// How the last leg ended, once it has.
+    /// How the last interval ended, once it has.
     pub(super) ended: Option<Ending>,
     /// Changes of the forces by commands.
     pub(super) commands: usize,
     /// First step of the next integrator (s), if it is known.
     pub(super) first_step: Option<f64>,
-    pub(super) way: Way,
+    pub(super) mean_steps: MeanSteps,
     /// What the integrators have cost that are done.
     counts: Counts,
     /// Unknowns of the last one.
@@ -34,17 +34,17 @@ pub(super) struct Stage {
 /// The equations in force, and what integrates them. There is one: its size does not matter.
 #[derive(Default)]
 #[expect(clippy::large_enum_variant)]
-pub(super) enum At {
+pub(super) enum Integration {
     /// An integrator could not be made.
     #[default]
-    Nothing,
-    /// No integrator, between two legs.
-    Rest(System),
-    Work(Work),
+    Absent,
+    /// No integrator, between two intervals.
+    Idle(System),
+    Running(Running),
 }
 
-/// An integrator at work on a leg.
-pub(super) struct Work {
+/// An integrator at work on a interval.
+pub(super) struct Running {
     pub(super) stepper: Box<dyn Stepper>,
     /// Where it stops (s).
     pub(super) stop: f64,
@@ -56,15 +56,15 @@ pub(super) struct Work {
     pub(super) means: [f64; TRIALS],
 }
 
-/// How far the last steps of a plan have led, whatever legs they lay in.
+/// How far the last steps of a plan have led, whatever intervals they lay in.
 #[derive(Default)]
-pub(super) struct Way {
+pub(super) struct MeanSteps {
     steps: usize,
     /// Where the first one began (s).
     began: f64,
 }
 
-impl Way {
+impl MeanSteps {
     /// Adds a step; after each [`LONG`] of them gives their mean size (s).
     pub(super) fn add(&mut self, [start, end]: [f64; 2]) -> Option<f64> {
         if self.steps == 0 {
@@ -75,26 +75,26 @@ impl Way {
     }
 }
 
-impl Work {
+impl Running {
     pub(super) fn new(stepper: Box<dyn Stepper>, time: f64, stop: f64) -> Self {
         let sample = vec![0.0; stepper.state().len()];
         Self { stepper, stop, sample, steps: 0, trial_began: time, means: [f64::INFINITY; TRIALS] }
     }
 }
 
-impl Stage {
+impl PhaseRun {
     /// A phase at its start, of at most `steps` steps.
     pub(super) fn new(plan: Plan, times: Schedule, stops: Vec<f64>, steps: usize) -> Self {
         let events = Events::default();
         Self {
             clock: Instant::now(),
             plan,
-            leg: Leg { times, taken: 0, stop: 0.0, inside: None, steps, events },
+            interval: Interval { times, taken: 0, stop: 0.0, inside: None, steps, events },
             stops: stops.into_iter().rev().collect(),
             ended: Some(Ending::Reached),
             commands: 0,
             first_step: None,
-            way: Way::default(),
+            mean_steps: MeanSteps::default(),
             counts: Counts::default(),
             states: 0,
         }
@@ -102,25 +102,25 @@ impl Stage {
 
     /// Goes on with another plan.
     pub(super) fn follow(&mut self, plan: Plan) {
-        (self.plan, self.way) = (plan, Way::default());
+        (self.plan, self.mean_steps) = (plan, MeanSteps::default());
         self.counts.notice = None;
     }
 
     /// Ends an integrator, and gives its equations back.
-    pub(super) fn rest(&mut self, work: Work) -> System {
+    pub(super) fn rest(&mut self, work: Running) -> System {
         self.counts.add(work.stepper.counts());
         self.states = work.stepper.state().len();
         work.stepper.into_system()
     }
 
     /// What has become of the phase named `name` up to time `end` (s), with the integrator `at` work.
-    pub(super) fn report(&self, name: &str, end: f64, at: &At) -> PhaseReport {
+    pub(super) fn report(&self, name: &str, end: f64, at: &Integration) -> PhaseReport {
         let (mut counts, mut states) = (self.counts.clone(), self.states);
-        if let At::Work(work) = at {
+        if let Integration::Running(work) = at {
             counts.add(work.stepper.counts());
             states = work.stepper.state().len();
         }
-        counts.contact_events = self.leg.events.count;
+        counts.contact_events = self.interval.events.count;
         let Plan { settings, reason, .. } = &self.plan;
         if reason.is_some() && settings.method == Method::Rk {
             // what it notices of stability, the choice of methods looks after
@@ -134,7 +134,7 @@ impl Stage {
             method: settings.method,
             reason: reason.clone(),
             counts,
-            slips: self.leg.events.slips.clone(),
+            slips: self.interval.events.slips.clone(),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::options::AdjointOptions;
 use crate::integrators::{
     common::{AbsoluteTolerance, Cause, Error, IntegrationError, Tolerances},
     sundials::{
-        beside::Backward, ffi, functions::BackwardFunctions, linear::Linear, session::Session,
+        auxiliary::Backward, ffi, functions::BackwardFunctions, linear::Linear, session::Session,
         vector::Vector,
     },
 };

@@ -5,18 +5,18 @@ use std::sync::Arc;
 
 use super::auto::Plan;
 use super::checkpoint::{Checkpoint, Kept};
-use super::leg::Ending;
+use super::interval::Ending;
+use super::phase_run::{Integration, MeanSteps, PhaseRun};
 use super::records::{self, energy, project};
 use super::run::Run;
 use super::sampling::Sampling;
 use super::sensor::Sensors;
-use super::stage::{At, Stage, Way};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 use crate::dynamics::system::{Energy, System};
 use crate::dynamics::trajectory::Sample;
 use crate::elements::force::Forces;
-use crate::scene::constraint::Row;
+use crate::scene::constraint::ConstraintRow;
 use crate::scene::forces::Live;
 use crate::scene::timeline::Phase;
 
@@ -36,22 +36,22 @@ const NEW_STARTS: usize = 3;
 
 impl Run {
     fn system(&self) -> Option<&System> {
-        match &self.at {
-            At::Work(work) => Some(work.stepper.system()),
-            At::Rest(system) => Some(system),
-            At::Nothing => None,
+        match &self.integration {
+            Integration::Running(work) => Some(work.stepper.system()),
+            Integration::Idle(system) => Some(system),
+            Integration::Absent => None,
         }
     }
 
     /// The equations in force.
     pub(super) fn system_mut(&mut self) -> Result<&mut System, Error> {
-        if let At::Nothing = self.at {
-            self.at = At::Rest(self.equations(&self.phase, &self.state)?);
+        if let Integration::Absent = self.integration {
+            self.integration = Integration::Idle(self.equations(&self.phase, &self.state)?);
         }
-        match &mut self.at {
-            At::Work(work) => Ok(work.stepper.system_mut()),
-            At::Rest(system) => Ok(system),
-            At::Nothing => {
+        match &mut self.integration {
+            Integration::Running(work) => Ok(work.stepper.system_mut()),
+            Integration::Idle(system) => Ok(system),
+            Integration::Absent => {
                 Err(InputError::new("simulation", "without equations", "start it anew").into())
             }
         }
@@ -59,8 +59,8 @@ impl Run {
 
     /// Writes (u, v, energies) at a time (s) within the last step.
     pub(super) fn look(&mut self, t: f64, state: &mut [f64]) -> Result<(), Error> {
-        match &mut self.at {
-            At::Work(work) if t < self.time => {
+        match &mut self.integration {
+            Integration::Running(work) if t < self.time => {
                 let seen = work.stepper.interpolate(t, &mut work.sample);
                 state.copy_from_slice(&work.sample[..self.state.len()]);
                 seen.map_err(|source| self.failure(source, 0.0))
@@ -133,7 +133,7 @@ impl Run {
                 None => {
                     self.is_commanded = true;
                     self.phase = Arc::new(phase);
-                    self.find_leg();
+                    self.find_interval();
                     return Ok(());
                 }
                 Some(refused) => forces = refused,
@@ -159,7 +159,7 @@ impl Run {
         if constrains {
             project(&self.settings, &phase, &mut system, self.time, &mut self.state);
             self.constraints = Arc::new(());
-            self.stage.follow(Plan::new(&self.settings, &mut system, self.time, &self.state));
+            self.phase_run.follow(Plan::new(&self.settings, &mut system, self.time, &self.state));
         }
         (self.phase, self.is_commanded) = (Arc::new(phase), true);
         self.resume(system);
@@ -168,12 +168,12 @@ impl Run {
 
     /// Leaves a multistep method that was chosen automatically once commands keep coming.
     fn expect_commands(&mut self) -> Result<(), Error> {
-        self.stage.commands += 1;
-        if self.stage.commands > NEW_STARTS
-            && let Some(plan) = self.stage.plan.under_commands()
+        self.phase_run.commands += 1;
+        if self.phase_run.commands > NEW_STARTS
+            && let Some(plan) = self.phase_run.plan.under_commands()
         {
             let system = self.rest()?;
-            self.stage.follow(plan);
+            self.phase_run.follow(plan);
             self.resume(system);
         }
         Ok(())
@@ -181,7 +181,8 @@ impl Run {
 
     /// Changes the forces of an integrator at work, if it can go on with others; gives them back if not.
     fn change_loads(&mut self, forces: Forces) -> Result<Option<Forces>, Error> {
-        let (At::Work(work), None) = (&mut self.at, &self.stage.ended) else {
+        let (Integration::Running(work), None) = (&mut self.integration, &self.phase_run.ended)
+        else {
             return Ok(Some(forces));
         };
         if !work.stepper.system_mut().change_forces(forces.clone()) || !self.keep_on()? {
@@ -204,13 +205,16 @@ impl Run {
 
     /// Lets the integrator at work, if there is one that can, go on under forces that have jumped.
     fn keep_on(&mut self) -> Result<bool, Error> {
-        let (At::Work(work), None) = (&mut self.at, &self.stage.ended) else { return Ok(false) };
+        let (Integration::Running(work), None) = (&mut self.integration, &self.phase_run.ended)
+        else {
+            return Ok(false);
+        };
         work.stepper.system_mut().forget_tangents();
         match work.stepper.resume(self.time, &self.state) {
             Ok(true) => {
                 work.stop = f64::NAN;
-                let (system, located) = (work.stepper.system(), self.stage.plan.locates());
-                self.stage.leg.events.begin(system, self.time, &self.state, located);
+                let (system, located) = (work.stepper.system(), self.phase_run.plan.locates());
+                self.phase_run.interval.events.begin(system, self.time, &self.state, located);
                 self.remember();
                 Ok(true)
             }
@@ -225,17 +229,17 @@ impl Run {
         Checkpoint {
             scene: self.scene.clone(),
             constraints: self.constraints.clone(),
-            plan: self.stage.plan.clone(),
+            plan: self.phase_run.plan.clone(),
             kept: Kept {
                 time,
                 state: state.to_vec(),
                 phase: self.phase.frozen(),
                 number: self.number,
                 is_commanded: self.is_commanded,
-                origins: rows.iter().map(Row::origin).collect(),
+                origins: rows.iter().map(ConstraintRow::origin).collect(),
                 first_step: self.next_step(),
                 steps: self.steps,
-                commands: self.stage.commands,
+                commands: self.phase_run.commands,
                 balance: self.balance,
                 energies: self.trajectory.noted(),
                 angles: self.angles.clone(),
@@ -248,8 +252,8 @@ impl Run {
         let Checkpoint { scene, constraints, plan, kept } = checkpoint;
         let Kept { time, ref state, ref phase, number, balance, steps, .. } = *kept;
         if !Arc::ptr_eq(&self.scene, scene) {
-            let mend = "it belongs to another simulation: restore it there, or in a fork of that";
-            return Err(InputError::new("checkpoint", format!("at {time} s"), mend).into());
+            let help = "it belongs to another simulation: restore it there, or in a fork of that";
+            return Err(InputError::new("checkpoint", format!("at {time} s"), help).into());
         }
         let mut system = self.rest()?;
         self.time = time;
@@ -266,14 +270,14 @@ impl Run {
         }
         if self.number != number {
             self.number = number;
-            self.stage = self.new_stage(plan.clone());
+            self.phase_run = self.new_phase_run(plan.clone());
             let before = number.checked_sub(1).map_or(0.0, |last| self.scene.phases()[last].until);
             self.trajectory.report.phases.retain(|phase| phase.end <= before);
         }
         self.sample_from(time);
-        self.stage.plan = plan.clone();
-        (self.stage.first_step, self.stage.commands) = (kept.first_step, kept.commands);
-        self.stage.leg.steps = self.settings.max_steps;
+        self.phase_run.plan = plan.clone();
+        (self.phase_run.first_step, self.phase_run.commands) = (kept.first_step, kept.commands);
+        self.phase_run.interval.steps = self.settings.max_steps;
         (self.balance, self.standing, self.steps) = (balance, 0, steps);
         let samples = self.trajectory.samples().partition_point(|sample| sample.time <= time);
         self.trajectory.go_back(samples.max(1), kept.energies);
@@ -296,57 +300,60 @@ impl Run {
         run.time = t;
         run.state.copy_from_slice(state);
         run.sample_from(t);
-        run.stage.first_step = self.next_step();
+        run.phase_run.first_step = self.next_step();
         run.resume(system);
         Ok(run)
     }
 
     /// Size of the next step (s), as far as it is known.
     fn next_step(&self) -> Option<f64> {
-        match &self.at {
-            At::Work(work) => Some(work.stepper.next_step()).filter(|h| h.is_finite() && *h > 0.0),
-            _ => self.stage.first_step,
+        match &self.integration {
+            Integration::Running(work) => {
+                Some(work.stepper.next_step()).filter(|h| h.is_finite() && *h > 0.0)
+            }
+            _ => self.phase_run.first_step,
         }
     }
 
     /// Ends the integrator, and gives its equations back; the next one knows its step size.
     fn rest(&mut self) -> Result<System, Error> {
-        self.stage.first_step = self.next_step();
+        self.phase_run.first_step = self.next_step();
         if let Some(Ending::Doubtful { instead: plan } | Ending::Better(plan)) =
-            self.stage.ended.take()
+            self.phase_run.ended.take()
         {
-            self.stage.follow(plan);
+            self.phase_run.follow(plan);
         }
-        match take(&mut self.at) {
-            At::Work(work) => Ok(self.stage.rest(work)),
-            At::Rest(system) => Ok(system),
-            At::Nothing => Ok(self.equations(&self.phase, &self.state)?),
+        match take(&mut self.integration) {
+            Integration::Running(work) => Ok(self.phase_run.rest(work)),
+            Integration::Idle(system) => Ok(system),
+            Integration::Absent => Ok(self.equations(&self.phase, &self.state)?),
         }
     }
 
     /// Goes on from the present state by the equations `system` of the phase in force.
     fn resume(&mut self, system: System) {
         self.find_stops();
-        (self.stage.ended, self.stage.way) = (Some(Ending::Reached), Way::default());
+        (self.phase_run.ended, self.phase_run.mean_steps) =
+            (Some(Ending::Reached), MeanSteps::default());
         self.begin_events(&system);
-        self.at = At::Rest(system);
+        self.integration = Integration::Idle(system);
         self.follow_angles();
         self.remember();
     }
 
-    /// Finds where the leg that the present time lies in ends, and those after it.
-    pub(super) fn find_leg(&mut self) {
+    /// Finds where the interval that the present time lies in ends, and those after it.
+    pub(super) fn find_interval(&mut self) {
         self.find_stops();
-        self.stage.leg.stop = self.stage.stops.pop().unwrap_or(self.phase.until);
+        self.phase_run.interval.stop = self.phase_run.stops.pop().unwrap_or(self.phase.until);
     }
 
-    /// Finds where the legs of the phase in force end from now on.
+    /// Finds where the intervals of the phase in force end from now on.
     fn find_stops(&mut self) {
         let mut stops = self.phase.breaks(self.scene.obstacles());
         stops.retain(|&stop| self.time < stop && stop < self.phase.until);
         stops.push(self.phase.until);
         stops.reverse();
-        (self.stage.stops, self.stage.leg.inside) = (stops, None);
+        (self.phase_run.stops, self.phase_run.interval.inside) = (stops, None);
     }
 
     /// Counts a sudden change of what is stored (J) as supplied from outside.
@@ -356,9 +363,9 @@ impl Run {
     }
 
     /// The phase in force from the present time on, integrated by `plan`.
-    pub(super) fn new_stage(&self, plan: Plan) -> Stage {
+    pub(super) fn new_phase_run(&self, plan: Plan) -> PhaseRun {
         let times = self.sampling.within(self.time, self.phase.until);
-        Stage::new(plan, times, self.scene.stops(self.number), self.settings.max_steps)
+        PhaseRun::new(plan, times, self.scene.stops(self.number), self.settings.max_steps)
     }
 
     /// Takes samples at other times from the end of the last step on.
@@ -380,7 +387,7 @@ impl Run {
 
     /// Takes the samples after time `t` (s), whether they were taken before or not.
     fn sample_from(&mut self, t: f64) {
-        self.stage.leg.times = self.sampling.within(t, self.phase.until);
-        self.stage.leg.taken = 0;
+        self.phase_run.interval.times = self.sampling.within(t, self.phase.until);
+        self.phase_run.interval.taken = 0;
     }
 }

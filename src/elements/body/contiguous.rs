@@ -11,13 +11,13 @@ use crate::base::lane::{Lane, SIDE_BY_SIDE};
 
 /// Which of each [`SIDE_BY_SIDE`] cells of `N` nodes are in a row.
 #[derive(Debug)]
-pub(super) struct Rows<const N: usize>(Vec<Option<Order<N>>>);
+pub(super) struct ContiguousCells<const N: usize>(Vec<Option<Order<N>>>);
 
 /// The nodes of a cell from the greatest number to the least. In this order a node that is the a-th of one cell and the b-th of
 /// another gets the forces of the two in the order of the cells.
 type Order<const N: usize> = [u8; N];
 
-impl<const N: usize> Rows<N> {
+impl<const N: usize> ContiguousCells<N> {
     pub(super) fn new(cells: &[[usize; N]]) -> Self {
         Self(cells.as_chunks::<SIDE_BY_SIDE>().0.iter().map(order).collect())
     }
@@ -137,7 +137,7 @@ mod tests {
         assert!(0 < found && found < elements.abreast().len(), "{found} in a row");
         let by_rows = forces(&elements);
         assert!(by_rows.iter().all(|of_kind| of_kind.iter().any(|force| *force != 0.0)));
-        elements.rows = Rows(Vec::new());
+        elements.rows = ContiguousCells(Vec::new());
         assert!(by_rows == forces(&elements));
     }
 
