@@ -245,7 +245,7 @@ fn map(page: &mut Page) -> Outcome<()> {
         &["1", "2", "3", "4", "5"].map(String::from),
         &RATIOS.map(few),
         &cells,
-    )?;
+    );
     page.picture("orders-map", "steps over damping ratio and cap of the order", &svg)
 }
 

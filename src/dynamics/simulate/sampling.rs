@@ -6,7 +6,7 @@ use super::reading::Reading;
 use super::sensor::{Sensor, SensorKind, Sensors};
 use super::view::View;
 use crate::base::input::{InputError, check_memory, positive};
-#[cfg(feature = "study")]
+#[cfg(any(feature = "fit", feature = "study"))]
 use crate::dynamics::trajectory::Quantity;
 use crate::dynamics::trajectory::Sample;
 use crate::scene::timeline::{Phase, Scene};

@@ -255,9 +255,9 @@ impl What {
             Constrained::Nodes(nodes, Axes::These(axes)) => {
                 Self::Nodes(Nodes::of(nodes), Some(axes.iter().map(|axis| letter(*axis)).collect()))
             }
-            Constrained::Row(terms) => Self::Row(
-                terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect(),
-            ),
+            Constrained::Row(terms) => {
+                Self::Row(terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect())
+            }
             Constrained::Along(nodes, normal) => Self::Along(Nodes::of(nodes), normal.clone()),
         }
     }

@@ -7,7 +7,7 @@
 //! | JSON | how a result was obtained: method, steps, errors, versions | [`write_report`] |
 //! | SVG | the deformed body at chosen times, panel by panel | [`Snapshots`] |
 //! | SVG, PNG | sensors and energies over time, of a motion or of a table that a run has left | [`Plot`] |
-//! | SVG | any series over each other | [`Chart`] |
+//! | SVG, PNG | any series over each other | [`Chart`] |
 //! | HTML | the motion, or several side by side, to be played by a web browser | [`write_animation`], [`write_animations`], [`join_animations`] |
 //! | VTK | ParaView and other viewers of meshes: motion, forces, strain and stress | [`write_vtk`] |
 //!
@@ -18,7 +18,7 @@ mod animation;
 mod chart;
 mod columns;
 mod csv;
-mod decades;
+mod figure;
 mod plot;
 #[cfg(feature = "png")]
 mod png;
@@ -37,12 +37,11 @@ pub use self::chart::Chart;
 #[cfg(feature = "study")]
 pub(crate) use self::columns::{DIFFERENCE, OF_SENSOR};
 pub use self::csv::{GrowingTable, write_csv, write_energies};
-pub(crate) use self::decades::power_text;
 #[cfg(feature = "study")]
-pub(crate) use self::decades::ticks;
+pub(crate) use self::figure::{
+    Axis, Field, Point, page, power_text, rectangle, round, stroke, text, write_figure,
+};
 pub use self::plot::{Plot, Table};
-#[cfg(feature = "study")]
-pub(crate) use self::png::png;
 pub use self::reference::reference;
 #[cfg(feature = "study")]
 pub(crate) use self::report::of_indicator;

@@ -1,17 +1,16 @@
 //! The work-precision chart: error over time, both logarithmic.
 
 use std::collections::BTreeMap;
-use std::io;
 use std::path::Path;
 
 use svg::Document;
-use svg::node::element::{Circle, Group, Path as Outline, Polyline, Rectangle};
+use svg::node::element::{Circle, Group, Path as Outline, Polyline};
 
-use super::frame::{Frame, Point, round, text};
+use super::frame::Frame;
 use super::{Findings, LineFindings};
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
-use crate::io::output::{COLOURS, DASHES, FONT, INK, png, write_file};
+use crate::io::output::{COLOURS, DASHES, INK, Point, page, rectangle, round, text, write_figure};
 
 /// Left, top, right and bottom of the field in which lines are drawn (px).
 const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
@@ -31,7 +30,7 @@ impl Findings {
     /// [`Error::Input`] for another ending of `path`, and if no run succeeded; [`Error::Output`] if
     /// the file cannot be written.
     pub fn write_chart(&self, path: impl AsRef<Path>) -> Result<(), Error> {
-        Chart::of(self)?.write(path.as_ref())
+        write_figure(&Chart::of(self)?.draw(), path.as_ref())
     }
 }
 
@@ -63,38 +62,14 @@ impl<'a> Chart<'a> {
         Ok(Self { findings, frame: Frame::new(FIELD, [INK, GRID, FAINT_GRID], times, errors) })
     }
 
-    /// # Errors
-    /// [`Error::Input`] for a path that ends neither in svg nor in png; [`Error::Output`].
-    pub(super) fn write(&self, path: &Path) -> Result<(), Error> {
-        let document = self.draw();
-        match path.extension().and_then(|extension| extension.to_str()) {
-            Some("svg") => write_file(path, |file| svg::write(file, &document)),
-            Some("png") => write_file(path, |file| {
-                file.write_all(&png(&document.to_string()).map_err(io::Error::other)?)
-            }),
-            _ => {
-                let help = "its name must end in .svg or .png";
-                Err(InputError::new("file of a chart", path.display(), help).into())
-            }
-        }
-    }
-
     fn draw(&self) -> Document {
-        let [width, height] = PAGE;
         let time = match self.findings.is_processor_time() {
             true => "processor time of the solution",
             false => "time of the solution",
         };
         let styles = styles(self.findings.lines());
         let lines = || self.findings.lines().iter().zip(&styles);
-        let mut document = Document::new()
-            .set("width", width)
-            .set("height", height)
-            .set("viewBox", (0, 0, width, height))
-            .set("font-family", FONT)
-            .set("font-size", 12)
-            .set("fill", INK)
-            .add(Rectangle::new().set("width", width).set("height", height).set("fill", "white"))
+        let mut document = page(PAGE)
             .add(
                 text(self.findings.title(), [20.0, 30.0])
                     .set("font-size", 17)
@@ -106,7 +81,7 @@ impl<'a> Chart<'a> {
         for (line, style) in lines() {
             document = document.add(self.line(line, style));
         }
-        let apart = ((height - 84.0) / self.findings.lines().len() as f64).min(34.0);
+        let apart = ((PAGE[1] - 84.0) / self.findings.lines().len() as f64).min(34.0);
         lines().enumerate().fold(document, |document, (number, (line, style))| {
             document.add(key(line, style, 76.0 + apart * number as f64))
         })
@@ -120,12 +95,7 @@ impl<'a> Chart<'a> {
             return Group::new();
         }
         let level = level.max(top);
-        let band = Rectangle::new()
-            .set("x", left)
-            .set("y", round(level))
-            .set("width", right - left)
-            .set("height", round(bottom - level))
-            .set("fill", "#eeeeee");
+        let band = rectangle([left, level], [right, bottom]).set("fill", "#eeeeee");
         Group::new().add(band)
     }
 

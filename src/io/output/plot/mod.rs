@@ -1,18 +1,14 @@
 //! Plots: what a motion was in numbers, over time.
 
-mod axis;
-mod line;
 mod page;
 mod table;
 
-use std::io;
 use std::path::Path;
 
 use page::Page;
 pub use table::Table;
 
-use super::write_file;
-use crate::base::input::InputError;
+use super::figure::write_figure;
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::Trajectory;
 
@@ -71,18 +67,6 @@ impl Plot {
         let path = path.as_ref();
         let title = if self.title.is_empty() { &table.title } else { &self.title };
         let drawing = Page::new(title, table, &table.chosen(self.columns.as_deref())?).draw();
-        let picture = match path.extension().and_then(|ending| ending.to_str()) {
-            Some("svg") => Ok(drawing.into_bytes()),
-            #[cfg(feature = "png")]
-            Some("png") => super::png::png(&drawing).map_err(io::Error::other),
-            _ => {
-                let known = if cfg!(feature = "png") { ".svg or .png" } else { ".svg" };
-                let help = format!("its name must end in {known}");
-                return Err(InputError::new("file of a plot", path.display(), help).into());
-            }
-        };
-        let picture =
-            picture.map_err(|source: io::Error| Error::Output { path: path.into(), source })?;
-        write_file(path, |file| file.write_all(&picture))
+        write_figure(&drawing, path)
     }
 }

@@ -1,13 +1,13 @@
 //! The chart of the advice: errors of all candidates over their times.
 
 use svg::Document;
-use svg::node::element::{Circle, Group, Path as Outline, Polyline, Rectangle, Title};
+use svg::node::element::{Circle, Group, Path as Outline, Polyline, Title};
 
 use super::advice::{Advice, Candidate};
 use crate::base::input::percent;
-use crate::io::output::FONT;
+use crate::io::output::{FONT, Point, rectangle, round, stroke, text};
 use crate::studies::work_precision::fastest::time_text;
-use crate::studies::work_precision::frame::{Frame, Point, round, stroke, text};
+use crate::studies::work_precision::frame::Frame;
 
 /// Left, top, right and bottom of the field in which points are drawn (px).
 const FIELD: [f64; 4] = [74.0, 14.0, 586.0, 404.0];
@@ -115,13 +115,8 @@ impl Advice {
     fn hidden(&self, frame: &Frame) -> Group {
         let [left, _, right, bottom] = FIELD;
         let Some(level) = self.hidden_below(frame) else { return Group::new() };
-        let band = Rectangle::new()
-            .set("x", left)
-            .set("y", round(level))
-            .set("width", right - left)
-            .set("height", round(bottom - level))
-            .set("fill", "var(--solid)")
-            .set("opacity", 0.6);
+        let band = rectangle([left, level], [right, bottom]);
+        let band = band.set("fill", "var(--solid)").set("opacity", 0.6);
         Group::new().add(band)
     }
 

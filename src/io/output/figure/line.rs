@@ -5,7 +5,7 @@ use std::fmt::Write;
 /// Points of a page (px), stretch by stretch between gaps: of those in one column of pixels the first, the lowest, the
 /// highest and the last, which look the same.
 #[derive(Debug, Default)]
-pub(super) struct Line {
+pub(crate) struct Line {
     stretches: Vec<Vec<[f64; 2]>>,
     column: Option<Column>,
 }
@@ -23,7 +23,7 @@ struct Column {
 
 impl Line {
     /// The line through `points`; what is not finite is a gap.
-    pub(super) fn through(points: impl Iterator<Item = [f64; 2]>) -> Self {
+    pub(crate) fn through(points: impl Iterator<Item = [f64; 2]>) -> Self {
         let mut line = Self { stretches: vec![Vec::new()], column: None };
         for point in points {
             match point.iter().all(|x| x.is_finite()) {
@@ -75,7 +75,7 @@ impl Line {
     }
 
     /// The data of the areas between this line and another with the same gaps.
-    pub(super) fn area_to(&self, other: &Self) -> String {
+    pub(crate) fn area_to(&self, other: &Self) -> String {
         let mut data = String::new();
         for (one, other) in self.stretches.iter().zip(&other.stretches) {
             for (k, [x, y]) in one.iter().chain(other.iter().rev()).enumerate() {
@@ -88,7 +88,7 @@ impl Line {
     }
 
     /// The data of a path through the stretches, and the points that stand alone.
-    pub(super) fn drawn(&self) -> (String, Vec<[f64; 2]>) {
+    pub(crate) fn drawn(&self) -> (String, Vec<[f64; 2]>) {
         let (mut data, mut alone) = (String::new(), Vec::new());
         for stretch in &self.stretches {
             if let [point] = stretch[..] {

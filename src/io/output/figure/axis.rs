@@ -1,6 +1,6 @@
-//! Linear axes: which numbers stand on them, and in which unit.
+//! Axes, linear and logarithmic: where their lines are, which numbers stand beside them, and in which unit.
 
-use crate::io::output::power_text;
+const SUPERSCRIPTS: [&str; 10] = ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"];
 
 /// Units that take a prefix.
 const PREFIXED: [&str; 7] = ["m", "s", "m/s", "N", "J", "Pa", "rad"];
@@ -22,19 +22,22 @@ const LARGEST: f64 = 1e300;
 const LEAST: f64 = 1e-290;
 
 /// A range of numbers with the lines across it.
-pub(super) struct Axis {
+#[derive(Debug, Default)]
+pub(crate) struct Axis {
+    /// Ends of the range; decades, if the axis is logarithmic.
     low: f64,
     high: f64,
-    /// Places of the lines, and what stands beside them.
-    pub(super) ticks: Vec<(f64, String)>,
+    is_logarithmic: bool,
+    /// Values of the lines, and what stands beside them; minor lines have no label.
+    pub(crate) ticks: Vec<(f64, String)>,
     /// Unit of the labels.
-    pub(super) unit: String,
+    pub(crate) unit: String,
 }
 
 impl Axis {
     /// From the least to the largest of the finite `values` and `margin` of that more at both ends, with about `count`
     /// lines.
-    pub(super) fn new(
+    pub(crate) fn linear(
         values: impl Iterator<Item = f64>,
         margin: f64,
         count: usize,
@@ -57,11 +60,37 @@ impl Axis {
         let (factor, unit) = scaled(largest, unit);
         let ticks = ticks(low / factor, high / factor, count);
         let ticks = ticks.into_iter().map(|(value, label)| (value * factor, label)).collect();
-        Self { low, high, ticks, unit }
+        Self { low, high, is_logarithmic: false, ticks, unit }
+    }
+
+    /// From the least to the largest of the positive `values`, one decade at least, with some room at both ends.
+    /// Labels are written by `label`; of many decades every second, third, ... has one, about `count` in all.
+    pub(crate) fn logarithmic(
+        values: impl Iterator<Item = f64>,
+        count: usize,
+        label: impl Fn(f64) -> String,
+    ) -> Self {
+        let [low, high] = values
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)])
+            .map(f64::log10);
+        let room = 0.06 * (high - low) + 0.5 * (1.0 - (high - low)).max(0.0);
+        let [low, high] = [low - room, high + room];
+        let lines = decades([low, high]);
+        let stride = lines.iter().filter(|line| line.1).count().div_ceil(count).max(1) as i64;
+        let is_kept = |value: f64| stride == 1 || value.log10().round() as i64 % stride == 0;
+        let text = |(value, is_major): (f64, bool)| {
+            let is_labelled = is_major && is_kept(value);
+            (value, if is_labelled { label(value) } else { String::new() })
+        };
+        // between many decades minor lines would be a grey field
+        let lines = lines.into_iter().filter(|line| line.1 || high - low < 12.0);
+        let ticks = lines.map(text).collect();
+        Self { low, high, is_logarithmic: true, ticks, unit: String::new() }
     }
 
     /// Where a value lies: 0 at the lower end, 1 at the upper.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    pub(crate) fn place(&self, value: f64) -> f64 {
+        let value = if self.is_logarithmic { value.log10() } else { value };
         (value.clamp(-LARGEST, LARGEST) - self.low) / (self.high - self.low)
     }
 }
@@ -104,9 +133,40 @@ fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     (0..=number).map(|k| (first + k as f64) * step).map(|value| (value, label(value))).collect()
 }
 
+/// Values within `decades` at which an axis has lines, and whether they are labelled: powers of
+/// ten, and in a short range others, too.
+fn decades([low, high]: [f64; 2]) -> Vec<(f64, bool)> {
+    let is_short = high - low < 2.5;
+    let mut ticks = Vec::new();
+    for decade in low.floor() as i32..=high.floor() as i32 {
+        for digit in 1..=9 {
+            let value = format!("{digit}e{decade}").parse::<f64>().expect("a number");
+            if (low..=high).contains(&value.log10()) {
+                ticks.push((value, digit == 1 || is_short && (digit == 2 || digit == 5)));
+            }
+        }
+    }
+    ticks
+}
+
+/// 10⁻³, 2·10⁻³
+pub(crate) fn power_text(value: f64) -> String {
+    let text = format!("{value:e}");
+    let (digit, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let raised: String = exponent
+        .chars()
+        .map(|c| c.to_digit(10).map_or("⁻", |digit| SUPERSCRIPTS[digit as usize]))
+        .collect();
+    match (digit, exponent) {
+        (digit, "0") => digit.into(),
+        ("1", _) => format!("10{raised}"),
+        _ => format!("{digit}·10{raised}"),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Axis, ticks};
+    use super::{Axis, decades, power_text, ticks};
 
     fn labels(low: f64, high: f64, count: usize) -> Vec<String> {
         ticks(low, high, count).into_iter().map(|(_, label)| label).collect()
@@ -123,7 +183,7 @@ mod tests {
     #[test]
     fn units_fit_the_numbers() {
         let unit =
-            |largest: f64, unit: &str| Axis::new([0.0, largest].into_iter(), 0.0, 4, unit).unit;
+            |largest: f64, unit: &str| Axis::linear([0.0, largest].into_iter(), 0.0, 4, unit).unit;
         assert_eq!(unit(0.03, "m"), "mm");
         assert_eq!(unit(2.5e5, "Pa"), "kPa");
         assert_eq!(unit(3.0, "N"), "N");
@@ -147,12 +207,26 @@ mod tests {
             vec![f64::INFINITY, 1.0],
             vec![1e-300, 2e-300],
         ] {
-            let axis = Axis::new(values.iter().copied(), 0.05, 5, "m");
+            let axis = Axis::linear(values.iter().copied(), 0.05, 5, "m");
             for value in values.iter().filter(|value| value.is_finite()) {
                 assert!((0.0..=1.0).contains(&axis.place(*value)), "{values:?}");
             }
             assert!(axis.ticks.len() <= 12, "{values:?}: {:?}", axis.ticks);
             assert!(axis.ticks.iter().all(|tick| tick.0.is_finite()), "{values:?}");
         }
+    }
+
+    #[test]
+    fn lines_are_powers_of_ten_and_more_in_a_short_range() {
+        let labelled = |range| -> Vec<f64> {
+            decades(range).into_iter().filter(|tick| tick.1).map(|tick| tick.0).collect()
+        };
+        assert_eq!(labelled([-3.2, 0.1]), [1e-3, 1e-2, 1e-1, 1.0]);
+        assert_eq!(labelled([-1.8, -0.9]), [2e-2, 5e-2, 0.1]);
+    }
+
+    #[test]
+    fn labels_are_powers() {
+        assert_eq!([1e-3, 2e-10, 1.0, 10.0].map(power_text), ["10⁻³", "2·10⁻¹⁰", "1", "10¹"]);
     }
 }
