@@ -7,8 +7,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::elements::{ElementsOf, gradient};
 use super::regions::Regions;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
-use crate::base::tensor::Real;
-use crate::elements::material::{ByPoint, Deformation, Elastic, ElasticLaw};
+use crate::elements::material::{CellLaw, Deformation, Elastic};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Strain energy (J), added up in the order of cells, whatever the machine computes at once.
@@ -25,70 +24,11 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     pub(super) fn add_energy(
         &self,
         cells: Range<usize>,
-        law: &impl Density,
+        law: &impl CellLaw,
         u: &[f64],
         sum: f64,
     ) -> f64 {
         Arch::new().dispatch(Pass { elements: self, cells, u: u.as_chunks::<D>().0, law, sum })
-    }
-}
-
-/// Strain energy per natural volume.
-pub(super) trait Density {
-    /// W (J/m^3)
-    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T;
-
-    /// W_shape (J/m^3), and the measure of volume.
-    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-    ) -> [T; 2];
-
-    /// U (J/m^3) of a mean dilatation.
-    fn of_mean<T: Real>(&self, dilatation: T) -> T;
-}
-
-/// Of laws whose formulas are compiled into the loop.
-impl<L: ElasticLaw> Density for L {
-    #[inline(always)]
-    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        self.energy(&self.point(L::twice_strain(at)))
-    }
-
-    #[inline(always)]
-    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-    ) -> [T; 2] {
-        let point = self.point(L::twice_strain(at));
-        [self.energy_of_shape(&point), self.dilatation(&point)]
-    }
-
-    #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        let [energy, ..] = self.of_volume(dilatation);
-        energy
-    }
-}
-
-impl Density for ByPoint {
-    #[inline(always)]
-    fn of_point<T: Real, const M: usize, const D: usize>(&self, at: &Deformation<T, M, D>) -> T {
-        self.energy(&at.twice_green())
-    }
-
-    #[inline(always)]
-    fn shape_and_volume<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-    ) -> [T; 2] {
-        self.shape_and_volume(&at.twice_green())
-    }
-
-    #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        let [energy, ..] = self.of_volume(dilatation);
-        energy
     }
 }
 
@@ -102,7 +42,7 @@ struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usiz
     sum: f64,
 }
 
-impl<L: Density, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
+impl<L: CellLaw, const N: usize, const M: usize, const D: usize, const Q: usize> WithSimd
     for Pass<'_, L, N, M, D, Q>
 {
     type Output = f64;
@@ -127,11 +67,12 @@ impl<L: Density, const N: usize, const M: usize, const D: usize, const Q: usize>
                     swelling += point.volume * dilatation;
                     whole += point.volume;
                 } else {
-                    energy += point.volume * law.of_point(&at);
+                    energy += point.volume * law.energy_at(&at);
                 }
             }
             if is_mean {
-                energy += law.of_mean(swelling / whole) * whole;
+                let [of_mean, ..] = law.of_mean(swelling / whole);
+                energy += of_mean * whole;
             }
             let mut numbers = [0.0; SIDE_BY_SIDE];
             energy.store(&mut numbers, 0);

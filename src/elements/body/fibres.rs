@@ -4,8 +4,8 @@
 //! gradients are those of the shape functions along it, and its frame is its direction.
 
 use super::elements::ElementsOf;
-use super::forces::ElasticPull;
-use super::tangents::ElasticSlope;
+use super::forces::ElasticStress;
+use super::tangents::ElasticTangent;
 use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::base::tensor::{apply, dot};
@@ -87,7 +87,7 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure> {
         let u = u.as_chunks::<D>().0;
         self.share_out(forces, |run, first, forces| {
-            self.add(run.clone(), [u], first, forces, ElasticPull { law, is_mean: false })
+            self.add(run.clone(), [u], first, forces, ElasticStress { law, is_mean: false })
         })
     }
 
@@ -101,7 +101,7 @@ impl<const N: usize, const D: usize, const Q: usize> Strings for ElementsOf<N, 1
         let u = u.as_chunks::<D>().0;
         self.shares.each(stiffness.rows_mut::<D>(), damping.rows_mut(), &|share, mut rows, _| {
             for run in &self.shares.cells[share] {
-                self.add_to(&mut rows, run.clone(), [u], ElasticSlope { law, is_mean: false });
+                self.add_to(&mut rows, run.clone(), [u], ElasticTangent { law, is_mean: false });
             }
         });
     }

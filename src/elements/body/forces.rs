@@ -26,10 +26,10 @@ use crate::elements::force::NodalForces;
 use crate::elements::material::{ByPoint, Deformation, Elastic, Hooke, Hookean, Linear};
 use crate::integrators::ode::Failure;
 
-mod pull;
+mod stress;
 
-pub(super) use pull::ElasticPull;
-use pull::{CalledPull, Pull, ViscousPull};
+pub(super) use stress::ElasticStress;
+use stress::{StressTerm, ViscousStress};
 
 /// Which forces are computed element by element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -80,17 +80,17 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
                     let is_mean = self.mean_dilatation;
                     match &laws.elastic {
                         Elastic::Linear(law) => {
-                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
                         }
                         Elastic::StVenantKirchhoff(law) => {
-                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
                         }
                         // a call would cost a seventh of so short a formula
                         Elastic::ByPoint(ByPoint::Rivlin(law)) => {
-                            self.add(cells, [u], first, forces, ElasticPull { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
                         }
                         Elastic::ByPoint(law) => {
-                            self.add(cells, [u], first, forces, CalledPull { law, is_mean })
+                            self.add(cells, [u], first, forces, ElasticStress { law, is_mean })
                         }
                     }
                 })
@@ -99,7 +99,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
         if terms.viscous {
             self.share_out(&mut forces.dissipative, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
-                    let pull = ViscousPull { law: &laws.viscous, is_mean: self.mean_dilatation };
+                    let pull = ViscousStress { law: &laws.viscous, is_mean: self.mean_dilatation };
                     self.add(cells, [u, v], first, forces, pull)
                 })
             })?;
@@ -120,7 +120,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
             self.share_out(forces, |run, first, forces| {
                 regions.runs(run).try_for_each(|(cells, laws)| {
                     let law: Linear = Hookean(hooke(laws));
-                    self.add(cells, [x], first, forces, ElasticPull { law: &law, is_mean: false })
+                    self.add(cells, [x], first, forces, ElasticStress { law: &law, is_mean: false })
                 })
             })
         };
@@ -162,7 +162,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         fields: [&[[f64; D]]; K],
         first: usize,
         forces: &mut [[f64; D]],
-        pull: impl Pull<K>,
+        pull: impl StressTerm<K>,
     ) -> Result<(), Failure> {
         Arch::new().dispatch(Pass { elements: self, cells, fields, first, forces, pull })
     }
@@ -173,7 +173,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         &self,
         cells: Range<usize>,
         fields: [&[[f64; D]]; K],
-        pull: &impl Pull<K>,
+        pull: &impl StressTerm<K>,
     ) -> Result<(), Failure> {
         for cell in cells {
             let nodes = &self.nodes[cell];
@@ -206,8 +206,14 @@ struct Pass<'a, P, const N: usize, const M: usize, const D: usize, const Q: usiz
     pull: P,
 }
 
-impl<P: Pull<K>, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize>
-    WithSimd for Pass<'_, P, N, M, D, Q, K>
+impl<
+    P: StressTerm<K>,
+    const N: usize,
+    const M: usize,
+    const D: usize,
+    const Q: usize,
+    const K: usize,
+> WithSimd for Pass<'_, P, N, M, D, Q, K>
 {
     type Output = Result<(), Failure>;
 

@@ -17,13 +17,13 @@ use crate::base::tensor::Matrix;
 use crate::elements::material::{Blocks, Deformation, Elastic};
 
 mod pass;
-mod slope;
+mod tangent;
 #[cfg(test)]
 mod tests;
 
 use pass::Pass;
-pub(super) use slope::ElasticSlope;
-use slope::{CalledSlope, OfMean, RateSlope, Slope, ViscousSlope};
+pub(super) use tangent::ElasticTangent;
+use tangent::{OfMean, RateTangent, TangentTerm, ViscousTangent};
 
 /// Elements as matrices.
 pub(super) trait Tangents {
@@ -61,13 +61,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
             let is_mean = self.mean_dilatation;
             match &law(regions.of(cell)) {
                 Elastic::Linear(law) => {
-                    self.add_at_rest(cell, &ElasticSlope { law, is_mean }, &mut rows);
+                    self.add_at_rest(cell, &ElasticTangent { law, is_mean }, &mut rows);
                 }
                 Elastic::StVenantKirchhoff(law) => {
-                    self.add_at_rest(cell, &ElasticSlope { law, is_mean }, &mut rows);
+                    self.add_at_rest(cell, &ElasticTangent { law, is_mean }, &mut rows);
                 }
                 Elastic::ByPoint(law) => {
-                    self.add_at_rest(cell, &CalledSlope { law, is_mean }, &mut rows);
+                    self.add_at_rest(cell, &ElasticTangent { law, is_mean }, &mut rows);
                 }
             }
         }
@@ -92,17 +92,27 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
                         // constant
                         Elastic::Linear(_) => {}
                         Elastic::StVenantKirchhoff(law) => {
-                            self.add_to(&mut stiffness, cells, [u], ElasticSlope { law, is_mean });
+                            self.add_to(
+                                &mut stiffness,
+                                cells,
+                                [u],
+                                ElasticTangent { law, is_mean },
+                            );
                         }
                         Elastic::ByPoint(law) => {
-                            self.add_to(&mut stiffness, cells, [u], CalledSlope { law, is_mean });
+                            self.add_to(
+                                &mut stiffness,
+                                cells,
+                                [u],
+                                ElasticTangent { law, is_mean },
+                            );
                         }
                     }
                 }
                 if terms.viscous {
                     let law = &laws.viscous;
-                    self.add_to(&mut damping, cells.clone(), [u], RateSlope { law, is_mean });
-                    self.add_to(&mut stiffness, cells, [u, v], ViscousSlope { law, is_mean });
+                    self.add_to(&mut damping, cells.clone(), [u], RateTangent { law, is_mean });
+                    self.add_to(&mut stiffness, cells, [u, v], ViscousTangent { law, is_mean });
                 }
             }
         };
@@ -112,7 +122,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Tangents
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
     /// Adds the tangent at rest of one cell.
-    fn add_at_rest(&self, cell: usize, slope: &impl Slope<1>, rows: &mut Rows<'_, D>) {
+    fn add_at_rest(&self, cell: usize, slope: &impl TangentTerm<1>, rows: &mut Rows<'_, D>) {
         let entries = &self.entries[cell];
         let (mut swelling, mut volume) = ([[0.0; D]; N], 0.0);
         let pull = self.mean_dilatation.then_some(0.0);
@@ -139,7 +149,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         rows: &mut Rows<'_, D>,
         cells: Range<usize>,
         fields: [&[[f64; D]]; K],
-        slope: impl Slope<K>,
+        slope: impl TangentTerm<K>,
     ) {
         Arch::new().dispatch(Pass { elements: self, rows, cells, fields, slope });
     }

@@ -1,6 +1,7 @@
 //! Isotropic viscoelastic material, what a body is made of, and the laws of its stress.
 
 mod branch;
+mod cell_law;
 mod deformation;
 mod fibres;
 mod flow;
@@ -12,6 +13,7 @@ mod substance;
 
 pub use branch::MaxwellBranch;
 pub(crate) use branch::{Relaxing, Strained, Stretch};
+pub(crate) use cell_law::CellLaw;
 pub(crate) use deformation::Deformation;
 pub use fibres::{FibreDirection, Fibres};
 pub(crate) use flow::{Components, Step, trace};
@@ -20,7 +22,6 @@ pub use hooke::{Lame, Plane};
 pub(crate) use law::{Block, Blocks, ElasticLaw};
 pub(crate) use laws::{ByPoint, Elastic, Fibre, Hookean, Linear, ObjectiveViscosity, with_law};
 pub use laws::{Law, Strain, Viscosity};
-pub(crate) use response::Tangent;
 pub use substance::Substance;
 
 use crate::base::input::{InputError, not_negative, positive};

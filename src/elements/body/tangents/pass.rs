@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use pulp::{Simd, WithSimd};
 
-use super::slope::{OfMean, Slope};
+use super::tangent::{OfMean, TangentTerm};
 use crate::base::lane::{Lane, Packed, SIDE_BY_SIDE};
 use crate::base::sparse::Rows;
 use crate::elements::body::elements::{ElementsOf, gradients};
@@ -33,8 +33,14 @@ pub(super) struct Pass<
 /// The tangents of several cells. Of symmetric ones blocks below the diagonal are left out.
 type OfCells<const N: usize, const D: usize> = [[Block<Packed, D>; N]; N];
 
-impl<P: Slope<K>, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize>
-    WithSimd for Pass<'_, '_, P, N, M, D, Q, K>
+impl<
+    P: TangentTerm<K>,
+    const N: usize,
+    const M: usize,
+    const D: usize,
+    const Q: usize,
+    const K: usize,
+> WithSimd for Pass<'_, '_, P, N, M, D, Q, K>
 {
     type Output = ();
 

@@ -46,14 +46,14 @@ fn is_the_same_on_all_machines<
                     rows: &mut by_place.rows_mut(),
                     cells: cells.clone(),
                     fields: [u, v],
-                    slope: ViscousSlope { law: &law, is_mean: false },
+                    slope: ViscousTangent { law: &law, is_mean: false },
                 },
                 Pass {
                     elements,
                     rows: &mut by_rate.rows_mut(),
                     cells,
                     fields: [u],
-                    slope: RateSlope { law: &law, is_mean: false },
+                    slope: RateTangent { law: &law, is_mean: false },
                 },
             );
             [by_place.values, by_rate.values]

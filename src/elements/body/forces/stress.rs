@@ -1,10 +1,10 @@
 //! What pulls at the points of cells: elastic laws and viscosity, at points or with a mean dilatation.
 
-use crate::base::tensor::{Matrix, Real, product};
-use crate::elements::material::{ByPoint, Deformation, ElasticLaw, ObjectiveViscosity};
+use crate::base::tensor::{Matrix, Real};
+use crate::elements::material::{CellLaw, Deformation, ObjectiveViscosity};
 
 /// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
-pub(in crate::elements::body) trait Pull<const K: usize> {
+pub(in crate::elements::body) trait StressTerm<const K: usize> {
     /// Whether what resists a change of volume takes the mean of that over the cell.
     fn is_mean(&self) -> bool;
 
@@ -32,13 +32,13 @@ pub(in crate::elements::body) trait Pull<const K: usize> {
     fn outside(&self, domain: f64) -> String;
 }
 
-/// A law whose formulas are compiled into the loop.
-pub(in crate::elements::body) struct ElasticPull<'l, L> {
+/// The stress of an elastic law.
+pub(in crate::elements::body) struct ElasticStress<'l, L> {
     pub(in crate::elements::body) law: &'l L,
     pub(in crate::elements::body) is_mean: bool,
 }
 
-impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
+impl<L: CellLaw> StressTerm<1> for ElasticStress<'_, L> {
     #[inline(always)]
     fn is_mean(&self) -> bool {
         self.is_mean
@@ -52,9 +52,7 @@ impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
         pull: Option<T>,
         volume: T,
     ) -> (Matrix<T, D, M>, T) {
-        let point = self.law.point(L::twice_strain(at));
-        let stress = product(&L::shape(at), &self.law.stress(&point, pull, volume));
-        (stress, self.law.domain(at.stretch(), &point))
+        self.law.piola(at, pull, volume)
     }
 
     #[inline(always)]
@@ -63,70 +61,27 @@ impl<L: ElasticLaw> Pull<1> for ElasticPull<'_, L> {
         at: &Deformation<T, M, D>,
         _: &[Matrix<T, D, M>; 1],
     ) -> T {
-        self.law.dilatation(&self.law.point(L::twice_strain(at)))
+        self.law.dilatation_at(at)
     }
 
     #[inline(always)]
     fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        let [_, pull, _] = self.law.of_volume(dilatation);
+        let [_, pull, _] = self.law.of_mean(dilatation);
         pull
     }
 
     fn outside(&self, domain: f64) -> String {
-        self.law.outside(domain)
+        self.law.outside_at(domain)
     }
 }
 
-/// A law that is called.
-pub(super) struct CalledPull<'l> {
-    pub(super) law: &'l ByPoint,
-    pub(super) is_mean: bool,
-}
-
-impl Pull<1> for CalledPull<'_> {
-    #[inline(always)]
-    fn is_mean(&self) -> bool {
-        self.is_mean
-    }
-
-    #[inline(always)]
-    fn stress<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        _: &[Matrix<T, D, M>; 1],
-        pull: Option<T>,
-        volume: T,
-    ) -> (Matrix<T, D, M>, T) {
-        let (stress, domain) = self.law.stress(&at.twice_green(), at.stretch(), pull, volume);
-        (product(&at.gradient(), &stress), domain)
-    }
-
-    #[inline(always)]
-    fn dilatation<T: Real, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        _: &[Matrix<T, D, M>; 1],
-    ) -> T {
-        self.law.dilatation(&at.twice_green())
-    }
-
-    #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> T {
-        let [_, pull, _] = self.law.of_volume(dilatation);
-        pull
-    }
-
-    fn outside(&self, domain: f64) -> String {
-        self.law.outside(domain)
-    }
-}
-
-pub(super) struct ViscousPull<'l> {
+/// Viscous stress.
+pub(super) struct ViscousStress<'l> {
     pub(super) law: &'l ObjectiveViscosity,
     pub(super) is_mean: bool,
 }
 
-impl Pull<2> for ViscousPull<'_> {
+impl StressTerm<2> for ViscousStress<'_> {
     #[inline(always)]
     fn is_mean(&self) -> bool {
         self.is_mean

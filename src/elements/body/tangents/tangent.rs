@@ -3,12 +3,10 @@
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
 use crate::base::tensor::{Matrix, Real, product, times};
-use crate::elements::material::{
-    Block, Blocks, ByPoint, Deformation, ElasticLaw, ObjectiveViscosity, Tangent,
-};
+use crate::elements::material::{Block, Blocks, CellLaw, Deformation, ObjectiveViscosity};
 
 /// A tangent at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
-pub(in crate::elements::body) trait Slope<const K: usize> {
+pub(in crate::elements::body) trait TangentTerm<const K: usize> {
     /// Whether the block of nodes b and a is that of a and b, transposed.
     const IS_SYMMETRIC: bool;
 
@@ -58,13 +56,13 @@ impl<T: Real, const N: usize, const D: usize> Blocks<T, D> for OfMean<T, N, D> {
     }
 }
 
-/// Of a law whose formulas are compiled into the loop.
-pub(in crate::elements::body) struct ElasticSlope<'l, L> {
+/// Of an elastic law.
+pub(in crate::elements::body) struct ElasticTangent<'l, L> {
     pub(in crate::elements::body) law: &'l L,
     pub(in crate::elements::body) is_mean: bool,
 }
 
-impl<L: ElasticLaw> Slope<1> for ElasticSlope<'_, L> {
+impl<L: CellLaw> TangentTerm<1> for ElasticTangent<'_, L> {
     const IS_SYMMETRIC: bool = true;
 
     #[inline(always)]
@@ -81,8 +79,7 @@ impl<L: ElasticLaw> Slope<1> for ElasticSlope<'_, L> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> impl Blocks<T, D> {
-        let point = self.law.point(L::twice_strain(at));
-        self.law.tangent(L::shape(at), point, pull, gradients, volume)
+        self.law.tangent_at(at, pull, gradients, volume)
     }
 
     #[inline(always)]
@@ -93,75 +90,25 @@ impl<L: ElasticLaw> Slope<1> for ElasticSlope<'_, L> {
         gradients: &[[T; M]; N],
         volume: T,
     ) -> (T, [[T; D]; N], [[T; D]; N]) {
-        let point = self.law.point(L::twice_strain(at));
-        // F (dg/dE) g_a
-        let slope = product(&L::shape(at), &self.law.swelling(&point));
-        let by_nodes = times(product(&slope, gradients), volume);
-        (self.law.dilatation(&point) * volume, by_nodes, by_nodes)
-    }
-
-    #[inline(always)]
-    fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
-        let [_, pull, stiff] = self.law.of_volume(dilatation);
-        [pull, stiff]
-    }
-}
-
-/// Of a law that is called.
-pub(super) struct CalledSlope<'l> {
-    pub(super) law: &'l ByPoint,
-    pub(super) is_mean: bool,
-}
-
-impl Slope<1> for CalledSlope<'_> {
-    const IS_SYMMETRIC: bool = true;
-
-    #[inline(always)]
-    fn is_mean(&self) -> bool {
-        self.is_mean
-    }
-
-    #[inline(always)]
-    fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        _: &[Matrix<T, D, M>; 1],
-        pull: Option<T>,
-        gradients: &[[T; M]; N],
-        volume: T,
-    ) -> impl Blocks<T, D> {
-        let response = self.law.response(&at.twice_green(), pull);
-        Tangent::new(&at.gradient(), &response, gradients, volume)
-    }
-
-    #[inline(always)]
-    fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
-        &self,
-        at: &Deformation<T, M, D>,
-        _: &[Matrix<T, D, M>; 1],
-        gradients: &[[T; M]; N],
-        volume: T,
-    ) -> (T, [[T; D]; N], [[T; D]; N]) {
-        let (dilatation, swelling) = self.law.swelling(&at.twice_green());
-        let slope = product(&at.gradient(), &swelling);
+        let (dilatation, slope) = self.law.swelling_at(at);
         let by_nodes = times(product(&slope, gradients), volume);
         (dilatation * volume, by_nodes, by_nodes)
     }
 
     #[inline(always)]
     fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2] {
-        let [_, pull, stiff] = self.law.of_volume(dilatation);
+        let [_, pull, stiff] = self.law.of_mean(dilatation);
         [pull, stiff]
     }
 }
 
 /// That of viscous stress by the rate.
-pub(super) struct RateSlope<'l> {
+pub(super) struct RateTangent<'l> {
     pub(super) law: &'l ObjectiveViscosity,
     pub(super) is_mean: bool,
 }
 
-impl Slope<1> for RateSlope<'_> {
+impl TangentTerm<1> for RateTangent<'_> {
     const IS_SYMMETRIC: bool = true;
 
     #[inline(always)]
@@ -200,12 +147,12 @@ impl Slope<1> for RateSlope<'_> {
 }
 
 /// That of viscous stress by the deformation.
-pub(super) struct ViscousSlope<'l> {
+pub(super) struct ViscousTangent<'l> {
     pub(super) law: &'l ObjectiveViscosity,
     pub(super) is_mean: bool,
 }
 
-impl Slope<2> for ViscousSlope<'_> {
+impl TangentTerm<2> for ViscousTangent<'_> {
     const IS_SYMMETRIC: bool = false;
 
     #[inline(always)]
