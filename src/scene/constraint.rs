@@ -1,8 +1,8 @@
 //! Constraints R = A^T u - b(t) = 0: what is held and what is moved, and how.
 //!
-//! A constraint on one displacement component of one node (a *nodal* row) is the common case; a
-//! general linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0
-//! (Hirai (4.1.3)); the equations are those of `system`.
+//! A constraint on one displacement component of one node (a *nodal* row) is the common case; a general
+//! linear row may involve several. R = 0 is stabilized as R'' + 2 alpha R' + alpha^2 R = 0 (Hirai (4.1.3));
+//! the equations of motion with it are in `dynamics::system`.
 
 mod axis;
 mod prescribed;
@@ -35,11 +35,11 @@ pub(crate) struct Constraint {
 
 #[derive(Clone, Debug)]
 pub(crate) enum Constrained {
-    /// Components of nodes, each a row of its own.
+    /// Components of nodes, one row for each.
     Nodes(Selection, Axes),
     /// One general row: (node number from 1, axis, coefficient).
     Row(Vec<(usize, Axis, f64)>),
-    /// The displacements of nodes along a direction, a row each.
+    /// The displacements of nodes along a direction, one row per node.
     Along(Selection, Vec<f64>),
 }
 
@@ -51,18 +51,18 @@ pub(crate) enum Axes {
 
 #[derive(Clone)]
 pub(crate) enum Motion {
-    /// Stay where the phase begins.
+    /// Stay where the nodes are when the phase begins.
     Hold,
-    /// Move from there with constant velocity (m/s), one per axis (one in all for a general row).
+    /// Move from there with constant velocity (m/s), one per axis (a single one for a general row).
     Velocity(Vec<f64>),
-    /// Follow a path (all axes alike).
+    /// Follow a path (the same for all axes).
     Path(Path),
-    /// Follow a smooth path through points (all axes alike).
+    /// Follow a smooth path through points (the same for all axes).
     Spline(Arc<Spline>),
-    /// Follow a formula of time without kinks (m; all axes alike).
+    /// Follow a formula of time without kinks (m; the same for all axes).
     #[cfg_attr(not(any(feature = "checkpoint", feature = "scene-file")), allow(dead_code))]
     Formula(Arc<Formula>),
-    /// Turn from where the phase begins (all axes).
+    /// Turn from where the nodes are when the phase begins (all axes).
     Turn(Arc<Turn>),
 }
 

@@ -1,7 +1,7 @@
 //! Scenes: a body, what surrounds it, what happens when, and how that is integrated.
 //!
-//! [`timeline`] has [`Scene`] and its [`Phase`]s, [`constraint`] what is held and moved, `forces` gravity, loads,
-//! contact, springs and chambers, `settings` method and tolerances.
+//! [`timeline`] has [`Scene`] and its [`Phase`]s, [`constraint`] what is held and moved, `forces` gravity,
+//! loads, contact, springs and chambers, `settings` method and tolerances.
 
 pub mod constraint;
 pub(crate) mod forces;

@@ -1,6 +1,6 @@
-//! Tables that scene files do not have, and what stands in for them.
+//! Tables that scene files do not have, and what to use instead.
 
-/// What is not there, in words, and what stands in for it; by the names that one may try.
+/// By the names that users may try: what does not exist, and what to use instead, in words.
 const ABSENT: [(&[&str], &str); 8] = [
     (
         &["bodies"],
@@ -41,10 +41,10 @@ const ABSENT: [(&[&str], &str); 8] = [
     ),
 ];
 
-/// What stands in for the table `name` of the file, if it is one that does not exist for a reason.
+/// What to use instead of the table `name` of the file, if it is one that does not exist for a reason.
 pub(super) fn stand_in(name: &str) -> Option<&'static str> {
     ABSENT.iter().find(|(names, _)| names.contains(&name)).map(|(_, words)| *words)
 }
 
-/// What stands in for a list of bodies.
+/// What to use instead of a list of bodies.
 pub(super) const ONE_BODY: &str = ABSENT[0].1;

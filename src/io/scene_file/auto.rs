@@ -6,12 +6,15 @@ use crate::dynamics::indicators::largest_turn;
 use crate::dynamics::trajectory::Trajectory;
 use crate::elements::body::Strain;
 
-/// Degrees below which cells turn so little that Cauchy strain would do: they count as a strain of 0.01 %.
+/// Rotation (degrees) of cells below which Cauchy strain would do: it takes this for a strain of 0.01 %.
 const FEW_DEGREES: f64 = 0.8;
 
 impl SceneFile {
-    /// Puts the title, and what was chosen where the file says `auto`, and why, into the report of a motion of its scene: see
-    /// [`Report::chosen`](crate::Report::chosen). What `accuracy` and `method = "auto"` have chosen stands there already.
+    /// Puts the title, and what was chosen, and why, where the file says `auto`, into the report of a motion
+    /// of its scene.
+    ///
+    /// See [`Report::chosen`](crate::Report::chosen). What `accuracy` and `method = "auto"` have chosen is in
+    /// the report already.
     pub fn explain(&self, motion: &mut Trajectory) {
         let AutoRequest { strain, cells } = self.auto;
         let mut chosen = Vec::new();

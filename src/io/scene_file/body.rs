@@ -167,7 +167,8 @@ pub(super) fn auto(value: &Value) -> Result<AutoRequest, Error> {
     Ok(AutoRequest { strain, cells: table.required("mesh", mesh::has_auto_cells)? })
 }
 
-/// The scene on the mesh that is finer than the one its numbers are of, if the table `[body]` asks for that.
+/// The scene on a finer mesh than the one that its node numbers refer to, if the table `[body]` requires
+/// that.
 pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = value.table(&BODY)?;
     table.required("mesh", |value| mesh::on_finer_mesh(scene, value))

@@ -30,12 +30,12 @@ pub struct SceneFile {
     pub notes: Vec<String>,
 }
 
-/// How accurate a motion has to be, if that was asked for: see `study::Verification`.
+/// How accurate a motion has to be, if that was requested: see `studies::work_precision::Verification`.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct AccuracyRequest {
-    /// The relative difference of two runs at most.
+    /// The largest relative difference of two runs that is allowed.
     pub within: Option<Fraction>,
-    /// The text that names a `study::Quantity`; the whole motion without it.
+    /// The text that names a `studies::work_precision::Quantity`; the whole motion without it.
     pub quantity: Option<String>,
 }
 
@@ -58,7 +58,7 @@ pub struct StaticsRequest {
 }
 
 impl SceneFile {
-    /// The equilibrium that the file asks for, with what its sensors read.
+    /// The equilibrium that the file describes, with what its sensors read.
     ///
     /// # Errors
     /// As [`Scene::equilibrium_of`] and [`Equilibrium::read`].
@@ -107,7 +107,7 @@ pub enum Format {
     Html,
     /// Sensors and energies over time.
     Plot,
-    /// The same as pixels.
+    /// The same plot as pixels.
     Png,
 }
 

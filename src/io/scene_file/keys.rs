@@ -1,4 +1,5 @@
-//! What tables and keys a scene file may have: reading, the reference page and the JSON Schema go by these.
+//! The tables and keys that a scene file may have: reading, the reference page and the JSON Schema all use
+//! them.
 
 use std::fmt;
 
@@ -15,7 +16,7 @@ pub(super) struct TableKeys {
     pub(super) keys: &'static [Key],
     /// The words of the key `kind`, if there is one.
     pub(super) kinds: &'static [Kind],
-    /// Groups of keys of which exactly one stands there.
+    /// Groups of keys of which exactly one has to be there.
     pub(super) one_of: &'static [&'static [&'static str]],
     /// A piece of a scene file.
     pub(super) example: &'static str,
@@ -38,7 +39,7 @@ pub(super) struct Key {
     /// More to know, a sentence in Markdown; often empty.
     pub(super) law: &'static str,
     pub(super) default: Default,
-    /// The key that has taken its place; this one is still read.
+    /// The new name, if this is an old name of a key, which is still read.
     pub(super) now: Option<&'static str>,
 }
 
@@ -46,14 +47,14 @@ pub(super) struct Key {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Meaning {
     pub(super) text: &'static str,
-    /// Empty for what is no number.
+    /// Empty for values that are not numbers.
     pub(super) unit: &'static str,
 }
 
 /// What stands for a key that is left out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Default {
-    /// Nothing may.
+    /// It must not be left out.
     Required,
     /// As the words say.
     Words(&'static str),
@@ -69,7 +70,7 @@ pub(super) enum Holds {
     Text,
     /// One of some words.
     Word(fn() -> Vec<&'static str>),
-    /// So many of them.
+    /// A list of so many of them.
     Array(&'static Self, usize),
     List(&'static Self),
     /// One alone, or a list.

@@ -215,7 +215,7 @@ fn law(value: &Value) -> Result<Constants, Error> {
         None => None,
     };
     if let Some(bulk) = bulk {
-        // Poisson's ratio above -1
+        // so that Poisson's ratio is above -1
         positive(&table, "bulk", bulk)?;
     }
     Ok(Constants { law, shear, bulk })

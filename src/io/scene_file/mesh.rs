@@ -97,7 +97,8 @@ const ROUND: &[Key] = &[
     CELLS,
 ];
 
-/// Words for cells of the plane, and of space; `auto` stands for quadratic ones, which neither lock nor are too stiff in bending.
+/// Words for cells of the plane, and of space; `auto` stands for quadratic ones, which neither lock nor are
+/// too stiff in bending.
 fn plane_cells() -> Vec<(&'static str, Cells)> {
     let named = Cells::ALL.map(|cells| (cells.name(), cells));
     named.into_iter().chain([(AUTO, Cells::Triangles6)]).collect()
@@ -122,7 +123,7 @@ pub(super) fn mesh(value: &Value, dimension: Option<&Value>) -> Result<Mesh, Err
     }
 }
 
-/// The scene on a finer mesh, if `value` asks for one.
+/// The scene on a finer mesh, if `value` requires one.
 pub(super) fn on_finer_mesh(scene: Scene, value: &Value) -> Result<Scene, Error> {
     let table = value.table(&MESH)?;
     let blame = |error: InputError| table.blame(error);

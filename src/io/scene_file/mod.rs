@@ -98,7 +98,8 @@ impl SceneFile {
     }
 
     /// As [`read`](Self::read), with other values: each of `overrides` is as `body.material.young=2e5` or
-    /// `phase.free.until=1.5`, where a list of tables is followed by the name or the number (from 1) of one of them.
+    /// `phase.free.until=1.5`, where a list of tables is followed by the name or the number (from 1) of one
+    /// of them.
     ///
     /// # Errors
     /// As [`read`](Self::read); [`Error::Input`] for an override that is no key and value.
@@ -107,12 +108,12 @@ impl SceneFile {
         parse(text_of(path)?, path, overrides)
     }
 
-    /// The text of a scene file, with the values of `overrides`, as those of [`read_with`](Self::read_with), written
-    /// into it: all else stays as it was.
+    /// The text of a scene file, with the values of `overrides`, as those of [`read_with`](Self::read_with),
+    /// written into it: all else stays as it was.
     ///
     /// # Errors
-    /// A file that cannot be read; [`Error::Input`] for an override that is no key and value, or for which the text
-    /// has no place.
+    /// A file that cannot be read; [`Error::Input`] for an override that is no key and value, or for which
+    /// the text has no place.
     #[cfg(any(feature = "play", feature = "study"))]
     pub fn text_with(path: impl AsRef<Path>, overrides: &[String]) -> Result<String, Error> {
         overrides.iter().try_fold(text_of(path.as_ref())?, |text, over| written(&text, over))

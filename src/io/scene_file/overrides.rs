@@ -17,8 +17,8 @@ pub(super) fn as_toml(text: &str) -> Result<String, Error> {
     candidates.into_iter().find(is_one).ok_or_else(bad)
 }
 
-/// Puts the values of `over` in the places of those in `table`. In a list of tables a key is the name of one, or its
-/// number (from 1).
+/// Puts the values of `over` in the places of those in `table`. In a list of tables a key is the name of one,
+/// or its number (from 1).
 pub(super) fn merge<'a>(
     table: &mut DeTable<'a>,
     over: DeTable<'a>,

@@ -37,7 +37,8 @@ const PARTS: [(&TableKeys, Add); 10] = [
 
 /// The scene with the phases that `values` describe at its end.
 pub(super) fn add_phases(scene: Scene, values: &[Value]) -> Result<Scene, Error> {
-    // to check it after each table costs its size each time: that is for the one who looks for a mistake
+    // a check after each table takes time in proportion to the scene: done only to find the table with a
+    // mistake
     let add = |scene: Scene, check: &Check| {
         values.iter().try_fold(scene, |scene, value| add_phase(scene, value, check))
     };
@@ -223,7 +224,7 @@ fn contact(phase: Phase, value: &Value, scene: &Scene) -> Result<Phase, Error> {
     }
 }
 
-/// `one` number or formula, or `times` and `many` numbers.
+/// The signal of the key `one`, a number or formula, or of the keys `times` and `many`, lists of numbers.
 fn course(table: &Table, one: &str, many: &str) -> Result<Signal, Error> {
     Ok(match table.optional(one, Value::signal)? {
         Some(signal) => signal,

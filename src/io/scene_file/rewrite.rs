@@ -1,4 +1,5 @@
-//! The text of a scene file with other ends of phases, pressures, forces of actuators and loads; all else stays as it was written.
+//! Writes changed ends of phases, pressures, forces of actuators and loads into the text of a scene file; all
+//! else stays as it was written.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -11,17 +12,17 @@ use crate::elements::mesh::Selection;
 use crate::scene::forces::{Signal, SignalKind, VectorSignal};
 use crate::scene::timeline::{Load, Phase};
 
-/// A phase whose signals are others than in the file.
+/// A phase whose signals differ from those in the file.
 pub(crate) struct Rewritten {
     /// Its number, from 0.
     pub(crate) number: usize,
     /// What it is now.
     pub(crate) phase: Phase,
-    /// The keys that are others: `until`, and of its lists `pressure`, `actuate`, `load`.
+    /// The keys that differ: `until`, and of its lists `pressure`, `actuate`, `load`.
     pub(crate) keys: BTreeSet<&'static str>,
 }
 
-/// Tables as `[[phase.pressure]]` have no place of their own.
+/// Tables such as `[[phase.pressure]]` cannot be replaced in one place.
 const ELSEWHERE: &str =
     "write the lists of each phase as pressure = [...], actuate = [...], load = [...]";
 

@@ -22,7 +22,7 @@ pub fn schema() -> Value {
     root
 }
 
-/// Values of which many keys are.
+/// Kinds of values that many keys have.
 fn shared() -> [(&'static str, Value); 7] {
     let number = json!({ "type": "number" });
     let whole = json!({ "type": "integer", "minimum": 1 });
@@ -108,7 +108,7 @@ fn described(key: &Key) -> Value {
         (None, Default::Words(words)) => format!("{}. Default: {words}.", key.meaning),
     };
     if schema.get("$ref").is_some() {
-        schema = json!({ "allOf": [schema] }); // beside a reference nothing else counts
+        schema = json!({ "allOf": [schema] }); // next to a reference all else is ignored
     }
     schema["description"] = [&words, key.law].join(" ").trim().into();
     schema

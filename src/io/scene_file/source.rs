@@ -10,7 +10,7 @@ use crate::dynamics::error::Error;
 /// The text of a scene file and where it comes from.
 pub(super) struct SourceText<'a> {
     pub(super) path: &'a Path,
-    /// With the overrides of its values behind it, one in each line.
+    /// Followed by the overrides of its values, one in each line.
     pub(super) text: &'a str,
     /// Length of the file itself.
     pub(super) own: usize,
@@ -35,7 +35,7 @@ impl SourceText<'_> {
         }
     }
 
-    /// Adds to the notes, unless it stands there.
+    /// Adds a note, unless it is there already.
     pub(super) fn note(&self, note: String) {
         let mut notes = self.notes.borrow_mut();
         if !notes.contains(&note) {

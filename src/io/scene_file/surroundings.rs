@@ -249,7 +249,7 @@ pub(super) fn add_spring(scene: Scene, value: &Value) -> Result<Scene, Error> {
     Ok(scene.spring(spring))
 }
 
-/// The point of space that an end of a spring is, if it is none of nodes.
+/// The point of space at an end of a spring, if that end is not a node.
 fn anchor(end: &Value, dimension: usize) -> Result<Option<Vec<f64>>, Error> {
     match end.entries() {
         Some(entries) if entries.contains_key("point") => {
@@ -361,7 +361,7 @@ fn friction(mut obstacle: Obstacle, table: &Table) -> Result<Obstacle, Error> {
     Ok(obstacle)
 }
 
-/// Checks that no other one of its kind has the `name` of the thing that `table` describes.
+/// Checks that nothing else of its kind has the `name` of what `table` describes.
 fn unique<'a>(
     table: &Table,
     name: &str,

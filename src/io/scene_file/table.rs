@@ -16,7 +16,7 @@ use crate::dynamics::error::Error;
 /// The key that says what kind of thing a table describes.
 const KIND: &str = "kind";
 
-/// A table all of whose keys are known, and none of whose groups of keys is missing or there beside another.
+/// A table whose keys are all known, with exactly one of its groups of keys, if it has any.
 pub(super) struct Table<'a> {
     source: &'a SourceText<'a>,
     /// Its key, with those of the tables around it; empty for the whole file.
@@ -169,7 +169,7 @@ impl<'a> Table<'a> {
             .ok_or_else(|| self.missing(key, format!("expected {}", self.meaning(key))))
     }
 
-    /// `key` should be there.
+    /// The error that `key` is missing.
     pub(super) fn missing(&self, key: &str, help: impl Display) -> Error {
         self.source.error(&self.at, &self.full(key), format!("missing; {help}"))
     }
@@ -183,8 +183,8 @@ impl<'a> Table<'a> {
         if self.key.is_empty() { key.into() } else { format!("{}.{key}", self.key) }
     }
 
-    /// Puts an error about what was made of this table on the line of the key it is about, if that
-    /// is known, or else on that of the table. An error that has its line already stays as it is.
+    /// Gives an error about what was made of this table the line of the key that it is about, if that is
+    /// known, or else the line of the table. An error that has a line already stays as it is.
     pub(super) fn blame(&self, error: impl Into<Error>) -> Error {
         let error = error.into();
         let (input, value, help) = match &error {
@@ -204,7 +204,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// The value, in this table or one inside of it, that the last possible word of `input` names.
+    /// The value, in this table or one inside of it, whose key is the last word of `input` that is a key.
     fn culprit(&self, input: &str) -> Option<Value<'a>> {
         let mut words = input.split(|c: char| !c.is_alphanumeric() && c != '_').rev();
         let found = words.find_map(|word| self.entry(word))?;

@@ -62,7 +62,7 @@ pub(super) fn scene_file(top: &Table) -> Result<SceneFile, Error> {
         let names = names.iter().map(|name| name.string().map(str::to_owned));
         scene = scene.unusual(names.collect::<Result<Vec<String>, Error>>()?);
     }
-    // a state to start from is of the mesh as it is given, or of the finer one that the scene moves to
+    // an initial state belongs to the mesh as it is given, or to the finer one on which the scene ends up
     let initial = top.get("initial");
     let started = initial.as_ref().map(|initial| initial::add_initial(scene.clone(), initial));
     let starts_finer = match started {

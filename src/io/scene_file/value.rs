@@ -199,7 +199,7 @@ impl<'a> Value<'a> {
         Ok(VectorSignal::Formulas(self.formulas(dimension, "dimension")?.into()))
     }
 
-    /// What `read` reads of what is no text.
+    /// The number that `read` reads; anything else is an error.
     fn changing(&self, read: impl Fn(&Self) -> Result<f64, Error>) -> Result<f64, Error> {
         match self.value {
             DeValue::Float(_) | DeValue::Integer(_) => read(self),

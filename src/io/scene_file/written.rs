@@ -15,7 +15,7 @@ use crate::dynamics::error::Error;
 /// No key and value; a text in which there is no place for it.
 pub(super) fn written(text: &str, over: &str) -> Result<String, Error> {
     let toml = as_toml(over)?;
-    // a table of dotted keys has no place of its own: its entries stand before all else
+    // a table of dotted keys has no place of its own in the text: its new entry goes before all else
     let candidates = [changed(text, &toml), Some(format!("{toml}\n{text}"))];
     let mut new = candidates.into_iter().flatten().filter(|new| is_meant(new, text, &toml));
     new.next().ok_or_else(|| {
@@ -58,7 +58,8 @@ fn entry<'t>(mut table: &'t DeTable, toml: &'t str) -> Option<(Vec<&'t str>, &'t
     }
 }
 
-/// The `text` with a new entry: in a `table` behind its last number, text or list; of the whole file, before all else.
+/// The `text` with a new entry: in a `table` after its last number, text or list; at the top level before all
+/// else.
 fn inserted(
     text: &str,
     table: Option<&Spanned<DeValue>>,
@@ -80,7 +81,7 @@ fn inserted(
     Some([text.get(..place.start)?, &entry, text.get(place.end..)?].concat())
 }
 
-/// Puts `entry` after the value that ends at `at`: on a line of its own, or, within braces, beside it.
+/// Puts `entry` after the value that ends at `at`: on a line of its own, or, within braces, on the same line.
 pub(super) fn insertion(text: &str, at: usize, entry: &str) -> (Range<usize>, String) {
     let rest = text.get(at..).unwrap_or_default();
     let line = rest.lines().next().unwrap_or_default();
@@ -114,7 +115,7 @@ fn are_same(a: &DeValue, b: &DeValue) -> bool {
             let mut pairs = a.iter().zip(b.iter());
             a.len() == b.len() && pairs.all(|(a, b)| are_same(a.get_ref(), b.get_ref()))
         }
-        // values without values in them have no places either
+        // values that contain no other values hold no positions in the text
         _ => format!("{a:?}") == format!("{b:?}"),
     }
 }

@@ -12,14 +12,14 @@ use crate::base::input::{InputError, finite};
 use crate::base::vector::norm;
 use crate::elements::mesh::Mesh;
 
-/// A component of a direction of length 1 that is below this is round-off of a cosine.
+/// Components of a unit vector below this are round-off of a cosine.
 const ROUND_OFF: f64 = 1e-14;
 
 /// Turns the constraints of a phase into rows.
 ///
 /// # Errors
-/// Unknown nodes, axes that the body does not have, a velocity of the wrong length, numbers that
-/// are not finite, a path through points out of order, demands that contradict each other.
+/// Unknown nodes, axes that the body does not have, a velocity of the wrong length, numbers that are not
+/// finite, a path through points out of order, constraints that contradict each other.
 pub(crate) fn rows(
     constraints: &[Constraint],
     mesh: &Mesh,
@@ -142,7 +142,8 @@ fn general_terms(
     Ok(resolved)
 }
 
-/// The components of the unit vector along `normal` that are not 0, by their axes; the first one is above 0.
+/// The components of the unit vector along `normal` that are not 0, with their axes; its sign makes the first
+/// one positive.
 fn direction(normal: &[f64], dimension: usize) -> Result<Vec<(usize, f64)>, InputError> {
     let input = "normal of a symmetry plane";
     finite(input, normal)?;
@@ -173,11 +174,11 @@ fn check_path(
     ))
 }
 
-/// The rows without those that demand what others demand already: where two sets of nodes meet, at the ends of
-/// edges, both may hold them.
+/// The rows without those that others imply already: where two sets of nodes meet, at the ends of edges, both
+/// may hold the same nodes.
 ///
 /// # Errors
-/// Demands on the same components that are not known to be the same.
+/// Constraints on the same components that are not known to be the same.
 fn without_repetitions(
     rows: Vec<ConstraintRow>,
     dimension: usize,
@@ -188,7 +189,7 @@ fn without_repetitions(
         let help = "they contradict each other: leave one of them out";
         InputError::new(input, format!("{first}, and {second}"), help)
     };
-    // by their degrees of freedom and, of general rows, coefficients
+    // keyed by the degrees of freedom and, for general rows, the coefficients
     let mut known: BTreeMap<Vec<(usize, u64)>, &ConstraintRow> = BTreeMap::new();
     let key = |row: &ConstraintRow| match row.nodal() {
         Some((dof, _)) => vec![(dof, 0)],

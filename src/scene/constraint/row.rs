@@ -11,7 +11,7 @@ use crate::base::formula::Formula;
 /// One row of A^T with its b(t), resolved for one phase.
 #[derive(Clone)]
 pub(crate) struct ConstraintRow {
-    /// Degrees of freedom, ascending, and coefficients; a single one makes a nodal row.
+    /// Degrees of freedom, ascending, and coefficients; a single term makes a nodal row.
     pub(crate) terms: Vec<(usize, f64)>,
     pub(super) motion: RowMotion,
 }
@@ -26,7 +26,7 @@ pub(super) enum RowMotion {
 }
 
 impl RowMotion {
-    /// Whether it is known to be the same, of two rows with the same terms in one phase.
+    /// Whether two rows with the same terms in one phase are known to have the same motion.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Linear { velocity, .. }, Self::Linear { velocity: other, .. }) => {
@@ -84,8 +84,8 @@ impl ConstraintRow {
         }
     }
 
-    /// Where the row starts, as far as the state there tells: b (m) and when (s), and for a row that turns the
-    /// arm (m), along b and across.
+    /// The part of the row that depends on the state at its start: b (m), the time (s), and for a row that
+    /// turns the components of its arm r and of a x r (m).
     pub(crate) fn origin(&self) -> [f64; 4] {
         match &self.motion {
             RowMotion::Linear { start, since, .. } => [*start, *since, 0.0, 0.0],
@@ -94,7 +94,7 @@ impl ConstraintRow {
         }
     }
 
-    /// Lets the row start elsewhere: see [`origin`](Self::origin).
+    /// Sets where the row starts: see [`origin`](Self::origin).
     pub(crate) fn set_origin(&mut self, origin: [f64; 4]) {
         match &mut self.motion {
             RowMotion::Linear { start, since, .. } => [*start, *since, ..] = origin,
@@ -116,7 +116,7 @@ impl ConstraintRow {
         }
     }
 
-    /// The node of a row of a single one, of a body in `dimension` dimensions.
+    /// The node of a row that involves a single one, for a body in `dimension` dimensions.
     pub(crate) fn node(&self, dimension: usize) -> Option<usize> {
         let mut nodes = self.terms.iter().map(|(dof, _)| dof / dimension);
         let first = nodes.next();
@@ -133,8 +133,8 @@ impl ConstraintRow {
     }
 }
 
-/// Puts the nodes that `rows` prescribe where they should be at time `t`: a constraint that is
-/// continued does not take over the error of the stabilization.
+/// Moves the nodes that `rows` prescribe to their prescribed positions at time `t`, so that a constraint that
+/// continues in the next phase does not take over the error left by the stabilization.
 pub(crate) fn prescribe(rows: &[ConstraintRow], t: f64, u: &mut [f64]) {
     for row in rows {
         if let Some((dof, coefficient)) = row.nodal() {

@@ -13,7 +13,7 @@ pub(crate) struct Spline {
     times: Vec<f64>,
     /// b at these times (m).
     displacements: Vec<f64>,
-    /// b' there (m/s). Between two points the path is the cubic that has both.
+    /// b' there (m/s). Between two points the path is the cubic with these values and slopes at its ends.
     velocities: Vec<f64>,
 }
 
@@ -29,8 +29,8 @@ impl Spline {
         &self.times
     }
 
-    /// A bound on the speed (m/s): between two points the velocity is a quadratic Bezier curve, no larger than
-    /// its control points.
+    /// A bound on the speed (m/s): between two points the velocity is a quadratic Bezier curve, no larger
+    /// than the largest of its control points.
     pub(crate) fn fastest(&self) -> f64 {
         let piece = |k: usize| {
             let span = self.times[k + 1] - self.times[k];
@@ -47,11 +47,11 @@ impl Spline {
         &self.displacements
     }
 
-    /// `values` and `unit` are what it gives, for messages.
+    /// `values` and `unit` name what the path gives, for messages.
     ///
     /// # Errors
-    /// Fewer than 2 points, times that do not ascend, numbers that are not finite, not one
-    /// displacement per time.
+    /// Fewer than 2 points, times that do not ascend, numbers that are not finite, numbers of times and
+    /// displacements that differ.
     pub(crate) fn validate(&self, values: &str, unit: &str) -> Result<(), InputError> {
         let Self { times, displacements, .. } = self;
         finite("the times of a path", times)?;
@@ -101,7 +101,7 @@ impl Spline {
 ///
 /// v_(k-1)/h_(k-1) + 2 (1/h_(k-1) + 1/h_k) v_k + v_(k+1)/h_k = 3 (d_(k-1)/h_(k-1) + d_k/h_k)
 ///
-/// at all inner points, and v = 0 at both ends. The matrix is tridiagonal, its diagonal dominates.
+/// at all inner points, and v = 0 at both ends. The matrix is tridiagonal and diagonally dominant.
 fn velocities(times: &[f64], displacements: &[f64]) -> Vec<f64> {
     let last = times.len().min(displacements.len()).saturating_sub(1);
     let inverse = |k: usize| (times[k + 1] - times[k]).recip();
@@ -129,8 +129,8 @@ mod tests {
         spline
     }
 
-    /// A cubic with b' = 0 at both ends is its own spline, whatever points on it are given. Errors
-    /// are those of round-off, amplified by the division by squared spans.
+    /// A cubic with b' = 0 at both ends is its own spline, whichever points on it are given. Errors are those
+    /// of round-off, amplified by the division by squared spans.
     #[test]
     fn a_cubic_is_its_own_spline() {
         // b = 0.3 (3 s^2 - 2 s^3) with s = (t - 1)/4

@@ -4,6 +4,7 @@
 pub(crate) struct PhaseStart<'a> {
     /// Time (s).
     pub(crate) time: f64,
-    /// Displacements (m), with what the phase before prescribed put [where it should be](super::prescribe).
+    /// Displacements (m), in which nodes that the previous phase prescribed are
+    /// [where they should be](super::prescribe).
     pub(crate) u: &'a [f64],
 }

@@ -1,4 +1,4 @@
-//! Rotations that are prescribed: nodes that turn about a point of the plane, or about an axis in space.
+//! Prescribed rotations: nodes that turn about a point of the plane, or about an axis in space.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::elements::mesh::Mesh;
 /// counter-clockwise, three in space.
 ///
 /// # Errors
-/// Another number of components, numbers that are not finite.
+/// A wrong number of components, numbers that are not finite.
 pub(crate) fn angular(
     input: &str,
     given: &[f64],
@@ -39,7 +39,8 @@ pub(crate) fn angular(
 pub(crate) struct Turn {
     /// A point of the axis (m).
     pub(crate) centre: Vec<f64>,
-    /// As [`angular`] takes it: an angular velocity (rad/s) without `angles`, with them an axis of any length.
+    /// As [`angular`] takes it: an angular velocity (rad/s) without `angles`, with them an axis of any
+    /// length.
     pub(crate) axis: Vec<f64>,
     /// Angle (rad) over time.
     pub(crate) angles: Option<Spline>,
@@ -52,8 +53,8 @@ impl Turn {
     }
 
     /// # Errors
-    /// A centre or axis with another number of components than the body has use for, an axis of length 0,
-    /// numbers that are not finite, times of a path that do not ascend.
+    /// A centre or axis with a wrong number of components for the body, an axis of length 0, numbers that are
+    /// not finite, times of a path that do not ascend.
     pub(super) fn validate(&self, dimension: usize) -> Result<(), InputError> {
         if self.centre.len() != dimension {
             let help = format!("it needs {dimension} component(s) (m)");
@@ -86,21 +87,21 @@ impl Turn {
 
 /// One component of a node that turns.
 ///
-/// With the arm r of the node as the phase begins, across the axis, and the unit vector a of the axis it is
-/// displaced by b = u_0 + r (cos(angle) - 1) + (a x r) sin(angle) (Rodrigues).
+/// With the unit vector a of the axis and the arm r, perpendicular to it, from the axis to the node when the
+/// phase begins, its displacement is b = u_0 + r (cos(angle) - 1) + (a x r) sin(angle) (Rodrigues).
 #[derive(Clone)]
 pub(super) struct Turning {
     pub(super) turn: Arc<Turn>,
     /// u_0 (m)
     start: f64,
-    /// When (s).
+    /// Time (s) of the start.
     since: f64,
     /// The components of r and of a x r (m).
     arm: [f64; 2],
 }
 
 impl Turning {
-    /// The component `dof` of the body as `start` finds it; `turn` is valid.
+    /// The motion of the component `dof` from the state `start`; `turn` has to be valid.
     pub(super) fn new(turn: &Arc<Turn>, dof: usize, mesh: &Mesh, start: &PhaseStart) -> Self {
         let dimension = mesh.dimension();
         let (node, i) = (dof / dimension, dof % dimension);

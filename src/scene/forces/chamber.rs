@@ -16,14 +16,15 @@ use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::elements::mesh::{Mesh, Selection};
 use crate::integrators::ode::Failure;
 
-/// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart: the force on
-/// its nodes is p h dS/du in the plane, with the area S within its walls and the
-/// thickness h, and p dV/du in space, with the enclosed volume V. Walls with mid nodes are curved as
-/// the shape functions have it. Phases set the pressure
-/// ([`Phase::pressure`](crate::Phase::pressure)); without it a chamber does nothing.
+/// A chamber filled with a gas of given pressure p (Pa), which pushes its walls apart.
 ///
-/// Walls do not feel each other. A run ends with an error where a chamber under pressure encloses a volume below 0; without
-/// pressure, that is a warning.
+/// The force on its nodes is p h dS/du in the plane, with the area S within its walls and the thickness h,
+/// and p dV/du in space, with the enclosed volume V. Walls with mid nodes are curved according to the shape
+/// functions. Phases set the pressure ([`Phase::pressure`](crate::Phase::pressure)); without it a chamber
+/// does nothing.
+///
+/// Walls have no contact with each other. A run ends with an error where a chamber under pressure encloses a
+/// volume below 0; without pressure, that is a warning.
 #[derive(Debug, Clone)]
 pub struct Chamber {
     name: String,
@@ -42,20 +43,21 @@ enum Walls {
 impl Chamber {
     /// A chamber within walls of `nodes`.
     ///
-    /// A named set or a box stands for part of the boundary of the body: the faces all of whose
-    /// nodes belong to it. The chamber lies on their other side than the body.
-    /// - In the plane they make closed loops, rooms with the same pressure; or one of them is open and
+    /// A named set or a box stands for part of the boundary of the body: the faces all of whose nodes belong
+    /// to it. The chamber lies on the side of these faces that is opposite to the body.
+    /// - In the plane they form closed loops, rooms with the same pressure; one of them may be open if it is
     ///   [closed by a line](Self::closed_by_line).
-    /// - In space they make closed surfaces.
+    /// - In space they form closed surfaces.
     ///
-    /// Numbers in the plane are a closed polygon, given in its order around, either way; it need not
-    /// lie on the boundary. Where they run along edges of cells with mid nodes, these are curved. Pressure enlarges its area; if that is 0 (a flat membrane), the chamber
-    /// is on the other side of the boundary than the body. In space they are as a named set.
+    /// Numbers in the plane form a closed polygon, in their order around it, in either direction; it need not
+    /// lie on the boundary. Where it runs along edges of cells with mid nodes, it is curved. Pressure
+    /// enlarges its area; if that is 0 (a flat membrane), the chamber lies on the side of the boundary that
+    /// is opposite to the body. In space numbers mean the same as a named set.
     pub fn within(name: impl Into<String>, nodes: impl Into<Selection>) -> Self {
         Self::new(name.into(), Walls::Nodes(nodes.into()))
     }
 
-    /// With other nodes on its walls, as `change` has them; triangles stay.
+    /// The same chamber with the selection of its wall nodes replaced by `change`; triangles stay.
     pub(crate) fn with_nodes(
         mut self,
         change: impl FnOnce(&Selection) -> Result<Selection, InputError>,
@@ -79,16 +81,19 @@ impl Chamber {
         Self { name, walls, is_closed_by_line: false, is_closed_by_lid: false, thickness: None }
     }
 
-    /// Walls in the plane that are open at one place are closed there by the straight line between their ends, which
-    /// feel its half of the pressure on it each (ends that are held feel nothing of that). Without this a gap is an
-    /// error.
+    /// Closes walls in the plane that are open at one place by the straight line between their ends.
+    ///
+    /// Each end takes half of the force of the pressure on that line (if it is held, this has no effect).
+    /// Without this a gap is an error.
     pub fn closed_by_line(mut self) -> Self {
         self.is_closed_by_line = true;
         self
     }
 
-    /// Walls in space that are open are closed by a lid on each of their rims, from the mean of the rim's nodes to its
-    /// edges: flat, if the rim is. The nodes of the rim feel the pressure on it. Without this a rim is an error.
+    /// Closes walls in space that are open by a lid on each of their rims.
+    ///
+    /// A lid runs from the mean of the rim's nodes to its edges: it is flat if the rim is. The nodes of the
+    /// rim take the force of the pressure on it. Without this a rim is an error.
     pub fn closed_by_lid(mut self) -> Self {
         self.is_closed_by_lid = true;
         self
@@ -108,8 +113,8 @@ impl Chamber {
     /// The force of the chamber in a phase with `pressure` (Pa) in it.
     ///
     /// # Errors
-    /// Walls on a line, triangles outside space; nodes that do not exist, make no chain or enclose
-    /// nothing, a gap that no line closes, a surface with holes, a missing thickness.
+    /// Walls in one dimension, triangles other than in space; nodes that do not exist, form no chain or
+    /// enclose nothing, a gap that no line closes, a surface with holes, a missing thickness.
     pub(crate) fn force(
         &self,
         body: &Body,
@@ -127,7 +132,7 @@ impl Chamber {
             (Walls::Nodes(nodes), 2) => self.polygon(body, nodes)?,
             (Walls::Nodes(nodes), 3) => {
                 let surface = Surface::new(body.mesh(), self.faces(body.mesh(), nodes)?);
-                // seen from outside the body, and so from inside the chamber
+                // faces are oriented as seen from outside the body, and so from inside the chamber
                 let sign = match body.mesh().kind().dimension() {
                     3 => -1.0,
                     _ => self.surface_sign(body, &surface)?,
@@ -154,7 +159,8 @@ impl Chamber {
         Ok(force)
     }
 
-    /// Closed walls on the boundary of a body that fills its space have the chamber on their other side than the body.
+    /// Checks that closed walls on the boundary of a body that fills its space do not run around the body:
+    /// the chamber lies on the side of them that is opposite to the body.
     pub(crate) fn check_side(&self, mesh: &Mesh, force: &ChamberForce) -> Result<(), InputError> {
         let Walls::Nodes(nodes @ (Selection::Set(_) | Selection::Box { .. })) = &self.walls else {
             return Ok(());
@@ -224,8 +230,8 @@ impl Chamber {
     }
 }
 
-/// 1 or -1, so that pressure enlarges the area or volume `enclosed`, which is signed; `None` if it
-/// is 0 but for round-off.
+/// 1 or -1, so that pressure enlarges the area or volume `enclosed`, which is signed; `None` if it is 0 up to
+/// round-off.
 fn orientation(enclosed: f64, body: &Body) -> Option<f64> {
     let least = 1e-9 * body.mesh().size().powi(body.dimension() as i32);
     (enclosed.abs() > least).then(|| enclosed.signum())
@@ -258,7 +264,7 @@ impl ChamberForce {
         self.has_room
     }
 
-    /// Adds `factor` times the derivative of that volume by `u` (m^2).
+    /// Adds `factor` times the derivative of the volume by `u` (m^2).
     pub(crate) fn add_gradient(&self, factor: f64, u: &[f64], gradient: &mut [f64]) {
         match &self.geometry {
             Geometry::Polygon(polygon, sign) => polygon.add_gradient(factor * sign, u, gradient),
@@ -267,8 +273,8 @@ impl ChamberForce {
     }
 }
 
-/// What encloses a chamber, with the factor from p times the gradient of its area or volume to
-/// the force: +-h, or +-1.
+/// What encloses a chamber, and the factor by which p times the gradient of its area or volume becomes the
+/// force: +-h in the plane, +-1 in space.
 enum Geometry {
     Polygon(Polygon, f64),
     Surface(Surface, f64),
@@ -288,7 +294,8 @@ impl Force for ChamberForce {
         Ok(())
     }
 
-    /// Pressure in a volume below 0 is none: it would draw walls further through each other that it should push apart.
+    /// Pressure in a volume below 0 is refused: it would pull the walls further through each other instead of
+    /// pushing them apart.
     fn check_step(&self, t: f64, _before: &[f64], after: &[f64]) -> Result<(), Failure> {
         let pressure = signal::sum(&self.pressure, t);
         if pressure == 0.0 {

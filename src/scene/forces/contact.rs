@@ -71,7 +71,8 @@ impl Touch<'_> {
         self.point.law.tangential_damping + self.slip.as_ref().map_or(0.0, friction)
     }
 
-    /// The force along an axis (N), with the `drag` of sliding: that of the spring, and that of what brakes.
+    /// The force along an axis (N), with the `drag` of sliding: the part of the spring, and that of dampers
+    /// and friction.
     #[inline]
     fn force(&self, drag: f64, axis: usize) -> [f64; 2] {
         let Self { point, ref nearest, velocity, rate, is_cut_off, .. } = *self;
@@ -85,7 +86,7 @@ impl Touch<'_> {
 
 impl Contact {
     /// # Errors
-    /// Numbers out of range; a stiffness per area for a body whose boundary has none.
+    /// Numbers out of range; a stiffness per area for a body whose boundary has no area.
     pub(crate) fn new(body: &Body, obstacle: &Obstacle) -> Result<Self, InputError> {
         let dimension = body.dimension();
         let obstacle = obstacle.validated(dimension)?;
@@ -115,7 +116,7 @@ impl Contact {
         &self.obstacle
     }
 
-    /// Shows `see` the distance (m) of each point and the first of its nodes (counted from 0).
+    /// Passes to `see` the distance (m) of each point and the first of its nodes (counted from 0).
     pub(crate) fn each_distance(&self, t: f64, u: &[f64], mut see: impl FnMut(f64, usize)) {
         let moved = self.obstacle.displacement(t);
         for point in &self.points {
@@ -131,7 +132,8 @@ impl Contact {
         self.obstacle.nearest(moved, x, self.dimension)
     }
 
-    /// The path of a point within one of so many equal `parts` of a step, as the obstacle sees it, and when that is (s).
+    /// The path of a point relative to the obstacle, within part `number` of a step that is divided into
+    /// equal `parts`, and the times (s) of its ends.
     fn path(
         &self,
         point: &ContactPoint,
@@ -188,10 +190,11 @@ impl Contact {
         })
     }
 
-    /// Force on the body as a whole (N), or its part on the nodes that `is_read` names; 0 beyond the dimension.
+    /// Force on the body as a whole (N), or its part on the nodes that `is_read` names; 0 beyond the
+    /// dimension.
     ///
     /// # Errors
-    /// A distance function of the user's own that has no meaning.
+    /// A user's distance function that returns an invalid distance or gradient.
     pub(crate) fn force(
         &self,
         t: f64,
@@ -215,7 +218,7 @@ impl Contact {
         Ok(total)
     }
 
-    /// Checks what a user's function has given.
+    /// Checks what a user's function has returned.
     fn check(&self, t: f64, touch: &Touch) -> Result<(), Failure> {
         let Nearest { distance, normal, .. } = &touch.nearest;
         let length = norm(normal);
@@ -257,7 +260,7 @@ impl Force for Contact {
                     forces.conservative[node * self.dimension + i] += share * elastic;
                     forces.dissipative[node * self.dimension + i] += share * braking;
                 }
-                // heat counts the velocity relative to the obstacle; the rest is its drive's work
+                // heat is counted by the velocity relative to the obstacle; the rest is work of its drive
                 forces.carried_heat += braking * w;
                 forces.carried_power += (elastic + braking) * w;
             }
@@ -265,11 +268,10 @@ impl Force for Contact {
         Ok(())
     }
 
-    /// With N the normal force, H the Hessian of d, r = x' - w and B the drag that multiplies the
-    /// sliding velocity s, B_t + N c with c = mu(w)/w: -df/du is
-    /// K_p n n^T + (B_p - B) n (H r)^T - (N + B d') H, and -df/dv is
-    /// B_p n n^T + B (I - n n^T), at a fixed B. As B changes, with g = c'/w, they have
-    /// -c s (K_p n + B_p H r)^T - N g d' s (H s)^T and -c B_p s n^T + N g s s^T besides.
+    /// With N the normal force, H the Hessian of d, r = x' - w and B the drag that multiplies the sliding
+    /// velocity s, B_t + N c with c = mu(w)/w: -df/du is K_p n n^T + (B_p - B) n (H r)^T - (N + B d') H,
+    /// and -df/dv is B_p n n^T + B (I - n n^T), at a fixed B. As B changes, further terms are, with
+    /// g = c'/w, -c s (K_p n + B_p H r)^T - N g d' s (H s)^T and -c B_p s n^T + N g s s^T.
     fn add_tangents(
         &self,
         t: f64,
@@ -314,8 +316,8 @@ impl Force for Contact {
         Tangents::Added
     }
 
-    /// A point shares K_p n n^T out among its nodes by parts that add up to 1, so that no row of
-    /// entries sums up to more than its node's part.
+    /// A point distributes K_p n n^T among its nodes by shares that add up to 1, so that no row sum is larger
+    /// than its node's share.
     fn add_reserves(
         &self,
         t: f64,
@@ -356,8 +358,9 @@ impl Force for Contact {
         (self.fastest != Some(0.0)).then(|| self.obstacle.velocity_at(t))
     }
 
-    /// The distances of all points, then the pulls of all normal forces that it matters of, then how much
-    /// faster all points under friction slide than v0; those of points that do not touch, or press, stay off.
+    /// The distances of all points, then the pulls of all normal forces (if their sign matters), then how
+    /// much faster than v0 all points under friction slide. Pulls of points that do not touch, and excess
+    /// speeds of points that do not press, stay off.
     fn switches(&self) -> usize {
         self.switches.count()
     }
@@ -409,7 +412,7 @@ impl Force for Contact {
             let distance = |x: &[f64; 3]| shape.nearest(&x[..d]).distance;
             let [before, after] = [distance(path(0).1.start()), distance(path(parts - 1).1.end())];
             *clearance = after.abs();
-            // forces at an end that is half as deep tell enough
+            // the force at an end of the step that is half as deep is enough
             let depth = 2.0 * f64::max(0.0, -before.min(after)) + tolerance;
             let found = (0..parts).map(path).find_map(|([from, to], path)| {
                 let part = deepest(shape, &path, d, depth)?;

@@ -1,4 +1,4 @@
-//! Faces of the boundary between some nodes, which loads are spread over by the shape functions.
+//! Faces of the boundary between some nodes, over which loads are distributed by the shape functions.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -14,7 +14,7 @@ use crate::elements::mesh::{Face, FaceKind, Mesh};
 /// Nodes of a face at most.
 pub(super) const MOST_NODES: usize = 8;
 
-/// A quadrature point of a reference face; what a face has not is 0.
+/// A quadrature point of a reference face; what a face does not have is 0.
 pub(super) struct FacePoint {
     /// The shape functions N_a.
     pub(super) values: [f64; MOST_NODES],
@@ -64,10 +64,10 @@ impl FacePoint {
     }
 }
 
-/// What a face of `N` corners takes part in the area or volume within walls by: (1/N!) sum w det(x_a, ...) over sets of
-/// `N` of its nodes, local numbers, with the weight w of each. They are straight pieces of a face without mid nodes; with
-/// them, w = (N - 1)! int det(N_a, N_a,1, ...), for determinants of positions are linear in each of them and change sign
-/// with every exchange.
+/// The contribution of a face to the area (`N` = 2) or volume (`N` = 3) within walls: (1/N!)
+/// sum w det(x_a, ...) over sets of `N` of its nodes, by local numbers, with the weight w of each. Without
+/// mid nodes the sets are straight pieces of the face; with them, w = (N - 1)! int det(N_a, N_a,1, ...), as
+/// determinants of positions are linear in each of them and change sign when two are exchanged.
 pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f64)> {
     let count: usize = match kind {
         FaceKind::Segment3 => 3,
@@ -96,7 +96,7 @@ pub(super) fn volume_parts<const N: usize>(kind: FaceKind) -> Vec<([usize; N], f
     weighed.filter(|(_, w)| w.abs() > NO_PART).collect()
 }
 
-/// Weights of parts, of the order of 1, below which they are round-off of 0.
+/// Weights of parts, which are of the order of 1, are round-off of 0 below this.
 const NO_PART: f64 = 1e-12;
 
 /// Natural position of a node; components beyond the dimension are 0.
@@ -131,13 +131,13 @@ pub(super) fn list(nodes: &[usize]) -> String {
 pub(super) struct Loaded {
     pub(super) faces: Vec<Face>,
     pub(super) kind: FaceKind,
-    /// What their lengths are to be multiplied by for areas (m^2); none of a string along its length.
+    /// Factor from their lengths to areas (m^2); none for a string along its length.
     pub(super) section: Option<f64>,
 }
 
 impl Loaded {
-    /// The faces of the boundary between `nodes`; of a body thinner than space its cells or, where they are none
-    /// of them, the faces of its cells on its rim.
+    /// The faces of the boundary between `nodes`. For a body of lower dimension than space they are its cells
+    /// or, where the nodes make up no whole cells, the faces of its cells on its rim.
     ///
     /// # Errors
     /// The nodes that are on none.
@@ -155,8 +155,8 @@ impl Loaded {
         })
     }
 
-    /// The integral of the shape function of each node in the undeformed shape: the length (m) or area (m^2) that the
-    /// node stands for, 1 for a point.
+    /// The integral of the shape function of each node in the undeformed shape: the length (m) or area (m^2)
+    /// that the node stands for, 1 for a point.
     fn integrals(&self, mesh: &Mesh) -> BTreeMap<usize, f64> {
         let points = face_points(self.kind);
         let mut integrals = BTreeMap::new();
@@ -178,8 +178,8 @@ impl Loaded {
     }
 }
 
-/// The parts of each of `nodes` in a force on all of them together, which add up to 1: as the shape functions of
-/// the faces between them have it, or equal ones where they make up no whole faces.
+/// The shares of `nodes` in a force on all of them together, which add up to 1: by the shape functions of the
+/// faces between them, or equal where they make up no whole faces.
 pub(crate) fn shares(body: &Body, nodes: &[usize]) -> Vec<f64> {
     let Ok(loaded) = Loaded::between(body, nodes) else {
         return vec![1.0 / nodes.len() as f64; nodes.len()];
@@ -202,7 +202,7 @@ pub(crate) fn areas(body: &Body, nodes: &[usize]) -> Result<Vec<f64>, String> {
     Ok(nodes.iter().map(|node| section * integrals[node]).collect())
 }
 
-/// What is said of nodes that are on no face.
+/// The message for nodes that are on no face.
 pub(super) fn on_no_face(loose: &[usize]) -> String {
     format!(
         "it acts on faces of the boundary with all their nodes given, and {} are on none: name a whole side, or \

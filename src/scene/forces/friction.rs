@@ -8,10 +8,10 @@
 //!         mu_k                             from 3 v0 on: it slides
 //! ```
 //!
-//! mu(w) has a slope without a jump, and mu(w)/w is a polynomial in w^2 where it sticks, so that nothing
-//! happens at rest. mu_s is reached at v0 and nowhere passed.
+//! mu(w) has a continuous slope, and mu(w)/w is a polynomial in w^2 where it sticks, so that it is smooth at
+//! rest. mu_s is reached at v0 and exceeded nowhere.
 
-/// How fast v0 is where it is not given (1/s): sizes of the body per second.
+/// Default of v0, in sizes of the body per second (1/s).
 const STICKING_SPEED: f64 = 1e-3;
 
 /// The law's numbers.
@@ -30,14 +30,14 @@ pub(super) struct Coulomb {
 pub(super) struct Drag {
     /// mu(w)/w (s/m)
     pub(super) per_speed: f64,
-    /// Its derivative by w over w (s^3/m^3).
+    /// Its derivative by w, divided by w (s^3/m^3).
     pub(super) slope: f64,
     /// d mu/dw (s/m)
     pub(super) along: f64,
 }
 
 impl Coulomb {
-    /// mu_s and mu_k with v0 as given, or as suits a body of `size` (m).
+    /// mu_s and mu_k with v0 as given, or its default for a body of `size` (m).
     pub(super) fn new(
         [at_rest, sliding]: [f64; 2],
         sticking_speed: Option<f64>,

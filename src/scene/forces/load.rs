@@ -40,9 +40,9 @@ impl VectorSignal {
 
 /// A force which changes with time, on some nodes.
 pub(crate) struct VaryingLoad {
-    /// Nodes, counted from 0, and how many times the force each of them gets.
+    /// Nodes, counted from 0, and the factor of the force on each of them.
     pub(crate) nodes: Vec<(usize, f64)>,
-    /// Force (N), or force per area (N/m^2) if nodes get areas of it.
+    /// Force (N), or force per area (N/m^2) if the factors are areas.
     pub(crate) force: VectorSignal,
     /// Components of the force.
     pub(crate) dimension: usize,

@@ -10,9 +10,10 @@ use crate::base::formula::Formula;
 use crate::base::input::{InputError, not_negative, positive};
 use crate::scene::constraint::Spline;
 
-/// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force on each
-/// boundary node of a body with d <= 0 (or point of a face, see
-/// [`stiffness_density`](Self::stiffness_density)):
+/// An obstacle: a signed distance d(x), negative inside, and the law of its penalty force.
+///
+/// On each boundary node of a body with d <= 0 (or point of a face, see
+/// [`stiffness_density`](Self::stiffness_density)) the force is
 ///
 /// f = N n - B_t s - mu(|s|) N s/|s|,   N = -K_p d - B_p d'
 ///
@@ -22,7 +23,7 @@ use crate::scene::constraint::Spline;
 ///
 /// # Friction
 ///
-/// [`friction_coefficients`](Self::friction_coefficients) mu_s (static) and mu_k (kinetic) make
+/// [`friction_coefficients`](Self::friction_coefficients) mu_s (static) and mu_k (kinetic) give
 ///
 /// ```text
 /// mu(w) = mu_s (3 w/v0 - (w/v0)^3)/2                  up to v0, the sticking speed
@@ -30,24 +31,25 @@ use crate::scene::constraint::Spline;
 ///         mu_k                                        from there on
 /// ```
 ///
-/// a force that is smooth in the speed, in place of one that jumps at rest: what sticks creeps, slower than
-/// v0. On a slope of angle a, for tan(a) below mu_s, a block creeps at
+/// This force is smooth in the speed, in place of one that jumps at rest: what sticks creeps, slower than v0.
+/// On a slope of angle a, for tan(a) below mu_s, a block creeps at
 ///
 /// ```text
 /// w = 2 v0 sin(asin(tan(a)/mu_s)/3),
 /// ```
 ///
-/// some 2/3 v0 tan(a)/mu_s; on a steeper one it slides with the acceleration g (sin(a) - mu_k cos(a)).
-/// Where contact events are located ([`Settings::contact_events`](crate::Settings::contact_events)), so are the
-/// moments at which points pass v0, and the report says when the body slips and sticks
-/// ([`PhaseReport::slips`](crate::PhaseReport::slips)). What the force takes is heat, counted relative to the
-/// obstacle. In statics ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing slides, and there is no
-/// friction.
+/// which is about 2/3 v0 tan(a)/mu_s; on a steeper one it slides with the acceleration
+/// g (sin(a) - mu_k cos(a)). Where contact events are located
+/// ([`Settings::contact_events`](crate::Settings::contact_events)), so are the moments at which points pass
+/// v0, and the report says when the body slips and sticks
+/// ([`PhaseReport::slips`](crate::PhaseReport::slips)). The work of friction turns into heat, counted by the
+/// velocity relative to the obstacle. In statics ([`Scene::equilibrium`](crate::Scene::equilibrium)) nothing
+/// slides, and there is no friction.
 ///
-/// Near rest friction is a damper of 3 mu_s N/(2 v0). Implicit methods do not mind it, but speeds are as good
-/// as their tolerances, so `atol_velocity` stays well below v0 if it is not given. Explicit
-/// steps are bounded by it (central differences: on a node of mass m to 2 m v0/(3 mu_s N)): give them a
-/// larger [`sticking_speed`](Self::sticking_speed).
+/// Near rest friction acts as a damper of 3 mu_s N/(2 v0). It does not limit the steps of implicit methods,
+/// but speeds are only as accurate as their tolerances, so the default of `atol_velocity` stays well below
+/// v0. Explicit steps are bounded by it (with central differences, on a node of mass m, to
+/// 2 m v0/(3 mu_s N)): give them a larger [`sticking_speed`](Self::sticking_speed).
 #[derive(Debug, Clone)]
 pub struct Obstacle {
     name: String,
@@ -105,8 +107,8 @@ impl Obstacle {
         }
     }
 
-    /// With `share` of its stiffness and damping at each node, where they are given per node: as many more nodes share
-    /// them.
+    /// The same obstacle with `share` of its stiffness and damping at each node, where they are given per
+    /// node: for a mesh with more nodes, which share them.
     pub(crate) fn shared_out(mut self, share: f64) -> Self {
         if let Stiffness::PerNode(stiffness) = &mut self.stiffness {
             *stiffness *= share;
@@ -157,21 +159,21 @@ impl Obstacle {
         self
     }
 
-    /// Contact stiffness K_p (N/m per node), above 0. A finer mesh has more nodes in contact:
-    /// scale it by the node count to keep the floor alike, or give a
-    /// [`stiffness_density`](Self::stiffness_density).
+    /// Contact stiffness K_p (N/m per node), above 0. A finer mesh has more nodes in contact: reduce it in
+    /// proportion to keep the floor equally stiff, or give a [`stiffness_density`](Self::stiffness_density).
     pub fn stiffness(mut self, stiffness: f64) -> Self {
         self.stiffness = Stiffness::PerNode(stiffness);
         self
     }
 
-    /// Contact stiffness per area of the boundary of the body (N/m^3), above 0: pressure over
-    /// depth, the same for all meshes. Damping, tangential too, is per area then (N s/m^3). The
-    /// area is that of the faces in the undeformed shape: edge length times thickness in the plane,
-    /// the cross section in one dimension.
+    /// Contact stiffness per area of the boundary of the body (N/m^3), above 0: pressure over depth, the same
+    /// for all meshes.
     ///
-    /// Contact is felt at Gauss points of the faces instead of at the nodes: a corner that goes
-    /// ahead is felt once the points next to it, a fifth of an edge away, are inside.
+    /// Damping, also the tangential one, is then per area (N s/m^3). The area is that of the faces in the
+    /// undeformed shape: edge length times thickness in the plane, the cross section in one dimension.
+    ///
+    /// Contact acts at Gauss points of the faces instead of at the nodes: a corner that enters first has
+    /// contact only once the points next to it, a fifth of an edge away, are inside.
     pub fn stiffness_density(mut self, stiffness: f64) -> Self {
         self.stiffness = Stiffness::Density(stiffness);
         self
@@ -204,8 +206,10 @@ impl Obstacle {
     }
 
     /// The sliding speed v0 (m/s) below which friction sticks, above 0; with
-    /// [friction coefficients](Self::friction_coefficients) only. Default: a thousandth of the size of the
-    /// body per second, little against motions that one looks at, as what sticks may creep so fast.
+    /// [friction coefficients](Self::friction_coefficients) only.
+    ///
+    /// Default: a thousandth of the size of the body per second. What sticks may creep nearly that fast, so
+    /// it should be small against the motions of interest.
     pub fn sticking_speed(mut self, speed: f64) -> Self {
         self.sticking_speed = Some(speed);
         self
@@ -218,15 +222,17 @@ impl Obstacle {
         self
     }
 
-    /// Constant velocity w of the obstacle (m/s), which is where it was said to be at t = 0.
-    /// Default: at rest. The power f . w that keeps it moving is supplied to the body.
+    /// Constant velocity w of the obstacle (m/s); at t = 0 it is where its shape was given. Default: at rest.
+    /// The power f . w that keeps it moving is supplied to the body.
     pub fn velocity(mut self, velocity: impl Into<Vec<f64>>) -> Self {
         self.travel = Travel::Uniform(velocity.into());
         self
     }
 
-    /// A smooth path instead: at the `times` (s, ascending, two at least) the obstacle has the `displacements`
-    /// (m, one component per dimension) from where it was said to be. It may stop and come back.
+    /// A smooth path in place of a constant velocity.
+    ///
+    /// At the `times` (s, ascending, two at least) the obstacle has the `displacements` (m, one component per
+    /// dimension) from where its shape was given. It may stop and come back.
     ///
     /// The path is a cubic spline, as that of [`Phase::path`](crate::Phase::path): it starts and ends with
     /// velocity 0, and the obstacle rests before the first time and after the last.
@@ -240,8 +246,8 @@ impl Obstacle {
         self
     }
 
-    /// A path by smooth formulas of time instead, one per component: the displacement (m) from where the obstacle
-    /// was said to be.
+    /// A path by smooth formulas of time in place of a velocity, one per component: the displacement (m) from
+    /// where the shape was given.
     #[cfg(feature = "scene-file")]
     pub(crate) fn follow_formulas(mut self, formulas: Vec<Formula>) -> Self {
         self.travel = Travel::Formulas(formulas.into());
@@ -307,7 +313,7 @@ impl Obstacle {
         self
     }
 
-    /// Where it is at time `t` (s), from where it was said to be (m); 0 beyond the dimension.
+    /// Its displacement (m) at time `t` (s) from where its shape was given; 0 beyond the dimension.
     pub(crate) fn displacement(&self, t: f64) -> [f64; 3] {
         let travelled = self.travel.displacement(t);
         std::array::from_fn(|i| self.offset[i] + travelled[i])
@@ -323,7 +329,8 @@ impl Obstacle {
         self.travel.fastest()
     }
 
-    /// Cubics that it moves along between two times (s), up to `tolerance` (m), and how fast.
+    /// The cubics along which it moves between two times (s), to within `tolerance` (m), and a bound on its
+    /// speed.
     pub(crate) fn cubics(&self, times: [f64; 2], tolerance: f64) -> Cubics {
         self.travel.cubics(times, tolerance)
     }
@@ -334,8 +341,8 @@ impl Obstacle {
         self.travel.is_uniform().then(|| self.velocity_at(0.0))
     }
 
-    /// Times (s) between which its path is a cubic, up to a time `end` and to `tolerance` (m); none if its
-    /// velocity is constant.
+    /// Times (s) between which its path is a cubic, up to a time `end` and to within `tolerance` (m); none if
+    /// its velocity is constant.
     #[cfg(feature = "output")]
     pub(crate) fn knots(&self, end: f64, tolerance: f64) -> Vec<f64> {
         match self.travel {
@@ -377,7 +384,7 @@ impl Obstacle {
         self.tangential_damping > 0.0
     }
 
-    /// With nothing that holds back what slides on it.
+    /// The same obstacle without friction and tangential damping.
     pub(crate) fn without_friction(self) -> Self {
         Self { friction: None, sticking_speed: None, tangential_damping: 0.0, ..self }
     }

@@ -1,11 +1,11 @@
 //! Whether a point has passed through an obstacle between the ends of a step.
 //!
-//! Integrators evaluate forces where their steps end (and at some stages), so that a long step may
-//! lead through an obstacle without a force. Here the path of a point within a step is the cubic
-//! with the positions and velocities at both ends. As a Bezier curve it is no longer than the
-//! polygon of its four control points, and lies within their convex hull. As a distance d changes
-//! by no more than the way, it stays above (d_0 + d_1 - L)/2 on a piece of length L between d_0 and
-//! d_1; a convex one (that of a convex shape) also above its tangent plane at either end.
+//! Integrators evaluate forces where their steps end (and at some stages), so that a long step may lead
+//! through an obstacle without a force. Here the path of a point within a step is the cubic with the
+//! positions and velocities at both ends. As a Bezier curve it is no longer than the polygon of its four
+//! control points, and lies within their convex hull. As a distance d changes by no more than the length
+//! travelled, it stays above (d_0 + d_1 - L)/2 on a piece of length L with d_0 and d_1 at its ends; that of a
+//! convex shape is a convex function, and so also stays above its tangent plane at either end.
 
 use super::shape::{Kind, Shape};
 use crate::base::vector::{dot, norm};
@@ -76,8 +76,8 @@ impl Path {
     }
 }
 
-/// Where along `path` (from 0 to 1) a point is deeper within `shape` than `depth` (m), if anywhere:
-/// at least half as deep as it gets.
+/// The place along `path` (from 0 to 1) where a point is deeper within `shape` than `depth` (m), if there is
+/// one; the point is at least half as deep there as it gets anywhere.
 pub(super) fn deepest(shape: &Shape, path: &Path, dimension: usize, depth: f64) -> Option<f64> {
     let mut search = Search { dimension, limit: -depth, place: None };
     search.shape(shape, path);
@@ -108,7 +108,7 @@ impl Search {
             return;
         }
         let is_above = match shape.kind() {
-            // points outside of a cavity's wall make a convex set
+            // for a cavity, points with a distance of `limit` or more form a ball, which is convex
             Kind::Ball { cavity: true, .. } => {
                 path.0.iter().all(|x| shape.nearest(&x[..d]).distance >= self.limit)
             }
@@ -139,8 +139,8 @@ pub(super) fn difference(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Depths that a search may and must find, on random paths around shapes of all kinds, by
-    /// looking at two thousand places of each.
+    /// The search finds a place where it must, and only where it may: on random paths around shapes of all
+    /// kinds, each sampled at two thousand places.
     #[test]
     fn no_path_through_a_shape_is_missed() {
         let shapes = [
@@ -191,7 +191,7 @@ mod tests {
                     }
                     None => {
                         clear += 1;
-                        // the last halving leaves a thousandth of the way
+                        // the last halving leaves a thousandth of the path
                         assert!(lowest > -depth - 5e-3, "{shape:?} {path:?}");
                     }
                 }

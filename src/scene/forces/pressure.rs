@@ -10,8 +10,9 @@ use crate::elements::force::{Force, NodalForces, Tangents};
 use crate::elements::mesh::Selection;
 use crate::integrators::ode::Failure;
 
-/// Pressure p on faces: f_a = -sum w p N_a n over their quadrature points, with n = x,1 x x,2, the outward normal of
-/// the deformed face times its area per reference area. In the plane the thickness along z stands for x,2.
+/// Pressure p on faces: f_a = -sum w p N_a n over their quadrature points, with n = x,1 x x,2, the outward
+/// normal of the deformed face times its area per reference area. In the plane the thickness along z stands
+/// for x,2.
 ///
 /// Hibbitt, *Some follower forces and load stiffness*, Int. J. Numer. Meth. Engng. 14 (1979).
 pub(crate) struct FacePressure {
@@ -99,8 +100,9 @@ impl Force for FacePressure {
         Ok(())
     }
 
-    /// -df_a/du_b = sum w p N_a (N_b,2 [x,1 x] - N_b,1 [x,2 x]), where [c x] is the matrix of the product c x. It is
-    /// not symmetric by itself; over a closed surface, or one whose rim is held, the sum is.
+    /// -df_a/du_b = sum w p N_a (N_b,2 [x,1 x] - N_b,1 [x,2 x]), where [c x] is the matrix of the cross
+    /// product with c. It is not symmetric by itself; over a closed surface, or one whose rim is held, the
+    /// sum is.
     fn add_tangents(
         &self,
         t: f64,

@@ -105,10 +105,11 @@ impl Shape {
         Self(Kind::Union(parts.into_iter().collect()))
     }
 
-    /// A shape given by its signed distance: `distance` returns d at a point (m) and writes its
-    /// gradient, a vector of length 1. (Where d is above 0, only its sign counts for the force. It
-    /// should not be larger than the distance there, for steps that lead through the shape are found
-    /// by it.)
+    /// A shape given by its signed distance.
+    ///
+    /// `distance` returns d at a point (m) and writes its gradient, a vector of length 1. (Where
+    /// d is above 0, only its sign matters for the force. But it should not be larger than the true distance
+    /// there, as it is used to find steps that lead through the shape.)
     ///
     /// The curvature of the shape is left out of the Newton matrix: results are the same, but the
     /// iteration converges more slowly where the shape is strongly curved.
@@ -321,7 +322,7 @@ mod tests {
                 };
                 for j in 0..dimension {
                     let (ahead, behind) = (shifted(j, h), shifted(j, -h));
-                    // a ridge, where two parts are nearest, is no place for derivatives
+                    // there are no derivatives on a ridge, where two parts are equally near
                     let jump = (0..3).map(|i| (ahead.normal[i] - behind.normal[i]).abs());
                     if jump.sum::<f64>() > 1e-3 {
                         continue;

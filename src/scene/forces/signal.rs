@@ -79,7 +79,7 @@ pub(crate) enum SignalKind {
     Live(Live),
 }
 
-/// Numbers that stay until a command sets others, also while forces read them.
+/// Numbers that stay until a command sets others, even while forces read them.
 #[derive(Clone)]
 pub(crate) struct Live(Arc<[AtomicU64]>);
 
@@ -111,35 +111,35 @@ impl Signal {
         Self(SignalKind::Constant(value))
     }
 
-    /// A function of time (s), smooth but for [`with_breaks`](Self::with_breaks).
+    /// A function of time (s), smooth except at its [breaks](Self::with_breaks).
     pub fn function(f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         Self(SignalKind::Function { function: Arc::new(f), breaks: Vec::new() })
     }
 
     /// A formula of time `t` (s): `"2000 * sin(2*pi*3*t)"`.
     ///
-    /// It consists of numbers, `t`, `pi`, `e`, `+ - * / ^`, parentheses and the functions `sin`, `cos`, `tan`, `asin`,
-    /// `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `log10`, `sqrt`, `abs`, `min`, `max` (of two numbers) and `step` (0
-    /// below 0, else 1). Signs count after powers: `-t^2` is -(t^2). Steps do not end at its kinks and jumps: for those
-    /// there are [tables](Self::table).
+    /// It consists of numbers, `t`, `pi`, `e`, `+ - * / ^`, parentheses and the functions `sin`, `cos`,
+    /// `tan`, `asin`, `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `log10`, `sqrt`, `abs`, `min`,
+    /// `max` (of two numbers) and `step` (0 below 0, else 1). Powers come before signs: `-t^2` is -(t^2).
+    /// Steps do not end at its kinks and jumps: for those there are [tables](Self::table).
     ///
     /// # Errors
-    /// A text that is no formula, with the place.
+    /// A text that is no formula, with the place of the mistake.
     pub fn formula(text: &str) -> Result<Self, InputError> {
         let formula = Formula::parse(text);
         let formula = formula.map_err(|problem| InputError::new("formula", text, problem))?;
         Ok(Self(SignalKind::Formula(Arc::new(formula))))
     }
 
-    /// The `values` at the `times` (s, ascending). In between it is interpolated linearly; before and
-    /// after it is constant.
+    /// A signal with the `values` at the `times` (s, ascending). In between it is interpolated linearly;
+    /// before and after it is constant.
     pub fn table(times: impl Into<Vec<f64>>, values: impl Into<Vec<f64>>) -> Self {
         let values = values.into().into_iter().map(|value| vec![value]).collect();
         Self(SignalKind::TimeTable(TimeTable::new(times.into(), values)))
     }
 
-    /// From the value `from` at time `start` (s) to the value `to`, which it keeps, `duration` (s) later,
-    /// along a straight line.
+    /// A straight line from the value `from` at time `start` (s) to the value `to`, which it keeps,
+    /// `duration` (s) later.
     pub fn ramp(from: f64, to: f64, start: f64, duration: f64) -> Self {
         Self::table([start, start + duration], [from, to])
     }
@@ -179,12 +179,12 @@ impl Signal {
         }
     }
 
-    /// The same signal, as a number that a command can set if it is a constant.
+    /// The same signal; a constant becomes a number that a command can set.
     pub(crate) fn thawed(self) -> Self {
         self.value().map_or(self, |value| Self(SignalKind::Live(Live::new(&[value]))))
     }
 
-    /// The same signal, as a constant if it is a number that a command can set.
+    /// The same signal; a number that a command can set becomes a constant.
     pub(crate) fn frozen(&self) -> Self {
         self.live().map_or_else(|| self.clone(), |live| Self::constant(live.at(0)))
     }
@@ -233,7 +233,7 @@ pub(super) fn sum(signals: &[Signal], t: f64) -> f64 {
     signals.iter().map(|signal| signal.at(t)).sum()
 }
 
-/// Passes a `value` that a function of time gave, if it is finite.
+/// Returns a `value` that a function of time gave, if it is finite.
 pub(super) fn finite_at(t: f64, what: fmt::Arguments<'_>, value: f64) -> Result<f64, Failure> {
     if value.is_finite() {
         return Ok(value);
@@ -294,7 +294,7 @@ impl VectorSignal {
         }
     }
 
-    /// The same vector, as a constant if it consists of numbers that a command can set.
+    /// The same vector; numbers that a command can set become constants.
     pub(crate) fn frozen(&self) -> Self {
         self.live().map_or_else(|| self.clone(), |live| Self::Constant(live.get()))
     }

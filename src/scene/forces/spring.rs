@@ -13,18 +13,19 @@ use crate::integrators::ode::Failure;
 /// its direction, and with it the force, is about to flip.
 const COLLAPSED: f64 = 0.01;
 
-/// Below this fraction round-off alone makes the direction. Trial points of a step may come
-/// nearer than [`COLLAPSED`], so that no step size is spent on keeping away from it.
+/// Below this fraction of its natural length the direction of a spring is round-off. At trial points of a
+/// step it may be shorter than [`COLLAPSED`], so that steps are not made smaller to keep away from that.
 const NO_DIRECTION: f64 = 1e-9;
 
-/// A spring between two nodes, its length l along the unit vector e from the first node to the
-/// second. One of its ends may be a fixed point of space instead. With the natural length L, stiffness k, damping c and
-/// actuation force f, the second node feels
+/// A spring between two nodes, or between a node and a fixed point of space.
+///
+/// Its length is l, along the unit vector e from the first end to the second. With the natural length L,
+/// stiffness k, damping c and actuation force f, the force on the second end is
 ///
 /// (f - k (l - L) - c l') e
 ///
-/// and the first one the opposite: f > 0 extends the spring. The nodes may be any, point masses
-/// too ([`point_mass`](crate::elements::body::BodyBuilder::point_mass)). Phases actuate it
+/// and the opposite on the first one: f > 0 extends the spring. It may join any nodes, also point masses
+/// ([`point_mass`](crate::elements::body::BodyBuilder::point_mass)). Phases actuate it
 /// ([`Phase::actuate`](crate::Phase::actuate)).
 ///
 /// A run in which a spring gets shorter than a hundredth of L ends with an error that names it: it
@@ -127,7 +128,7 @@ impl Spring {
     /// Where the spring runs.
     ///
     /// # Errors
-    /// Ends that are not one node each, or the same; numbers out of range.
+    /// Ends that are not one node each, or are the same; numbers out of range.
     fn line(&self, mesh: &Mesh) -> Result<Line, InputError> {
         let input = |key: &str| self.input(key);
         let joints = self.joints(mesh)?;
@@ -187,14 +188,14 @@ impl Spring {
     /// The force of the spring, without that of its actuator.
     ///
     /// # Errors
-    /// Ends that are not one node each, or the same; numbers out of range.
+    /// Ends that are not one node each, or are the same; numbers out of range.
     pub(crate) fn force(&self, mesh: &Mesh) -> Result<SpringForce, InputError> {
         let line = self.line(mesh)?;
         Ok(SpringForce { line, stiffness: self.stiffness, damping: self.damping })
     }
 
-    /// The force of its actuator, the sum of the signals `force` (N): a load, which statics brings on in
-    /// steps, and so apart from what the spring itself does.
+    /// The force of its actuator, the sum of the signals `force` (N). It is kept apart from that of the
+    /// spring itself, as it is a load, which statics applies in steps.
     ///
     /// # Errors
     /// As [`force`](Self::force).
@@ -245,7 +246,7 @@ impl SpringForce {
         self.line.length(u).0
     }
 
-    /// What pulls its ends together (N), without its actuator.
+    /// The force that pulls its ends together (N), without that of its actuator.
     pub(crate) fn pull(&self, u: &[f64], v: &[f64]) -> f64 {
         let Stretch { length, rate, .. } = self.line.stretch(u, v);
         self.stiffness * (length - self.line.length) + self.damping * rate
@@ -266,7 +267,7 @@ struct Stretch {
     direction: [f64; 3],
     /// l'
     rate: f64,
-    /// e', the velocity across over the length.
+    /// e', the transverse velocity divided by the length.
     turning: [f64; 3],
 }
 
@@ -345,7 +346,7 @@ impl Line {
 }
 
 impl Stretch {
-    /// Tangent of a constant force `along` the line: it turns with it.
+    /// Tangent of a constant force `along` the line, which turns with the line.
     fn turn(&self, along: f64, i: usize, j: usize) -> f64 {
         let e = &self.direction;
         -along / self.length * (f64::from(i == j) - e[i] * e[j])
@@ -368,7 +369,7 @@ impl Force for SpringForce {
         Ok(())
     }
 
-    /// A spring that turns by more than a right angle in one step has passed through nothing.
+    /// A spring that turns by more than a right angle in one step has passed through a length of 0.
     fn check_step(&self, t: f64, before: &[f64], after: &[f64]) -> Result<(), Failure> {
         let (length, along) = self.line.length(after);
         if length <= COLLAPSED * self.line.length {

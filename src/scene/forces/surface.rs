@@ -6,11 +6,12 @@ use crate::elements::mesh::FaceKind;
 
 /// A point that moves with some nodes.
 pub(crate) struct SurfacePoint {
-    /// How many of the places below are taken.
+    /// How many of the entries below are used.
     count: usize,
     nodes: [usize; 3],
     shares: [f64; 3],
-    /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge or the middle of a face.
+    /// Area (m^2) of the boundary for which it stands; 1 for a node, 0 for a point of an edge or the middle
+    /// of a face.
     pub(super) area: f64,
 }
 
@@ -37,8 +38,8 @@ pub(crate) fn boundary_nodes(body: &Body) -> Vec<SurfacePoint> {
     nodes.map(|&node| point(&[node], &[1.0], 1.0)).collect()
 }
 
-/// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They divide it into
-/// `parts` of the same length.
+/// Points along an edge of the boundary, between its nodes: two ends, and the middle of a quadratic one. They
+/// divide it into `parts` of the same length.
 pub(crate) fn edge_points(edge: &[usize], parts: usize) -> impl Iterator<Item = SurfacePoint> {
     (1..parts).filter_map(move |part| {
         let s = part as f64 / parts as f64;
@@ -54,7 +55,7 @@ pub(crate) fn edge_points(edge: &[usize], parts: usize) -> impl Iterator<Item = 
     })
 }
 
-/// A point in the middle of a face of a body in space; none of others.
+/// A point in the middle of a face of a body in space; none for others.
 pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint> {
     let locals: &[usize] = match kind {
         FaceKind::Point | FaceKind::Segment | FaceKind::Segment3 => return None,
@@ -67,8 +68,8 @@ pub(crate) fn face_centre(kind: FaceKind, face: &[usize]) -> Option<SurfacePoint
     Some(point(&nodes, &vec![1.0 / nodes.len() as f64; nodes.len()], 0.0))
 }
 
-/// Gauss points of the faces of the boundary, which are cut into segments or triangles for them. A
-/// membrane in space is boundary all over; a string has no area: `None`.
+/// Gauss points of the faces of the boundary, which are cut into segments or triangles for this. A membrane
+/// in space is boundary all over; a string has no area: `None`.
 ///
 /// Points inside faces, not nodes: a node at a corner would count the area of faces that do not
 /// touch.
@@ -92,7 +93,7 @@ pub(super) fn gauss_points(body: &Body) -> Option<Vec<SurfacePoint>> {
     Some(points)
 }
 
-/// What lengths of the boundary are to be multiplied by for areas (m^2): the thickness of a body in the plane, the
+/// Factor from lengths of the boundary to areas (m^2): the thickness of a body in the plane, the
 /// cross-section of a bar; 1 in space. A string has no surface: `None`.
 pub(super) fn section(body: &Body) -> Option<f64> {
     match (body.mesh().kind().dimension(), body.dimension()) {

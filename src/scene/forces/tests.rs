@@ -97,7 +97,7 @@ fn springs() {
             assert!(check(&anchored, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
             assert!(check(&force, (dimension, &[]), 0.7, &u, &v, 1e-8) > 0.0);
             check(&actuator, (dimension, &[]), 0.7, &u, &v, 1e-8);
-            // what the spring does not touch feels nothing, and action is reaction
+            // nodes off the spring have no force, and action equals reaction
             let mut forces = nodal_forces(&force, 0.7, &u, &v);
             actuator.add_forces(0.7, &u, &v, &mut forces).unwrap();
             for part in [&forces.conservative, &forces.dissipative, &forces.applied] {
@@ -156,7 +156,7 @@ fn chambers() {
             let (u, v) = (noise(n, 0.3, seed), noise(n, 2.0, 10.0 * seed));
             assert!(check(&force, (dimension, &[]), 0.7, &u, &v, 1e-9) > 0.0);
             let forces = nodal_forces(&force, 0.7, &u, &v);
-            // a closed chamber pushes itself neither away nor around
+            // a closed chamber has no net force
             for i in 0..dimension {
                 let sum: f64 = forces.applied.iter().skip(i).step_by(dimension).sum();
                 assert!(sum.abs() < 1e-12 * 2.7e3, "{sum}");
@@ -193,8 +193,8 @@ fn pressures_on_faces() {
     }
 }
 
-/// Pressure all over the boundary presses with -p dV/du (the work by a small change of volume), and so pushes itself
-/// neither away nor around: with the same forces as a chamber around the same cells, curved or not.
+/// Pressure all over the boundary has the forces -p dV/du (by its work in a small change of volume), and so
+/// no net force or moment: they are those of a chamber around the same cells, curved or not.
 #[test]
 fn pressure_all_around_is_that_of_a_chamber() {
     let plate = |cells| Mesh::rectangle([1.0, 0.7], [4, 3], cells).unwrap();
@@ -216,8 +216,8 @@ fn pressure_all_around_is_that_of_a_chamber() {
     }
 }
 
-/// A quarter of a cylinder of inner radius r, pressed from within: the resultant is p r times the length along
-/// either axis, whatever the faces, if their ends are on the circle; and round-off is all that is lost.
+/// A quarter of a cylinder of inner radius r, pressed from within: along either axis the resultant is p r
+/// times the length, whatever the faces, if their ends are on the circle; errors are round-off alone.
 #[test]
 fn pressure_on_an_arc_has_the_resultant_of_its_chord() {
     for cells in Cells::ALL {
@@ -336,8 +336,8 @@ fn pressure_in_a_hole_enlarges_it() {
     }
 }
 
-/// Obstacles that some nodes of a cell with its corners near 0 and 1 are inside of, with all parts
-/// of the law, at rest and in motion. A random point is never on a ridge or at d = 0.
+/// Obstacles that contain some nodes of a cell with its corners near 0 and 1, with all parts of the law, at
+/// rest and in motion. A random point is never on a ridge or at d = 0.
 #[test]
 fn contacts() {
     let cut = |x: [f64; 3], dimension: usize| x[..dimension].to_vec();
@@ -394,8 +394,8 @@ fn contacts() {
     }
 }
 
-/// Heat is counted relative to an obstacle in motion, and its drive supplies the rest: the change of
-/// potential by time alone, and f . w.
+/// Heat is counted by the velocity relative to an obstacle in motion, and its drive supplies the rest: the
+/// change of potential by time alone, and f . w.
 #[test]
 fn a_moving_obstacle_supplies_what_its_drive_does() {
     let w = [0.4, -0.1];

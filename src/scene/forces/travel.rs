@@ -8,12 +8,12 @@ use crate::base::input::{InputError, finite};
 use crate::base::vector::norm;
 use crate::scene::constraint::{Prescribed, Spline};
 
-/// Parts into which a time is cut at most, to find cubics that a formula agrees with.
+/// Most parts into which an interval of time is cut to find cubics that agree with a formula.
 const MOST_PARTS: usize = 4096;
-/// Places of a part, besides its ends, at which formula and cubic are compared.
+/// Places within a part at which formula and cubic are compared.
 const PLACES: usize = 7;
 
-/// How an obstacle moves, from where it was said to be. Components beyond the dimension are 0.
+/// How an obstacle moves, from where its shape was given. Components beyond the dimension are 0.
 #[derive(Debug, Clone)]
 pub(super) enum Travel {
     /// With a constant velocity (m/s); without components it rests.
@@ -25,7 +25,7 @@ pub(super) enum Travel {
     Formulas(Arc<[Formula]>),
 }
 
-/// Equal parts of a time, in each of which an obstacle moves along cubics.
+/// Equal parts of an interval of time, in each of which an obstacle moves along cubics.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cubics {
     pub(crate) parts: usize,
@@ -132,9 +132,9 @@ impl Travel {
         }
     }
 
-    /// The cubics of formulas between two times (s): the parts are halved until the formula is no farther from
-    /// the cubic with its displacements and velocities at both ends than `tolerance` (m), as far as accelerations at
-    /// the ends and displacements at some places in between tell. Other motions are one.
+    /// The cubics of formulas between two times (s). The parts are halved until the formula is no farther
+    /// than `tolerance` (m) from the cubic with its displacements and velocities at both ends, as judged by
+    /// accelerations at the ends and displacements at some places in between. Other motions need one part.
     pub(super) fn cubics(&self, [start, end]: [f64; 2], tolerance: f64) -> Cubics {
         let Self::Formulas(formulas) = self else {
             return Cubics { parts: 1, fastest: self.fastest().unwrap_or(0.0) };
@@ -153,7 +153,8 @@ impl Travel {
                 let cubic = Path::new(ends[0], ends[1], span);
                 fastest = fastest.max(cubic.fastest(span));
                 for (acceleration, bend) in [from[2], to[2]].iter().zip(cubic.bends()) {
-                    // what begins and ends alike, but for this second derivative, is no farther apart in between
+                    // curves with the same values and slopes at both ends, but second derivatives that differ
+                    // by this, are no farther apart in between
                     let unlike = difference(&acceleration.map(|a| a * span * span), &bend);
                     off = off.max(norm(&unlike) / 32.0);
                 }
@@ -171,7 +172,7 @@ impl Travel {
         }
     }
 
-    /// Whether it has one velocity at all times.
+    /// Whether its velocity is constant.
     #[cfg(feature = "checkpoint")]
     pub(super) fn is_uniform(&self) -> bool {
         matches!(self, Self::Uniform(_))
@@ -215,9 +216,9 @@ mod tests {
         Travel::Formulas([text, "0.3*t"].map(|text| Formula::parse(text).unwrap()).into())
     }
 
-    /// Between the ends of each part formulas are followed to the tolerance, and their speed is bounded, by twice it at most: by a
-    /// look at ten thousand places. The times begin and end at the same phase of what oscillates, so that the ends
-    /// alone tell nothing.
+    /// Within each part the cubics follow the formulas to the tolerance, and the bound on the speed holds and
+    /// is at most about twice the speed: checked at ten thousand places. Oscillations have the same phase at
+    /// both times, so that the ends alone do not reveal them.
     #[test]
     fn cubics_follow_formulas() {
         for (text, times, least) in [

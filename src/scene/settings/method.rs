@@ -1,4 +1,4 @@
-//! The words among the settings: integration methods, ways to meet contact events.
+//! The settings that are words: integration methods, and how contact events are handled.
 
 use std::fmt;
 use std::ops::RangeInclusive;
@@ -10,9 +10,8 @@ use crate::base::input::InputError;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Method {
-    /// Chooses one of the others for each phase, by what the phase asks for; looks at the energy
-    /// balance while it runs, and goes on with another method if need be. The report says what
-    /// was chosen and why.
+    /// Chooses one of the others for each phase, by what the phase requires; watches the energy balance while
+    /// it runs, and goes on with another method if necessary. The report says what was chosen and why.
     #[default]
     Auto,
     /// CVODE, backward differentiation formulas of order 1 to 5: for stiff motion.
@@ -24,14 +23,14 @@ pub enum Method {
     /// IDA on the index-1 form, with KLU on the sparse Jacobian of the whole system.
     IdaKlu,
     /// IDA on the stabilized index-2 form (Gear, Gupta, Leimkuhler): positions and velocities meet the
-    /// constraints at each step, within the tolerances, without alpha; velocities jump to what they allow
-    /// where a phase begins.
+    /// constraints at each step, within the tolerances, without alpha; where a phase begins, velocities jump
+    /// to values that the constraints allow.
     IdaIndexTwo,
-    /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that
-    /// steps may go over. `max_order` is their order; default: 4.
+    /// ARKODE, diagonally implicit Runge-Kutta methods of order 2 to 5, L-stable: for vibrations that steps
+    /// need not resolve. `max_order` is their order; default: 4.
     Arkode,
-    /// The internal Rosenbrock methods of order 3 and 4, implicit without an iteration, L-stable: for vibrations that
-    /// steps may go over. `max_order` is their order; default: 4.
+    /// The internal Rosenbrock methods of order 3 and 4, implicit without an iteration, L-stable: for
+    /// vibrations that steps need not resolve. `max_order` is their order; default: 4.
     Rosenbrock,
     /// The internal explicit Runge-Kutta method, Dormand-Prince 5(4): for motion that is not stiff,
     /// and as a check of the others.
@@ -141,11 +140,11 @@ impl FromStr for Method {
     }
 }
 
-/// How contact events are met: nodes that touch an obstacle or leave it, and under friction stick or slip.
+/// How contact events are handled: nodes touch an obstacle or leave it, and with friction stick or slip.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactEvents {
-    /// Where it is faster: [`Method::Auto`] locates them while it is explicit Runge-Kutta, and with implicit methods
-    /// if `rtol` is below 1e-6; where a method was asked for, they are stepped over.
+    /// Locates them where that is faster: [`Method::Auto`] does so while it uses explicit Runge-Kutta, and
+    /// with implicit methods if `rtol` is below 1e-6; if the user chose a method, they are stepped over.
     #[default]
     Auto,
     /// Steps go over them; the error control makes those steps small.

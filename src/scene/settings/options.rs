@@ -11,9 +11,9 @@ pub struct SettingsOption {
     pub key: &'static str,
     /// What it is.
     pub meaning: &'static str,
-    /// Its unit: "1" for numbers without, empty for what is no number.
+    /// Its unit: "1" for numbers without one, empty for values that are not numbers.
     pub unit: &'static str,
-    /// What holds without it: the value as in a scene file, or words.
+    /// Its default: the value as in a scene file, or words.
     pub default: &'static str,
     /// What stands for its value in the help of the command.
     pub value_name: &'static str,
@@ -137,8 +137,8 @@ impl SettingsOption {
 mod tests {
     use super::*;
 
-    /// Each option sets its own field, and no field is without one: a new field of [`Settings`] has to
-    /// be named here.
+    /// Each option sets its own field, and each field has an option: a new field of [`Settings`] has to be
+    /// named here.
     #[test]
     fn every_field_has_an_option() {
         let default = Settings::default();
@@ -175,7 +175,7 @@ mod tests {
         assert_eq!((max_order, max_steps, stability_limit_detection), (Some(3), 3, true));
     }
 
-    /// Defaults that are told are those in force.
+    /// The defaults that options state are those in force.
     #[test]
     fn defaults_are_told() {
         let mut told = 0;

@@ -9,33 +9,39 @@ use crate::scene::timeline::Scene;
 pub struct Settings {
     /// Integration method. Default: [`Method::Auto`].
     pub method: Method,
-    /// Relative tolerance, above 0 and below 1: the local error of each step is kept below
-    /// `rtol |y| + atol` in the root mean square over displacements and velocities. Errors of steps add up: that of the
-    /// whole motion may be twenty times as large. [`Method::Auto`] gives the method that it chooses a part of the
-    /// tolerances, mostly a fifth or less, so that the motion is about as precise as `rtol` says. Default: 1e-5.
+    /// Relative tolerance, above 0 and below 1.
+    ///
+    /// The local error of each step is kept below `rtol |y| + atol` in the root mean square over
+    /// displacements and velocities. Errors of steps add up: that of the whole motion may be twenty times as
+    /// large. [`Method::Auto`] gives the method that it chooses a part of the tolerances, mostly a fifth or
+    /// less, so that the motion is about as precise as `rtol` says. Default: 1e-5.
     pub rtol: f64,
     /// Absolute tolerance of displacements (m). Default: rtol times a hundredth of the body's size,
     /// so that smaller displacements count as that large.
     pub atol_position: Option<f64>,
-    /// Absolute tolerance of velocities (m/s). Default: rtol times a hundredth of the speed of
-    /// waves in the body, its displacements' counterpart in a vibration; and no more than 1/400 of the
-    /// [sticking speed](crate::Obstacle::sticking_speed) of an obstacle with friction, without which a step
-    /// does not see what breaks loose.
+    /// Absolute tolerance of velocities (m/s).
+    ///
+    /// Default: rtol times a hundredth of the speed of waves in the body, which corresponds to that of
+    /// displacements in a vibration; but at most 1/400 of the
+    /// [sticking speed](crate::Obstacle::sticking_speed) of an obstacle with friction, as with more a step
+    /// does not notice what breaks loose.
     pub atol_velocity: Option<f64>,
-    /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger
-    /// means less drift; it costs the implicit methods and central differences nothing, `rk` a step
-    /// of 3.3/alpha.
+    /// Rate alpha (1/s) at which errors of the constraints decay, above 0. Default: 1e3. Larger means less
+    /// drift; it costs implicit methods and central differences nothing, but limits the steps of `rk` to
+    /// 3.3/alpha.
     pub alpha: f64,
-    /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's (default: 4).
+    /// Highest order of a multistep method (default: 5, Adams: 12); order of ARKODE's and Rosenbrock methods
+    /// (default: 4).
     pub max_order: Option<u32>,
-    /// Whether CVODE's BDF looks out for steps that its orders above 2 make unstable, and lowers the
-    /// order then (`CVodeSetStabLimDet`). It helps some lightly damped vibrations, not undamped
-    /// ones. Default: no.
+    /// Whether CVODE's BDF detects where the stability of its orders above 2 limits the steps, and lowers the
+    /// order there (`CVodeSetStabLimDet`).
+    ///
+    /// It helps some lightly damped vibrations, not undamped ones. Default: no.
     pub stability_limit_detection: bool,
-    /// Whether contact events are located. Default: where that is faster for the accuracy.
+    /// Whether contact events are located. Default: where that is faster at the same accuracy.
     pub contact_events: ContactEvents,
-    /// Longest step (s), above 0. Default: none. Error control needs no bound, and no step leads
-    /// through an obstacle; this is for forces that come and go between two steps.
+    /// Longest step (s), above 0. Default: none. Error control needs no bound, and no step leads through an
+    /// obstacle; this is for short forces that might begin and end within one step.
     pub max_step: Option<f64>,
     /// Steps that one phase may take. Default: 10 million, a guard against runs without end.
     pub max_steps: usize,
@@ -129,14 +135,14 @@ impl Settings {
     }
 }
 
-/// What tolerances are measured by: found by going through all cells, so that a run keeps it.
+/// The scales of default tolerances. To find them all cells are visited, so a run keeps them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Scales {
     size: f64,
     young: f64,
     volume: f64,
     wave_speed: f64,
-    /// Of the obstacle on which it is the least; infinite without friction.
+    /// The smallest of all obstacles; infinite without friction.
     sticking_speed: f64,
 }
 
@@ -157,8 +163,8 @@ impl Scales {
 
 /// Absolute tolerances in force.
 ///
-/// Those of the energies and of the multipliers are loose (as if strain were 1):
-/// enough that the Newton iteration looks after them, too little for them to rule the steps.
+/// Those of the energies and of the multipliers are loose (as if strain were 1): tight enough that the Newton
+/// iteration converges in them, too loose for them to determine the steps.
 #[derive(Debug, Clone, Copy)]
 pub struct AbsoluteTolerances {
     /// Displacements (m).

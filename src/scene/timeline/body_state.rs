@@ -3,11 +3,14 @@
 use crate::base::input::InputError;
 use crate::elements::body::Body;
 
-/// Where the nodes of a body are and how fast they move: what [`Scene::starting_from`](crate::Scene::starting_from) takes. It is taken
-/// from a motion or an equilibrium by [`Trajectory::state`](crate::Trajectory::state), or read from what an earlier run has left.
+/// Where the nodes of a body are and how fast they move: what
+/// [`Scene::starting_from`](crate::Scene::starting_from) takes.
+///
+/// It is taken from a motion or an equilibrium by [`Trajectory::state`](crate::Trajectory::state), or read
+/// from the files of an earlier run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyState {
-    /// Undeformed positions (m), dimension components per node: what the mesh is known by.
+    /// Undeformed positions (m), dimension components per node: the mesh is identified by them.
     pub positions: Vec<f64>,
     /// Displacements (m), likewise.
     pub displacements: Vec<f64>,
@@ -15,7 +18,7 @@ pub struct BodyState {
     pub velocities: Vec<f64>,
 }
 
-/// Parts of the size of a body by which the same positions may differ: as round-off where a mesh is made.
+/// Equal positions may differ by this fraction of the size of a body: round-off when a mesh is made.
 const SAME: f64 = 1e-9;
 
 /// # Errors
@@ -30,7 +33,7 @@ pub(super) fn check_positions(positions: &[f64], body: &Body) -> Result<(), Inpu
     }
     let pairs = positions.chunks_exact(dimension).zip(mesh.positions().chunks_exact(dimension));
     let far = |(_, (theirs, ours)): &(usize, (&[f64], &[f64]))| {
-        // what is no number is far
+        // NaN counts as far
         !theirs.iter().zip(*ours).all(|(a, b)| (a - b).abs() <= SAME * mesh.size())
     };
     match (1..).zip(pairs).find(far) {

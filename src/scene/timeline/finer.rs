@@ -12,8 +12,8 @@ use crate::scene::constraint::Constrained;
 use crate::scene::forces::Obstacle;
 
 impl Scene {
-    /// The same scene with its body made in another way: of another material, by another measure of strain, with other
-    /// inertia. Nodes and cells stay.
+    /// The same scene with its body built differently: of another material, with another measure of strain,
+    /// with other inertia. Nodes and cells stay.
     ///
     /// ```
     /// use pliant::{Inertia, Strain, samples};
@@ -42,12 +42,14 @@ impl Scene {
 
     /// The same scene with each cell of the mesh divided at the middles of its edges: see [`Mesh::halved`].
     ///
-    /// Node sets, and numbers of nodes that are held or moved together, take the new nodes between them with them. What acts on
-    /// single nodes stays there: forces on each node, springs, sensors. Stiffness and damping of
-    /// obstacles per node are shared out among as many more nodes as the boundary has.
+    /// Node sets, and lists of nodes that are held or moved together, are extended by the new nodes between
+    /// them. What acts on single nodes stays there: forces on each node, springs, sensors. Stiffness and
+    /// damping of obstacles per node are divided by the factor by which the number of nodes on the boundary
+    /// grows.
     ///
     /// # Errors
-    /// Point masses that are named by number, forces that are not of this crate: nobody knows which nodes they mean.
+    /// Point masses that are named by number, forces that are not of this crate: which nodes they mean is
+    /// unknown.
     pub fn halved(&self) -> Result<Self, InputError> {
         Ok(self.on(|mesh| Ok(mesh.divided()))?.0)
     }
@@ -56,13 +58,13 @@ impl Scene {
     /// becomes of the rest.
     ///
     /// # Errors
-    /// As [`halved`](Self::halved); cells of which there are no quadratic ones.
+    /// As [`halved`](Self::halved); cells of a kind that has no quadratic one.
     pub fn quadratic(&self) -> Result<Self, InputError> {
         Ok(self.on(Mesh::elevated)?.0)
     }
 
-    /// The same scene on the nearest richer mesh, and what that makes of the nodes: quadratic cells, or halves of those that are
-    /// quadratic or of which there are no quadratic ones.
+    /// The same scene on the next finer mesh, and how its nodes follow from the old ones. Its cells are
+    /// quadratic, or halved if they were quadratic before or there are no quadratic ones of their kind.
     #[cfg(feature = "study")]
     pub(crate) fn enriched(&self) -> Result<(Self, Finer), InputError> {
         self.on(|mesh| mesh.elevated().or_else(|_| Ok(mesh.divided())))
@@ -117,7 +119,7 @@ impl Scene {
     }
 }
 
-/// What a finer mesh makes of selections of nodes.
+/// Carries selections of nodes over to a finer mesh.
 struct Change<'a> {
     body: &'a Body,
     coarse: &'a Mesh,
@@ -125,7 +127,7 @@ struct Change<'a> {
 }
 
 impl Change<'_> {
-    /// Numbers have to mean nodes of the mesh.
+    /// Checks that numbers mean nodes of the coarse mesh, not point masses.
     fn check(&self, nodes: &Selection) -> Result<(), InputError> {
         let Selection::Numbers(numbers) = nodes else { return Ok(()) };
         match numbers.iter().find(|number| **number > self.coarse.node_count()) {
@@ -137,7 +139,7 @@ impl Change<'_> {
         }
     }
 
-    /// Numbers with those of the new nodes between them; names and boxes find them by themselves.
+    /// Numbers with those of the new nodes between them; names and boxes include these without a change.
     fn extended(&self, nodes: &Selection) -> Result<Selection, InputError> {
         self.check(nodes)?;
         let Selection::Numbers(numbers) = nodes else { return Ok(nodes.clone()) };
@@ -148,7 +150,7 @@ impl Change<'_> {
         })
     }
 
-    /// The nodes that there were, by number.
+    /// The nodes of the coarse mesh, by number.
     fn same(&self, nodes: &Selection) -> Result<Selection, InputError> {
         self.check(nodes)?;
         let nodes = self.body.mesh().select(nodes)?;
@@ -189,11 +191,11 @@ impl Change<'_> {
         Ok(())
     }
 
-    /// The start, at all nodes.
+    /// The start, at all nodes of the finer mesh.
     fn start(&self, scene: &Scene, body: &Body) -> Result<super::start::Start, InputError> {
         scene.start.velocities(self.body)?;
         let mut start = scene.start.clone();
-        // it was of this mesh, as it should be
+        // they have been checked above, for the coarse mesh
         start.positions = None;
         for field in [&mut start.displacements, &mut start.velocities] {
             *field = self.finer.interpolated(field, body.dimension());

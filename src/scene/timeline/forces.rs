@@ -12,7 +12,7 @@ use crate::scene::forces::{
 };
 
 impl Scene {
-    /// The forces in one phase, all but those of constant matrices.
+    /// The forces in one phase, except those of constant matrices.
     pub(crate) fn forces_in(&self, phase: &Phase) -> Result<Forces, InputError> {
         let dimension = self.body.dimension();
         let mut forces = Forces::new();
@@ -95,7 +95,7 @@ impl Scene {
         Ok(forces)
     }
 
-    /// How many times the value of a load of this `kind` each of the `nodes` gets, which `selection` has named.
+    /// The factor of the value of a load of this `kind` at each of the `nodes`, which `selection` has named.
     fn parts(
         &self,
         kind: LoadKind,
@@ -110,8 +110,8 @@ impl Scene {
         }
     }
 
-    /// The loads that `phase` has for `selection` at time `t` (s), added up as one of this `kind`. Those of other
-    /// kinds count by the mean of their forces on the nodes.
+    /// The loads that `phase` has for `selection` at time `t` (s), added up as one of this `kind`. Those of
+    /// other kinds are converted by the mean of their forces on the nodes.
     pub(crate) fn load_on(
         &self,
         phase: &Phase,
@@ -121,7 +121,7 @@ impl Scene {
     ) -> Result<Vec<f64>, InputError> {
         let nodes = self.body.mesh().select(selection)?;
         let count = nodes.len() as f64;
-        // how many times the mean force on a node is a load of a kind
+        // value of a load of a kind for a mean force of 1 on the nodes
         let times = |kind: LoadKind| match kind {
             LoadKind::Each => Ok(1.0),
             LoadKind::Total => Ok(count),

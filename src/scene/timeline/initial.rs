@@ -1,4 +1,4 @@
-//! What a scene is told about its start.
+//! Initial conditions of a scene.
 
 use super::{BodyState, Scene};
 use crate::base::input::InputError;
@@ -6,14 +6,16 @@ use crate::elements::mesh::Selection;
 
 /// # The start
 ///
-/// Velocities that the constraints of the first phase do not allow are projected on the nearest, in the
-/// sense of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves.
+/// Velocities that the constraints of the first phase do not allow are projected onto the nearest, in the
+/// norm of kinetic energy, that they do allow: an inelastic impact at t = 0. In statics nothing moves.
 impl Scene {
-    /// Starts from a state of an earlier motion, or from an equilibrium, of a body with the same mesh: displacements and
-    /// velocities at t = 0. All else may differ, such as material, strain, loads and obstacles. Time and energies begin anew.
+    /// Starts from a state of an earlier motion, or from an equilibrium, of a body with the same mesh.
     ///
-    /// [`initial_displacement`](Self::initial_displacement) and [`initial_velocity`](Self::initial_velocity), called after it,
-    /// take the place of one or the other; [`spin`](Self::spin) is on top of its velocities.
+    /// It gives the displacements and velocities at t = 0. All else may differ, such as material, strain,
+    /// loads and obstacles. Time and energies begin anew.
+    ///
+    /// [`initial_displacement`](Self::initial_displacement) and [`initial_velocity`](Self::initial_velocity),
+    /// called after it, replace one or the other; [`spin`](Self::spin) is added to its velocities.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Sampling, Scene, Settings, Statics};
@@ -68,8 +70,8 @@ impl Scene {
         self
     }
 
-    /// Velocity (m/s) of some nodes at t = 0, instead of what [`initial_velocity`](Self::initial_velocity) and
-    /// [`spin`](Self::spin) give them.
+    /// Velocity (m/s) of some nodes at t = 0, instead of what [`initial_velocity`](Self::initial_velocity)
+    /// and [`spin`](Self::spin) give them.
     pub fn initial_velocity_of(
         mut self,
         nodes: impl Into<Selection>,
@@ -79,7 +81,7 @@ impl Scene {
         self
     }
 
-    /// Angular velocity (rad/s) at t = 0 about the centre of mass, on top of
+    /// Angular velocity (rad/s) at t = 0 about the centre of mass, in addition to
     /// [`initial_velocity`](Self::initial_velocity): one component in the plane, counter-clockwise, three in
     /// space. Default: none.
     pub fn spin(mut self, angular_velocity: impl Into<Vec<f64>>) -> Self {

@@ -10,7 +10,7 @@ pub(crate) struct Load {
     pub(crate) value: VectorSignal,
 }
 
-/// What a load is given per.
+/// What the value of a load refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum LoadKind {
     /// A force (N) on each node.

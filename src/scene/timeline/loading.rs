@@ -1,4 +1,4 @@
-//! How a phase is given loads: forces on nodes, tractions on faces.
+//! Loads of a phase: forces on nodes, tractions on faces.
 
 use super::load::{Load, LoadKind};
 use super::phase::Phase;
@@ -35,9 +35,9 @@ impl Phase {
 
     /// A constant force (N) on the nodes together.
     ///
-    /// Where they make up whole faces of the boundary (edges in the plane) it is spread over these evenly: each
-    /// node has as much of it as the integral of its shape function is of the area, half as much at the corner
-    /// of a side of linear cells as within. Nodes that make up no faces share it equally.
+    /// Where they make up whole faces of the boundary (edges in the plane) it is spread over these evenly:
+    /// the share of each node is the integral of its shape function divided by the area, for linear cells
+    /// half as much at the ends of a side as within it. Nodes that make up no faces share it equally.
     pub fn load_total(self, nodes: impl Into<Selection>, force: impl Into<Vec<f64>>) -> Self {
         self.loaded(nodes, LoadKind::Total, VectorSignal::Constant(force.into()))
     }
@@ -53,9 +53,12 @@ impl Phase {
         self.loaded(nodes, LoadKind::Total, table(times, forces))
     }
 
-    /// A constant traction: a force per area (N/m^2) on the faces of the boundary (edges in the plane) between the
-    /// nodes, which all have to belong to such faces. The area is that of the undeformed shape, and the direction stays
-    /// as the body turns (a dead load). A membrane in space is loaded all over or at its rim, a string at its ends.
+    /// A constant traction: a force per area (N/m^2) on the faces of the boundary (edges in the plane)
+    /// between the nodes.
+    ///
+    /// The nodes all have to belong to such faces. The area is that of the undeformed shape, and the
+    /// direction stays as the body turns (a dead load). A membrane in space is loaded all over or at its rim,
+    /// a string at its ends.
     ///
     /// Nodal forces are the integrals of the traction times the shape functions.
     pub fn traction(self, nodes: impl Into<Selection>, traction: impl Into<Vec<f64>>) -> Self {
@@ -72,8 +75,8 @@ impl Phase {
         self.loaded(nodes, LoadKind::Traction, VectorSignal::function(traction))
     }
 
-    /// As [`traction`](Self::traction), with a traction that has the values `tractions` (N/m^2) at the `times` (s,
-    /// ascending), as [`load_table`](Self::load_table) has it.
+    /// As [`traction`](Self::traction), with a traction that has the values `tractions` (N/m^2) at the
+    /// `times` (s, ascending), as [`load_table`](Self::load_table) has it.
     pub fn traction_table(
         self,
         nodes: impl Into<Selection>,

@@ -59,7 +59,7 @@ pub struct Scene {
     unusual: Vec<String>,
 }
 
-/// What of a scene may be [unusual](Scene::unusual): the names of the indicators of its units.
+/// The quantities of a scene that may be [unusual](Scene::unusual): the names of the indicators of its units.
 pub(crate) const UNITS: [&str; 7] =
     ["size", "mass", "density", "young", "wave-speed", "thickness", "weight"];
 
@@ -79,7 +79,7 @@ impl Scene {
         }
     }
 
-    /// Acceleration of gravity (m/s^2), one component per dimension, in all phases that have none of
+    /// Acceleration of gravity (m/s^2), one component per dimension, in all phases that do not set
     /// [their own](Phase::gravity). Default: none.
     pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
         self.gravity = Some(acceleration.into());
@@ -119,9 +119,11 @@ impl Scene {
         self
     }
 
-    /// Quantities that are meant as they are, though a soft body in SI units rarely has such: of `size`, `mass`, `density`,
-    /// `young`, `wave-speed`, `thickness` and `weight` (the strain of a column as high as the body under its own weight).
-    /// [Indicators](Self::indicators) with these names keep their numbers and warn of nothing.
+    /// Quantities that are meant as they are, although such values are rare for a soft body in SI units.
+    ///
+    /// They are among `size`, `mass`, `density`, `young`, `wave-speed`, `thickness` and `weight` (the strain
+    /// of a column as high as the body under its own weight). [Indicators](Self::indicators) with these names
+    /// keep their numbers and do not warn.
     ///
     /// ```
     /// # use pliant::{Body, Cells, Material, Mesh, Phase, Scene};
@@ -149,8 +151,8 @@ impl Scene {
         self
     }
 
-    /// The scene as [`ended_at`](Self::ended_at), but if it ends before time `end` (s), its last phase goes on
-    /// until then.
+    /// The scene as [`ended_at`](Self::ended_at), but if it ends before time `end` (s), its last phase goes
+    /// on until then.
     pub fn lasting(self, end: f64) -> Self {
         let mut scene = self.ended_at(end);
         if let Some(last) = scene.phases.last_mut() {
@@ -164,7 +166,7 @@ impl Scene {
         &self.body
     }
 
-    /// Acceleration of gravity (m/s^2), if there is any, but for phases that have one of their own.
+    /// Acceleration of gravity (m/s^2), if there is any, except in phases that set their own.
     pub fn acceleration(&self) -> Option<&[f64]> {
         self.gravity.as_deref()
     }
@@ -204,7 +206,7 @@ impl Scene {
         &self.unusual
     }
 
-    /// Forces that are none of these.
+    /// Forces other than gravity and those of springs, chambers and obstacles.
     pub(crate) fn other_forces(&self) -> &Forces {
         &self.forces
     }
@@ -225,7 +227,7 @@ impl Scene {
         breaks
     }
 
-    /// Ends of the legs of a phase, counted from 0: its [`breaks`](Self::breaks) and its own end.
+    /// Ends of the intervals of a phase, counted from 0: its [`breaks`](Self::breaks) and its own end.
     pub(crate) fn stops(&self, phase: usize) -> Vec<f64> {
         let mut stops = self.breaks(phase);
         stops.extend(self.phases.get(phase).map(Phase::end));
@@ -247,7 +249,7 @@ impl Scene {
         self.forces_from_start().map(|_| ())
     }
 
-    /// The [`forces`](Self::forces) of each phase, if those of the first one have a meaning at t = 0.
+    /// The [`forces`](Self::forces) of each phase, if those of the first one can be evaluated at t = 0.
     pub(crate) fn forces_from_start(&self) -> Result<Vec<Forces>, InputError> {
         let forces = self.forces()?;
         let (u, v) = (self.initial_displacements(), self.initial_velocities()?);
@@ -259,7 +261,7 @@ impl Scene {
         }
     }
 
-    /// A force that has no meaning at t = 0.
+    /// The error for a force that has no meaning at t = 0.
     pub(crate) fn bad_start(&self, failure: Failure) -> InputError {
         match failure {
             Failure::Recoverable(reason) => {
@@ -278,8 +280,8 @@ impl Scene {
         self.phases.first().ok_or_else(none)
     }
 
-    /// The forces of each phase, all but those of constant matrices, after the checks of
-    /// [`validate`](Self::validate), but for those of the initial state.
+    /// The forces of each phase, except those of constant matrices, after the checks of
+    /// [`validate`](Self::validate), except those of the initial state.
     pub(crate) fn forces(&self) -> Result<Vec<Forces>, InputError> {
         self.first_phase()?;
         self.initial_velocities()?;

@@ -30,7 +30,7 @@ pub struct Phase {
     pub(crate) face_pressures: Vec<(Selection, Signal)>,
     pub(crate) projects_velocity: bool,
     pub(crate) contact: ContactWith,
-    /// Obstacles that do not move as the scene has it.
+    /// Obstacles that move otherwise than in the scene.
     pub(crate) redirected: Vec<Obstacle>,
 }
 
@@ -67,7 +67,8 @@ impl Phase {
     }
 
     /// Acceleration of gravity (m/s^2) in this phase, one component per dimension, in place of the
-    /// [scene's](crate::Scene::gravity). What its change adds to the energy of the body counts as supplied from outside.
+    /// [scene's](crate::Scene::gravity). Energy that the change of gravity adds to the body counts as
+    /// supplied from outside.
     pub fn gravity(mut self, acceleration: impl Into<Vec<f64>>) -> Self {
         self.gravity = Some(acceleration.into());
         self
@@ -79,8 +80,8 @@ impl Phase {
         self.gravity.is_some()
     }
 
-    /// Nodes that stay, in all components, where they are when the phase begins. Where the phase
-    /// before prescribed their position, they stay where that should have brought them.
+    /// Nodes that stay, in all components, where they are when the phase begins. Where the previous phase
+    /// prescribed their position, they stay at the one prescribed for its end.
     pub fn hold(self, nodes: impl Into<Selection>) -> Self {
         self.constrain(nodes, Axes::All, Motion::Hold)
     }
@@ -94,7 +95,8 @@ impl Phase {
         self.constrain(nodes, Axes::These(axes.into_iter().collect()), Motion::Hold)
     }
 
-    /// Nodes that move on from there with a constant `velocity` (m/s), one component per dimension.
+    /// Nodes that move with a constant `velocity` (m/s), one component per dimension, from where they are
+    /// when the phase begins.
     pub fn move_nodes(self, nodes: impl Into<Selection>, velocity: impl Into<Vec<f64>>) -> Self {
         self.constrain(nodes, Axes::All, Motion::Velocity(velocity.into()))
     }
@@ -141,20 +143,23 @@ impl Phase {
         self.constrain(nodes, Axes::These(vec![axis]), Motion::Spline(Arc::new(spline)))
     }
 
-    /// Nodes on a plane of symmetry (a line, in the plane) with this `normal`, of any length: their displacements
-    /// along it stay what they are when the phase begins, and they slide freely in the plane.
+    /// Nodes on a plane of symmetry (a line, in the plane) with this `normal`, of any length: their
+    /// displacements along it stay what they are when the phase begins, and they slide freely in the plane.
     ///
-    /// Half of a body so moves as the whole, with half of its mass by itself. What was given node by node has to be
-    /// halved on the plane: loads, point masses, springs, contact stiffness per node (not per area).
+    /// Half of a body then moves as the whole does. Its mass is half by itself, but what was given node by
+    /// node has to be halved on the plane: loads, point masses, springs, contact stiffness per node (not per
+    /// area).
     pub fn symmetry(mut self, nodes: impl Into<Selection>, normal: impl Into<Vec<f64>>) -> Self {
         let what = Constrained::Along(nodes.into(), normal.into());
         self.constraints.push(Constraint { what, how: Motion::Hold });
         self
     }
 
-    /// Nodes that turn about `centre` (m) with a constant angular velocity (rad/s): one component in the plane,
-    /// counter-clockwise; in space three, and `centre` is any point of the axis. They turn from where they
-    /// are when the phase begins, as [`move_nodes`](Self::move_nodes) moves them.
+    /// Nodes that turn about `centre` (m) with a constant angular velocity (rad/s).
+    ///
+    /// This has one component in the plane, counter-clockwise; in space three, and `centre` is any point of
+    /// the axis. They turn from where they are when the phase begins, as [`move_nodes`](Self::move_nodes)
+    /// moves them.
     pub fn rotate(
         self,
         nodes: impl Into<Selection>,
@@ -165,11 +170,13 @@ impl Phase {
         self.constrain(nodes, Axes::All, Motion::Turn(Arc::new(turn)))
     }
 
-    /// As [`rotate`](Self::rotate), by an angle that runs smoothly through given ones: at the `times` (s,
-    /// ascending, two at least) the `angles` (rad), as [`path`](Self::path) does. `axis` is the direction of the angular
-    /// velocity, of any length: `[1.0]` is counter-clockwise in the plane.
+    /// As [`rotate`](Self::rotate), by an angle that runs smoothly, as [`path`](Self::path) does, through the
+    /// `angles` (rad) at the `times` (s, ascending, two at least).
     ///
-    /// Nodes turn from where they are when the phase begins, by what the angle has changed since then: phases
+    /// `axis` is the direction of the angular velocity, of any length: `[1.0]` is counter-clockwise in the
+    /// plane.
+    ///
+    /// Nodes turn from where they are when the phase begins, by the change of the angle since then: phases
     /// that are given the same path follow it without a jump.
     pub fn rotate_path(
         self,
@@ -222,8 +229,8 @@ impl Phase {
         self.actuated(springs, Signal::table(times, forces))
     }
 
-    /// A pressure (Pa) in a chamber, a number or any other [`Signal`]; a positive one enlarges it. Pressures in the
-    /// same chamber add up.
+    /// A pressure (Pa) in a chamber, a number or any other [`Signal`]; a positive one enlarges it. Pressures
+    /// in the same chamber add up.
     pub fn pressure(self, chamber: impl Into<String>, pressure: impl Into<Signal>) -> Self {
         self.pressurized(chamber, pressure.into())
     }
@@ -248,11 +255,14 @@ impl Phase {
         self.pressurized(chamber, Signal::table(times, values))
     }
 
-    /// A pressure (Pa) on the faces of the boundary (edges in the plane) between the nodes, which all have to belong to
-    /// such faces; a positive one presses onto the body. It follows the body: it acts on the deformed area, along
-    /// its normal. (A constant direction has [`traction`](Self::traction).) Pressures on the same faces add up.
+    /// A pressure (Pa) on the faces of the boundary (edges in the plane) between the nodes; a positive one
+    /// presses onto the body.
     ///
-    /// Cells of a membrane in space are pressed on the side from which they run counter-clockwise.
+    /// The nodes all have to belong to such faces. The pressure follows the body: it acts on the deformed
+    /// area, along its normal. (For a constant direction use [`traction`](Self::traction).) Pressures on the
+    /// same faces add up.
+    ///
+    /// Cells of a membrane in space are pressed on the side from which their nodes run counter-clockwise.
     pub fn pressure_on(mut self, nodes: impl Into<Selection>, pressure: impl Into<Signal>) -> Self {
         self.face_pressures.push((nodes.into(), pressure.into()));
         self
@@ -331,7 +341,7 @@ impl Phase {
             .unwrap_or(obstacle)
     }
 
-    /// Whether there are obstacles that do not move as the scene has it.
+    /// Whether there are obstacles that move otherwise than in the scene.
     pub(crate) fn is_redirected(&self) -> bool {
         !self.redirected.is_empty()
     }
@@ -344,7 +354,8 @@ impl Phase {
         self.redirected.push(redirected);
     }
 
-    /// The phase as it follows `before` at time `t` (s): `obstacles` that were turned go on from where they are.
+    /// The phase as it follows `before` at time `t` (s): `obstacles` that were redirected go on from where
+    /// they are.
     pub(crate) fn after(mut self, before: &Self, obstacles: &[Obstacle], t: f64) -> Self {
         let is_redirected = |obstacle: &&Obstacle| {
             before.redirected.iter().any(|redirected| redirected.name() == obstacle.name())
@@ -376,7 +387,7 @@ impl Phase {
         all.next().filter(|_| all.next().is_none())?.1.value.live()
     }
 
-    /// The phase with constants in place of numbers that commands can set: those to come do not change it.
+    /// The phase with constants in place of numbers that commands can set: later commands do not change it.
     pub(crate) fn frozen(self: &Arc<Self>) -> Arc<Self> {
         if !self.is_live() {
             return self.clone();
@@ -392,8 +403,9 @@ impl Phase {
         Arc::new(frozen)
     }
 
-    /// What acts at rest at a `fraction` of the load, for good: loads, pressures and the forces of actuators are so much of those at the end,
-    /// and `obstacles` stand where they have come to by then.
+    /// The phase at rest under a `fraction` of its load: loads, pressures and the forces of actuators are
+    /// constant, this fraction of those at the end, and `obstacles` stand where they are at this fraction of
+    /// the end time.
     pub(crate) fn at_rest(&self, fraction: f64, obstacles: &[Obstacle], dimension: usize) -> Self {
         let (mut rest, end) = (self.clone(), self.until);
         for (_, load) in &mut rest.loads {
@@ -416,7 +428,7 @@ impl Phase {
         rest
     }
 
-    /// Whether there are any.
+    /// Whether there are numbers that commands can set.
     fn is_live(&self) -> bool {
         self.loads.iter().any(|(_, load)| load.value.live().is_some())
             || self.actuations.iter().any(|(_, force)| force.live().is_some())

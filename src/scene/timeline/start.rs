@@ -15,11 +15,11 @@ pub(super) struct Start {
     pub(super) positions: Option<Vec<f64>>,
     /// Displacements (m).
     pub(super) displacements: Vec<f64>,
-    /// Velocities (m/s), but for what follows.
+    /// Velocities (m/s), without `spin` and `of_nodes`.
     pub(super) velocities: Vec<f64>,
-    /// Angular velocity (rad/s) about the centre of mass, on top of them.
+    /// Angular velocity (rad/s) about the centre of mass, added to them.
     pub(super) spin: Option<Vec<f64>>,
-    /// Velocities (m/s) of some nodes, instead of all that.
+    /// Velocities (m/s) of some nodes, in place of both.
     pub(super) of_nodes: Vec<(Selection, Vec<f64>)>,
 }
 
@@ -39,7 +39,8 @@ impl Start {
     /// Velocities at t = 0.
     ///
     /// # Errors
-    /// A state of another mesh, numbers of components that do not fit the body, numbers that are not finite, unknown nodes.
+    /// A state of another mesh, numbers of components that do not fit the body, numbers that are not finite,
+    /// unknown nodes.
     pub(super) fn velocities(&self, body: &Body) -> Result<Vec<f64>, InputError> {
         let dimension = body.dimension();
         let Self { positions, displacements, velocities, spin, of_nodes } = self;

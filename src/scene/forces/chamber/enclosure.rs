@@ -1,15 +1,16 @@
 //! What walls enclose: areas and volumes, their gradients and second derivatives.
 //!
-//! With its nodes at x_a, an edge x = sum N_a x_a takes part in an area by (1/2) int x x x' ds, a face in a volume by
-//! (1/3) int x . (x,1 x x,2). Both are sums of determinants of nodes, with weights that the shape functions alone give
-//! ([`volume_parts`](crate::scene::forces::faces::volume_parts)), so that derivatives are exact, and symmetric part by part.
+//! With its nodes at x_a, an edge x = sum N_a x_a contributes (1/2) int x x x' ds to an area, a face
+//! (1/3) int x . (x,1 x x,2) to a volume. Both are sums of determinants of nodal positions, with weights that
+//! depend on the shape functions alone ([`volume_parts`](crate::scene::forces::faces::volume_parts)), so that
+//! derivatives are exact, and the second ones symmetric for each part.
 
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::{cross, dot};
 use crate::elements::mesh::Mesh;
 
-/// The ends of an edge or the corners of a triangle, and what it counts as: walls that are curved, or means of others, are
-/// sums of such parts.
+/// The ends of an edge or the corners of a triangle, and its weight: walls that are curved, or means of
+/// others, are weighted sums of such parts.
 pub(super) type Part<const D: usize> = ([usize; D], f64);
 
 /// The parts of the walls of a chamber in `D` dimensions.

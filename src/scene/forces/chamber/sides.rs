@@ -8,8 +8,8 @@ use crate::base::vector::dot;
 use crate::elements::force::Force;
 use crate::elements::mesh::Mesh;
 
-/// Of the closed walls, apart from each other, of a chamber with this `force`: the first that run around the body and not
-/// around a room in it, by one of their nodes, and what they enclose, a volume (m^3) below 0.
+/// The first of the separate closed walls of a chamber with this `force` that runs around the body instead of
+/// around a room in it: one of its nodes, and the volume (m^3) that it encloses, which is below 0.
 pub(super) fn around_the_body(force: &ChamberForce, mesh: &Mesh) -> Option<(usize, f64)> {
     let d = mesh.dimension();
     let mut gradient = vec![0.0; mesh.positions().len()];

@@ -1,4 +1,4 @@
-//! Chambers beside a body: areas and volumes in closed form, and what encloses none.
+//! Chambers next to a body: areas and volumes in closed form, and walls that enclose none.
 
 use super::{Chamber, Geometry};
 use crate::base::sparse::BlockMatrix;
@@ -19,8 +19,8 @@ fn body(mesh: Mesh) -> Body {
     .unwrap()
 }
 
-/// `mesh` without the cells whose nodes all lie between `min` and `max` (in all axes), with the
-/// nodes on the rim of that named "walls" and other loose ones left out.
+/// `mesh` without the cells whose nodes all lie between `min` and `max` (in all axes), with the nodes on the
+/// rim of that hole named "walls"; nodes that are left without cells are dropped.
 fn hollow(mesh: &Mesh, min: f64, max: f64) -> Mesh {
     let d = mesh.dimension();
     let inside = |&node: &usize| mesh.position(node).iter().all(|x| (min..=max).contains(x));
@@ -58,8 +58,8 @@ fn problem(body: &Body, walls: impl Into<Selection>) -> String {
     }
 }
 
-/// A hole of 2 x 2 m in a plate, and of 2 x 2 x 2 m in a block. Closed boundaries of any kind of
-/// cells count to round-off.
+/// A hole of 2 x 2 m in a plate, and of 2 x 2 x 2 m in a block. Closed boundaries of all kinds of cells give
+/// these values up to round-off.
 #[test]
 fn holes() {
     for cells in Cells::ALL {
@@ -77,8 +77,8 @@ fn holes() {
     }
 }
 
-/// A pit of 2 x 2 x 2 m in a block, open at the top, under a lid: its volume, how that changes against differences, and no
-/// net force of the pressure in it, whatever the displacements.
+/// A pit of 2 x 2 x 2 m in a block, open at the top, under a lid: its volume, its derivatives against finite
+/// differences, and no net force of the pressure in it, whatever the displacements.
 #[test]
 fn lids() {
     for cells in SolidCells::ALL {
@@ -104,7 +104,7 @@ fn lids() {
         let pattern = std::sync::Arc::new(pit.inertia().pattern().with_pairs(&force.couplings()));
         let [mut tangents, mut none] = [(); 2].map(|()| BlockMatrix::zeros(&pattern, 3));
         force.add_tangents(0.0, &u, &u, &mut tangents, &mut none);
-        // V is of third degree: differences over 1 mm are off by 1e-6 or less, and by round-off
+        // V is linear in each component of u: differences are off by round-off alone
         let step = 1e-3;
         for dof in (0..pit.dofs()).step_by(7) {
             let mut moved = [u.clone(), u.clone()];
@@ -139,8 +139,8 @@ fn rooms() {
     }
 }
 
-/// The chamber is on the other side than the body, wherever that is: outside of it, pressure makes
-/// the body smaller.
+/// The chamber is on the side of its walls that is opposite to the body: if that is the outside, pressure
+/// makes the body smaller.
 #[test]
 fn the_world_around_a_body() {
     let mesh = Mesh::rectangle([4.0, 3.0], [5, 4], Cells::Triangles6).unwrap();
@@ -167,7 +167,8 @@ fn chains() {
     let force = closed(&flat, "top");
     assert_eq!(force.volume(&vec![0.0; flat.dofs()]), 0.0);
     let Geometry::Polygon(polygon, factor) = &force.geometry else { panic!() };
-    // lifted by 1 m with the ends at rest, that of 4 x 1 m with slopes of 1 m is lost to the chamber
+    // lifted by 1 m with the ends at rest, the chamber loses 3 m^2: 4 x 1 m less the two slopes,
+    // 1 m wide each
     let mut u = vec![0.0; flat.dofs()];
     for &node in &flat.mesh().sets()["top"] {
         let x = flat.mesh().position(node)[0];

@@ -1,4 +1,4 @@
-//! The walls of a chamber: their nodes, checked, in their order around.
+//! The walls of a chamber: their nodes, checked, and in their order around it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -71,8 +71,9 @@ impl Chamber {
         Ok(triangles.into_iter().map(|triangle| (triangle, 1.0)).chain(lids).collect())
     }
 
-    /// The lids on the rims of faces with these outlines. A lid goes from the mean of the nodes of its rim to each of its
-    /// edges, curved or not. Volumes are linear in that mean, so it is the mean of fans from each of the nodes.
+    /// The lids on the rims of faces with these outlines. A lid goes from the mean of the nodes of its rim to
+    /// each of its edges, curved or not. Volumes are linear in that mean, so that of a lid is the mean of
+    /// those of fans from each of the nodes.
     fn lids(&self, outlines: impl Iterator<Item = Vec<Face>>) -> Result<Vec<Part<3>>, String> {
         let open = open_edges(outlines)?;
         if !open.is_empty() && !self.is_closed_by_lid {
@@ -177,7 +178,7 @@ fn walls(faces: Vec<Face>, nodes: &BTreeSet<usize>) -> Result<Vec<Face>, String>
     })
 }
 
-/// Loops of edges as they are; one open chain with the edge that closes it, if a line may.
+/// Loops of edges as they are; one open chain with the edge that closes it added, if `by_line`.
 fn closed(mut edges: Vec<Face>, by_line: bool) -> Result<Vec<Face>, String> {
     // how many more edges begin at a node than end there
     let mut surplus: BTreeMap<usize, i32> = BTreeMap::new();
@@ -215,7 +216,7 @@ fn outline(face: &[usize], is_quadratic: bool) -> Vec<Face> {
     (0..count).map(|k| ends(k).iter().chain(middles.get(k)).copied().collect()).collect()
 }
 
-/// The edges of faces with these outlines that no other face runs along the other way.
+/// The edges, of faces with these outlines, along which no other face runs in the opposite direction.
 fn open_edges(outlines: impl Iterator<Item = Vec<Face>>) -> Result<Vec<Face>, String> {
     let mut edges: BTreeMap<[usize; 2], Face> = BTreeMap::new();
     for edge in outlines.flatten() {

@@ -2,14 +2,14 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Which points touch, and which of their normal forces press: by the numbers that decide on it, or as
-/// held from one contact event to the next. Which of these stick, in the latter case only.
+/// Which points touch, and which of their normal forces press: by the sign of the present values, or as held
+/// from one contact event to the next. In the latter case also which of these stick.
 pub(super) struct Switches {
     are_held: AtomicBool,
     touch: Vec<AtomicBool>,
-    /// None where nothing hangs on it: with adhesion, and without Coulomb's friction.
+    /// Empty where nothing depends on it: with adhesion and without Coulomb's friction.
     press: Vec<AtomicBool>,
-    /// None without friction. The force needs none of them, for its law is smooth where they change.
+    /// Empty without friction. The force does not use them, as its law is smooth where they change.
     stick: Vec<AtomicBool>,
 }
 
@@ -31,7 +31,7 @@ impl Switches {
         self.touch.len() + self.press.len() + self.stick.len()
     }
 
-    /// Parts the `values` of all switches: distances, pulls, and how much faster points slide than what sticks.
+    /// Splits the `values` of all switches: distances, pulls, and how much faster than v0 points slide.
     pub(super) fn parts<'v>(&self, values: &'v mut [f64]) -> [&'v mut [f64]; 3] {
         let (distances, rest) = values.split_at_mut(self.touch.len());
         let (pulls, excesses) = rest.split_at_mut(self.press.len());
@@ -50,7 +50,7 @@ impl Switches {
     fn is_on(&self, held: &AtomicBool, value: f64) -> bool {
         match self.are_held.load(Ordering::Relaxed) {
             true => held.load(Ordering::Relaxed),
-            // what is no number is taken along, to be found out
+            // NaN counts as on, so that it gets into the force and is noticed
             false => value.is_nan() || value <= 0.0,
         }
     }
@@ -60,14 +60,14 @@ impl Switches {
         self.is_on(&self.touch[k], distance)
     }
 
-    /// Whether the normal force of point number `k` presses, or may pull as well; the law has this
+    /// Whether the normal force of point number `k` presses, or is allowed to pull; by the law it has this
     /// `pull` (N).
     pub(super) fn presses(&self, k: usize, pull: f64) -> bool {
         self.press.get(k).is_none_or(|press| self.is_on(press, pull))
     }
 
-    /// Whether all points that are held under friction slide or none does, if it is one of these; the outer
-    /// `None` if there are no such points.
+    /// Whether the points that are held under friction all slide (true) or all stick (false), the inner
+    /// `None` if some do either; the outer `None` if there are no such points.
     pub(super) fn all_slide(&self) -> Option<Option<bool>> {
         let mut sticking = (0..self.stick.len()).filter_map(|k| self.gripping(k));
         let first = sticking.next()?;

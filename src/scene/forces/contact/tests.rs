@@ -89,7 +89,8 @@ fn friction_goes_with_what_presses() {
     }
 }
 
-/// What bounds explicit steps counts what slides as if it stuck: 3 mu_s N/(2 v0), together with the tangents.
+/// The bound on explicit steps counts what slides as if it stuck: reserves and tangents add up to
+/// 3 mu_s N/(2 v0).
 #[test]
 fn reserves_are_for_what_may_stick() {
     let mesh = Mesh::rectangle([1.0, 1.0], [2, 2], Cells::Triangles).unwrap();
