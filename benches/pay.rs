@@ -22,7 +22,7 @@ const CELLS: [usize; 2] = [30, 6];
 /// Steps of the shorter run.
 const STEPS: usize = 300;
 /// Rooms of the library whose instructions are listed by themselves.
-const ROOMS: [&str; 2] = ["pliant::external", "pliant::constraint"];
+const ROOMS: [&str; 2] = ["pliant::scene::forces", "pliant::scene::constraint"];
 
 /// What a scene has more than the bare one.
 type More = fn(Soft) -> Soft;

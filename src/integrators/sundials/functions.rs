@@ -7,6 +7,17 @@ use super::ffi;
 /// A C function with its name, for errors.
 pub(super) type Named<F> = (&'static str, F);
 
+/// A C function with its name.
+macro_rules! named {
+    ($function:ident) => {
+        (stringify!($function), $crate::integrators::sundials::ffi::$function)
+    };
+    ($function:ident as _) => {
+        (stringify!($function), $crate::integrators::sundials::ffi::$function as _)
+    };
+}
+pub(super) use named;
+
 /// A function with one argument besides the memory block, mostly to set an option.
 pub(super) type Set<T> = Named<unsafe extern "C" fn(*mut c_void, T) -> i32>;
 

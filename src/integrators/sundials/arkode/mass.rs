@@ -1,5 +1,6 @@
 //! The mass matrix of M y' = f(t, y) in ARKODE.
 
+use crate::integrators::sundials::functions::named;
 use std::ffi::c_void;
 
 use crate::integrators::{
@@ -50,7 +51,7 @@ pub(super) fn attach<K, S: Ode>(
     unsafe {
         let code = ffi::ARKStepSetMassLinearSolver(arkode.memory.raw, raw, mass, time_dependent);
         arkode.host.accept("ARKStepSetMassLinearSolver", code)?;
-        arkode.set(("ARKStepSetMassFn", ffi::ARKStepSetMassFn), Some(fill::<S>))
+        arkode.set(named!(ARKStepSetMassFn), Some(fill::<S>))
     }
 }
 

@@ -8,7 +8,7 @@ use crate::integrators::{
     ode::{Borrowed, MassKind, Ode},
     sundials::{
         ffi,
-        functions::Functions,
+        functions::{Functions, named},
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{
@@ -65,36 +65,33 @@ impl<S: Ode> Session<ArkodeKind, S> {
             // SAFETY: as above; the callback fits the host of the session.
             unsafe { ffi::ARKStepReInit(memory, None, Some(rhs::<S>), t, y) }
         }),
-        reset: Some(("ARKStepReset", ffi::ARKStepReset)),
+        reset: Some(named!(ARKStepReset)),
         reinit_forgets_stop_time: true,
         refusals: &[ffi::ARK_ILL_INPUT, ffi::ARK_TOO_CLOSE, ffi::ARK_BAD_T],
         mass_failures: &[ffi::ARK_MASSSETUP_FAIL, ffi::ARK_MASSSOLVE_FAIL],
-        set_error_handler: ("ARKStepSetErrHandlerFn", ffi::ARKStepSetErrHandlerFn),
-        set_user_data: ("ARKStepSetUserData", ffi::ARKStepSetUserData),
-        scalar_tolerances: ("ARKStepSStolerances", ffi::ARKStepSStolerances),
-        vector_tolerances: ("ARKStepSVtolerances", ffi::ARKStepSVtolerances),
-        set_linear_solver: ("ARKStepSetLinearSolver", ffi::ARKStepSetLinearSolver),
-        allow_inactive_roots: ("ARKStepSetNoInactiveRootWarn", ffi::ARKStepSetNoInactiveRootWarn),
-        set_max_steps: ("ARKStepSetMaxNumSteps", ffi::ARKStepSetMaxNumSteps),
-        set_initial_step: ("ARKStepSetInitStep", ffi::ARKStepSetInitStep),
-        set_max_step: ("ARKStepSetMaxStep", ffi::ARKStepSetMaxStep),
-        set_min_step: ("ARKStepSetMinStep", ffi::ARKStepSetMinStep),
-        set_max_error_test_failures: Some((
-            "ARKStepSetMaxErrTestFails",
-            ffi::ARKStepSetMaxErrTestFails,
-        )),
+        set_error_handler: named!(ARKStepSetErrHandlerFn),
+        set_user_data: named!(ARKStepSetUserData),
+        scalar_tolerances: named!(ARKStepSStolerances),
+        vector_tolerances: named!(ARKStepSVtolerances),
+        set_linear_solver: named!(ARKStepSetLinearSolver),
+        allow_inactive_roots: named!(ARKStepSetNoInactiveRootWarn),
+        set_max_steps: named!(ARKStepSetMaxNumSteps),
+        set_initial_step: named!(ARKStepSetInitStep),
+        set_max_step: named!(ARKStepSetMaxStep),
+        set_min_step: named!(ARKStepSetMinStep),
+        set_max_error_test_failures: Some(named!(ARKStepSetMaxErrTestFails)),
         set_max_order: None,
-        set_convergence_coefficient: ("ARKStepSetNonlinConvCoef", ffi::ARKStepSetNonlinConvCoef),
-        set_tolerance_factor: ("ARKStepSetEpsLin", ffi::ARKStepSetEpsLin),
-        set_stop_time: ("ARKStepSetStopTime", ffi::ARKStepSetStopTime),
-        set_constraints: ("ARKStepSetConstraints", ffi::ARKStepSetConstraints),
-        get_root_info: ("ARKStepGetRootInfo", ffi::ARKStepGetRootInfo),
-        get_dky: ("ARKStepGetDky", ffi::ARKStepGetDky),
+        set_convergence_coefficient: named!(ARKStepSetNonlinConvCoef),
+        set_tolerance_factor: named!(ARKStepSetEpsLin),
+        set_stop_time: named!(ARKStepSetStopTime),
+        set_constraints: named!(ARKStepSetConstraints),
+        get_root_info: named!(ARKStepGetRootInfo),
+        get_dky: named!(ARKStepGetDky),
         bad_time: ffi::ARK_BAD_T,
         bad_derivative: ffi::ARK_BAD_K,
         get_step_parameter: ffi::ARKStepGetCurrentGamma,
         get_current_step: ffi::ARKStepGetCurrentStep,
-        get_error_weights: ("ARKStepGetErrWeights", ffi::ARKStepGetErrWeights),
+        get_error_weights: named!(ARKStepGetErrWeights),
         get_linear_flag: ffi::ARKStepGetLastLinFlag,
         get_integrator_stats,
         get_nonlinear_stats: ffi::ARKStepGetNonlinSolvStats,
@@ -249,17 +246,16 @@ impl<S: Ode> Session<ArkodeKind, S> {
         // SAFETY: the callback fits the host; the memory is alive and reads the names, C strings, once;
         // the other values are plain numbers.
         unsafe {
-            arkode
-                .set_root_functions(("ARKStepRootInit", ffi::ARKStepRootInit), Some(roots::<S>))?;
+            arkode.set_root_functions(named!(ARKStepRootInit), Some(roots::<S>))?;
             let (implicit, explicit) = (implicit_id.as_ptr(), explicit_id.as_ptr());
             let code = ffi::ARKStepSetTableName(arkode.memory.raw, implicit, explicit);
             arkode.host.accept("ARKStepSetTableName", code)?;
-            let set = ("ARKStepSetInterpolantDegree", ffi::ARKStepSetInterpolantDegree as _);
+            let set = named!(ARKStepSetInterpolantDegree as _);
             arkode.set(set, degree as i32)?;
             // The post-processing of steps would make ARKODE evaluate the right-hand side at their ends.
             if let Some(h) = options.fixed_step {
-                arkode.set(("ARKStepSetFixedStep", ffi::ARKStepSetFixedStep), h)?;
-                let set = ("ARKStepSetPostprocessStepFn", ffi::ARKStepSetPostprocessStepFn as _);
+                arkode.set(named!(ARKStepSetFixedStep), h)?;
+                let set = named!(ARKStepSetPostprocessStepFn as _);
                 arkode.set(set, Some(note_step_end::<S> as _))?;
             } else {
                 let (memory, data) = (arkode.memory.raw, arkode.host.as_ptr());
@@ -284,19 +280,19 @@ fn solve_stages<S: Ode>(
 ) -> Result<(), Error> {
     // SAFETY: the values are plain numbers.
     unsafe {
-        let set = ("ARKStepSetPredictorMethod", ffi::ARKStepSetPredictorMethod as _);
+        let set = named!(ARKStepSetPredictorMethod as _);
         arkode.set(set, options.predictor as i32)?;
-        let set = ("ARKStepSetMaxNonlinIters", ffi::ARKStepSetMaxNonlinIters as _);
+        let set = named!(ARKStepSetMaxNonlinIters as _);
         arkode.set(set, options.max_iterations as i32)?;
         // The slope of a stage follows from its equation: this spares an evaluation, which would
         // also stop the integration if it failed, and magnify errors of stiff components.
-        let set = ("ARKStepSetDeduceImplicitRhs", ffi::ARKStepSetDeduceImplicitRhs as _);
+        let set = named!(ARKStepSetDeduceImplicitRhs as _);
         arkode.set(set, 1)?;
         if options.linear {
-            arkode.set(("ARKStepSetLinear", ffi::ARKStepSetLinear as _), 0)?;
+            arkode.set(named!(ARKStepSetLinear as _), 0)?;
         }
         if let Some(steps) = options.nonlinear.max_steps_between_setups {
-            let set = ("ARKStepSetLSetupFrequency", ffi::ARKStepSetLSetupFrequency as _);
+            let set = named!(ARKStepSetLSetupFrequency as _);
             arkode.set(set, steps as i32)?;
         }
     }
@@ -308,33 +304,30 @@ fn solve_stages<S: Ode>(
                 arkode.set_newton(solver, S::newton_solve, for_jacobian)?;
                 if matches!(solver, LinearSolver::Custom) {
                     let callback = Some(newton_setup_with_mass::<S> as _);
-                    arkode.set(("ARKStepSetLinSysFn", ffi::ARKStepSetLinSysFn), callback)?;
+                    arkode.set(named!(ARKStepSetLinSysFn), callback)?;
                     let callback = Some(newton_rhs::<S> as _);
-                    arkode.set(("ARKStepSetNlsRhsFn", ffi::ARKStepSetNlsRhsFn), callback)?;
+                    arkode.set(named!(ARKStepSetNlsRhsFn), callback)?;
                 } else if let LinearSolver::Krylov(krylov) = solver {
                     arkode.set_krylov(
                         krylov,
+                        (named!(ARKStepSetJacTimes), Some(jacobian_times::<S>)),
                         (
-                            ("ARKStepSetJacTimes", ffi::ARKStepSetJacTimes),
-                            Some(jacobian_times::<S>),
-                        ),
-                        (
-                            ("ARKStepSetPreconditioner", ffi::ARKStepSetPreconditioner),
+                            named!(ARKStepSetPreconditioner),
                             Some(precondition_setup::<S>),
                             Some(precondition_solve::<S>),
                         ),
                     )?;
                 } else {
                     let callback = Some(jacobian::<S> as _);
-                    arkode.set(("ARKStepSetJacFn", ffi::ARKStepSetJacFn), callback)?;
+                    arkode.set(named!(ARKStepSetJacFn), callback)?;
                 }
                 if let Some(steps) = options.max_steps_between_jacobians {
-                    let set = ("ARKStepSetJacEvalFrequency", ffi::ARKStepSetJacEvalFrequency as _);
+                    let set = named!(ARKStepSetJacEvalFrequency as _);
                     arkode.set(set, i64::from(steps))?;
                 }
             }
             NonlinearSolver::FixedPoint { acceleration } => {
-                let set = ("ARKStepSetNonlinearSolver", ffi::ARKStepSetNonlinearSolver as _);
+                let set = named!(ARKStepSetNonlinearSolver as _);
                 arkode.set_fixed_point(set, *acceleration)?;
             }
         }

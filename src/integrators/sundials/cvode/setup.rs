@@ -6,7 +6,9 @@ use crate::integrators::{
     ode::{Borrowed, Ode},
     sundials::{
         ffi,
-        functions::{BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions},
+        functions::{
+            BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions, named,
+        },
         linear_solver::LinearSolver,
         nonlinear::NonlinearSolver,
         ode_callbacks::{jacobian, newton_rhs, newton_setup, project, quadratures, rhs, roots},
@@ -42,23 +44,23 @@ static FUNCTIONS: Functions = TABLE;
 pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
     integrator: "CVODE on the way back",
     forward: &WITH_CHECKPOINTS,
-    init_checkpoints: ("CVodeAdjInit", ffi::CVodeAdjInit),
+    init_checkpoints: named!(CVodeAdjInit),
     create: ("CVodeCreateB", |memory, which| {
         // SAFETY: whoever calls through the table vouches for the arguments.
         unsafe { ffi::CVodeCreateB(memory, ffi::CV_BDF, which) }
     }),
-    vector_tolerances: ("CVodeSVtolerancesB", ffi::CVodeSVtolerancesB),
-    set_user_data: ("CVodeSetUserDataB", ffi::CVodeSetUserDataB),
-    set_max_steps: ("CVodeSetMaxNumStepsB", ffi::CVodeSetMaxNumStepsB),
-    set_linear_solver: ("CVodeSetLinearSolverB", ffi::CVodeSetLinearSolverB),
-    set_quadrature_error_control: ("CVodeSetQuadErrConB", ffi::CVodeSetQuadErrConB),
-    quadrature_tolerances: ("CVodeQuadSVtolerancesB", ffi::CVodeQuadSVtolerancesB),
+    vector_tolerances: named!(CVodeSVtolerancesB),
+    set_user_data: named!(CVodeSetUserDataB),
+    set_max_steps: named!(CVodeSetMaxNumStepsB),
+    set_linear_solver: named!(CVodeSetLinearSolverB),
+    set_quadrature_error_control: named!(CVodeSetQuadErrConB),
+    quadrature_tolerances: named!(CVodeQuadSVtolerancesB),
     solve: ffi::CVodeB,
     get: ("CVodeGetB", |memory, which, t, lambda, _| {
         // SAFETY: as above.
         unsafe { ffi::CVodeGetB(memory, which, t, lambda) }
     }),
-    get_quadratures: ("CVodeGetQuadB", ffi::CVodeGetQuadB),
+    get_quadratures: named!(CVodeGetQuadB),
     get_memory: ffi::CVodeGetAdjCVodeBmem,
     get_current_time: ffi::CVodeGetCurrentTime,
     get_current_order: ffi::CVodeGetCurrentOrder,
@@ -89,29 +91,29 @@ const TABLE: Functions = Functions {
     reset: None,
     refusals: &[ffi::CV_ILL_INPUT, ffi::CV_TOO_CLOSE, ffi::CV_BAD_T],
     mass_failures: &[],
-    set_error_handler: ("CVodeSetErrHandlerFn", ffi::CVodeSetErrHandlerFn),
-    set_user_data: ("CVodeSetUserData", ffi::CVodeSetUserData),
+    set_error_handler: named!(CVodeSetErrHandlerFn),
+    set_user_data: named!(CVodeSetUserData),
     scalar_tolerances: ("CVodeSetTolerances", ffi::CVodeSStolerances),
     vector_tolerances: ("CVodeSetTolerances", ffi::CVodeSVtolerances),
-    set_linear_solver: ("CVodeSetLinearSolver", ffi::CVodeSetLinearSolver),
-    allow_inactive_roots: ("CVodeSetNoInactiveRootWarn", ffi::CVodeSetNoInactiveRootWarn),
-    set_max_steps: ("CVodeSetMaxNumSteps", ffi::CVodeSetMaxNumSteps),
-    set_initial_step: ("CVodeSetInitStep", ffi::CVodeSetInitStep),
-    set_max_step: ("CVodeSetMaxStep", ffi::CVodeSetMaxStep),
-    set_min_step: ("CVodeSetMinStep", ffi::CVodeSetMinStep),
-    set_max_error_test_failures: Some(("CVodeSetMaxErrTestFails", ffi::CVodeSetMaxErrTestFails)),
-    set_max_order: Some(("CVodeSetMaxOrd", ffi::CVodeSetMaxOrd)),
-    set_convergence_coefficient: ("CVodeSetNonlinConvCoef", ffi::CVodeSetNonlinConvCoef),
-    set_tolerance_factor: ("CVodeSetEpsLin", ffi::CVodeSetEpsLin),
-    set_stop_time: ("CVodeSetStopTime", ffi::CVodeSetStopTime),
-    set_constraints: ("CVodeSetConstraints", ffi::CVodeSetConstraints),
-    get_root_info: ("CVodeGetRootInfo", ffi::CVodeGetRootInfo),
-    get_dky: ("CVodeGetDky", ffi::CVodeGetDky),
+    set_linear_solver: named!(CVodeSetLinearSolver),
+    allow_inactive_roots: named!(CVodeSetNoInactiveRootWarn),
+    set_max_steps: named!(CVodeSetMaxNumSteps),
+    set_initial_step: named!(CVodeSetInitStep),
+    set_max_step: named!(CVodeSetMaxStep),
+    set_min_step: named!(CVodeSetMinStep),
+    set_max_error_test_failures: Some(named!(CVodeSetMaxErrTestFails)),
+    set_max_order: Some(named!(CVodeSetMaxOrd)),
+    set_convergence_coefficient: named!(CVodeSetNonlinConvCoef),
+    set_tolerance_factor: named!(CVodeSetEpsLin),
+    set_stop_time: named!(CVodeSetStopTime),
+    set_constraints: named!(CVodeSetConstraints),
+    get_root_info: named!(CVodeGetRootInfo),
+    get_dky: named!(CVodeGetDky),
     bad_time: ffi::CV_BAD_T,
     bad_derivative: ffi::CV_BAD_K,
     get_step_parameter: ffi::CVodeGetCurrentGamma,
     get_current_step: ffi::CVodeGetCurrentStep,
-    get_error_weights: ("CVodeGetErrWeights", ffi::CVodeGetErrWeights),
+    get_error_weights: named!(CVodeGetErrWeights),
     get_linear_flag: ffi::CVodeGetLastLinFlag,
     get_integrator_stats: ffi::CVodeGetIntegratorStats,
     get_nonlinear_stats: ffi::CVodeGetNonlinSolvStats,
@@ -127,12 +129,12 @@ const TABLE: Functions = Functions {
     get_stability_reductions: Some(ffi::CVodeGetNumStabLimOrderReds),
     get_tolerance_scale: ffi::CVodeGetTolScaleFactor,
     quadratures: Some(&QuadratureFunctions {
-        reinit: ("CVodeQuadReInit", ffi::CVodeQuadReInit),
-        scalar_tolerances: ("CVodeQuadSStolerances", ffi::CVodeQuadSStolerances),
-        vector_tolerances: ("CVodeQuadSVtolerances", ffi::CVodeQuadSVtolerances),
-        set_error_control: ("CVodeSetQuadErrCon", ffi::CVodeSetQuadErrCon),
-        get: ("CVodeGetQuad", ffi::CVodeGetQuad),
-        get_dky: ("CVodeGetQuadDky", ffi::CVodeGetQuadDky),
+        reinit: named!(CVodeQuadReInit),
+        scalar_tolerances: named!(CVodeQuadSStolerances),
+        vector_tolerances: named!(CVodeQuadSVtolerances),
+        set_error_control: named!(CVodeSetQuadErrCon),
+        get: named!(CVodeGetQuad),
+        get_dky: named!(CVodeGetQuadDky),
         get_evaluations: ffi::CVodeGetQuadNumRhsEvals,
     }),
     sensitivities: Some(&SensitivityFunctions {
@@ -140,11 +142,11 @@ const TABLE: Functions = Functions {
             // SAFETY: whoever calls through the table vouches for the arguments.
             unsafe { ffi::CVodeSensReInit(memory, method, s) }
         }),
-        set_parameters: ("CVodeSetSensParams", ffi::CVodeSetSensParams),
-        set_tolerances: ("CVodeSensEEtolerances", ffi::CVodeSensEEtolerances),
-        set_error_control: ("CVodeSetSensErrCon", ffi::CVodeSetSensErrCon),
-        get: ("CVodeGetSens", ffi::CVodeGetSens),
-        get_dky: ("CVodeGetSensDky1", ffi::CVodeGetSensDky1),
+        set_parameters: named!(CVodeSetSensParams),
+        set_tolerances: named!(CVodeSensEEtolerances),
+        set_error_control: named!(CVodeSetSensErrCon),
+        get: named!(CVodeGetSens),
+        get_dky: named!(CVodeGetSensDky1),
         get_evaluations: ffi::CVodeGetSensNumRhsEvals,
     }),
 };
@@ -203,26 +205,21 @@ impl<S: Ode> Session<CvodeKind, S> {
             let code = ffi::CVodeInit(cvode.memory.raw, Some(rhs::<S>), t0, cvode.y.raw());
             cvode.host.accept("CVodeInit", code)?;
             cvode.configure(&options.tolerances, &options.steps, &options.limits)?;
-            cvode.set_root_functions(("CVodeRootInit", ffi::CVodeRootInit), Some(roots::<S>))?;
+            cvode.set_root_functions(named!(CVodeRootInit), Some(roots::<S>))?;
             let tolerances = (&options.quadratures, &options.tolerances);
             let integrands = Some(quadratures::<S> as _);
-            cvode.set_quadratures(
-                count,
-                ("CVodeQuadInit", ffi::CVodeQuadInit),
-                integrands,
-                tolerances,
-            )?;
+            cvode.set_quadratures(count, named!(CVodeQuadInit), integrands, tolerances)?;
         }
         // SAFETY: the callback fits the registered host; the other values are plain numbers.
         unsafe {
             if options.project {
-                cvode.set(("CVodeSetProjFn", ffi::CVodeSetProjFn), Some(project::<S> as _))?;
+                cvode.set(named!(CVodeSetProjFn), Some(project::<S> as _))?;
             }
             if options.stability_limit_detection {
-                cvode.set(("CVodeSetStabLimDet", ffi::CVodeSetStabLimDet), 1)?;
+                cvode.set(named!(CVodeSetStabLimDet), 1)?;
             }
             if let Some(steps) = options.nonlinear.max_steps_between_setups {
-                let function = ("CVodeSetLSetupFrequency", ffi::CVodeSetLSetupFrequency as _);
+                let function = named!(CVodeSetLSetupFrequency as _);
                 cvode.set(function, i64::from(steps))?;
             }
         }
@@ -245,29 +242,26 @@ impl<S: Ode> Session<CvodeKind, S> {
                     cvode.set_newton(solver, S::newton_solve, for_jacobian)?;
                     if matches!(solver, LinearSolver::Custom) {
                         let callback = Some(newton_setup::<S> as _);
-                        cvode.set(("CVodeSetLinSysFn", ffi::CVodeSetLinSysFn), callback)?;
+                        cvode.set(named!(CVodeSetLinSysFn), callback)?;
                         let callback = Some(newton_rhs::<S> as _);
-                        cvode.set(("CVodeSetNlsRhsFn", ffi::CVodeSetNlsRhsFn), callback)?;
+                        cvode.set(named!(CVodeSetNlsRhsFn), callback)?;
                     } else if let LinearSolver::Krylov(krylov) = solver {
                         cvode.set_krylov(
                             krylov,
+                            (named!(CVodeSetJacTimes), Some(jacobian_times::<S>)),
                             (
-                                ("CVodeSetJacTimes", ffi::CVodeSetJacTimes),
-                                Some(jacobian_times::<S>),
-                            ),
-                            (
-                                ("CVodeSetPreconditioner", ffi::CVodeSetPreconditioner),
+                                named!(CVodeSetPreconditioner),
                                 Some(precondition_setup::<S>),
                                 Some(precondition_solve::<S>),
                             ),
                         )?;
                     } else {
                         let callback = Some(jacobian::<S> as _);
-                        cvode.set(("CVodeSetJacFn", ffi::CVodeSetJacFn), callback)?;
+                        cvode.set(named!(CVodeSetJacFn), callback)?;
                     }
                 }
                 NonlinearSolver::FixedPoint { acceleration } => {
-                    let set = ("CVodeSetNonlinearSolver", ffi::CVodeSetNonlinearSolver as _);
+                    let set = named!(CVodeSetNonlinearSolver as _);
                     cvode.set_fixed_point(set, *acceleration)?;
                 }
             }

@@ -8,7 +8,9 @@ use crate::integrators::{
         dae_callbacks::{jacobian, quadratures, residual, roots},
         dae_krylov::{jacobian_times, precondition_setup, precondition_solve},
         ffi,
-        functions::{BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions},
+        functions::{
+            BackwardFunctions, Functions, QuadratureFunctions, SensitivityFunctions, named,
+        },
         index::index,
         linear_solver::LinearSolver,
         sensitivity::{Access, all_residuals},
@@ -29,23 +31,23 @@ static FUNCTIONS: Functions = TABLE;
 pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
     integrator: "IDA on the way back",
     forward: &WITH_CHECKPOINTS,
-    init_checkpoints: ("IDAAdjInit", ffi::IDAAdjInit),
+    init_checkpoints: named!(IDAAdjInit),
     create: ("IDACreateB", |memory, which| {
         // SAFETY: whoever calls through the table vouches for the arguments.
         unsafe { ffi::IDACreateB(memory, which) }
     }),
-    vector_tolerances: ("IDASVtolerancesB", ffi::IDASVtolerancesB),
-    set_user_data: ("IDASetUserDataB", ffi::IDASetUserDataB),
-    set_max_steps: ("IDASetMaxNumStepsB", ffi::IDASetMaxNumStepsB),
-    set_linear_solver: ("IDASetLinearSolverB", ffi::IDASetLinearSolverB),
-    set_quadrature_error_control: ("IDASetQuadErrConB", ffi::IDASetQuadErrConB),
-    quadrature_tolerances: ("IDAQuadSVtolerancesB", ffi::IDAQuadSVtolerancesB),
+    vector_tolerances: named!(IDASVtolerancesB),
+    set_user_data: named!(IDASetUserDataB),
+    set_max_steps: named!(IDASetMaxNumStepsB),
+    set_linear_solver: named!(IDASetLinearSolverB),
+    set_quadrature_error_control: named!(IDASetQuadErrConB),
+    quadrature_tolerances: named!(IDAQuadSVtolerancesB),
     solve: ffi::IDASolveB,
     get: ("IDAGetB", |memory, which, t, lambda, slope| {
         // SAFETY: as above.
         unsafe { ffi::IDAGetB(memory, which, t, lambda, slope) }
     }),
-    get_quadratures: ("IDAGetQuadB", ffi::IDAGetQuadB),
+    get_quadratures: named!(IDAGetQuadB),
     get_memory: ffi::IDAGetAdjIDABmem,
     get_current_time: ffi::IDAGetCurrentTime,
     get_current_order: ffi::IDAGetCurrentOrder,
@@ -76,29 +78,29 @@ const TABLE: Functions = Functions {
     reset: None,
     refusals: &[ffi::IDA_ILL_INPUT],
     mass_failures: &[],
-    set_error_handler: ("IDASetErrHandlerFn", ffi::IDASetErrHandlerFn),
-    set_user_data: ("IDASetUserData", ffi::IDASetUserData),
+    set_error_handler: named!(IDASetErrHandlerFn),
+    set_user_data: named!(IDASetUserData),
     scalar_tolerances: ("IDASetTolerances", ffi::IDASStolerances),
     vector_tolerances: ("IDASetTolerances", ffi::IDASVtolerances),
-    set_linear_solver: ("IDASetLinearSolver", ffi::IDASetLinearSolver),
-    allow_inactive_roots: ("IDASetNoInactiveRootWarn", ffi::IDASetNoInactiveRootWarn),
-    set_max_steps: ("IDASetMaxNumSteps", ffi::IDASetMaxNumSteps),
-    set_initial_step: ("IDASetInitStep", ffi::IDASetInitStep),
-    set_max_step: ("IDASetMaxStep", ffi::IDASetMaxStep),
-    set_min_step: ("IDASetMinStep", ffi::IDASetMinStep),
+    set_linear_solver: named!(IDASetLinearSolver),
+    allow_inactive_roots: named!(IDASetNoInactiveRootWarn),
+    set_max_steps: named!(IDASetMaxNumSteps),
+    set_initial_step: named!(IDASetInitStep),
+    set_max_step: named!(IDASetMaxStep),
+    set_min_step: named!(IDASetMinStep),
     set_max_error_test_failures: None,
-    set_max_order: Some(("IDASetMaxOrd", ffi::IDASetMaxOrd)),
-    set_convergence_coefficient: ("IDASetNonlinConvCoef", ffi::IDASetNonlinConvCoef),
-    set_tolerance_factor: ("IDASetEpsLin", ffi::IDASetEpsLin),
-    set_stop_time: ("IDASetStopTime", ffi::IDASetStopTime),
-    set_constraints: ("IDASetConstraints", ffi::IDASetConstraints),
-    get_root_info: ("IDAGetRootInfo", ffi::IDAGetRootInfo),
-    get_dky: ("IDAGetDky", ffi::IDAGetDky),
+    set_max_order: Some(named!(IDASetMaxOrd)),
+    set_convergence_coefficient: named!(IDASetNonlinConvCoef),
+    set_tolerance_factor: named!(IDASetEpsLin),
+    set_stop_time: named!(IDASetStopTime),
+    set_constraints: named!(IDASetConstraints),
+    get_root_info: named!(IDAGetRootInfo),
+    get_dky: named!(IDAGetDky),
     bad_time: ffi::IDA_BAD_T,
     bad_derivative: ffi::IDA_BAD_K,
     get_step_parameter: ffi::IDAGetCurrentCj,
     get_current_step: ffi::IDAGetCurrentStep,
-    get_error_weights: ("IDAGetErrWeights", ffi::IDAGetErrWeights),
+    get_error_weights: named!(IDAGetErrWeights),
     get_linear_flag: ffi::IDAGetLastLinFlag,
     get_integrator_stats: ffi::IDAGetIntegratorStats,
     get_nonlinear_stats: ffi::IDAGetNonlinSolvStats,
@@ -114,12 +116,12 @@ const TABLE: Functions = Functions {
     get_stability_reductions: None,
     get_tolerance_scale: ffi::IDAGetTolScaleFactor,
     quadratures: Some(&QuadratureFunctions {
-        reinit: ("IDAQuadReInit", ffi::IDAQuadReInit),
-        scalar_tolerances: ("IDAQuadSStolerances", ffi::IDAQuadSStolerances),
-        vector_tolerances: ("IDAQuadSVtolerances", ffi::IDAQuadSVtolerances),
-        set_error_control: ("IDASetQuadErrCon", ffi::IDASetQuadErrCon),
-        get: ("IDAGetQuad", ffi::IDAGetQuad),
-        get_dky: ("IDAGetQuadDky", ffi::IDAGetQuadDky),
+        reinit: named!(IDAQuadReInit),
+        scalar_tolerances: named!(IDAQuadSStolerances),
+        vector_tolerances: named!(IDAQuadSVtolerances),
+        set_error_control: named!(IDASetQuadErrCon),
+        get: named!(IDAGetQuad),
+        get_dky: named!(IDAGetQuadDky),
         get_evaluations: ffi::IDAGetQuadNumRhsEvals,
     }),
     sensitivities: Some(&SensitivityFunctions {
@@ -127,11 +129,11 @@ const TABLE: Functions = Functions {
             // SAFETY: whoever calls through the table vouches for the arguments.
             unsafe { ffi::IDASensReInit(memory, method, s, sp) }
         }),
-        set_parameters: ("IDASetSensParams", ffi::IDASetSensParams),
-        set_tolerances: ("IDASensEEtolerances", ffi::IDASensEEtolerances),
-        set_error_control: ("IDASetSensErrCon", ffi::IDASetSensErrCon),
-        get: ("IDAGetSens", ffi::IDAGetSens),
-        get_dky: ("IDAGetSensDky1", ffi::IDAGetSensDky1),
+        set_parameters: named!(IDASetSensParams),
+        set_tolerances: named!(IDASensEEtolerances),
+        set_error_control: named!(IDASetSensErrCon),
+        get: named!(IDAGetSens),
+        get_dky: named!(IDAGetSensDky1),
         get_evaluations: ffi::IDAGetSensNumResEvals,
     }),
 };
@@ -165,24 +167,24 @@ impl<S: Dae> Session<IdaKind, S> {
             let code = ffi::IDAInit(memory, Some(residual::<S>), t0, y, yp);
             ida.host.accept("IDAInit", code)?;
             ida.configure(&options.tolerances, &options.steps, &options.limits)?;
-            ida.set_root_functions(("IDARootInit", ffi::IDARootInit), Some(roots::<S>))?;
+            ida.set_root_functions(named!(IDARootInit), Some(roots::<S>))?;
             let tolerances = (&options.quadratures, &options.tolerances);
             let integrands = Some(quadratures::<S> as _);
-            ida.set_quadratures(count, ("IDAQuadInit", ffi::IDAQuadInit), integrands, tolerances)?;
+            ida.set_quadratures(count, named!(IDAQuadInit), integrands, tolerances)?;
             let for_jacobian = (&options.tolerances, &options.limits);
             ida.set_newton(solver, |system, _, r| system.newton_solve(r), for_jacobian)?;
             if let LinearSolver::Krylov(krylov) = solver {
                 ida.set_krylov(
                     krylov,
-                    (("IDASetJacTimes", ffi::IDASetJacTimes), Some(jacobian_times::<S>)),
+                    (named!(IDASetJacTimes), Some(jacobian_times::<S>)),
                     (
-                        ("IDASetPreconditioner", ffi::IDASetPreconditioner),
+                        named!(IDASetPreconditioner),
                         Some(precondition_setup::<S>),
                         Some(precondition_solve::<S>),
                     ),
                 )?;
             } else if solver.has_jacobian_callback() {
-                ida.set(("IDASetJacFn", ffi::IDASetJacFn), Some(jacobian::<S> as _))?;
+                ida.set(named!(IDASetJacFn), Some(jacobian::<S> as _))?;
             }
         }
         if !options.suppress_algebraic {
@@ -193,9 +195,9 @@ impl<S: Dae> Session<IdaKind, S> {
             let id = Vector::from_slice(&id, &ida.context)?;
             // SAFETY: IDA keeps a copy of the vector, whose length was checked.
             unsafe {
-                ida.set(("IDASetId", ffi::IDASetId), id.raw())?;
+                ida.set(named!(IDASetId), id.raw())?;
                 let suppress = i32::from(options.suppress_algebraic);
-                ida.set(("IDASetSuppressAlg", ffi::IDASetSuppressAlg), suppress)?;
+                ida.set(named!(IDASetSuppressAlg), suppress)?;
             }
         }
         if let Some(sensitivities) = &options.sensitivities {
