@@ -1,4 +1,4 @@
-//! What CVODES and IDAS carry beside the state.
+//! What CVODES and IDAS integrate in addition to the state.
 
 use std::ptr;
 
@@ -8,24 +8,24 @@ use crate::integrators::common::Error;
 /// Integrals at the present time.
 pub(super) struct Quadratures {
     pub(super) values: Vector,
-    /// As many numbers, for others than the present ones.
+    /// A vector of the same length, for integrals at other times.
     pub(super) scratch: Vector,
 }
 
 /// Sensitivities at the present time, one vector for each parameter.
 pub(super) struct Sensitivity {
     pub(super) s: Vectors,
-    /// Time derivatives of those of a DAE, at the start.
+    /// Time derivatives of the sensitivities of a DAE, at the start.
     pub(super) sp: Option<Vectors>,
     /// One sensitivity at another time.
     pub(super) scratch: Vector,
-    /// The present ones, one after the other.
+    /// The present sensitivities, one after the other.
     pub(super) values: Vec<f64>,
-    /// What C calls the method.
+    /// C's number of the method.
     pub(super) method: i32,
 }
 
-/// Vectors of equal length, and the array of them that C wants.
+/// Vectors of equal length, and the array of them that C requires.
 pub(super) struct Vectors {
     owned: Vec<Vector>,
     raw: Vec<ffi::N_Vector>,
@@ -67,16 +67,17 @@ impl Vectors {
     }
 }
 
-/// The backward problem of an adjoint gradient, which C frees with the forward one, and what it uses.
+/// The backward problem of an adjoint gradient, which C frees together with the forward one, and what it
+/// uses.
 pub(super) struct Backward {
     pub(super) functions: &'static BackwardFunctions,
-    /// What C calls it.
+    /// C's number of the problem.
     pub(super) which: i32,
-    /// C uses it; here it is kept, and freed after the memory.
+    /// Used by C; it is kept here and freed after the memory.
     pub(super) linear: Linear,
-    /// Where it starts, then where it ends.
+    /// Lambda where the backward run starts, then where it ends.
     pub(super) lambda: Vector,
-    /// The time derivative of `lambda`, of a DAE only.
+    /// The time derivative of `lambda`, for a DAE only.
     pub(super) slope: Option<Vector>,
     /// Integrals, if there are parameters.
     pub(super) gradient: Option<Vector>,

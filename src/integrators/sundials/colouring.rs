@@ -1,4 +1,4 @@
-//! Columns of a sparse matrix that can be told apart in one difference of the function.
+//! Columns of a sparse matrix whose difference quotients can share one evaluation of the function.
 
 use super::pattern::Pattern;
 
@@ -54,7 +54,7 @@ impl Colouring {
         Self { columns, ends }
     }
 
-    /// Of `n` columns, each `count`-th has the same colour.
+    /// Gives every `count`-th of `n` columns the same colour.
     pub(super) fn every(n: usize, count: usize) -> Self {
         let colours = count.min(n);
         let columns = (0..colours).flat_map(|colour| (colour..n).step_by(count)).collect();
@@ -83,7 +83,7 @@ impl Colouring {
 mod tests {
     use super::{Colouring, Pattern};
 
-    /// Every column has a colour, and no row two entries of one.
+    /// The number of colours, after a check that every column has one and that no row has two entries of one.
     fn colours(pattern: &Pattern) -> usize {
         let n = pattern.dimension();
         let colouring = Colouring::new(pattern);
@@ -133,7 +133,7 @@ mod tests {
 
     #[test]
     fn arrows_and_scattered_entries_are_told_apart() {
-        // a full row takes a colour for each column, a full column none but its own
+        // a full row needs a colour for each column, a full column only one for itself
         let row = Pattern::from_entries(9, (0..9).map(|j| (0, j))).unwrap();
         assert_eq!(colours(&row), 9);
         let column = Pattern::from_entries(9, (0..9).map(|i| (i, 0))).unwrap();

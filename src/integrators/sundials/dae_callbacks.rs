@@ -121,7 +121,8 @@ pub(super) unsafe extern "C" fn jacobian<S: Dae>(
     }
 }
 
-/// Looks at dF/dy + cj dF/dy' that the system has just supplied: its numbers, or the products that `times` writes.
+/// Checks the dF/dy + cj dF/dy' that the system has just supplied: its entries, or the products that `times`
+/// writes.
 pub(super) fn check_jacobian<S: Dae>(
     host: &mut Host<S>,
     t: f64,
@@ -144,7 +145,7 @@ pub(super) fn sparse_jacobian<S: Dae>(
     residual: &[f64],
     values: &mut [f64],
 ) -> i32 {
-    // Out of the host, which calls the system meanwhile.
+    // Taken out of the host, which calls the system meanwhile.
     let (Some(mut differences), Some(mut scales)) = (host.differences.take(), host.scales.take())
     else {
         let call = |system: &mut S| system.sparse_jacobian(t, cj, y, yp, values);

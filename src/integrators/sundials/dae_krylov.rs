@@ -1,7 +1,7 @@
 //! The C functions through which a Krylov method of IDA calls a [`Dae`].
 //!
-//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length, those that they
-//! fill different from the others; that is what their SAFETY comments refer to.
+//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length; those that
+//! they fill are different from the others. That is what their SAFETY comments refer to.
 
 use std::ffi::c_void;
 
@@ -62,7 +62,7 @@ pub(super) unsafe extern "C" fn precondition_setup<S: Dae>(
         let n = host.n;
         (host, slice(y, n), slice(yp, n), slice(residual, n))
     };
-    // Out of the host, which calls the system meanwhile.
+    // Taken out of the host, which calls the system meanwhile.
     let Some(mut ilu) = host.ilu.take() else {
         let call = |system: &mut S| system.newton_setup(t, cj, y, yp);
         return host.guard(Callback::NewtonSetup, t, call);

@@ -12,7 +12,7 @@ use crate::integrators::common::{Error, Tolerances};
 pub(crate) struct Differences {
     shape: Shape,
     colouring: Colouring,
-    /// Of an ODE; those of a DAE are IDA's.
+    /// For an ODE; a DAE has the increments of IDA.
     increments: Option<Increments>,
     /// Which signs the unknowns keep, if any.
     signs: Vec<Sign>,
@@ -28,9 +28,9 @@ pub(crate) struct Differences {
 /// How far the unknowns of an ODE are shifted.
 struct Increments {
     tolerances: Tolerances,
-    /// The increment of each unknown in parts of its size.
+    /// The increment of each unknown, as a fraction of its size.
     parts: Vec<f64>,
-    /// What the last shift of each unknown has changed.
+    /// What the last shift of each unknown changed.
     changes: Vec<Change>,
 }
 
@@ -41,12 +41,14 @@ struct Change {
     size: f64,
 }
 
-/// Parts of its size by which an unknown may be shifted. Salane's parts fall below the root of the rounding error, 2^-26, where a shift
-/// changes much; but in stiff equations near equilibrium, the terms of which cancel, any shift does, and shorter ones give noise.
+/// Limits of the shift of an unknown, as a fraction of its size. Salane's fractions fall below the root of
+/// the rounding error, 2^-26, where a shift changes much; but in stiff equations near equilibrium, whose
+/// terms cancel, any shift does, and shorter ones give noise.
 const LEAST_PART: f64 = 1.490_116_119_384_765_6e-8;
 const LARGEST_PART: f64 = 0.1;
-/// 2^-52 to the powers of 7/8, 3/4 and 1/4. Changes below the first, in parts of the function, are rounding: such a column is shifted once
-/// more, ten times as far. Below the second, its next shift is ten times as far; above the third, a tenth.
+/// 2^-52 to the powers of 7/8, 3/4 and 1/4: limits of the change of the function, relative to its size. A
+/// change below the first is rounding: such a column is shifted once more, ten times as far. Below the
+/// second, its next shift is ten times as far; above the third, a tenth.
 const ROUNDING: f64 = 2.01e-14;
 const SMALL: f64 = 1.82e-12;
 const LARGE: f64 = 1.22e-4;
@@ -57,7 +59,7 @@ impl Change {
         self.largest < ROUNDING * self.size
     }
 
-    /// The part for the next shift, after one by `part`.
+    /// The fraction for the next shift, after one by `part`.
     fn next(self, part: f64) -> f64 {
         let factor = match self {
             Self { largest, size } if largest < SMALL * size => 10.0,
@@ -69,7 +71,7 @@ impl Change {
 }
 
 impl Differences {
-    /// df/dy of an ODE, whose unknowns keep these signs, if any; none where there is no matrix to write it in.
+    /// df/dy of an ODE, whose unknowns keep these signs, if any; none if there is no matrix to write it into.
     pub(crate) fn of_ode(
         solver: &LinearSolver,
         n: usize,
@@ -91,7 +93,7 @@ impl Differences {
         Self { yp: vec![0.0; n], ..differences }
     }
 
-    /// Begins anew.
+    /// Resets the increments and the count, for a new start.
     pub(super) fn restart(&mut self) {
         self.evaluations = 0;
         if let Some(increments) = &mut self.increments {
@@ -112,12 +114,13 @@ impl Differences {
         }
     }
 
-    /// Writes df/dy into `values`, which has the layout of the linear solver's matrix; `ydot` is f(t, y), and `evaluate` writes it
-    /// at another y.
+    /// Writes df/dy into `values`, which has the layout of the linear solver's matrix; `ydot` is f(t, y), and
+    /// `evaluate` writes it at another y.
     ///
-    /// Increments are parts of the size of each unknown, in the direction in which it goes, that follow what they change: so far that it is not lost in
-    /// rounding, and no farther than needed (D. E. Salane, "Adaptive routines for forming Jacobians numerically", Sandia
-    /// report SAND86-1319, 1986). A colour with a column that was lost takes a second evaluation.
+    /// Increments are fractions of the size of each unknown, in the direction in which it moves. They adapt
+    /// to the change of the function: so large that it is not lost in rounding, and no larger than needed
+    /// (D. E. Salane, "Adaptive routines for forming Jacobians numerically", Sandia report SAND86-1319, 1986).
+    /// A colour with a column whose change was lost takes a second evaluation.
     pub(crate) fn of_rhs<E>(
         &mut self,
         y: &[f64],
@@ -173,10 +176,11 @@ impl Differences {
         Ok(())
     }
 
-    /// Writes dF/dy + cj dF/dy' into `values`; `residual` is F(t, y, y'), and `evaluate` writes it at another y and
-    /// y' or gives the code with which to return to C.
+    /// Writes dF/dy + cj dF/dy' into `values`; `residual` is F(t, y, y'), and `evaluate` writes it at another
+    /// y and y', and returns 0 or the code to return to C.
     ///
-    /// The increments are those of the dense quotients (`idaLsDenseDQJac`), by the step size and the error weights.
+    /// The increments are those of IDA's dense quotients (`idaLsDenseDQJac`), by the step size and the error
+    /// weights.
     pub(super) fn of_residual(
         &mut self,
         (cj, y, yp): (f64, &[f64], &[f64]),
@@ -244,7 +248,7 @@ fn change(count: usize, rows: impl Fn(usize) -> usize, [ahead, base]: [&[f64]; 2
     most
 }
 
-/// The step size and the error weights of an integrator, which its callbacks ask for.
+/// The step size and the error weights of an integrator, which its callbacks read.
 pub(super) struct Scales {
     memory: *mut c_void,
     functions: &'static Functions,
@@ -265,8 +269,8 @@ impl Scales {
     pub(super) fn read(&mut self) -> (f64, &[f64]) {
         let (_, get_weights) = self.functions.get_error_weights;
         let mut h = f64::NAN;
-        // SAFETY: the memory is that of the integrator that is calling; it fills a vector of its length, and the result has a
-        // place.
+        // SAFETY: the memory is that of the integrator that is calling; it fills a vector of its length, and
+        // the result pointer is valid.
         unsafe {
             get_weights(self.memory, self.weights.raw());
             (self.functions.get_current_step)(self.memory, &raw mut h);

@@ -1,8 +1,9 @@
 //! Direct linear solvers that know whether they have factors.
 //!
-//! When a Jacobian cannot be evaluated, the matrix is left half written, and an integrator that is called again
-//! goes on with it as if it were factorized: with pivots of another matrix, or of none, which are places in memory. So each
-//! solver of SUNDIALS that factorizes stands behind this one, which asks for a new set-up then.
+//! When a Jacobian cannot be evaluated, the matrix is left half written, and an integrator that is called
+//! again continues with it as if it were factorized: with pivots of another matrix, or with pivots that were
+//! never set, and these are indices into memory. So each solver of SUNDIALS that factorizes is wrapped in
+//! this one, which then requests a new set-up.
 
 use std::ptr;
 
@@ -13,7 +14,7 @@ struct Factored {
     has_factors: bool,
 }
 
-/// Puts `solver` behind one that knows whether there are factors; null if there is no memory.
+/// Wraps `solver` in one that knows whether there are factors; null if memory runs out.
 ///
 /// # Safety
 /// `solver` is a live direct solver or null, and belongs to the result from now on.
@@ -44,7 +45,7 @@ pub(super) unsafe fn factored(
     }
 }
 
-/// Has the next solution ask for a new set-up.
+/// Makes the next solve request a new set-up.
 ///
 /// # Safety
 /// `solver` is live and made by [`factored`], and no call of it is under way.
@@ -54,7 +55,7 @@ pub(super) unsafe fn forget_factors(solver: ffi::SUNLinearSolver) {
 }
 
 /// # Safety
-/// `solver` is live and made by [`factored`]; nothing else of this file is under way with it.
+/// `solver` is live and made by [`factored`]; no other function of this file is using it.
 unsafe fn content<'a>(solver: ffi::SUNLinearSolver) -> &'a mut Factored {
     // SAFETY: the content was made by `factored` and lives as long as the solver.
     unsafe { &mut *(*solver).content.cast() }
@@ -65,7 +66,8 @@ extern "C" fn kind(_: ffi::SUNLinearSolver) -> ffi::SUNLinearSolver_Type {
 }
 
 unsafe extern "C" fn id(solver: ffi::SUNLinearSolver) -> ffi::SUNLinearSolver_ID {
-    // SAFETY: SUNDIALS calls the operations of a live solver, one at a time; so do the next four.
+    // SAFETY: SUNDIALS calls the operations of a live solver, one at a time; the same holds for the next four
+    // functions.
     unsafe { ffi::SUNLinSolGetID(content(solver).solver) }
 }
 

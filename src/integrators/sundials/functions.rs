@@ -1,4 +1,4 @@
-//! The C functions which the integrators have in common but for their names.
+//! The C functions that the integrators have in common, apart from their names.
 
 use std::ffi::c_void;
 
@@ -56,19 +56,19 @@ type SetLinearSolver =
 /// One integrator of SUNDIALS. All functions take its memory block first; a table never mixes
 /// functions of two integrators.
 pub(super) struct Functions {
-    /// What errors call the integrator.
+    /// The name of the integrator in errors.
     pub(super) integrator: &'static str,
     pub(super) free: unsafe extern "C" fn(*mut *mut c_void),
     pub(super) solve: Named<Solve>,
     pub(super) reinit: Named<Reinit>,
-    /// Goes on after a change of the system, from a time and state, with the step size of before.
+    /// Continues from a time and state after a change of the system, with the previous step size.
     pub(super) reset: Option<Named<unsafe extern "C" fn(*mut c_void, f64, ffi::N_Vector) -> i32>>,
-    /// ARKODE does, and would refuse another one if the direction of time has turned.
+    /// ARKODE does, and would refuse another stop time if the direction of time has been reversed.
     pub(super) reinit_forgets_stop_time: bool,
-    /// Codes of `solve` for a call that can not be made.
+    /// Codes of `solve` for a call that cannot be made.
     pub(super) refusals: &'static [i32],
 
-    /// Codes of `solve` for a mass matrix that can not be factorized.
+    /// Codes of `solve` for a mass matrix that cannot be factorized.
     pub(super) mass_failures: &'static [i32],
 
     pub(super) set_error_handler: Named<SetErrorHandler>,
@@ -82,12 +82,12 @@ pub(super) struct Functions {
     pub(super) set_initial_step: Set<f64>,
     pub(super) set_max_step: Set<f64>,
     pub(super) set_min_step: Set<f64>,
-    /// Not of IDA.
+    /// IDA has none.
     pub(super) set_max_error_test_failures: Option<Set<i32>>,
     /// The order of a Runge-Kutta method is that of its table.
     pub(super) set_max_order: Option<Set<i32>>,
     pub(super) set_convergence_coefficient: Set<f64>,
-    /// Of a Krylov method.
+    /// For a Krylov method.
     pub(super) set_tolerance_factor: Set<f64>,
     pub(super) set_stop_time: Set<f64>,
     pub(super) set_constraints: Set<ffi::N_Vector>,
@@ -99,7 +99,7 @@ pub(super) struct Functions {
     pub(super) bad_derivative: i32,
     /// gamma of y - gamma f(t, y), or cj of IDA.
     pub(super) get_step_parameter: Get<f64>,
-    /// Of a multistep method in its first step, CVODE gives 0.
+    /// In the first step of a multistep method CVODE reports 0.
     pub(super) get_current_step: Get<f64>,
     pub(super) get_error_weights: Set<ffi::N_Vector>,
     pub(super) get_linear_flag: Get<i64>,
@@ -113,7 +113,7 @@ pub(super) struct Functions {
     pub(super) get_preconditioner_setups: Get<i64>,
     pub(super) get_preconditioner_solves: Get<i64>,
     pub(super) get_root_evaluations: Get<i64>,
-    /// Of right-hand sides that are split.
+    /// For right-hand sides that are split.
     pub(super) get_explicit_evaluations: Option<Get<i64>>,
     /// CVODE alone detects stability limits.
     pub(super) get_stability_reductions: Option<Get<i64>>,
@@ -128,7 +128,7 @@ pub(super) struct Functions {
 pub(super) type ReinitSensitivities =
     unsafe fn(*mut c_void, i32, *mut ffi::N_Vector, *mut ffi::N_Vector) -> i32;
 
-/// What CVODES and IDAS have for sensitivities.
+/// The functions of CVODES and IDAS for sensitivities.
 pub(super) struct SensitivityFunctions {
     pub(super) reinit: Named<ReinitSensitivities>,
     pub(super) set_parameters:
@@ -141,7 +141,7 @@ pub(super) struct SensitivityFunctions {
     pub(super) get_evaluations: Get<i64>,
 }
 
-/// What CVODES and IDAS have for quadratures.
+/// The functions of CVODES and IDAS for quadratures.
 pub(super) struct QuadratureFunctions {
     pub(super) reinit: Set<ffi::N_Vector>,
     pub(super) scalar_tolerances: Named<unsafe extern "C" fn(*mut c_void, f64, f64) -> i32>,
@@ -153,14 +153,14 @@ pub(super) struct QuadratureFunctions {
     pub(super) get_evaluations: Get<i64>,
 }
 
-/// Gives lambda and lambda': (memory, problem, time, lambda, lambda'). An ODE has null for lambda'.
+/// Returns lambda and lambda': (memory, problem, time, lambda, lambda'). An ODE has null for lambda'.
 pub(super) type GetBackward =
     unsafe fn(*mut c_void, i32, *mut f64, ffi::N_Vector, ffi::N_Vector) -> i32;
 
-/// What CVODES and IDAS have for a way back in time: for problems that belong to the memory of the run forward and are
-/// known by a number.
+/// The functions of CVODES and IDAS for backward problems, which belong to the memory of the forward run and
+/// are identified by a number.
 pub(super) struct BackwardFunctions {
-    /// What errors call the integrator.
+    /// The name of the integrator in errors.
     pub(super) integrator: &'static str,
     /// The integrator as it runs forward with checkpoints.
     pub(super) forward: &'static Functions,
@@ -188,7 +188,7 @@ pub(super) struct BackwardFunctions {
     pub(super) get_current_order: Get<i32>,
 }
 
-// Tasks and codes that all integrators number alike: the shared code has CVODE's names for them.
+// Tasks and codes that all integrators number alike: the shared code uses CVODE's names.
 const _: () = {
     let alike = [
         [ffi::CV_NORMAL, ffi::IDA_NORMAL, ffi::ARK_NORMAL],
@@ -211,5 +211,5 @@ const _: () = {
     }
 };
 
-// So is the interpolation between checkpoints.
+// The same holds for the interpolation between checkpoints.
 const _: () = assert!(ffi::CV_HERMITE == ffi::IDA_HERMITE);

@@ -1,8 +1,7 @@
-//! What every C callback gets as its user data: the user's system, and a place for its troubles.
+//! What every C callback gets as its user data: the user's system, and a record of its failures.
 //!
-//! A callback must not unwind into C. [`Host::guard`] runs the user's code, keeps whatever went
-//! wrong, and the return value stops SUNDIALS; the integrator takes the error up after C has
-//! returned.
+//! A callback must not unwind into C. [`Host::guard`] runs the user's code and stores whatever went wrong,
+//! and its return value stops SUNDIALS; the integrator reports the error after C has returned.
 
 use std::{
     any::Any,
@@ -27,7 +26,7 @@ use crate::integrators::{
     ode::Failure,
 };
 
-/// Return value of a callback that asks for a smaller step.
+/// Return value of a callback that requests a smaller step.
 pub(super) const RETRY: i32 = 1;
 /// Return value of a callback that asks SUNDIALS to stop.
 pub(super) const STOP: i32 = -1;
@@ -54,7 +53,7 @@ pub(super) struct Host<S> {
     pub(super) root_count: usize,
     pub(super) quadrature_count: usize,
     pub(super) sensitivity: Option<Box<SensitivityRhs>>,
-    /// Says in which form the Jacobian is wanted; none for a fixed-point iteration.
+    /// Determines the form of the Jacobian; none for a fixed-point iteration.
     pub(super) linear_solver: Option<LinearSolver>,
     /// None for a fixed-point iteration.
     pub(super) custom_solve: Option<CustomSolve<S>>,
@@ -62,15 +61,16 @@ pub(super) struct Host<S> {
     pub(super) differences: Option<Differences>,
     /// What the differences of a DAE need to know.
     pub(super) scales: Option<Scales>,
-    /// Looks at the Jacobian that the system supplies, with its shape if it is a matrix.
+    /// Checks the Jacobian that the system supplies, with its shape if it is a matrix.
     pub(super) check: Option<(JacobianCheck, Option<Shape>)>,
-    /// To find out whether a DAE failed for its index; none if the user knows it.
+    /// Finds out whether a DAE failed because of its index; none if the user knows that.
     pub(super) find_index: Option<FindIndex<S>>,
-    /// The preconditioner of a Krylov method, if it is not the system itself.
+    /// The preconditioner of a Krylov method, if it is not the system's own.
     pub(super) ilu: Option<IncompleteLu>,
     /// Time of the last `newton_setup`.
     pub(super) setup_time: f64,
-    /// Time that whole steps have reached, noted for ARKODE: it gives that of a stage after a failure.
+    /// Time that whole steps have reached, noted for ARKODE, which reports the time of a stage after a
+    /// failure.
     pub(super) step_end: Option<f64>,
     pub(super) troubles: Troubles,
 }
@@ -84,7 +84,7 @@ pub(super) struct Troubles {
     wrong: Option<Cause>,
     /// Time and reason of the last request for a smaller step.
     retry: Option<(f64, Cause)>,
-    /// How many such requests came in a row for the same time, to rounding.
+    /// How many such requests came in a row for the same time, within rounding.
     stuck: u32,
     /// The unknown that was last found beyond its bound.
     violation: Option<Violation>,
@@ -95,8 +95,8 @@ pub(super) struct Troubles {
 pub(super) type ErrorSource = Option<Box<dyn error::Error + Send + Sync>>;
 
 impl Troubles {
-    /// Notes a request for a smaller step, and gives it up where it does not help any more: near
-    /// a time that can not be passed, SUNDIALS would make steps that are lost in rounding forever.
+    /// Notes a request for a smaller step, and stops where that no longer helps: near a time that cannot be
+    /// passed, SUNDIALS would forever make steps that are lost in rounding.
     fn retry(&mut self, t: f64, cause: Cause) -> i32 {
         const MOST: u32 = 30;
         let same_time = |at: f64| (t - at).abs() <= 4.0 * f64::EPSILON * t.abs();
@@ -113,8 +113,8 @@ impl Troubles {
         self.begin(0.0);
     }
 
-    /// Forgets what earlier calls reported, before one that goes on at time `t`: but for a time just ahead that kept them
-    /// from passing.
+    /// Forgets what earlier calls reported, before one that continues from time `t`, except requests for a
+    /// smaller step close to `t`, a time that they could not pass.
     pub(super) fn begin(&mut self, t: f64) {
         let near = |at: f64| (at - t).abs() <= 1e3 * f64::EPSILON * t.abs();
         if !self.retry.as_ref().is_some_and(|(at, _)| near(*at)) {
@@ -128,16 +128,16 @@ impl Troubles {
         self.message.clear();
     }
 
-    /// Lets a panic of a callback go on, now that no C function is on the stack.
+    /// Resumes a panic of a callback, now that no C function is on the stack.
     pub(super) fn resume_panic(&mut self) {
         if let Some(panic) = self.panic.take() {
             resume_unwind(panic);
         }
     }
 
-    /// Why the integrator stopped at `t` with step `h`: the fatal error of the user's system;
-    /// else, if `blame_retries`, its last complaint about a point that was not passed since;
-    /// else `otherwise`.
+    /// Why the integrator stopped at `t` with step `h`: the fatal error or the wrong Jacobian of the user's
+    /// system; else, if `blame_retries`, its last request for a smaller step, at a point that was not passed
+    /// since; else `otherwise`.
     pub(super) fn cause(
         &mut self,
         (t, h): (f64, f64),
@@ -199,7 +199,7 @@ impl<S> Host<S> {
         t: f64,
         call: impl FnOnce(&mut S) -> Result<(), Failure>,
     ) -> i32 {
-        // The system is not used again after a panic unless its owner, who gets the panic, does.
+        // After a panic the system is used again only if its owner, who gets the panic, does so.
         match catch_unwind(AssertUnwindSafe(|| call(&mut self.system))) {
             Ok(Ok(())) => 0,
             Ok(Err(Failure::Recoverable(message))) => {
@@ -229,7 +229,8 @@ impl<S> Host<S> {
         if outcome == 0 { self.check_finite(callback, t, output) } else { outcome }
     }
 
-    /// Looks at a Jacobian that the system has just supplied, if it is due: its numbers, or the products that `times` writes.
+    /// Checks a Jacobian that the system has just supplied, if a check is due: its entries, or the products
+    /// that `times` writes.
     pub(super) fn check_jacobian(
         &mut self,
         t: f64,
@@ -239,7 +240,7 @@ impl<S> Host<S> {
         mut evaluate: impl FnMut(&mut S, [&[f64]; 2], &mut [f64]) -> Result<(), Failure>,
     ) -> i32 {
         let method = self.linear_solver.as_ref().and_then(LinearSolver::supplied);
-        // Out of the host, which calls the system meanwhile.
+        // Taken out of the host, which calls the system meanwhile.
         let (Some(method), Some((mut check, shape))) = (method, self.check.take()) else {
             return 0;
         };
@@ -269,7 +270,8 @@ impl<S> Host<S> {
         STOP
     }
 
-    /// Solves with the preconditioner of a Krylov method, in place: the incomplete factorization, or `own` of the system.
+    /// Solves with the preconditioner of a Krylov method, in place: the incomplete factorization, or `own` of
+    /// the system.
     pub(super) fn precondition(
         &mut self,
         t: f64,
@@ -285,7 +287,7 @@ impl<S> Host<S> {
         }
     }
 
-    /// Asks for a smaller step where an incomplete factorization has no pivot.
+    /// Requests a smaller step where an incomplete factorization has no pivot.
     pub(super) fn check_pivots(&mut self, t: f64, factorized: Result<(), usize>) -> i32 {
         let Err(row) = factorized else { return 0 };
         let message = format!(
@@ -296,7 +298,7 @@ impl<S> Host<S> {
         self.troubles.retry(t, Cause::Rejected { callback, t, message })
     }
 
-    /// Asks for a smaller step if `output` has a NaN or infinity.
+    /// Requests a smaller step if `output` has a NaN or infinity.
     pub(super) fn check_finite(&mut self, callback: Callback, t: f64, output: &[f64]) -> i32 {
         // A fold without early exit, which the compiler turns into vector instructions.
         if output.iter().fold(true, |finite, x| finite & x.is_finite()) {
@@ -310,8 +312,8 @@ impl<S> Host<S> {
 
 /// Owns a [`Host`] at a fixed address which C may keep.
 ///
-/// It is a raw pointer and not a `Box`, since C's copy of the pointer would not survive the
-/// uniqueness that moving a `Box` asserts.
+/// It is a raw pointer and not a `Box`, since moving a `Box` asserts that it is the only pointer, which would
+/// invalidate C's copy.
 pub(super) struct HostBox<S>(NonNull<Host<S>>);
 
 impl<S> HostBox<S> {
@@ -323,7 +325,7 @@ impl<S> HostBox<S> {
         self.0.as_ptr().cast()
     }
 
-    /// Where vectors of signs note what was found beyond its bound, during calls of C.
+    /// Where vectors of signs note an unknown beyond its bound, during calls of C.
     pub(super) fn violation(&self) -> *mut Option<Violation> {
         // SAFETY: the host lives as long as `self`; no reference is made.
         unsafe { &raw mut (*self.0.as_ptr()).troubles.violation }
@@ -350,7 +352,7 @@ impl<S> HostBox<S> {
         Err(Error::Call { function, code, message })
     }
 
-    /// Gives the user's system back. Whatever C object holds the pointer has to be gone.
+    /// Returns the user's system. All C objects that hold the pointer have to be freed before.
     pub(super) fn into_system(self) -> S {
         let pointer = self.0;
         std::mem::forget(self);

@@ -2,8 +2,8 @@
 
 use super::pattern::Pattern;
 
-/// ILU(0) of a Newton matrix: factors L and U with entries where the matrix has entries, and a product that equals
-/// it there.
+/// ILU(0) of a Newton matrix: factors L and U with entries only where the matrix has entries, and a product
+/// that equals it there.
 ///
 /// Y. Saad, Iterative Methods for Sparse Linear Systems, section 10.3, column by column.
 pub(super) struct IncompleteLu {
@@ -13,7 +13,7 @@ pub(super) struct IncompleteLu {
     jacobian: Vec<f64>,
     /// Whether all of `jacobian` was evaluated.
     has_jacobian: bool,
-    /// L below the diagonal, whose own is 1, and U.
+    /// L below the diagonal (its own diagonal is 1), and U.
     factors: Vec<f64>,
     /// Place of the entry of each row in the column that is being eliminated, if it has one.
     places: Vec<Option<usize>>,
@@ -38,7 +38,8 @@ impl IncompleteLu {
         self.has_jacobian
     }
 
-    /// Has `evaluate` fill the values of the Jacobian, which are zero before, and passes on its code: 0 for success.
+    /// Lets `evaluate` fill the values of the Jacobian, which are zero before, and returns its code: 0 for
+    /// success.
     pub(super) fn update_jacobian(&mut self, evaluate: impl FnOnce(&mut [f64]) -> i32) -> i32 {
         self.jacobian.fill(0.0);
         let outcome = evaluate(&mut self.jacobian);
@@ -115,7 +116,7 @@ impl IncompleteLu {
 mod tests {
     use super::{IncompleteLu, Pattern};
 
-    /// A matrix on a pattern, diagonally dominant, with entries of no regularity.
+    /// A matrix on a pattern, diagonally dominant, with irregular entries.
     fn entry(i: usize, j: usize) -> f64 {
         if i == j { 9.0 + i as f64 } else { ((3 * i + 7 * j) as f64).sin() }
     }

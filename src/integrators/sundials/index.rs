@@ -2,7 +2,7 @@
 
 use crate::integrators::ode::{Dae, Failure, call};
 
-/// What the derivatives E = dF/dy' and A = dF/dy tell at one point.
+/// What the derivatives E = dF/dy' and A = dF/dy at one point say about the index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Index {
     /// An ODE, or a DAE of index 1.
@@ -13,16 +13,17 @@ pub(super) enum Index {
     Singular,
 }
 
-/// Rows of [E A], to be eliminated; the columns of both are swapped alike.
+/// Rows of [E A], to be eliminated; the columns of both are swapped together.
 struct Pencil {
     rows: Vec<Vec<f64>>,
     /// Which unknown each column belongs to.
     unknowns: Vec<usize>,
 }
 
-/// Finds the index at (t, y, y') by difference quotients, four residuals for each unknown, and elimination: E becomes
-/// [I R; 0 0] and A, by the same operations on rows, [A11 A12; A21 A22]. The index is at most 1 where
-/// A22 - A21 R, which the equations without derivatives leave of A, is regular.
+/// Finds the index at (t, y, y') by difference quotients, with four evaluations of the residual for each
+/// unknown, and elimination: E becomes [I R; 0 0] and A, by the same operations on rows, [A11 A12; A21 A22].
+/// The index is at most 1 if A22 - A21 R is regular: A in the equations without derivatives, on the null
+/// space of E.
 pub(super) fn index<S: Dae>(
     system: &mut S,
     t: f64,
@@ -34,7 +35,7 @@ pub(super) fn index<S: Dae>(
     if pencil.is_singular() {
         return Ok(Index::Singular);
     }
-    // difference quotients are good to 1e-8 or so
+    // difference quotients are accurate to 1e-8 or so
     let rank = pencil.eliminate(n, 1e-6);
     let (upper, lower) = pencil.rows.split_at_mut(rank);
     let left: Vec<Vec<f64>> = lower
@@ -56,7 +57,7 @@ pub(super) fn index<S: Dae>(
 impl Pencil {
     fn new<S: Dae>(system: &mut S, t: f64, y: &[f64], yp: &[f64]) -> Result<Self, Failure> {
         let n = y.len();
-        // what an unknown that is zero is compared with
+        // the size that is assumed for an unknown that is zero
         let usual = match largest(y) {
             0.0 => 1.0,
             most => most.min(1.0),
@@ -85,7 +86,7 @@ impl Pencil {
         if rows.iter().flatten().any(|entry| !entry.is_finite()) {
             return Err(Failure::Recoverable("the residual is not finite near the start".into()));
         }
-        // each equation in units of its own: of its derivatives if it has any
+        // scales each equation: by its entries of E if it has any, else by those of A
         for row in &mut rows {
             let (e, a) = (largest(&row[..n]), largest(&row[n..]));
             let scale = if e > 0.0 { e } else { a };
@@ -96,14 +97,14 @@ impl Pencil {
         Ok(Self { rows, unknowns: (0..n).collect() })
     }
 
-    /// Whether A + c E is singular at a c that makes both matter.
+    /// Whether A + c E is singular for a c that gives both weight.
     fn is_singular(&self) -> bool {
         let n = self.rows.len();
         let ratios = self.rows.iter().map(|row| (largest(&row[n..]), largest(&row[..n])));
         let ratios: Vec<f64> =
             ratios.filter(|(a, e)| *a > 0.0 && *e > 0.0).map(|(a, e)| (a / e).ln()).collect();
         let mean = ratios.iter().sum::<f64>() / ratios.len().max(1) as f64;
-        // no eigenvalue is likely to be this one
+        // an odd factor: c is unlikely to be an eigenvalue
         let c = 1.234_567 * mean.exp();
         let sum = |row: &Vec<f64>| {
             let sum: Vec<f64> = (0..n).map(|j| row[n + j] + c * row[j]).collect();
@@ -115,8 +116,9 @@ impl Pencil {
         matrix.eliminate(n, 1e-10) < n
     }
 
-    /// Makes the first of the `width` columns those of the identity, with the largest entry of what is left as pivot,
-    /// until that is below `tolerance`. Returns how many there are. Columns `width` apart are swapped alike.
+    /// Turns the first of the `width` columns into those of the identity, with the largest remaining entry as
+    /// pivot, until that is below `tolerance`. Returns their number. Columns `width` apart are swapped
+    /// together.
     fn eliminate(&mut self, width: usize, tolerance: f64) -> usize {
         let Self { rows, unknowns } = self;
         for rank in 0..rows.len() {
@@ -152,7 +154,7 @@ impl Pencil {
     }
 }
 
-/// The largest size of a number.
+/// The largest absolute value.
 fn largest(numbers: &[f64]) -> f64 {
     numbers.iter().fold(0.0, |most, number| most.max(number.abs()))
 }

@@ -8,8 +8,9 @@ pub enum Jacobian {
     /// matrix, `lower + upper + 1` for a band, and for a sparse matrix one for each colour of its columns:
     /// those that share no row have the same colour and are shifted at once. A product takes one.
     ///
-    /// Those of a right-hand side follow the size of each unknown, its own or that below which it is noise, atol / rtol, and what the last shift has
-    /// changed; where that was lost in rounding, one more evaluation shifts farther.
+    /// For a right-hand side, the shifts depend on the size of each unknown (its value, plus atol / rtol,
+    /// below which it is noise) and on what the last shift changed; if that was lost in rounding, one more
+    /// evaluation with a larger shift is made.
     DifferenceQuotients,
     /// The system's own `dense_jacobian`, `banded_jacobian`, `sparse_jacobian` or `jacobian_times`.
     Supplied,

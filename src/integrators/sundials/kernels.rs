@@ -43,7 +43,7 @@ unsafe fn parts(vector: ffi::N_Vector) -> (*mut f64, usize) {
 
 /// sqrt(sum_i (x_i w_i)^2 / n), summed in eight interleaved parts.
 ///
-/// What is not a number counts as infinite: C asks whether norms are too large, and NaN never is.
+/// A NaN is returned as infinity: C tests whether norms are too large, and NaN never is.
 unsafe extern "C" fn weighted_norm(x: ffi::N_Vector, w: ffi::N_Vector) -> f64 {
     // SAFETY: SUNDIALS passes live vectors of equal length, and nothing writes to them here.
     let (x, w) = unsafe {

@@ -3,8 +3,9 @@
 use super::{jacobian::Jacobian, pattern::Pattern};
 use crate::base::input::InputError;
 
-/// A Krylov method, which asks for nothing but products of the Newton matrix with vectors; for systems
-/// with more unknowns than a factorization can bear.
+/// A Krylov method, which needs only products of the Newton matrix with vectors.
+///
+/// It is for systems with too many unknowns for a factorization.
 ///
 /// ```
 /// use pliant::sundials::{
@@ -36,23 +37,23 @@ pub struct Krylov {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum KrylovMethod {
-    /// The smallest residual in a subspace (`SUNLinSol_SPGMR`): one product for each of its dimensions, whose
-    /// vectors are all kept.
+    /// Minimizes the residual in a subspace (`SUNLinSol_SPGMR`): one product for each of its dimensions,
+    /// whose vectors are all kept.
     Gmres {
-        /// Dimensions of the subspace, 1 to 1000; C has 5.
+        /// Dimensions of the subspace, 1 to 1000; the default of C is 5.
         dimension: u32,
-        /// How often it may start again from where it has come to, at most 1000; 0: not at all.
+        /// How often it may restart from the point it has reached, at most 1000; 0: not at all.
         restarts: u32,
     },
-    /// The stabilized method of biconjugate gradients (`SUNLinSol_SPBCGS`): two products for each iteration, and
-    /// six vectors.
+    /// The stabilized method of biconjugate gradients (`SUNLinSol_SPBCGS`): two products for each iteration,
+    /// and six vectors.
     BiCgStab {
-        /// Iterations allowed, 1 to 1000; C has 5.
+        /// Iterations allowed, 1 to 1000; the default of C is 5.
         iterations: u32,
     },
 }
 
-/// The side of the matrix A at which a preconditioner P stands.
+/// The side of the matrix A on which a preconditioner P is applied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Side {
@@ -62,20 +63,20 @@ pub enum Side {
     Right,
 }
 
-/// What a Krylov method solves instead of its systems, to know roughly where to go.
+/// The preconditioner: what a Krylov method solves as an approximation of its systems.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Preconditioner {
-    /// The system's own `newton_setup` and `newton_solve`, which may be approximate here. A `newton_rhs` of its
-    /// own is not called: its part has to be in `rhs`.
+    /// The system's own `newton_setup` and `newton_solve`, which may be approximate here. A `newton_rhs` of
+    /// the system is not called: all terms have to be in `rhs`.
     Custom,
-    /// Incomplete LU factorization without fill, ILU(0), of the Newton matrix on a sparsity pattern: exact where
-    /// factors have no fill, as on a full band ([`Pattern::band`]).
+    /// Incomplete LU factorization without fill, ILU(0), of the Newton matrix on a sparsity pattern: exact
+    /// where factors have no fill, as on a full band ([`Pattern::band`]).
     ///
-    /// There is no pivoting. A zero on the diagonal makes the step be tried again with another size: the equations of
-    /// a DAE have to be in an order where each contains its unknown.
+    /// There is no pivoting. After a zero on the diagonal the step is tried again with another size: the
+    /// equations of a DAE have to be in an order where equation i contains unknown i.
     Ilu {
-        /// The entries taken; the Jacobian may have others if it supplies the values itself.
+        /// The entries that are used; the Jacobian may have others if its values are supplied.
         pattern: Pattern,
         /// Where the values come from.
         jacobian: Jacobian,
@@ -103,7 +104,7 @@ impl Krylov {
         self
     }
 
-    /// How much smaller than the error allowed to Newton's iteration that of a linear system has to be
+    /// The error allowed to a linear system, relative to that allowed to Newton's iteration
     /// (`CVodeSetEpsLin`). Default: 0.05.
     pub fn tolerance_factor(mut self, factor: f64) -> Self {
         self.tolerance_factor = Some(factor);
@@ -138,7 +139,8 @@ impl Krylov {
         }
     }
 
-    /// IDA takes the preconditioned residual for a solution that needs no iteration.
+    /// Refuses the right side: IDA takes the preconditioned residual as the solution if no iteration is
+    /// needed.
     pub(super) fn check_for_dae(&self) -> Result<(), InputError> {
         match &self.preconditioner {
             Some((Side::Right, _)) => {
@@ -150,8 +152,8 @@ impl Krylov {
     }
 
     /// Pattern and entries of an incomplete factorization.
-    // Inlined, its test is made before the one whether there is a Krylov method at all, and its value dropped: valgrind
-    // takes that for an error.
+    // If inlined, its test is made before the one whether there is a Krylov method at all, and its value is
+    // dropped: valgrind takes that for an error.
     #[inline(never)]
     pub(super) fn ilu(&self) -> Option<(&Pattern, Jacobian)> {
         match &self.preconditioner {

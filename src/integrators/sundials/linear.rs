@@ -61,7 +61,7 @@ impl Linear {
         Ok(Self { solver: RawSolver(raw), matrix, is_ready: false })
     }
 
-    /// Has the next solution begin with a set-up: the matrix may be half written.
+    /// Makes the next solve begin with a set-up: the matrix may be half written.
     pub(super) fn forget_factors(&mut self) {
         if self.matrix.is_some() {
             // SAFETY: a solver with a matrix is made by `factored`; `&mut self` keeps others away.
@@ -69,7 +69,7 @@ impl Linear {
         }
     }
 
-    /// Factorizes the matrix, after `fill` has written entries into it; whether it can be.
+    /// Factorizes the matrix, after `fill` has written entries into it. Returns whether it succeeded.
     ///
     /// # Safety
     /// This was made for `kind` and for vectors of length `n`.
@@ -83,8 +83,8 @@ impl Linear {
         if matrix.is_null() {
             return false;
         }
-        // SAFETY: solver and matrix are alive and fit together, and the caller vouches for the kind of matrix; `&mut self`
-        // keeps others away, and the entries are gone when the solver works.
+        // SAFETY: solver and matrix are alive and fit together, and the caller vouches for the kind of
+        // matrix; `&mut self` keeps others away, and the entries are gone when the solver works.
         unsafe {
             ffi::SUNMatZero(matrix);
             fill(matrix::entries(matrix, kind, n));
@@ -93,9 +93,11 @@ impl Linear {
         }
     }
 
-    /// Replaces the right-hand side `b` by the solution, after [`factorize`](Self::factorize); whether there is one.
+    /// Replaces the right-hand side `b` by the solution, after [`factorize`](Self::factorize). Returns
+    /// whether there is one.
     pub(super) fn solve(&mut self, b: &mut Vector) -> bool {
-        // SAFETY: solver, matrix and vector are alive and fit together; direct solvers take one vector for both.
+        // SAFETY: solver, matrix and vector are alive and fit together; direct solvers take one vector for
+        // both.
         unsafe { ffi::SUNLinSolSolve(self.solver(), self.matrix(), b.raw(), b.raw(), 0.0) == 0 }
     }
 
@@ -164,7 +166,7 @@ unsafe extern "C" fn solve_by_gmres(
     known(unsafe { ffi::SUNLinSolSolve_SPGMR(solver, matrix, x, b, tolerance) })
 }
 
-/// The same of BiCGStab.
+/// The same for BiCGStab.
 unsafe extern "C" fn solve_by_bicgstab(
     solver: ffi::SUNLinearSolver,
     matrix: ffi::SUNMatrix,
@@ -176,7 +178,7 @@ unsafe extern "C" fn solve_by_bicgstab(
     known(unsafe { ffi::SUNLinSolSolve_SPBCGS(solver, matrix, x, b, tolerance) })
 }
 
-/// IDA takes the codes of a product that failed for success.
+/// Replaces the codes of a failed product, which IDA takes for success.
 fn known(code: i32) -> i32 {
     const RETRY_PRODUCT: i32 = ffi::SUNLS_ATIMES_FAIL_REC as i32;
     match code {
@@ -252,7 +254,7 @@ unsafe extern "C" fn solve<S>(
     // SAFETY: the memory is that of the integrator which is calling; it only reads a number.
     unsafe { (custom.step_parameter)(custom.memory, &raw mut parameter) };
     let call = |system: &mut S, x: &mut [f64]| newton_solve(system, parameter, x);
-    // SUNDIALS takes codes that it does not know from a linear solver for success.
+    // SUNDIALS takes unknown codes of a linear solver for success.
     match host.guard_output(Callback::NewtonSolve, host.setup_time, x, call) {
         RETRY => ffi::SUNLS_PACKAGE_FAIL_REC as i32,
         STOP => ffi::SUNLS_PACKAGE_FAIL_UNREC,

@@ -37,7 +37,7 @@ pub enum LinearSolver {
 }
 
 impl LinearSolver {
-    /// Stops what C would crash on.
+    /// Refuses what C would crash on.
     pub(crate) fn check(&self, n: usize) -> Result<(), InputError> {
         match self {
             Self::Dense(_) if !is_addressable(n, n) => Err(InputError::new(
@@ -128,7 +128,7 @@ fn is_addressable(n: usize, rows: usize) -> bool {
 mod tests {
     use super::{Jacobian, LinearSolver};
 
-    /// n^2 numbers of 8 bytes are more than 2^63 from n = 2^30 on: products that C would not notice.
+    /// n^2 numbers of 8 bytes are more than 2^63 from n = 2^30 on: C would not notice the overflow.
     #[test]
     fn matrices_whose_size_overflows_are_refused() {
         let dense = LinearSolver::Dense(Jacobian::Supplied);

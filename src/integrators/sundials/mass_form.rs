@@ -42,7 +42,7 @@ use crate::integrators::{
 pub struct MassForm<S> {
     system: S,
     mass: Mass,
-    /// Whether `mass` is that of the system; one that depends on time never is.
+    /// Whether `mass` is up to date; one that depends on time never is.
     known: bool,
     /// f(t, y)
     f: Vec<f64>,
@@ -85,7 +85,7 @@ impl Mass {
         }
     }
 
-    /// Takes the matrix of the system at time `t`.
+    /// Reads the matrix of the system at time `t`.
     fn read<S: Ode>(&mut self, t: f64, system: &mut S) -> Result<(), Failure> {
         match self {
             Self::Dense(matrix) => {
@@ -136,7 +136,7 @@ impl<S: Ode> MassForm<S> {
     /// [`IdaOptions::newton`](super::IdaOptions::newton) is given: M has the form of the matrix it works on.
     ///
     /// # Errors
-    /// If the system has no [mass matrix](Ode::mass_kind), or the linear solver works on no matrix that is stored.
+    /// If the system has no [mass matrix](Ode::mass_kind), or the linear solver stores no matrix.
     pub fn new(system: S, n: usize, solver: &LinearSolver) -> Result<Self, Error> {
         if system.mass_kind() == MassKind::Identity {
             let help = "the system has to give one: see `mass_kind` and `with_mass`";
@@ -151,10 +151,10 @@ impl<S: Ode> MassForm<S> {
     /// [`IdaOptions::differential`](super::IdaOptions::differential): whether its column of M at time `t`
     /// has a nonzero.
     ///
-    /// That is exact where each differential unknown has mass of its own, as with a diagonal M. Where M couples
-    /// unknowns so that only combinations of them have mass, as a capacitor between two nodes does, all of them
-    /// count as differential: [`consistent_start`](super::Ida::consistent_start) cannot tell which to change then, and
-    /// the start has to satisfy the constraints.
+    /// That is exact where each differential unknown has mass of its own, as with a diagonal M. Where M
+    /// couples unknowns so that only combinations of them have mass, as a capacitor between two nodes does,
+    /// all of them count as differential: [`consistent_start`](super::Ida::consistent_start) cannot tell
+    /// which to change then, and the start has to satisfy the constraints.
     ///
     /// # Errors
     /// If the system does not give its mass matrix.
@@ -180,7 +180,7 @@ impl<S: Ode> MassForm<S> {
         &mut self.system
     }
 
-    /// Makes the matrix that of time `t`.
+    /// Updates the matrix to time `t`.
     fn update(&mut self, t: f64) -> Result<(), Failure> {
         if !self.known {
             self.mass.read(t, &mut self.system)?;

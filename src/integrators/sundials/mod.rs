@@ -1,9 +1,9 @@
-//! A safe, general layer over SUNDIALS: any system of ordinary differential equations (CVODE) or
-//! differential-algebraic equations (IDA), nothing about bodies.
+//! A safe, general layer over SUNDIALS, for any system of ordinary differential equations (CVODE) or
+//! differential-algebraic equations (IDA). It knows nothing about bodies.
 //!
-//! The system is a closure or a struct, see [`crate::integrators::ode`]; the solver owns it, chooses its steps
-//! by the tolerances, and answers failures with a typed [`Error`] that names time, step size,
-//! order, cause and what to try. Panics of the system pass through C unharmed.
+//! The system is a closure or a struct, see [`crate::integrators::ode`]; the solver owns it, chooses its
+//! steps by the tolerances, and reports failures by a typed [`Error`] that names time, step size, order,
+//! cause and what to try. Panics of the system pass through C safely.
 //!
 //! ```
 //! use pliant::sundials::{Cvode, CvodeOptions, Integrator};
@@ -22,11 +22,12 @@
 //! # Ok::<(), pliant::sundials::Error>(())
 //! ```
 //!
-//! [`Cvode`], [`Arkode`] and [`Ida`] are used by the methods of [`Integrator`]:
-//! [`solve_to`](Integrator::solve_to) a time or a single [`step`](Integrator::step), output between
-//! the steps by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and
-//! [`Statistics`]. [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU),
-//! without a matrix ([`Krylov`]) or by the system itself. The SUNDIALS user guide describes the C functions behind the methods.
+//! [`Cvode`], [`Arkode`] and [`Ida`] are used through the methods of [`Integrator`]:
+//! [`solve_to`](Integrator::solve_to) a time or a single [`step`](Integrator::step), output between the steps
+//! by [`interpolate`](Integrator::interpolate), stop times, root functions, new starts and [`Statistics`].
+//! [`LinearSolver`] chooses how Newton's linear systems are solved: dense, band, sparse (KLU), without a
+//! matrix ([`Krylov`]) or by the system itself. The SUNDIALS user guide describes the C functions behind the
+//! methods.
 //!
 //! | equations | integrators |
 //! | --- | --- |
@@ -36,10 +37,10 @@
 //! | y' = f(t, y) with invariants | [`Cvode`] by [`CvodeOptions::project`] |
 //! | F(t, y, y') = 0 of index 1 | [`Ida`], see [`Ida::check_index`] |
 //!
-//! In all of them unknowns may have to keep their [`Sign`].
+//! In all of them, unknowns can be required to keep their [`Sign`].
 //!
-//! Beside the state, [`Cvode`] and [`Ida`] carry integrals and [`Sensitivities`] along; [`Adjoint`] and
-//! [`DaeAdjoint`] have gradients with respect to many parameters.
+//! In addition to the state, [`Cvode`] and [`Ida`] compute integrals and [`Sensitivities`]; [`Adjoint`] and
+//! [`DaeAdjoint`] compute gradients with respect to many parameters.
 
 mod adjoint;
 mod arkode;

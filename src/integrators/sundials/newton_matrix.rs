@@ -12,7 +12,8 @@ use crate::integrators::{
     ode::{Failure, Ode, call},
 };
 
-/// df/dy and the factors of I - gamma df/dy, by a linear solver of SUNDIALS. A sparse matrix is analysed once, for all factorizations.
+/// df/dy and the factors of I - gamma df/dy, by a linear solver of SUNDIALS. A sparse matrix is analysed
+/// once, for all factorizations.
 pub(crate) struct NewtonMatrix {
     solver: LinearSolver,
     jacobian: StoredJacobian,
@@ -23,8 +24,8 @@ pub(crate) struct NewtonMatrix {
     _context: Context,
 }
 
-// SAFETY: the raw pointers lead to objects that this matrix alone owns, among them its SUNContext; SUNDIALS keeps no
-// thread-local state.
+// SAFETY: the raw pointers lead to objects that this matrix alone owns, among them its SUNContext; SUNDIALS
+// keeps no thread-local state.
 unsafe impl Send for NewtonMatrix {}
 
 impl fmt::Debug for NewtonMatrix {
@@ -34,7 +35,7 @@ impl fmt::Debug for NewtonMatrix {
 }
 
 impl NewtonMatrix {
-    /// For `n` unknowns, whose sizes the tolerances tell.
+    /// For `n` unknowns, whose sizes the tolerances give.
     pub(crate) fn new(
         solver: &LinearSolver,
         n: usize,
@@ -57,7 +58,7 @@ impl NewtonMatrix {
         Ok(Self { solver: solver.clone(), jacobian, differences, linear, rhs, _context: context })
     }
 
-    /// Makes df/dy that at (t, y), where f is `slope`. Returns how often f was evaluated.
+    /// Updates df/dy to (t, y), where f is `slope`. Returns how often f was evaluated.
     pub(crate) fn update<S: Ode>(
         &mut self,
         system: &mut S,
@@ -79,7 +80,7 @@ impl NewtonMatrix {
         Ok(differences.evaluations - before)
     }
 
-    /// The numbers of df/dy that are stored.
+    /// The stored entries of df/dy.
     pub(crate) fn values(&self) -> &[f64] {
         self.jacobian.values()
     }
@@ -97,7 +98,7 @@ impl NewtonMatrix {
         unsafe { linear.factorize(solver, n, |entries| jacobian.write_shifted(gamma, entries)) }
     }
 
-    /// Replaces `r` by the solution, after [`factorize`](Self::factorize); whether there is one.
+    /// Replaces `r` by the solution, after [`factorize`](Self::factorize). Returns whether there is one.
     pub(crate) fn solve(&mut self, r: &mut [f64]) -> bool {
         self.rhs.as_mut_slice().copy_from_slice(r);
         let is_solved = self.linear.solve(&mut self.rhs);

@@ -12,7 +12,7 @@ pub(super) enum NonlinearSolver {
     FixedPoint { acceleration: u32 },
 }
 
-/// Options of the integrators that can choose.
+/// Options of the integrators that can choose a nonlinear solver.
 #[derive(Clone, Debug)]
 pub(super) struct NonlinearOptions {
     pub(super) solver: NonlinearSolver,

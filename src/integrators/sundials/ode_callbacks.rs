@@ -52,7 +52,7 @@ pub(super) unsafe extern "C" fn newton_rhs<S: Ode>(
 /// A method of [`Ode`] that writes a right-hand side.
 type Rhs<S> = fn(&mut S, f64, &[f64], &mut [f64]) -> Result<(), Failure>;
 
-/// What they have in common: `call` writes into `ydot`.
+/// The common part of the right-hand sides: `call` writes into `ydot`.
 ///
 /// # Safety
 /// That of `CVRhsFn`; see the module.
@@ -116,8 +116,8 @@ pub(super) unsafe extern "C" fn project<S: Ode>(
     error: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; the three vectors are different, and the estimate of the error is there, as nobody
-    // switched it off.
+    // SAFETY: see the module; the three vectors are different, and the vector of the error estimate exists,
+    // as the estimate is never switched off.
     let (host, y, correction, error) = unsafe {
         let host = &mut *data.cast::<Host<S>>();
         let n = host.n;
@@ -179,7 +179,7 @@ pub(super) unsafe extern "C" fn jacobian<S: Ode>(
     }
 }
 
-/// Looks at df/dy that the system has just supplied: its numbers, or the products that `times` writes.
+/// Checks the df/dy that the system has just supplied: its entries, or the products that `times` writes.
 pub(super) fn check_jacobian<S: Ode>(
     host: &mut Host<S>,
     t: f64,
@@ -201,7 +201,7 @@ pub(super) fn sparse_jacobian<S: Ode>(
     ydot: &[f64],
     values: &mut [f64],
 ) -> i32 {
-    // Out of the host, which calls the system meanwhile.
+    // Taken out of the host, which calls the system meanwhile.
     let Some(mut differences) = host.differences.take() else {
         let call = |system: &mut S| system.sparse_jacobian(t, y, ydot, values);
         return host.guard(Callback::Jacobian, t, call);
@@ -217,7 +217,7 @@ pub(super) fn sparse_jacobian<S: Ode>(
     outcome.err().unwrap_or(0)
 }
 
-/// `ARKLsLinSysFn`: as [`newton_setup`], but for the mass matrix, of which there is none.
+/// `ARKLsLinSysFn`: as [`newton_setup`], with an argument for the mass matrix; there is none here.
 #[allow(clippy::too_many_arguments)] // as C has it
 pub(super) unsafe extern "C" fn newton_setup_with_mass<S: Ode>(
     t: f64,
@@ -237,7 +237,7 @@ pub(super) unsafe extern "C" fn newton_setup_with_mass<S: Ode>(
     unsafe { newton_setup::<S>(t, y, ydot, matrix, reuse, current, gamma, data, a, b, c) }
 }
 
-/// `CVLsLinSysFn`: for a user-supplied solver, which keeps I - gamma J to itself.
+/// `CVLsLinSysFn`: for a user-supplied solver, which stores I - gamma J itself.
 #[allow(clippy::too_many_arguments)] // as C has it
 pub(super) unsafe extern "C" fn newton_setup<S: Ode>(
     t: f64,

@@ -1,7 +1,7 @@
 //! The C functions through which a Krylov method of CVODE or ARKODE calls an [`Ode`].
 //!
-//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length, those that they
-//! fill different from the others; that is what their SAFETY comments refer to.
+//! All of them get the [`Host`] of the solver as their data pointer and vectors of its length; those that
+//! they fill are different from the others. That is what their SAFETY comments refer to.
 
 use std::ffi::c_void;
 
@@ -67,7 +67,7 @@ pub(super) unsafe extern "C" fn precondition_setup<S: Ode>(
             });
             (outcome, fresh)
         }
-        // Out of the host, which calls the system meanwhile.
+        // Taken out of the host, which calls the system meanwhile.
         Some(mut ilu) => {
             let fresh = !(reuse && ilu.has_jacobian());
             let mut outcome = 0;

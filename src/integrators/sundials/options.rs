@@ -13,11 +13,12 @@ pub(super) struct Limits {
     pub(super) convergence_coefficient: Option<f64>,
     /// One for each unknown, or none.
     pub(super) signs: Vec<Sign>,
-    /// Whether a supplied Jacobian is not looked at.
+    /// Whether a supplied Jacobian is not checked.
     pub(super) trusts_jacobian: bool,
 }
 
-/// Tolerances of integrals, if they are not those of the unknowns, and whether they take part in the error control.
+/// Tolerances of integrals, if they are not those of the unknowns, and whether they take part in the error
+/// control.
 #[derive(Clone, Debug)]
 pub(super) struct QuadratureOptions {
     pub(super) tolerances: Option<Tolerances>,
@@ -74,8 +75,8 @@ macro_rules! builder_methods {
             self
         }
 
-        /// How much smaller than the local error the error of the nonlinear iteration has to be.
-        /// Default: 0.1 in CVODE and ARKODE, 0.33 in IDA.
+        /// Factor of the convergence test: the error allowed to the nonlinear iteration, relative to the
+        /// local error. Default: 0.1 in CVODE and ARKODE, 0.33 in IDA.
         pub fn convergence_coefficient(mut self, coefficient: f64) -> Self {
             self.limits.convergence_coefficient = Some(coefficient);
             self
@@ -84,10 +85,10 @@ macro_rules! builder_methods {
         /// Inequality constraints: for each unknown the sign that it keeps (`CVodeSetConstraints`,
         /// `ARKStepSetConstraints`, `IDASetConstraints`). Default: none.
         ///
-        /// A step that leaves an unknown beyond its bound is repeated with a smaller size; CVODE and IDA put it
-        /// to the bound, to rounding, where the tolerances do not tell the difference. That holds at the ends of
-        /// the steps: what is interpolated between them may be beyond by the error of the polynomials. No step
-        /// helps where the equations themselves lead across.
+        /// A step that takes an unknown beyond its bound is repeated with a smaller size; if it is beyond by
+        /// less than the tolerances, CVODE and IDA set it to the bound, up to rounding. That holds at the
+        /// ends of the steps: interpolated values may be beyond the bound by the error of the polynomials. No
+        /// step size helps where the equations themselves lead across the bound.
         pub fn sign_constraints(
             mut self,
             signs: impl Into<Vec<$crate::integrators::sundials::Sign>>,
@@ -96,12 +97,17 @@ macro_rules! builder_methods {
             self
         }
 
-        /// Whether a Jacobian that the system supplies, its entries or its products, is held against differences of the equations: the first one,
-        /// the second, the fourth, the eighth and so on, along two random directions. That costs three evaluations each time, which the
-        /// statistics leave out. A run with a wrong one ends with
-        /// [`Cause::WrongJacobian`](crate::integrators::common::Cause::WrongJacobian): Newton's iteration may take what it converges to for a solution.
-        /// Default: yes. Switch it off for a Jacobian that is meant to be an approximation. What
-        /// [`LinearSolver::Custom`](crate::integrators::sundials::LinearSolver::Custom) and preconditioners do is not looked at.
+        /// Whether a Jacobian that the system supplies is checked against differences of the equations.
+        /// Default: yes.
+        ///
+        /// The first Jacobian, the second, the fourth, the eighth and so on is checked, by its entries or its
+        /// products, along two random directions. That costs three evaluations each time, which the
+        /// statistics leave out. A run with a wrong Jacobian ends with
+        /// [`Cause::WrongJacobian`](crate::integrators::common::Cause::WrongJacobian), because Newton's
+        /// iteration may accept a wrong result as the solution. Switch the check off for a Jacobian that is
+        /// meant to be an approximation.
+        /// [`LinearSolver::Custom`](crate::integrators::sundials::LinearSolver::Custom) and preconditioners
+        /// are not checked.
         pub fn check_jacobian(mut self, on: bool) -> Self {
             self.limits.trusts_jacobian = !on;
             self
@@ -115,8 +121,8 @@ macro_rules! builder_methods {
         }
     };
     (quadratures) => {
-        /// Tolerances of the integrals [`quadratures`](crate::integrators::ode::Ode::quadratures), whose errors, too, decide on the step size.
-        /// Default: `rtol` of the unknowns, and their smallest `atol`.
+        /// Tolerances of the integrals [`quadratures`](crate::integrators::ode::Ode::quadratures), whose
+        /// errors also control the step size. Default: `rtol` of the unknowns, and their smallest `atol`.
         pub fn quadrature_tolerances(
             mut self,
             rtol: f64,
@@ -126,15 +132,17 @@ macro_rules! builder_methods {
             self
         }
 
-        /// Whether errors of the integrals, too, decide on the step size (`CVodeSetQuadErrCon`). Default: yes. Without, the run is that
-        /// of the unknowns alone, and the integrals are as wrong as its steps are long.
+        /// Whether errors of the integrals also control the step size (`CVodeSetQuadErrCon`). Default: yes.
+        ///
+        /// If not, the run is that of the unknowns alone, and the errors of the integrals depend on the
+        /// length of its steps.
         pub fn quadrature_error_control(mut self, on: bool) -> Self {
             self.quadratures.error_control = on;
             self
         }
     };
     (sensitivities) => {
-        /// Computes derivatives of the solution with respect to parameters beside it. Default: none.
+        /// Also computes derivatives of the solution with respect to parameters. Default: none.
         pub fn sensitivities(mut self, sensitivities: Sensitivities) -> Self {
             self.sensitivities = Some(sensitivities);
             self

@@ -6,10 +6,9 @@ use crate::base::input::InputError;
 
 /// The sparsity pattern of a square matrix in compressed sparse columns (CSC).
 ///
-/// Rows are sorted within each column, no entry occurs twice, and every diagonal entry is
-/// stored, zero or not: SUNDIALS adds the identity in place and writes out of bounds where
-/// the diagonal has no room (`SUNMatScaleAddI_Sparse`, SUNDIALS 6.4.1). A `Pattern` can not be
-/// made without these properties.
+/// Rows are sorted within each column, no entry occurs twice, and every diagonal entry is stored, zero or
+/// not: SUNDIALS adds the identity in place and writes out of bounds where the diagonal has no room
+/// (`SUNMatScaleAddI_Sparse`, SUNDIALS 6.4.1). A `Pattern` cannot be made without these properties.
 ///
 /// The values of a Jacobian come in the order of [`row_indices`](Self::row_indices);
 /// [`position`](Self::position) finds the place of one entry.
@@ -131,7 +130,7 @@ impl Pattern {
                 ));
             }
         }
-        // All of them are lengths of slices at most, which fit.
+        // None exceeds the length of a slice, so all fit.
         let signed = |indices: &[usize]| indices.iter().map(|&i| i as i64).collect();
         Ok(Self { column_pointers: signed(column_pointers), row_indices: signed(row_indices) })
     }

@@ -1,4 +1,4 @@
-//! Sparsity patterns that are found by asking the equations.
+//! Sparsity patterns that are found by evaluating the equations.
 
 use super::pattern::Pattern;
 use crate::base::input::InputError;
@@ -7,15 +7,16 @@ use crate::integrators::{
     ode::{Dae, Failure, Ode, call},
 };
 
-/// Where the nonzeros of a Jacobian are, asked of the equations. Both ways know only the branches that are
-/// taken while they ask: where the equations switch, give points on both sides, or write the pattern down.
+/// Where the nonzeros of a Jacobian are, found by evaluating the equations. Both methods see only the
+/// branches that are taken in these evaluations: where the equations switch, give points on both sides, or
+/// write the pattern down.
 impl Pattern {
     /// The pattern of df/dy: component i of f depends on y_j if it becomes NaN when y_j is NaN.
     ///
-    /// n + 1 evaluations, at any y where f has values: terms that are zero there count, too. What swallows NaN
-    /// hides what it depends on, and its entries are missing: `f64::max`, `f64::min`, `clamp` on the
-    /// bounds, comparisons (`if y[0] > 1.0`), conversions to integers.
-    /// [`ode_by_sampling`](Self::ode_by_sampling) does not mind them.
+    /// It takes n + 1 evaluations, at any y where f has values: terms that are zero there count, too.
+    /// Operations that do not pass NaN on hide what they depend on, and these entries are missing:
+    /// `f64::max`, `f64::min`, `clamp` on the bounds, comparisons (`if y[0] > 1.0`), conversions to integers.
+    /// [`ode_by_sampling`](Self::ode_by_sampling) is not affected by them.
     ///
     /// # Errors
     /// If f fails, at `y` or with a NaN, or has a component that is not finite at `y`, which is named.
@@ -41,9 +42,9 @@ impl Pattern {
     /// The pattern of df/dy: component i of f depends on y_j if it changes with y_j alone, at one of `points`
     /// random points, the same ones in each run.
     ///
-    /// (n + 1) evaluations for each point. Component k of the points and of the changes lies within
-    /// `spread[k]` of y_k: what changes less than the rounding of f, or in no branch that a
-    /// point comes to, is missing.
+    /// It takes n + 1 evaluations for each point. Component k of the points and of the changed values lies
+    /// within `spread[k]` of y_k. Entries are missing if they change f by less than its rounding, or only in
+    /// branches that no point reaches.
     ///
     /// # Errors
     /// If f fails at a point or has a component there that is not finite, which is named; if `spread`
@@ -153,7 +154,7 @@ where
         Pattern::from_entries(n, self.entries)
     }
 
-    /// Evaluates the equations where each component has to be finite.
+    /// Evaluates the equations, each component of which has to be finite.
     fn finite_value(
         &mut self,
         y: &[f64],

@@ -1,14 +1,14 @@
-//! Whether the steps of an integrator lead on in time.
+//! Whether the steps of an integrator make progress in time.
 
-/// After how many steps it is looked at.
+/// After how many steps this is checked.
 pub(super) const STRETCH: u64 = 100;
 
-/// Where a run stood some steps ago.
+/// Where a run was some steps ago.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Progress {
     steps: u64,
     t: f64,
-    /// Whether the last stretch led nowhere.
+    /// Whether the last stretch made no progress.
     pub(super) stands: bool,
 }
 
@@ -20,8 +20,8 @@ impl Progress {
 
     /// Notes that `steps` steps have led to time `t`.
     ///
-    /// Time stands still where the steps of a stretch were, in the mean, no longer than a few times what rounding
-    /// leaves of it.
+    /// Time stands still if the steps of a stretch were, on average, no longer than a few times the rounding
+    /// error of the time.
     pub(super) fn note(&mut self, steps: u64, t: f64) {
         self.stands = false;
         if steps >= self.steps + STRETCH {

@@ -1,4 +1,4 @@
-//! Integrals beside the run, by CVODES and IDAS.
+//! Integrals along the solution (quadratures), by CVODES and IDAS.
 
 use std::ffi::c_void;
 
@@ -9,7 +9,7 @@ use super::{
 use crate::base::input::InputError;
 use crate::integrators::common::{AbsoluteTolerance, Error, Integrator, Tolerances, check_time};
 
-/// What carries integrals along, as described at [`Solver`](super::Solver).
+/// What also computes integrals, as described at [`Solver`](super::Solver).
 pub trait CarriesIntegrals: Integrator {
     fn quadratures(&self) -> &[f64];
     fn interpolate_quadratures(
@@ -113,7 +113,7 @@ impl<K, S> Session<K, S> {
             return Ok(());
         };
         let ((name, get), mut t) = (functions.get, 0.0);
-        // SAFETY: the memory is alive, and the results have their places.
+        // SAFETY: the memory is alive, and the result pointers are valid.
         let code = unsafe { get(self.memory.raw, &raw mut t, quadratures.values.raw()) };
         self.host.accept(name, code)
     }

@@ -24,12 +24,12 @@ impl<K, S> Session<K, S> {
         let [mut iterations, mut nonlinear_fails] = [0; 2];
         let count = |get: unsafe extern "C" fn(*mut c_void, *mut i64) -> i32| {
             let mut count = 0;
-            // SAFETY: the memory is alive, the result has a place. Functions which do not apply,
-            // say to a solver without Jacobian, leave it untouched.
+            // SAFETY: the memory is alive, the result pointer is valid. Functions which do not apply, say to
+            // a solver without Jacobian, leave it untouched.
             unsafe { get(memory, &raw mut count) };
             count as u64
         };
-        // SAFETY: the memory is alive, every result has a place.
+        // SAFETY: the memory is alive, every result pointer is valid.
         unsafe {
             (functions.get_nonlinear_stats)(memory, &raw mut iterations, &raw mut nonlinear_fails);
             (functions.get_tolerance_scale)(memory, &raw mut s.tolerance_scale);
@@ -44,7 +44,7 @@ impl<K, S> Session<K, S> {
         s.linear_failures = count(functions.get_linear_failures);
         s.preconditioner_setups = count(functions.get_preconditioner_setups);
         s.preconditioner_solves = count(functions.get_preconditioner_solves);
-        // ARKODE has no number before
+        // ARKODE has no count before the first step
         s.root_evaluations = if s.steps > 0 { count(functions.get_root_evaluations) } else { 0 };
         s.quadrature_evaluations =
             functions.quadratures.map_or(0, |functions| count(functions.get_evaluations));
@@ -55,13 +55,12 @@ impl<K, S> Session<K, S> {
         s
     }
 
-    /// The statistics of one call, among them those of the last step: cheap enough to be
-    /// asked for at every step.
+    /// The statistics of one call, among them those of the last step: cheap enough to be read at every step.
     pub(super) fn step_statistics(&self) -> Statistics {
         let mut s = Statistics::default();
         let [mut steps, mut evaluations, mut setups, mut error_fails] = [0; 4];
         let [mut last_order, mut current_order] = [0; 2];
-        // SAFETY: the memory is alive, every result has a place.
+        // SAFETY: the memory is alive, every result pointer is valid.
         unsafe {
             (self.memory.functions.get_integrator_stats)(
                 self.memory.raw,
@@ -78,7 +77,7 @@ impl<K, S> Session<K, S> {
             );
         }
         if steps == 0 {
-            // C still has the last step of the run before
+            // C still has the last step of the previous run
             (s.current_time, s.last_step) = (self.t, 0.0);
         } else if self.failed_within {
             s.current_time = self.t;
@@ -95,13 +94,13 @@ impl<K, S> Session<K, S> {
     /// Whether the linear solver failed last with one of these codes.
     fn linear_solver_gave(&self, codes: [u32; 2]) -> bool {
         let mut flag = 0;
-        // SAFETY: the memory is alive, the result has a place.
+        // SAFETY: the memory is alive, the result pointer is valid.
         let code =
             unsafe { (self.memory.functions.get_linear_flag)(self.memory.raw, &raw mut flag) };
         code == 0 && codes.iter().any(|&code| i64::from(code) == flag)
     }
 
-    /// That a DAE failed for its index, if it may have failed for that.
+    /// The cause that a DAE is of higher index, if it is and may have failed for that.
     pub(super) fn higher_index(&mut self, cause: &Cause) -> Option<Cause> {
         const MOST_UNKNOWNS: usize = 300;
         let suspicious = matches!(
@@ -127,7 +126,7 @@ impl<K, S> Session<K, S> {
 
     /// The error for a return code of the integrator on its way to `target`.
     pub(super) fn stopped(&mut self, code: i32, target: f64) -> Error {
-        // first of all: asking the linear solver for its flag may leave a message, too
+        // read first: reading the flag of the linear solver may leave a message, too
         let mut message = self.host.get_mut().troubles.message().to_owned();
         if !message.is_empty() {
             message = format!("SUNDIALS, code {code}: {message}");
@@ -165,7 +164,7 @@ impl<K, S> Session<K, S> {
             }
             _ => (Cause::Other, true),
         };
-        // many steps at a bound may have another reason, unless they hardly lead on
+        // too many steps at a bound may have another reason, unless they make hardly any progress
         let crawls = statistics.current_step.abs() < 1e-6 * (target - self.t).abs();
         let at_bound = !self.signs.is_empty() && (code != ffi::CV_TOO_MUCH_WORK || crawls);
         let violation = self.host.get().troubles.recent_violation();

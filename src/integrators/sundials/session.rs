@@ -26,12 +26,13 @@ use crate::integrators::common::{
     AbsoluteTolerance, Error, JacobianCheck, StepOptions, Tolerances,
 };
 
-/// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and ARKODE
-/// end runs at jumps that follow a long smooth stretch (the Oregonator); 20 lead from any step to the smallest there is.
-/// IDA keeps its 10: it gets over such jumps, and more of them hide that equations are of higher index.
+/// How often a step may be tried again with a smaller size because its error is too large. The 7 of CVODE and
+/// ARKODE end runs at jumps that follow a long smooth stretch (the Oregonator); 20 are enough to get from any
+/// step to the smallest possible. IDA keeps its 10: it passes such jumps, and more would hide that equations
+/// are of higher index.
 const ERROR_TEST_FAILURES: i32 = 20;
 
-/// What C has of an integrator, with the system that it calls. What users see of it is a [`Solver`](super::Solver).
+/// The C side of an integrator, with the system that it calls. Users see it as a [`Solver`](super::Solver).
 pub(super) struct Session<K, S> {
     // Fields are dropped in this order: first what uses the others.
     pub(super) memory: Memory,
@@ -41,10 +42,10 @@ pub(super) struct Session<K, S> {
     pub(super) mass: Option<Linear>,
     pub(super) backward: Option<Backward>,
     pub(super) y: Vector,
-    /// The time derivative of `y`, of a DAE only.
+    /// The time derivative of `y`, for a DAE only.
     pub(super) yp: Option<Vector>,
     pub(super) scratch: Vector,
-    /// As `scratch` is to `y`, to `yp`.
+    /// For `yp` what `scratch` is for `y`.
     pub(super) slope_scratch: Option<Vector>,
     pub(super) quadratures: Option<Quadratures>,
     pub(super) sensitivities: Option<Sensitivity>,
@@ -56,13 +57,13 @@ pub(super) struct Session<K, S> {
     pub(super) progress: Progress,
     /// Size of the first step, if it is not estimated.
     pub(super) initial_step: Option<f64>,
-    /// Whether there is a step to interpolate in. C does not ask, and gives NaN or what the run
-    /// before has left.
+    /// Whether there is a step to interpolate in. C does not check, and returns NaN or what the previous run
+    /// has left.
     pub(super) has_step: bool,
-    /// Whether the last call failed in an integrator that gives the time of a stage then.
+    /// Whether the last call failed in an integrator that then reports the time of a stage.
     pub(super) failed_within: bool,
-    /// Whether C has to be told the present state before it goes on: after a first step of IDA that failed, or where
-    /// numbers overflowed.
+    /// Whether C has to be given the present state before it continues: after a first step of IDA that
+    /// failed, or where numbers overflowed.
     pub(super) history_lost: bool,
     /// Degree of the polynomials between the steps, if it is not the order of the last step.
     pub(super) interpolant_degree: Option<u32>,
@@ -90,7 +91,7 @@ impl Drop for Memory {
 pub(super) struct InitialState<'a> {
     pub(super) t: f64,
     pub(super) y: &'a [f64],
-    /// Of a DAE only.
+    /// For a DAE only.
     pub(super) yp: Option<&'a [f64]>,
     pub(super) root_count: usize,
 }
@@ -230,14 +231,14 @@ impl<K, S> Session<K, S> {
         self.set_signs(&limits.signs)
     }
 
-    /// After a failure: the matrix of Newton's iteration may be half written.
+    /// Forgets the factors after a failure: the matrix of Newton's iteration may be half written.
     pub(super) fn forget_factors(&mut self) {
         if let Some(linear) = &mut self.linear {
             linear.forget_factors();
         }
     }
 
-    /// Has the unknowns keep these signs.
+    /// Makes the unknowns keep these signs.
     fn set_signs(&mut self, signs: &[Sign]) -> Result<(), Error> {
         // C takes a vector without any constraint for a mistake
         if signs.iter().all(|sign| *sign == Sign::Free) {
@@ -246,8 +247,8 @@ impl<K, S> Session<K, S> {
         let values: Vec<f64> = signs.iter().map(|sign| f64::from(*sign as i8)).collect();
         let values = Vector::from_slice(&values, &self.context)?;
         self.signs = signs.to_vec();
-        // SAFETY: C keeps a clone of the vector, whose length was checked, and it notes what it finds in the host, which
-        // outlives the memory.
+        // SAFETY: C keeps a clone of the vector, whose length was checked, and it notes what it finds in the
+        // host, which outlives the memory.
         unsafe {
             signs::note_in(values.raw(), self.host.violation())?;
             self.set(self.memory.functions.set_constraints, values.raw())
@@ -319,8 +320,8 @@ impl<K, S> Session<K, S> {
         Ok(())
     }
 
-    /// Gives a Krylov method its callbacks: `set_products` gets none for the setup and `times`,
-    /// `set_preconditioner` both of `preconditioner`.
+    /// Gives a Krylov method its callbacks: `set_products` gets no setup function and `times`,
+    /// `set_preconditioner` gets `setup` and `solve`.
     ///
     /// # Safety
     /// The functions belong to this integrator, and the callbacks fit the host.

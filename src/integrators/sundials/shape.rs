@@ -13,7 +13,7 @@ pub(super) enum Shape {
 }
 
 impl Shape {
-    /// That of the matrix, or of the preconditioner's; none where there is neither.
+    /// The shape of the matrix, or of the preconditioner's matrix; none if there is neither.
     pub(super) fn of(solver: &LinearSolver) -> Option<Self> {
         match (solver, solver.ilu()) {
             (LinearSolver::Dense(_), _) => Some(Self::Dense),
@@ -25,7 +25,7 @@ impl Shape {
         }
     }
 
-    /// Columns that can be told apart in one difference of the function, of `n`.
+    /// Which of the `n` columns can share one evaluation of the function for their difference quotients.
     pub(super) fn colouring(&self, n: usize) -> Colouring {
         match self {
             Self::Dense => Colouring::every(n, n),

@@ -14,11 +14,11 @@ use crate::integrators::common::{Error, check_length};
 pub enum Sign {
     /// All.
     Free = 0,
-    /// y >= 0, as of a concentration.
+    /// y >= 0, such as a concentration.
     NonNegative = 1,
     /// y <= 0
     NonPositive = -1,
-    /// y > 0, as of what a logarithm is taken of.
+    /// y > 0, such as the argument of a logarithm.
     Positive = 2,
     /// y < 0
     Negative = -2,
@@ -57,7 +57,7 @@ pub(super) fn check_signs(signs: &[Sign], n: usize) -> Result<(), InputError> {
     }
 }
 
-/// Checks that the state `y`, which the input of this name gives, has the signs that are asked for.
+/// Checks that the state `y`, given by the input of this name, has the required signs.
 pub(super) fn check_state(signs: &[Sign], input: &str, y: &[f64]) -> Result<(), InputError> {
     match signs.iter().zip(y).position(|(sign, y)| !sign.allows(*y)) {
         None => Ok(()),
@@ -73,36 +73,37 @@ pub(super) fn check_state(signs: &[Sign], input: &str, y: &[f64]) -> Result<(), 
 pub(super) struct Violation {
     pub(super) unknown: usize,
     pub(super) value: f64,
-    /// Ends of steps that were looked at since.
+    /// Ends of steps that were checked since.
     age: u32,
 }
 
 impl Violation {
-    /// Whether it was in the step last tried, or in one of the two before. (Close to a bound that the equations cross,
-    /// every other step is repeated.)
+    /// Whether it was in the step last tried, or in one of the two before. (Close to a bound that the
+    /// equations cross, every other step is repeated.)
     pub(super) fn is_recent(&self) -> bool {
         self.age <= 2
     }
 }
 
-/// The content of a vector of signs: that of a serial vector, and where [`mask`] notes what it last found. C gives it no
-/// other place for that.
+/// The content of a vector of signs: that of a serial vector, and where [`mask`] notes what it last found. C
+/// gives it no other place for that.
 #[repr(C)]
 struct Content {
     serial: ffi::_N_VectorContent_Serial,
     found: *mut Option<Violation>,
 }
 
-/// Makes `vector` one of signs, and with it all its later clones, for which [`mask`] notes in `found` what it finds.
+/// Makes `vector` and all its later clones vectors of signs, for which [`mask`] notes in `found` what it
+/// finds.
 ///
 /// # Safety
-/// `vector` is a live serial vector; `found` may be written to whenever [`mask`] gets it or a clone.
+/// `vector` is a live serial vector; `found` may be written to whenever [`mask`] gets `vector` or a clone.
 pub(super) unsafe fn note_in(
     vector: ffi::N_Vector,
     found: *mut Option<Violation>,
 ) -> Result<(), Error> {
-    // SAFETY: the content of a serial vector was allocated by malloc, as N_VDestroy frees it; where realloc fails, it is
-    // still there. The operations table of a live vector is writable.
+    // SAFETY: the content of a serial vector was allocated by malloc, as N_VDestroy frees it; where realloc
+    // fails, it is still there. The operations table of a live vector is writable.
     unsafe {
         let content = libc::realloc((*vector).content, size_of::<Content>());
         if content.is_null() {
@@ -143,15 +144,16 @@ unsafe fn numbers<'a>(vector: ffi::N_Vector) -> &'a [f64] {
     }
 }
 
-/// `N_VConstrMask` of serial vectors, which remembers what it found: writes 1 to `mask` where `y` has not the sign
-/// that `signs` asks for, else 0; whether all have.
+/// `N_VConstrMask` of serial vectors, which remembers what it found: writes 1 to `mask` where `y` does not
+/// have the sign that `signs` requires, else 0. Returns whether all have it.
 pub(super) unsafe extern "C" fn mask(
     signs: ffi::N_Vector,
     y: ffi::N_Vector,
     mask: ffi::N_Vector,
 ) -> i32 {
-    // SAFETY: SUNDIALS passes three different live vectors of equal length, and nothing else uses them here. The first is
-    // one of signs, as no other is registered, and its place for what is found is not used during a call of C.
+    // SAFETY: SUNDIALS passes three different live vectors of equal length, and nothing else uses them here.
+    // The first is a vector of signs, as no other is registered, and its place for what is found is not used
+    // during a call of C.
     let (signs, y, mask, found) = unsafe {
         let found = &mut *(*(*signs).content.cast::<Content>()).found;
         let (signs, y) = (numbers(signs), numbers(y));
@@ -172,10 +174,12 @@ pub(super) unsafe extern "C" fn mask(
     i32::from(first.is_none())
 }
 
-/// `N_VMinQuotient` of serial vectors, for the part of a step at whose end the unknowns are at their bounds.
+/// `N_VMinQuotient` of serial vectors, for the fraction of a step at whose end the unknowns are at their
+/// bounds.
 ///
-/// CVODE divides by what it predicted, which may be beyond the bound itself: where that gives no part of a step,
-/// none at all or more than one, C would grow the step, to infinity. Half a step is taken then.
+/// CVODE takes quotients of what it predicted, which may be beyond the bound itself: where that gives no
+/// fraction of a step, but no quotient at all or more than one step, C would let the step grow, to infinity.
+/// Half a step is taken then.
 pub(super) unsafe extern "C" fn least_part(dividend: ffi::N_Vector, divisor: ffi::N_Vector) -> f64 {
     // SAFETY: SUNDIALS passes two live vectors of equal length, and nothing writes to them here.
     let (dividend, divisor) = unsafe { (numbers(dividend), numbers(divisor)) };

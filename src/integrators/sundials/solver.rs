@@ -1,4 +1,4 @@
-//! An integrator of SUNDIALS as its users have it: a session, and the system that it was lent.
+//! An integrator of SUNDIALS as users see it: a session, and the system that is lent to it.
 
 use std::{fmt, marker::PhantomData, mem, ptr, ptr::NonNull};
 
@@ -10,13 +10,14 @@ use crate::integrators::{
     ode::{Borrowed, Dae, Ode},
 };
 
-/// What makes a [`Solver`] one of CVODE, ARKODE or IDA.
+/// The kind of a [`Solver`]: CVODE, ARKODE or IDA.
 pub trait Kind {
-    /// Its systems, whatever their type.
+    /// The trait object of its systems, whatever their type.
     #[doc(hidden)]
     type System: ?Sized + 'static;
 
-    /// What it does. Sessions see systems behind a pointer, so that they are compiled once and not for each type of system.
+    /// What it does. Sessions use systems through a pointer, so that they are compiled once and not for each
+    /// type of system.
     #[doc(hidden)]
     type Session: Integrator<System = Borrowed<'static, Self::System>> + ?Sized;
 
@@ -24,12 +25,11 @@ pub trait Kind {
     const NAME: &'static str;
 }
 
-/// What makes it one of CVODE or IDA, which carry integrals and sensitivities along.
+/// The kinds that also compute integrals and sensitivities: CVODE and IDA.
 pub trait WithSensitivities: Kind<Session: CarriesSensitivities> {}
 
-/// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or
-/// [`Ida`](super::Ida), by the parameter `K`. What all of them can do is in
-/// [`Integrator`].
+/// An integrator of SUNDIALS: [`Cvode`](super::Cvode), [`Arkode`](super::Arkode) or [`Ida`](super::Ida), by
+/// the parameter `K`. What all of them can do is described at [`Integrator`].
 ///
 /// It owns the system `S`; [`Borrowed`] lends it one. It can be sent to another
 /// thread if the system can.
@@ -40,8 +40,9 @@ pub struct Solver<K: Kind, S> {
     kind: PhantomData<K>,
 }
 
-// SAFETY: the session is that of a system that is `Send`; the raw pointers in it lead to objects that it alone owns, among
-// them its SUNContext; SUNDIALS keeps no thread-local state. Troubles that wait in its host are `Send`.
+// SAFETY: the session is that of a system that is `Send`; the raw pointers in it lead to objects that it
+// alone owns, among them its SUNContext; SUNDIALS keeps no thread-local state. Failures that are stored in
+// its host are `Send`.
 unsafe impl<K: Kind, S: Send> Send for Solver<K, S> {}
 
 impl<K: Kind, S> fmt::Debug for Solver<K, S> {
@@ -62,7 +63,7 @@ impl<S> Owner<S> {
     /// Lends the system to a session.
     ///
     /// # Safety
-    /// The session ends before `self`, and whoever wants the system until then asks the session for it.
+    /// The session ends before `self`, and until then the system is accessed only through the session.
     pub(super) unsafe fn lend_ode(&mut self) -> Borrowed<'static, dyn Ode>
     where
         S: Ode,
@@ -152,7 +153,7 @@ impl<K: Kind, S> Integrator for Solver<K, S> {
         self.session.interpolate(t, derivative, out)
     }
 
-    /// `CVodeSetStopTime`, `ARKStepSetStopTime` or `IDASetStopTime`, with the next step.
+    /// `CVodeSetStopTime`, `ARKStepSetStopTime` or `IDASetStopTime`, called with the next step.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         self.session.set_stop_time(t)
     }
@@ -177,7 +178,8 @@ impl<K: Kind, S> Integrator for Solver<K, S> {
 
     fn system(&self) -> &S {
         let system = ptr::from_ref::<K::System>(self.session.system().0);
-        // SAFETY: the session was lent this system, of type `S`, and gives it no longer than it is borrowed itself.
+        // SAFETY: the session was lent this system, of type `S`, and gives it no longer than it is borrowed
+        // itself.
         unsafe { &*system.cast() }
     }
 
@@ -194,15 +196,15 @@ impl<K: Kind, S> Integrator for Solver<K, S> {
 }
 
 impl<K: WithSensitivities, S> Solver<K, S> {
-    /// The integrals of [`quadratures`](crate::integrators::ode::Ode::quadratures) from the start to time [`t`](Integrator::t). A new start
-    /// sets them to zero. (`CVodeGetQuad`, `IDAGetQuad`)
+    /// The integrals of [`quadratures`](crate::integrators::ode::Ode::quadratures) from the start to time
+    /// [`t`](Integrator::t). A new start sets them to zero. (`CVodeGetQuad`, `IDAGetQuad`)
     #[must_use]
     pub fn quadratures(&self) -> &[f64] {
         self.session.quadratures()
     }
 
-    /// As [`interpolate`](Integrator::interpolate), of the integrals: their first derivative is the integrand.
-    /// (`CVodeGetQuadDky`, `IDAGetQuadDky`)
+    /// As [`interpolate`](Integrator::interpolate), for the integrals: their first derivative is the
+    /// integrand. (`CVodeGetQuadDky`, `IDAGetQuadDky`)
     ///
     /// # Errors
     /// As for [`interpolate`](Integrator::interpolate).
@@ -215,14 +217,16 @@ impl<K: WithSensitivities, S> Solver<K, S> {
         self.session.interpolate_quadratures(t, derivative, out)
     }
 
-    /// The sensitivities at time [`t`](Integrator::t): entry (i, j) is the derivative of unknown i with respect to the j-th
-    /// parameter of [`Sensitivities::of`](super::Sensitivities::of). (`CVodeGetSens`, `IDAGetSens`)
+    /// The sensitivities at time [`t`](Integrator::t): entry (i, j) is the derivative of unknown i with
+    /// respect to the j-th parameter of [`Sensitivities::of`](super::Sensitivities::of). (`CVodeGetSens`,
+    /// `IDAGetSens`)
     #[must_use]
     pub fn sensitivities(&self) -> MatRef<'_, f64> {
         self.session.sensitivities()
     }
 
-    /// As [`interpolate`](Integrator::interpolate), of the sensitivities. (`CVodeGetSensDky1`, `IDAGetSensDky1`)
+    /// As [`interpolate`](Integrator::interpolate), for the sensitivities. (`CVodeGetSensDky1`,
+    /// `IDAGetSensDky1`)
     ///
     /// # Errors
     /// As for [`interpolate`](Integrator::interpolate).
@@ -235,9 +239,10 @@ impl<K: WithSensitivities, S> Solver<K, S> {
         self.session.interpolate_sensitivities(t, derivative, out)
     }
 
-    /// Lets the sensitivities start from `s` (as [`sensitivities`](Self::sensitivities) has them) in place of zero, after the
-    /// solver was made or started again: where initial values depend on parameters, or jump.
-    /// (`CVodeSensReInit`, `IDASensReInit`)
+    /// Lets the sensitivities start from `s` in place of zero (`CVodeSensReInit`, `IDASensReInit`).
+    ///
+    /// `s` has the form of [`sensitivities`](Self::sensitivities). Call it after the solver was made or
+    /// started again, where initial values depend on parameters, or jump.
     ///
     /// # Errors
     /// [`Error::Input`] if steps were taken already, the shape is wrong or a number is not finite.

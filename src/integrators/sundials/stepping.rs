@@ -1,4 +1,4 @@
-//! An integrator of SUNDIALS at work.
+//! How a session integrates: steps, interpolation, stop times and new starts.
 
 use std::{ffi::c_void, mem, ptr};
 
@@ -15,7 +15,7 @@ use crate::integrators::common::{
     check_start_time, check_time,
 };
 
-/// Code of a call that did what was asked for.
+/// Return code of a call that succeeded.
 const DONE: i32 = 0;
 
 impl<K, S> Integrator for Session<K, S> {
@@ -170,7 +170,7 @@ impl<K, S> Session<K, S> {
         }
         let steps = self.step_statistics().steps;
         let far = if steps == 0 { apart(self.t, target) } else { target };
-        // C would refuse the target: steps that stop there
+        // C would refuse a target so close: single steps with a stop time there
         let stops = task == ffi::CV_NORMAL && far != target;
         let mut stop = self.stop_time.time();
         if stops {
@@ -179,7 +179,7 @@ impl<K, S> Session<K, S> {
             // SAFETY: the value is a plain number.
             unsafe { self.set(functions.set_stop_time, ends.unwrap_or(target))? };
         }
-        // nor does it estimate a step where it has to stop so soon
+        // nor does C estimate a first step if it has to stop so soon: it is the whole way to the stop
         let whole = stop.filter(|stop| steps == 0 && apart(self.t, *stop) != *stop);
         let whole = whole.filter(|_| self.initial_step.is_none());
         if let Some(stop) = whole {
@@ -187,7 +187,7 @@ impl<K, S> Session<K, S> {
             unsafe { self.set(functions.set_initial_step, stop - self.t)? };
         }
         let (name, solve) = functions.solve;
-        // C writes beside the present state, which is kept where it fails to give another
+        // C writes to other vectors than the present state, which is kept if C fails to give another
         let (memory, y, before) = (self.memory.raw, self.scratch.raw(), self.t);
         let yp = self.slope_scratch.as_ref().map_or(ptr::null_mut(), Vector::raw);
         self.scratch.as_mut_slice().iter_mut().take(1).for_each(|y| *y = f64::NAN);
@@ -205,7 +205,8 @@ impl<K, S> Session<K, S> {
             let now = self.step_statistics();
             self.progress.note(now.steps, now.current_time);
             taken = now.steps.saturating_sub(steps);
-            // six decades each; where a lower bound of the step size holds, no more than that
+            // each attempt covers six decades; with a lower bound of the step size there are no more attempts
+            // than this
             if shortened < 5 && self.shortens_first_step(code, before, target)? {
                 shortened += 1;
                 self.host.get_mut().troubles.clear();
@@ -217,11 +218,11 @@ impl<K, S> Session<K, S> {
             }
         };
         if shortened > 0 || whole.is_some() {
-            // SAFETY: the value is a plain number, which asks for an estimate.
+            // SAFETY: the value is a plain number, which requests an estimate.
             unsafe { self.set(functions.set_initial_step, 0.0)? };
         }
         if stops {
-            // C has forgotten that of the caller
+            // C has forgotten the stop time of the caller
             self.stop_time.set(self.stop_time.time());
         }
         self.has_step = code >= 0 || self.step_statistics().steps > 0;
@@ -232,7 +233,7 @@ impl<K, S> Session<K, S> {
             mem::swap(&mut self.y, &mut self.scratch);
             mem::swap(&mut self.yp, &mut self.slope_scratch);
         } else if !self.has_step {
-            // IDA takes y' times the step for y' now
+            // IDA now has y' times the step size in place of y'
             self.history_lost = self.yp.is_some();
         } else if self.host.get().step_end.is_none() && !self.has_finite_history() {
             self.t = before;
@@ -261,7 +262,7 @@ impl<K, S> Session<K, S> {
                 unsafe { self.set(functions.get_root_info, roots)? };
                 Ok(Reached::Root)
             }
-            // a step that ends before the target is the last that may be made
+            // a step that ended before the target was the last one allowed
             code if code >= 0 && (self.progress.stands || stops && code == DONE) => {
                 Err(self.stopped(ffi::CV_TOO_MUCH_WORK, target))
             }
@@ -279,12 +280,13 @@ impl<K, S> Session<K, S> {
         }
     }
 
-    /// After a first step of IDA that failed, from `before` towards `target`: has C start with a smaller one, if that may help.
+    /// After a first step of IDA that failed, from `before` towards `target`: lets C start with a smaller
+    /// one, if that may help.
     ///
-    /// The first step is a thousandth of the way to `target` where y' does not tell less, and C gives up after ten failures, six
-    /// decades below. A stiff problem may need less than that.
+    /// The first step is a thousandth of the way to `target` unless y' suggests less, and C gives up after
+    /// ten failures, six decades below. A stiff problem may need an even smaller step.
     fn shortens_first_step(&mut self, code: i32, before: f64, target: f64) -> Result<bool, Error> {
-        // of the way to the target
+        // the smallest step, as a fraction of the way to the target
         const LEAST: f64 = 1e-30;
         let failed = [ffi::CV_ERR_FAILURE, ffi::CV_CONV_FAILURE].contains(&code);
         let is_dae = self.yp.is_some() && self.host.get().find_index.is_some();
@@ -305,14 +307,14 @@ impl<K, S> Session<K, S> {
         Ok(true)
     }
 
-    /// Has C start at time `t` from the present state, integrals and sensitivities.
+    /// Makes C start at time `t` from the present state, integrals and sensitivities.
     fn start_c_again(&mut self, t: f64) -> Result<(), Error> {
         self.start_c(t)?;
         self.hand_over_quadratures()?;
         self.hand_over_sensitivities()
     }
 
-    /// Has C start at time `t` from the present state: `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
+    /// Makes C start at time `t` from the present state: `CVodeReInit`, `ARKStepReInit` or `IDAReInit`.
     fn start_c(&mut self, t: f64) -> Result<(), Error> {
         let (name, reinit) = self.memory.functions.reinit;
         // SAFETY: memory and vectors are alive; the integrator copies the vectors.
@@ -320,14 +322,14 @@ impl<K, S> Session<K, S> {
         self.host.accept(name, code)
     }
 
-    /// Whether the state that C has written is one.
+    /// Whether the state that C has written is finite.
     fn is_auxiliary_finite(&self) -> bool {
         let vectors = [Some(&self.scratch), self.slope_scratch.as_ref()];
         vectors.into_iter().flatten().all(|vector| vector.as_slice().iter().all(|y| y.is_finite()))
     }
 
-    /// Whether C still has a state to go on from. It predicts by sums of its history, in place, and takes them back after a
-    /// failure: sums that overflowed leave NaN.
+    /// Whether C still has a state to continue from. It predicts by sums of its history, in place, and undoes
+    /// them after a failure: sums that overflowed leave NaN.
     fn has_finite_history(&mut self) -> bool {
         let (_, get_dky) = self.memory.functions.get_dky;
         let t = self.step_statistics().current_time;
@@ -336,7 +338,7 @@ impl<K, S> Session<K, S> {
         code >= 0 && self.scratch.as_slice().iter().all(|y| y.is_finite())
     }
 
-    /// Reads y and y' of a DAE anew: single steps of IDA return them as they were before unknowns were put
+    /// Reads y and y' of a DAE again: single steps of IDA return them as they were before unknowns were set
     /// to their bounds.
     fn read_corrected(&mut self) -> Result<(), Error> {
         let Some(yp) = self.yp.as_ref().map(Vector::raw) else { return Ok(()) };
@@ -368,7 +370,7 @@ impl<K, S> Session<K, S> {
         Ok(())
     }
 
-    /// Calls a function `get_dky` of C, of the name `name`, that interpolates within the last step.
+    /// Calls the C function `get_dky`, called `name`, that interpolates within the last step.
     pub(super) fn look_back(
         &mut self,
         name: &'static str,
@@ -395,7 +397,7 @@ impl<K, S> Session<K, S> {
         self.host.accept(name, code)
     }
 
-    /// Checks that nothing but the present values is asked for, where there is no step to look into.
+    /// Checks that only the present values are requested, where there is no step to interpolate in.
     pub(super) fn check_start_only(&self, t: f64, derivative: u32) -> Result<(), Error> {
         if t != self.t {
             let help =
@@ -410,8 +412,9 @@ impl<K, S> Session<K, S> {
     }
 }
 
-/// `target`, or a time beyond it that C takes for another one than `t`. (It takes 100 units of rounding for none when it looks for a
-/// stop time, and some more in its first step.)
+/// `target`, or, if C would take it for `t`, a time beyond it that C distinguishes from `t`. (C ignores
+/// differences of 100 units of rounding when it checks for a stop time, and somewhat larger ones in its first
+/// step.)
 pub(super) fn apart(t: f64, target: f64) -> f64 {
     let size = t.abs().max(target.abs());
     let (distance, least) = (target - t, (256.0 * f64::EPSILON * size).max(1e-97));

@@ -2,10 +2,10 @@
 
 use std::mem;
 
-/// The stop time, and whether C has yet to get it.
+/// The stop time, and whether C still has to be given it.
 ///
-/// SUNDIALS 6.4.1 cannot forget a stop time; one at the end of all time does the same, if it lies
-/// in the direction of time, which a new start may turn.
+/// SUNDIALS 6.4.1 cannot forget a stop time; one at the largest finite time has the same effect, if it lies
+/// in the direction of time, which a new start may reverse.
 #[derive(Debug, Default)]
 pub(super) struct StopTime {
     time: Option<f64>,
@@ -20,7 +20,7 @@ impl StopTime {
         self.time = time;
     }
 
-    /// C has forgotten it.
+    /// Notes that C has forgotten it.
     pub(super) fn forget(&mut self) {
         *self = Self::default();
     }

@@ -1,4 +1,4 @@
-//! Jacobians of their own, beside the matrix that a linear solver factorizes.
+//! Jacobians that are stored in addition to the matrix that a linear solver factorizes.
 
 use faer::MatMut;
 
@@ -10,14 +10,14 @@ use crate::integrators::{
     },
 };
 
-/// A Jacobian at one point, stored as the linear solver of the run forward has it.
+/// A Jacobian at one point, stored in the form of the linear solver of the forward run.
 pub(in crate::integrators::sundials) struct StoredJacobian {
     forward: LinearSolver,
     shape: Shape,
     n: usize,
     values: Vec<f64>,
     colouring: Colouring,
-    /// Unknowns moved for difference quotients, and two results.
+    /// Unknowns shifted for difference quotients, and two results.
     moved: Vec<f64>,
     ahead: Vec<f64>,
     behind: Vec<f64>,
@@ -74,7 +74,7 @@ impl StoredJacobian {
         }
     }
 
-    /// Its entries, to be filled; zeros.
+    /// Its entries, set to zero and to be filled.
     pub(in crate::integrators::sundials) fn entries(&mut self) -> Entries<'_> {
         self.values.fill(0.0);
         let values = &mut self.values;
@@ -90,8 +90,8 @@ impl StoredJacobian {
         }
     }
 
-    /// Makes it that of `evaluate` at `x` by central differences with these steps, of as many columns at once as do not
-    /// meet in any row.
+    /// Makes it the Jacobian of `evaluate` at `x`, by central differences with these steps, of as many
+    /// columns at once as share no row.
     pub(in crate::integrators::sundials) fn quotients(
         &mut self,
         x: &[f64],
@@ -118,7 +118,7 @@ impl StoredJacobian {
         Ok(())
     }
 
-    /// The numbers that are stored.
+    /// The stored entries.
     pub(in crate::integrators::sundials) fn values(&self) -> &[f64] {
         &self.values
     }
@@ -133,7 +133,7 @@ impl StoredJacobian {
         self.shape.multiply(&self.values, v, out);
     }
 
-    /// Writes I - gamma J into the matrix of its own linear solver, which is zero.
+    /// Writes I - gamma J into the matrix of its own linear solver, which is zero before.
     pub(in crate::integrators::sundials) fn write_shifted(&self, gamma: f64, entries: Entries<'_>) {
         let value = |i: usize, j: usize, place: usize| {
             let unit = if i == j { 1.0 } else { 0.0 };
@@ -176,8 +176,8 @@ impl StoredJacobian {
         self.each(|i, j, value| out[j] += factor * value * lambda[i]);
     }
 
-    /// Writes the transpose of another matrix, which has `value` in a row and at a place of this one, into that of
-    /// `backward`, which is this solver's.
+    /// Writes the transpose of another matrix of this form, whose entries are `value(row, place)`, into the
+    /// matrix of `backward`, the linear solver for transposed matrices.
     pub(in crate::integrators::sundials) fn write_transposed(
         &self,
         backward: &LinearSolver,

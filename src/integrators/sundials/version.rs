@@ -1,10 +1,10 @@
-//! What is linked.
+//! Versions of the linked libraries.
 
 use std::ffi::{CStr, c_char};
 
 use super::ffi;
 
-/// Version of SUNDIALS, of the linked library, such as "6.4.1". (`SUNDIALSGetVersion`)
+/// Version of the linked SUNDIALS library, such as "6.4.1". (`SUNDIALSGetVersion`)
 #[must_use]
 pub fn version() -> String {
     const LENGTH: usize = 64;
@@ -18,8 +18,7 @@ pub fn version() -> String {
     text.to_string_lossy().into_owned()
 }
 
-/// Version of SuiteSparse, which KLU belongs to, of the linked library, such as "5.12.0".
-/// (`SuiteSparse_version`)
+/// Version of the linked SuiteSparse library, which KLU belongs to, such as "5.12.0". (`SuiteSparse_version`)
 #[must_use]
 pub fn suitesparse_version() -> String {
     let mut version = [0; 3];
@@ -30,7 +29,7 @@ pub fn suitesparse_version() -> String {
 
 #[cfg(test)]
 mod tests {
-    /// The libraries are those whose headers the crate was built with, up to the last number.
+    /// The libraries are those whose headers the crate was built with, except for the last number.
     #[test]
     fn the_linked_versions_are_those_of_the_headers() {
         let headers = [super::ffi::SUNDIALS_VERSION_MAJOR, super::ffi::SUNDIALS_VERSION_MINOR];

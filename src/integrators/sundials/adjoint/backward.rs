@@ -1,4 +1,4 @@
-//! The run forward with checkpoints and the way back, as CVODES and IDAS have them.
+//! The forward run with checkpoints and the backward run, for CVODES and IDAS.
 
 use super::options::AdjointOptions;
 use crate::integrators::{
@@ -9,20 +9,20 @@ use crate::integrators::{
     },
 };
 
-/// What a C function gave, with its name.
+/// The return code of a C function, with its name.
 pub(super) type Called = (&'static str, i32);
 
-/// The C functions that get callbacks of the way back, which differ between CVODES and IDAS.
+/// The C functions that register callbacks of the backward run; they differ between CVODES and IDAS.
 pub(super) struct Callbacks<I, J, Q> {
-    /// Starts from lambda and lambda'; an ODE has null for that.
+    /// Starts from lambda and lambda'; the latter is null for an ODE.
     pub(super) init: I,
     pub(super) set_jacobian: J,
-    /// Gets the integrals, which are zero.
+    /// Takes the initial values of the integrals, which are zero.
     pub(super) init_quadratures: Q,
 }
 
 impl<K, S> Session<K, S> {
-    /// Has the run forward keep checkpoints.
+    /// Makes the forward run keep checkpoints.
     ///
     /// # Safety
     /// The functions belong to this integrator.
@@ -40,10 +40,11 @@ impl<K, S> Session<K, S> {
         Ok(())
     }
 
-    /// Makes the backward problem, which starts from `lambda` (and `slope`, of a DAE).
+    /// Makes the backward problem, which starts from `lambda` (and `slope`, for a DAE).
     ///
     /// # Safety
-    /// The functions belong to this integrator, `linear` is made for `lambda`, and the callbacks fit the host.
+    /// The functions belong to this integrator, `linear` is made for `lambda`, and the callbacks fit the
+    /// host.
     pub(super) unsafe fn start_back(
         &mut self,
         functions: &'static BackwardFunctions,
@@ -60,7 +61,7 @@ impl<K, S> Session<K, S> {
         let (n, count) = (lambda.as_slice().len(), parameters.len());
         let mut which = 0;
         let (name, create) = functions.create;
-        // SAFETY: the memory is alive, the result has a place.
+        // SAFETY: the memory is alive, the result pointer is valid.
         let code = unsafe { create(memory, &raw mut which) };
         self.host.accept(name, code)?;
         let zeros = vec![0.0; count];
@@ -110,7 +111,7 @@ impl<K, S> Session<K, S> {
         self.host.accept(name, code)
     }
 
-    /// Integrates back to `t0`, and adds the integrals to `parameters`. Lambda is in the backward problem.
+    /// Integrates back to `t0`, and adds the integrals to `parameters`. Lambda stays in the backward problem.
     pub(super) fn run_back(&mut self, t0: f64, parameters: &mut [f64]) -> Result<(), Error> {
         let memory = self.memory.raw;
         let Some(backward) = &self.backward else { return Ok(()) };
@@ -127,7 +128,7 @@ impl<K, S> Session<K, S> {
         }
         let mut t = 0.0;
         let (name, get) = functions.get;
-        // SAFETY: memory and vectors are alive, the results have their places.
+        // SAFETY: memory and vectors are alive, the result pointers are valid.
         let code = unsafe { get(memory, which, &raw mut t, lambda, slope) };
         self.accept((name, code))?;
         let Some(gradient) = gradient else { return Ok(()) };
@@ -141,7 +142,7 @@ impl<K, S> Session<K, S> {
         Ok(())
     }
 
-    /// Why the way back to `t0` ended.
+    /// The error of a backward run to `t0` that stopped.
     fn stopped_back(
         &mut self,
         (functions, which): (&BackwardFunctions, i32),
@@ -149,7 +150,8 @@ impl<K, S> Session<K, S> {
         t0: f64,
     ) -> Error {
         let (mut t, mut step, mut order) = (f64::NAN, f64::NAN, 0);
-        // SAFETY: the memory is alive; that of the backward problem belongs to it, and the results have their places.
+        // SAFETY: the memory is alive; that of the backward problem belongs to it, and the result pointers
+        // are valid.
         unsafe {
             let memory = (functions.get_memory)(self.memory.raw, which);
             (functions.get_current_time)(memory, &raw mut t);

@@ -1,4 +1,4 @@
-//! A system, of any kind, with a functional: their derivatives on the way back.
+//! A system, of any kind, with a functional: their derivatives in the backward run.
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
@@ -19,11 +19,11 @@ pub(super) struct Equations<S, F> {
     access: Access<S>,
     tolerances: Tolerances,
     pub(super) jacobian: StoredJacobian,
-    /// The linear solver of the way back.
+    /// The linear solver of the backward run.
     pub(super) backward: LinearSolver,
-    /// Time of the Jacobian: on the way back there is one state at each time.
+    /// Time of the Jacobian: in the backward run there is one state at each time.
     jacobian_time: Option<f64>,
-    /// Those of h, by the unknowns and by the parameters.
+    /// The derivatives of h with respect to the unknowns and to the parameters.
     pub(super) slopes_y: Vec<f64>,
     pub(super) slopes_p: Vec<f64>,
     p: Vec<f64>,
@@ -33,7 +33,7 @@ pub(super) struct Equations<S, F> {
 }
 
 impl<S, F: Functional> Equations<S, F> {
-    /// For `n` unknowns, and the linear solver and tolerances of the run forward.
+    /// For `n` unknowns, and the linear solver and tolerances of the forward run.
     pub(super) fn new(
         system: S,
         functional: F,
@@ -65,18 +65,18 @@ impl<S, F: Functional> Equations<S, F> {
         (self.access.get)(&self.system)
     }
 
-    /// Forgets the Jacobian, with a new run or where it was of no use.
+    /// Forgets the Jacobian, for a new run or because it is not usable.
     pub(super) fn forget(&mut self) {
         self.jacobian_time = None;
     }
 
-    /// How large unknown `j` is, for difference quotients, where its value is `y`.
+    /// The size of unknown `j` for difference quotients, if its value is `y`.
     pub(super) fn size(&self, j: usize, y: f64) -> f64 {
         self.tolerances.size_of(j, y)
     }
 
-    /// Makes the Jacobian that of the equations at (t, y), unless it is: by `supplied`, which gets room for n numbers,
-    /// too, or by differences of `evaluate`. Says whether it was evaluated.
+    /// Updates the Jacobian to (t, y), unless it is up to date: by `supplied`, which also gets scratch space
+    /// for n numbers, or by differences of `evaluate`. Returns whether it was evaluated.
     pub(super) fn update_jacobian(
         &mut self,
         t: f64,
@@ -113,7 +113,7 @@ impl<S, F: Functional> Equations<S, F> {
         Ok(())
     }
 
-    /// g(T, y, p), and its derivatives by p and by y at the end of a run of `integrator`.
+    /// g(T, y, p), and its derivatives with respect to p and y at the end of a run of `integrator`.
     pub(super) fn terminal(
         &mut self,
         integrator: &'static str,
@@ -125,8 +125,8 @@ impl<S, F: Functional> Equations<S, F> {
         Ok(end.map_err(|failure| refused(integrator, t, failure))?.check()?)
     }
 
-    /// Writes the product of lambda with the derivatives of `evaluate` by p, by central differences; parameters are put
-    /// back to the last bit, whatever happens.
+    /// Writes the product of lambda with the derivatives of `evaluate` with respect to p, by central
+    /// differences; the parameters are restored to the last bit, whatever happens.
     pub(super) fn parameter_differences(
         &mut self,
         lambda: &[f64],

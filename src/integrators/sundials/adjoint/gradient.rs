@@ -1,4 +1,4 @@
-//! What an adjoint problem is solved for.
+//! The result of an adjoint problem.
 
 use crate::base::input::InputError;
 use crate::integrators::{
@@ -6,20 +6,22 @@ use crate::integrators::{
     ode::{Failure, Functional, Slopes},
 };
 
-/// A functional G = g(T, y(T), p) + integral of h(t, y, p) and what it changes by.
+/// A functional G = g(T, y(T), p) + integral of h(t, y, p) and its derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gradient {
     /// G.
     pub value: f64,
     /// dG/dp, for all parameters of the system.
     pub parameters: Vec<f64>,
-    /// dG/dy0, by the initial state; where that depends on parameters, it adds (dy0/dp)^T dG/dy0 to dG/dp. Of a DAE, by
-    /// the differential unknowns: algebraic ones follow from them, and have zeros.
+    /// dG/dy0, with respect to the initial state; if that depends on parameters, (dy0/dp)^T dG/dy0 has to be
+    /// added to dG/dp. For a DAE, with respect to the differential unknowns: algebraic ones follow from them,
+    /// and have zeros.
     pub initial_state: Vec<f64>,
 }
 
 impl Gradient {
-    /// That of g(T, y, p) by the state and the parameters at the end: where the way back starts.
+    /// The gradient of g(T, y, p) with respect to the state and the parameters at the end, where the backward
+    /// run starts.
     pub(crate) fn at_end(
         functional: &mut impl Functional,
         t: f64,
@@ -32,7 +34,7 @@ impl Gradient {
         Ok(Self { value, parameters, initial_state })
     }
 
-    /// Checks that such numbers are finite.
+    /// Checks that its numbers are finite.
     pub(crate) fn check(self) -> Result<Self, InputError> {
         check_finite("terminal functional", &[self.value])?;
         check_finite("terminal slopes by y", &self.initial_state)?;

@@ -3,7 +3,7 @@
 use crate::base::{input::InputError, vector::size_or_one};
 use crate::integrators::common::{AbsoluteTolerance, Tolerances, check_count};
 
-/// Options of the way back of an [`Adjoint`](super::Adjoint) or a [`DaeAdjoint`](super::DaeAdjoint).
+/// Options of the backward run of an [`Adjoint`](super::Adjoint) or a [`DaeAdjoint`](super::DaeAdjoint).
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct AdjointOptions {
@@ -15,7 +15,9 @@ pub struct AdjointOptions {
 }
 
 impl AdjointOptions {
-    /// These tolerances for the adjoint lambda, which is dG/dy(t) of an ODE. Its linear solver is that of the run forward, transposed.
+    /// With these tolerances for the adjoint lambda, which is dG/dy(t) for an ODE.
+    ///
+    /// Its linear solver is that of the forward run, for the transposed matrix.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self {
             tolerances: Tolerances::new(rtol, atol),
@@ -26,29 +28,38 @@ impl AdjointOptions {
         }
     }
 
-    /// Tolerances of dG/dp, whose errors, too, decide on the step size on the way back (`CVodeQuadSVtolerancesB`, `IDAQuadSVtolerancesB`). Default:
-    /// `rtol` of lambda, and its smallest `atol` divided by the size of the parameter, or by 1 for one that is zero.
+    /// Tolerances of dG/dp, whose errors also control the step size of the backward run
+    /// (`CVodeQuadSVtolerancesB`, `IDAQuadSVtolerancesB`).
+    ///
+    /// Default: `rtol` of lambda, and its smallest `atol` divided by the size of the parameter, or by 1 for
+    /// one that is zero.
     pub fn gradient_tolerances(mut self, rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         self.gradient_tolerances = Some(Tolerances::new(rtol, atol));
         self
     }
 
-    /// Steps between two checkpoints: the states of so many steps are kept at once, and computed again between
-    /// two checkpoints (`CVodeAdjInit`, `IDAAdjInit`). Default: 150.
+    /// Steps between two checkpoints (`CVodeAdjInit`, `IDAAdjInit`). Default: 150.
+    ///
+    /// The states between two checkpoints are computed again, and those of so many steps are kept at once.
     pub fn checkpoint_steps(mut self, steps: u32) -> Self {
         self.checkpoint_steps = steps;
         self
     }
 
-    /// (df/dy)^T lambda comes from [`Ode::adjoint_rhs`](crate::integrators::ode::Ode::adjoint_rhs). Default: from the Jacobian, supplied or by
-    /// difference quotients as the linear solver of the run forward has it. Of an ODE alone.
+    /// Takes (df/dy)^T lambda from [`Ode::adjoint_rhs`](crate::integrators::ode::Ode::adjoint_rhs); for an
+    /// ODE only.
+    ///
+    /// Default: from the Jacobian, supplied or by difference quotients as for the linear solver of the
+    /// forward run.
     pub fn supplied_rhs(mut self) -> Self {
         self.supplied_rhs = true;
         self
     }
 
-    /// (df/dp)^T lambda comes from [`Ode::adjoint_parameters`](crate::integrators::ode::Ode::adjoint_parameters). Default: by central
-    /// differences, two evaluations for each parameter. Of an ODE alone.
+    /// Takes (df/dp)^T lambda from
+    /// [`Ode::adjoint_parameters`](crate::integrators::ode::Ode::adjoint_parameters); for an ODE only.
+    ///
+    /// Default: by central differences, two evaluations for each parameter.
     pub fn supplied_parameters(mut self) -> Self {
         self.supplied_parameters = true;
         self

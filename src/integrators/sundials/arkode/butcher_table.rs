@@ -6,10 +6,10 @@ use crate::base::input::InputError;
 
 /// A Runge-Kutta method, by its table of coefficients: one of those that SUNDIALS comes with.
 ///
-/// The name ends in three numbers: stages, order of the error estimate, order of the method.
-/// `SDIRK` methods are singly diagonally implicit; `ESDIRK` and `KVAERNO` ones have a first stage
-/// that costs nothing; `L2SA` ones are L-stable, with a second stage as accurate as it can be, and
-/// end with their last stage. `ARK` ones come in pairs of an implicit and an explicit table with the same stages:
+/// The name ends in three numbers: stages, order of the error estimate, order of the method. `SDIRK` methods
+/// are singly diagonally implicit; `ESDIRK` and `KVAERNO` ones have a first stage that costs nothing; `L2SA`
+/// ones are L-stable, of stage order 2 (the highest possible), and stiffly accurate: a step ends with the
+/// last stage. `ARK` ones come in pairs of an implicit and an explicit table with the same stages:
 /// [`imex`](Self::imex) takes both, for systems that are [split](crate::integrators::ode::Ode::is_split).
 ///
 /// ```
@@ -59,7 +59,7 @@ const fn ark(
 impl ButcherTable {
     /// All single tables: diagonally implicit ones, then explicit ones.
     ///
-    /// Left out is the one without an error estimate.
+    /// The one without an error estimate is left out.
     pub const ALL: [Self; 37] = [
         dirk(c"ARKODE_SDIRK_2_1_2", 2),
         dirk(c"ARKODE_BILLINGTON_3_3_2", 2),
@@ -185,7 +185,7 @@ impl ButcherTable {
         matches!(self.form, Form::ImEx(..))
     }
 
-    /// The names of the implicit and the explicit table for ARKODE; one may be that of none.
+    /// The names of the implicit and the explicit table for ARKODE; one may be the name for no table.
     pub(super) fn ids(self) -> (&'static CStr, &'static CStr) {
         match self.form {
             Form::Implicit => (self.id, c"ARKODE_ERK_NONE"),

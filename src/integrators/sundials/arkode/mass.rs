@@ -16,7 +16,7 @@ use crate::integrators::{
     },
 };
 
-/// The linear solver that gives a mass matrix its form: that of the Newton matrix, as C wants it.
+/// The linear solver that gives a mass matrix its form: C requires that of the Newton matrix.
 pub(super) fn check(solver: Option<&LinearSolver>) -> Result<LinearSolver, Error> {
     match solver {
         Some(
@@ -34,7 +34,7 @@ pub(super) fn check(solver: Option<&LinearSolver>) -> Result<LinearSolver, Error
     }
 }
 
-/// Gives ARKODE a mass matrix, in the form of `solver`, and a solver of its own for it.
+/// Gives ARKODE a mass matrix, in the form of `solver`, and a separate linear solver for it.
 pub(super) fn attach<K, S: Ode>(
     arkode: &mut Session<K, S>,
     solver: &LinearSolver,

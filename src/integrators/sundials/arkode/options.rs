@@ -14,7 +14,7 @@ use crate::integrators::{
 
 /// Where the iteration for an implicit stage starts (`ARKStepSetPredictorMethod`).
 ///
-/// Interpolants are those of the step before, continued.
+/// Interpolants are those of the step before, extrapolated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Predictor {
     /// At the state at the start of the step.
@@ -25,7 +25,7 @@ pub enum Predictor {
     VariableOrder = 2,
     /// On the interpolant of highest degree up to half a step, on the linear one beyond.
     CutoffOrder = 3,
-    /// Where the stages before lead without this one.
+    /// At the state that the previous stages of the step give without this one.
     MinimumCorrection = 5,
 }
 
@@ -72,15 +72,17 @@ impl ArkodeOptions {
         }
     }
 
-    /// The method. Default: [`ButcherTable::default`]. What follows about Newton's iteration is for
-    /// implicit methods; explicit ones have none. (The linear solver gives a mass matrix its form, though.)
+    /// The method. Default: [`ButcherTable::default`].
+    ///
+    /// The options of Newton's iteration are for implicit methods; explicit ones have none. (But the linear
+    /// solver also gives a mass matrix its form.)
     pub fn table(mut self, table: ButcherTable) -> Self {
         self.table = table;
         self
     }
 
-    /// Steps of this size without regard to their errors, but for the last before a stop time
-    /// (`ARKStepSetFixedStep`). Default: steps as the tolerances ask for.
+    /// Steps of this fixed size, without error control; the last one before a stop time may differ
+    /// (`ARKStepSetFixedStep`). Default: the tolerances control the steps.
     pub fn fixed_step(mut self, h: f64) -> Self {
         self.fixed_step = Some(h);
         self
@@ -88,8 +90,8 @@ impl ArkodeOptions {
 
     builder_methods!(nonlinear);
 
-    /// Steps after which a new Newton matrix has a new Jacobian in any case
-    /// (`ARKStepSetJacEvalFrequency`). Default: 51.
+    /// Steps after which a new Newton matrix gets a new Jacobian in any case (`ARKStepSetJacEvalFrequency`).
+    /// Default: 51.
     pub fn max_steps_between_jacobians(mut self, steps: u32) -> Self {
         self.max_steps_between_jacobians = Some(steps);
         self
@@ -101,9 +103,10 @@ impl ArkodeOptions {
         self
     }
 
-    /// Says that the right-hand side is linear in y, with a constant Jacobian: one iteration
-    /// solves a stage then, with a matrix that fits exactly (`ARKStepSetLinear`). Default: it is
-    /// not.
+    /// Declares that the right-hand side is linear in y, with a constant Jacobian (`ARKStepSetLinear`).
+    /// Default: it is not.
+    ///
+    /// One iteration then solves a stage, with an exact Newton matrix.
     pub fn linear(mut self) -> Self {
         self.linear = true;
         self
@@ -118,8 +121,8 @@ impl ArkodeOptions {
     step_options!();
     builder_methods!(limits);
 
-    /// Degree of the polynomials between the steps. Those of degree 4 and 5 cost evaluations of
-    /// the right-hand side at each use, in stiff systems also accuracy.
+    /// Degree of the polynomials between the steps. Those of degree 4 and 5 need evaluations of the
+    /// right-hand side at each use, and are less accurate in stiff systems.
     pub(super) fn interpolant_degree(&self) -> u32 {
         let highest = if self.table.is_implicit() { 3 } else { 5 };
         (self.table.order() - 1).min(highest)

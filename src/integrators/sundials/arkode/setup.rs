@@ -21,27 +21,27 @@ use crate::integrators::{
     },
 };
 
-/// Integrates y' = f(t, y), or M y' = f(t, y) with a regular [mass matrix](Ode::mass_kind), by a Runge-Kutta method with variable step size.
+/// Integrates y' = f(t, y), or M y' = f(t, y) with a regular [mass matrix](Ode::mass_kind), by a Runge-Kutta
+/// method with variable step size.
 ///
-/// Diagonally implicit methods are for stiff systems, among them lightly damped oscillations,
-/// which multistep methods of high order can not follow; explicit ones for systems that are not
-/// stiff. (`ARKStep`)
+/// Diagonally implicit methods are for stiff systems, among them lightly damped oscillations, which multistep
+/// methods of high order cannot follow; explicit ones for systems that are not stiff. (`ARKStep`)
 ///
-/// [`ButcherTable::imex`](super::ButcherTable::imex) makes it one of both for a right-hand side that is
+/// [`ButcherTable::imex`](super::ButcherTable::imex) makes it a pair of both, for a right-hand side that is
 /// [split](Ode::is_split).
 ///
-/// After a recoverable failure of the right-hand side implicit methods retry with a smaller step,
-/// explicit ones and explicit parts give up: SUNDIALS has no retry there.
+/// After a recoverable failure of the right-hand side, implicit methods retry with a smaller step; explicit
+/// ones and explicit parts stop, as SUNDIALS has no retry there.
 ///
 /// Interpolation between the steps is by Hermite polynomials, of a degree one less than the order of the
 /// method, at most 3 for implicit and 5 for explicit methods. Degrees 4 and 5 evaluate the right-hand side.
 ///
-/// Made by `Arkode::new`, used by the methods of [`Integrator`](crate::integrators::common::Integrator).
+/// Made by `Arkode::new`, used through the methods of [`Integrator`](crate::integrators::common::Integrator).
 ///
 /// User guide: chapter "Using ARKODE", ARKStep.
 pub type Arkode<S> = Solver<ArkodeKind, S>;
 
-/// Makes a [`Solver`] one of ARKODE.
+/// Marks a [`Solver`] as one of ARKODE.
 #[derive(Debug)]
 pub struct ArkodeKind;
 
@@ -119,7 +119,7 @@ impl<S: Ode> Session<ArkodeKind, S> {
         ..*Self::IMPLICIT
     };
 
-    /// The functions for pairs of both.
+    /// The functions for ImEx pairs.
     const IMEX: &'static Functions = &Functions {
         reinit: ("ARKStepReInit", |memory, t, y, _| {
             // SAFETY: as above.
@@ -137,8 +137,8 @@ unsafe extern "C" fn get_explicit_evaluations(memory: *mut c_void, explicit: *mu
     unsafe { ffi::ARKStepGetNumRhsEvals(memory, explicit, &raw mut implicit) }
 }
 
-/// `CVodeGetIntegratorStats` for ARKODE: evaluations are the explicit and the implicit ones, and
-/// both orders that of the table.
+/// `CVodeGetIntegratorStats` for ARKODE: evaluations are the sum of explicit and implicit ones, and both
+/// orders are that of the table.
 unsafe extern "C" fn get_integrator_stats(
     memory: *mut c_void,
     steps: *mut i64,
@@ -188,7 +188,7 @@ impl<S: Ode> Arkode<S> {
     /// [`Error::Input`] for options or initial values that cannot be used.
     pub fn new(system: S, t0: f64, y0: &[f64], options: &ArkodeOptions) -> Result<Self, Error> {
         let mut system = Owner::new(system);
-        // SAFETY: the solver drops the session first, and asks it for the system.
+        // SAFETY: the solver drops the session first, and accesses the system through it.
         unsafe {
             let session = start(system.lend_ode(), t0, y0, options)?;
             Ok(Self::new_within(session, system))
@@ -252,7 +252,8 @@ impl<S: Ode> Session<ArkodeKind, S> {
             arkode.host.accept("ARKStepSetTableName", code)?;
             let set = named!(ARKStepSetInterpolantDegree as _);
             arkode.set(set, degree as i32)?;
-            // The post-processing of steps would make ARKODE evaluate the right-hand side at their ends.
+            // Post-processing of steps makes ARKODE evaluate the right-hand side at their ends; it is used
+            // for fixed steps only.
             if let Some(h) = options.fixed_step {
                 arkode.set(named!(ARKStepSetFixedStep), h)?;
                 let set = named!(ARKStepSetPostprocessStepFn as _);
@@ -273,7 +274,7 @@ impl<S: Ode> Session<ArkodeKind, S> {
     }
 }
 
-/// Says how the equations of implicit stages are solved.
+/// Sets how the equations of implicit stages are solved.
 fn solve_stages<S: Ode>(
     arkode: &mut Session<ArkodeKind, S>,
     options: &ArkodeOptions,

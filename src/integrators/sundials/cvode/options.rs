@@ -74,10 +74,10 @@ impl CvodeOptions {
         self
     }
 
-    /// Has BDF put the state onto the invariants of the equations after each step, by
+    /// Makes BDF project the state onto the invariants of the equations after each step, by
     /// [`Ode::project`](crate::integrators::ode::Ode::project) (`CVodeSetProjFn`). Default: no.
     ///
-    /// States between the ends of the steps keep the invariants to the tolerances.
+    /// States between the ends of the steps satisfy the invariants within the tolerances only.
     pub fn project(mut self) -> Self {
         self.project = true;
         self

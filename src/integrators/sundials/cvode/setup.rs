@@ -19,13 +19,14 @@ use crate::integrators::{
     },
 };
 
-/// Integrates y' = f(t, y) with variable step size and order; made by `Cvode::new`, used by the methods of
-/// [`Integrator`](crate::integrators::common::Integrator).
+/// Integrates y' = f(t, y) with variable step size and order.
+///
+/// Made by `Cvode::new`, used through the methods of [`Integrator`](crate::integrators::common::Integrator).
 ///
 /// User guide: chapter "Using CVODE".
 pub type Cvode<S> = Solver<CvodeKind, S>;
 
-/// Makes a [`Solver`] one of CVODE.
+/// Marks a [`Solver`] as one of CVODE.
 #[derive(Debug)]
 pub struct CvodeKind;
 
@@ -40,7 +41,7 @@ impl WithSensitivities for CvodeKind {}
 
 static FUNCTIONS: Functions = TABLE;
 
-/// For an adjoint problem.
+/// The functions for an adjoint problem.
 pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
     integrator: "CVODE on the way back",
     forward: &WITH_CHECKPOINTS,
@@ -158,7 +159,7 @@ impl<S: Ode> Cvode<S> {
     /// [`Error::Input`] for options or initial values that cannot be used.
     pub fn new(system: S, t0: f64, y0: &[f64], options: &CvodeOptions) -> Result<Self, Error> {
         let mut system = Owner::new(system);
-        // SAFETY: the solver drops the session first, and asks it for the system.
+        // SAFETY: the solver drops the session first, and accesses the system through it.
         unsafe {
             let session = start(system.lend_ode(), t0, y0, options)?;
             Ok(Self::new_within(session, system))

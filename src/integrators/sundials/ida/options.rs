@@ -57,8 +57,9 @@ impl IdaOptions {
         self
     }
 
-    /// Whether algebraic unknowns are left out of the local error test (`IDASetSuppressAlg`);
-    /// advisable for equations of index 2, which are not taken for a reason of failures then. Default: no.
+    /// Whether algebraic unknowns are left out of the local error test (`IDASetSuppressAlg`). Default: no.
+    ///
+    /// It is advisable for equations of index 2; the index is then not reported as the reason of failures.
     pub fn suppress_algebraic(mut self, on: bool) -> Self {
         self.suppress_algebraic = on;
         self
@@ -70,7 +71,8 @@ impl IdaOptions {
     step_options!();
     builder_methods!(limits);
 
-    /// What an adjoint problem needs to know: the linear solver, the tolerances, and which unknowns are differential.
+    /// What an adjoint problem needs to know: the linear solver, the tolerances, and which unknowns are
+    /// differential.
     pub(in crate::integrators::sundials) fn for_adjoint(
         &self,
         y0: &[f64],

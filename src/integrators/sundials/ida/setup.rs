@@ -19,7 +19,7 @@ use crate::integrators::{
     },
 };
 
-/// Makes a [`Solver`](crate::integrators::sundials::Solver) one of IDA.
+/// Marks a [`Solver`](crate::integrators::sundials::Solver) as one of IDA.
 #[derive(Debug)]
 pub struct IdaKind {
     pub(super) knows_algebraic: bool,
@@ -27,7 +27,7 @@ pub struct IdaKind {
 
 static FUNCTIONS: Functions = TABLE;
 
-/// For an adjoint problem.
+/// The functions for an adjoint problem.
 pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
     integrator: "IDA on the way back",
     forward: &WITH_CHECKPOINTS,

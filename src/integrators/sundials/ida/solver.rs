@@ -1,4 +1,4 @@
-//! IDA as its users have it.
+//! IDA as users see it.
 
 use faer::MatRef;
 
@@ -16,8 +16,9 @@ use crate::integrators::{
     },
 };
 
-/// Integrates F(t, y, y') = 0 with variable step size and order; made by `Ida::new`, used by the methods of
-/// [`Integrator`](crate::integrators::common::Integrator).
+/// Integrates F(t, y, y') = 0 with variable step size and order.
+///
+/// Made by `Ida::new`, used through the methods of [`Integrator`](crate::integrators::common::Integrator).
 ///
 /// User guide: chapter "Using IDA".
 pub type Ida<S> = Solver<IdaKind, S>;
@@ -45,23 +46,26 @@ impl<S: Dae> Ida<S> {
         options: &IdaOptions,
     ) -> Result<Self, Error> {
         let mut system = Owner::new(system);
-        // SAFETY: the solver drops the session first, and asks it for the system.
+        // SAFETY: the solver drops the session first, and accesses the system through it.
         unsafe {
             let session = start(system.lend_dae(), t0, (y0, yp0), options)?;
             Ok(Self::new_within(session, system))
         }
     }
 
-    /// Corrects the initial values so that they satisfy the equations; call it before the first
-    /// step. `first_output` is a time at which output will be wanted: it gives the direction and
-    /// scale of time; where no start is found on that, shorter scales are tried. Sensitivities are corrected, too.
-    /// [`y`](crate::integrators::common::Integrator::y) and [`yp`](Self::yp) are the corrected values. (`IDACalcIC`)
+    /// Corrects the initial values so that they satisfy the equations (`IDACalcIC`).
+    ///
+    /// Call it before the first step. `first_output` is a time at which output will be wanted: it gives the
+    /// direction and scale of time; if no start is found on that scale, shorter ones are tried. Sensitivities
+    /// are corrected, too. [`y`](crate::integrators::common::Integrator::y) and [`yp`](Self::yp) are then the
+    /// corrected values.
     ///
     /// The equations have to be of index 1: see [`check_index`](Self::check_index).
     ///
     /// # Errors
-    /// [`Error::Integration`] with [`Cause::InconsistentStart`](crate::integrators::common::Cause::InconsistentStart) if no such values were found;
-    /// [`Error::Input`] if steps were taken already, or it is not known which unknowns are
+    /// [`Error::Integration`] with
+    /// [`Cause::InconsistentStart`](crate::integrators::common::Cause::InconsistentStart) if no such values
+    /// were found; [`Error::Input`] if steps were taken already, or it is not known which unknowns are
     /// algebraic.
     ///
     /// # Panics
@@ -74,16 +78,19 @@ impl<S: Dae> Ida<S> {
         self.session.consistent_start(unknown, first_output)
     }
 
-    /// Checks that the equations are of index 1 at most, at the present state: that those without derivatives
-    /// determine the unknowns without, which IDA relies on.
+    /// Checks that the equations are of index 1 at most, at the present state.
     ///
-    /// It takes four residuals for each unknown, and elimination in dense matrices. Where an integration fails,
-    /// IDA checks it by itself, with up to 300 unknowns.
+    /// That is, the equations without derivatives determine the unknowns without derivatives, which IDA
+    /// relies on.
+    ///
+    /// It takes four evaluations of the residual for each unknown, and elimination in dense matrices. If an
+    /// integration with up to 300 unknowns fails, the check is made automatically.
     ///
     /// # Errors
-    /// [`Error::Integration`] with [`Cause::HigherIndex`](crate::integrators::common::Cause::HigherIndex), or [`Cause::LinearSolver`](crate::integrators::common::Cause::LinearSolver) where the equations determine
-    /// nothing at all, such as one equation twice, or what made the residual fail; [`Error::Input`] for more than
-    /// 1000 unknowns.
+    /// [`Error::Integration`] with [`Cause::HigherIndex`](crate::integrators::common::Cause::HigherIndex), or
+    /// [`Cause::LinearSolver`](crate::integrators::common::Cause::LinearSolver) where the equations determine
+    /// nothing at all, such as one equation twice, or what made the residual fail; [`Error::Input`] for more
+    /// than 1000 unknowns.
     pub fn check_index(&mut self) -> Result<(), Error> {
         self.session.check_index()
     }
@@ -96,9 +103,9 @@ impl<S: Dae> Ida<S> {
         self.session.reinit_with(t, y, yp)
     }
 
-    /// As [`set_sensitivities`](Self::set_sensitivities), with the time derivatives `sp` of the sensitivities, which have to fit:
-    /// (dF/dy) s + (dF/dy') s' + dF/dp = 0. [`consistent_start`](Self::consistent_start) finds what is
-    /// missing.
+    /// As [`set_sensitivities`](Self::set_sensitivities), with the time derivatives `sp` of the
+    /// sensitivities, which have to be consistent: (dF/dy) s + (dF/dy') s' + dF/dp = 0.
+    /// [`consistent_start`](Self::consistent_start) finds what is missing.
     ///
     /// # Errors
     /// As for [`set_sensitivities`](Self::set_sensitivities).
@@ -110,7 +117,7 @@ impl<S: Dae> Ida<S> {
         self.session.set_sensitivities_with(s, sp)
     }
 
-    /// That a run which does not get on is of higher index, if it is.
+    /// Returns the error of a higher index, if the equations of a run without progress have one.
     pub(crate) fn diagnose_index(&mut self) -> Result<(), Error> {
         self.session.diagnose_index()
     }

@@ -1,4 +1,4 @@
-//! Where IDA starts: states and their time derivatives, and how they are made to fit.
+//! Where IDA starts: states and their time derivatives, and how they are made consistent.
 
 use std::ptr;
 
@@ -28,14 +28,15 @@ pub enum InitialCondition {
     /// The algebraic unknowns and the derivatives of the differential ones; differential unknowns
     /// stay (`IDA_YA_YDP_INIT`). Needs [`IdaOptions::differential`](super::IdaOptions::differential).
     Algebraic,
-    /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`). Not with sensitivities.
+    /// All unknowns; their derivatives stay, such as zero for a state of rest (`IDA_Y_INIT`). Not with
+    /// sensitivities.
     State,
 }
 
-/// C looks for a start by implicit steps of five sizes, each a tenth of the one before, from this part of the time to the first
-/// output on.
+/// C looks for a start by implicit steps of five sizes, each a tenth of the one before; the first is this
+/// fraction of the time to the first output.
 const LONGEST_STEP: f64 = 1e-3;
-/// What that time is shortened by where none of them led to a start, and how often.
+/// The factor that shortens that time if none of them led to a start, and how often it is applied.
 const NEXT: f64 = 1e-5;
 const RETRIES: usize = 6;
 
@@ -95,7 +96,7 @@ impl<S: Dae> StartsDae for Session<IdaKind, S> {
             let code = unsafe { ffi::IDACalcIC(self.memory.raw, task, apart(self.t, towards)) };
             self.host.get_mut().troubles.resume_panic();
             let unfound = [ffi::IDA_CONV_FAIL, ffi::IDA_LINESEARCH_FAIL, ffi::IDA_NO_RECOVERY];
-            // C refuses less than that
+            // C refuses shorter times
             let scale = NEXT * (towards - self.t);
             let moves = scale.abs() > 8.0 * f64::EPSILON * self.t.abs();
             if retries == 0 || !moves || !unfound.contains(&code) {
@@ -210,7 +211,7 @@ impl<S> Session<IdaKind, S> {
         let Some(sensitivities) = &mut self.sensitivities else { return Ok(()) };
         let s = sensitivities.s.raw();
         let sp = sensitivities.sp.as_mut().map_or(ptr::null_mut(), Vectors::raw);
-        // SAFETY: memory and vectors are alive; null asks for nothing.
+        // SAFETY: memory and vectors are alive; null requests nothing.
         let code = unsafe { ffi::IDAGetSensConsistentIC(self.memory.raw, s, sp) };
         sensitivities.s.copy_to(&mut sensitivities.values);
         self.host.accept("IDAGetSensConsistentIC", code)

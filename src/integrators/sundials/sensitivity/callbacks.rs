@@ -1,4 +1,4 @@
-//! The C functions through which CVODES and IDAS ask for the equations of the sensitivities.
+//! The C functions through which CVODES and IDAS evaluate the equations of the sensitivities.
 //!
 //! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
 //! that is what their SAFETY comments refer to.
@@ -30,7 +30,7 @@ pub(in crate::integrators::sundials) unsafe extern "C" fn one_rhs<S: Ode>(
     _: ffi::N_Vector,
     _: ffi::N_Vector,
 ) -> i32 {
-    // SAFETY: see the module; `sdot` is a vector of its own.
+    // SAFETY: see the module; `sdot` is a separate vector.
     let (host, y, ydot, s, sdot) = unsafe {
         let host = &mut *data.cast::<Host<S>>();
         let n = host.n;
@@ -77,7 +77,7 @@ pub(in crate::integrators::sundials) unsafe extern "C" fn all_residuals<S: Dae>(
     let Some(mut rhs) = host.sensitivity.take() else { return STOP };
     let mut outcome = 0;
     for index in 0..count as usize {
-        // SAFETY: the arrays have `count` vectors; those of the residuals are vectors of their own.
+        // SAFETY: the arrays have `count` vectors; those of the residuals are separate vectors.
         let (s, sp, out) = unsafe {
             let (s, sp, out) = (*s.add(index), *sp.add(index), *residuals.add(index));
             (slice(s, host.n), slice(sp, host.n), slice_mut(out, host.n))

@@ -1,4 +1,4 @@
-//! Forward sensitivities: derivatives of the solution with respect to parameters, beside the run.
+//! Forward sensitivities: derivatives of the solution with respect to parameters, computed along with it.
 
 mod callbacks;
 mod options;

@@ -21,15 +21,17 @@ pub enum SensitivityMethod {
 pub enum SensitivitySource {
     /// The system's own `sensitivity_rhs` or `sensitivity_residual`.
     Supplied,
-    /// Central differences along (s, dp): two evaluations of the equations each. Rounding errors of some 1e-12 in them
-    /// bound the tolerances that can be met.
+    /// Central differences along (s, dp): two evaluations of the equations each. Rounding errors of some
+    /// 1e-12 in them limit the tolerances that can be met.
     CentralDifferences,
     /// Forward differences along (s, dp): one evaluation each, half the digits.
     ForwardDifferences,
 }
 
-/// The sensitivities s = dy/dp of a solution to some parameters p of the system. Error control: the errors of
-/// `pbar s`, with the scale pbar of the parameter, are kept below those of y.
+/// The sensitivities s = dy/dp of a solution to some parameters p of the system.
+///
+/// Error control keeps the errors of `pbar s`, with the scale pbar of the parameter, within the tolerances of
+/// y.
 ///
 /// ```
 /// use pliant::{
@@ -63,8 +65,8 @@ pub struct Sensitivities {
 }
 
 impl Sensitivities {
-    /// To the parameters at these places among `parameters()` of the system; simultaneous, by central differences, under
-    /// error control.
+    /// Sensitivities to the parameters at these places among `parameters()` of the system; simultaneous, by
+    /// central differences, with error control.
     pub fn of(parameters: impl Into<Vec<usize>>) -> Self {
         Self {
             parameters: parameters.into(),
@@ -92,14 +94,14 @@ impl Sensitivities {
         self
     }
 
-    /// The order of magnitude of each parameter, pbar, for tolerances and increments (`CVodeSetSensParams`). Default: its
-    /// size at the start, or 1 for a parameter that is zero.
+    /// The order of magnitude of each parameter, pbar, for tolerances and increments (`CVodeSetSensParams`).
+    /// Default: its size at the start, or 1 for a parameter that is zero.
     pub fn scales(mut self, scales: impl Into<Vec<f64>>) -> Self {
         self.scales = Some(scales.into());
         self
     }
 
-    /// Whether errors of the sensitivities, too, decide on the step size (`CVodeSetSensErrCon`). Default: yes.
+    /// Whether errors of the sensitivities also control the step size (`CVodeSetSensErrCon`). Default: yes.
     pub fn error_control(mut self, on: bool) -> Self {
         self.error_control = on;
         self
@@ -110,7 +112,7 @@ impl Sensitivities {
         &self.parameters
     }
 
-    /// Stops what IDAS has not.
+    /// Refuses what IDAS does not have.
     pub(in crate::integrators::sundials) fn check_for_dae(&self) -> Result<(), InputError> {
         if self.method == SensitivityMethod::StaggeredOneByOne {
             let help = "IDA has Simultaneous and Staggered";

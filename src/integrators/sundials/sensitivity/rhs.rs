@@ -12,13 +12,13 @@ pub(in crate::integrators::sundials) struct Access<S> {
     pub(in crate::integrators::sundials) set: fn(&mut S, &[f64]),
 }
 
-/// Which parameters there are, and room for differences.
+/// Which parameters the sensitivities are to, and scratch space for differences.
 pub(in crate::integrators::sundials) struct SensitivityRhs {
     parameters: Vec<usize>,
     source: SensitivitySource,
     scales: Vec<f64>,
     tolerances: Tolerances,
-    /// The parameters as they are, and as they are tried.
+    /// The present parameters, and shifted ones.
     p: Vec<f64>,
     trial: Vec<f64>,
     y: Vec<f64>,
@@ -60,7 +60,7 @@ impl SensitivityRhs {
         Ok(rhs)
     }
 
-    /// Differences see nothing of a parameter that can not be changed.
+    /// Checks that the parameters can be changed: differences see nothing of others.
     fn check_access<S>(&mut self, system: &mut S, access: &Access<S>) -> Result<(), InputError> {
         for (&place, scale) in self.parameters.iter().zip(&self.scales) {
             self.trial[place] = self.p[place] + scale;
@@ -89,9 +89,9 @@ impl SensitivityRhs {
         self.source == SensitivitySource::Supplied
     }
 
-    /// Writes the derivative of the equations `evaluate(system, y, y', out)` along `line`, and along the parameter
-    /// `index`, into `out`; `value` is their value on the spot. The parameters of the system are put back
-    /// to the last bit, whatever happens.
+    /// Writes the derivative of the equations `evaluate(system, y, y', out)` along `line`, and along the
+    /// parameter `index`, into `out`; `value` is their value at the point itself. The parameters of the
+    /// system are restored to the last bit, whatever happens.
     #[allow(clippy::too_many_arguments)] // a function, where, along what, and two results
     pub(super) fn differences<S>(
         &mut self,
@@ -146,10 +146,10 @@ impl SensitivityRhs {
         Ok(())
     }
 
-    /// The step along (s, dp): small against the parameter and against the unknowns, whose size is counted from
-    /// atol/rtol on, as their errors are. Central differences are off by the square of the smallness, so that
-    /// sqrt(rtol) is enough, and rounding errors are least (user guide of CVODES, "Forward sensitivity
-    /// analysis"). Forward differences are off by the smallness itself.
+    /// The step along (s, dp): small relative to the parameter and to the unknowns, to whose size atol/rtol
+    /// is added, as for their errors. The error of central differences is the square of that relative step,
+    /// so that sqrt(rtol) is small enough, and rounding errors are least (user guide of CVODES, "Forward
+    /// sensitivity analysis"). The error of forward differences is the relative step itself.
     fn increment(&self, index: usize, central: bool, (y, s): (&[f64], &[f64])) -> f64 {
         let rtol = self.tolerances.rtol;
         let smallness = if central { rtol.max(f64::EPSILON).sqrt() } else { f64::EPSILON.sqrt() };

@@ -1,4 +1,4 @@
-//! Sensitivities of a solver at work.
+//! Sensitivities during an integration.
 
 use std::ptr;
 
@@ -19,7 +19,7 @@ use crate::integrators::{
     },
 };
 
-/// What carries sensitivities along, too, as described at [`Solver`](crate::integrators::sundials::Solver).
+/// What also computes sensitivities, as described at [`Solver`](crate::integrators::sundials::Solver).
 pub trait CarriesSensitivities: CarriesIntegrals {
     fn sensitivities(&self) -> MatRef<'_, f64>;
     fn interpolate_sensitivities(
@@ -118,8 +118,8 @@ impl<K, S> Session<K, S> {
 }
 
 impl<K, S> Session<K, S> {
-    /// Registers sensitivities by `init`, which gets their number, C's name of the method, and zeros for
-    /// s and, of a DAE, s'.
+    /// Registers sensitivities by `init`, which gets their number, C's number of the method, and zeros for s
+    /// and, for a DAE, s'.
     ///
     /// # Safety
     /// `init` belongs to this integrator, and hands it a callback that fits the host.
@@ -181,7 +181,7 @@ impl<K, S> Session<K, S> {
             return Ok(());
         };
         let ((name, get), mut t) = (functions.get, 0.0);
-        // SAFETY: the memory is alive, and the results have their places.
+        // SAFETY: the memory is alive, and the result pointers are valid.
         let code = unsafe { get(self.memory.raw, &raw mut t, sensitivities.s.raw()) };
         sensitivities.s.copy_to(&mut sensitivities.values);
         self.host.accept(name, code)

@@ -1,4 +1,4 @@
-//! The C functions through which IDAS asks for the equations of the way back.
+//! The C functions through which IDAS evaluates the equations of the backward run.
 //!
 //! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
 //! that is what their SAFETY comments refer to.
@@ -27,7 +27,7 @@ pub(super) unsafe extern "C" fn residual<S: Dae, F: Functional>(
     out: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; `out` is a vector of its own.
+    // SAFETY: see the module; `out` is a separate vector.
     let (host, y, yp, lambda, slope, out) = unsafe {
         let host = &mut *data.cast::<Host<Borrowed<'_, AdjointDae<S, F>>>>();
         let n = host.n;

@@ -1,4 +1,4 @@
-//! Where the way back starts.
+//! The initial values of the backward run.
 
 use super::system::{AdjointDae, Point, uneven};
 use crate::integrators::{
@@ -12,12 +12,13 @@ use crate::integrators::{
     },
 };
 
-/// Finds lambda and lambda' at the end from `end`, which has the slopes of g, and adds to dG/dp what g gets by the
-/// algebraic unknowns.
+/// Finds lambda and lambda' at the end from the slopes of g in `end`, and adds to dG/dp the part that g gets
+/// through the algebraic unknowns.
 ///
-/// With K = dF/dy' in the differential equations and dF/dy in the algebraic ones, which is regular if the index is 1:
-/// K^T (lambda_d, mu) = dg/dy, where mu is what g changes by with the algebraic equations, so that dG/dp gets
-/// -mu^T dF_a/dp; then K^T (lambda'_d, -lambda_a) = (dF_d/dy)^T lambda_d - dh/dy, the equations of the way back.
+/// Let K be dF/dy' in the differential equations and dF/dy in the algebraic ones; it is regular if the index
+/// is 1. First K^T (lambda_d, mu) = dg/dy, where mu is the change of g with the algebraic equations, so that
+/// dG/dp gets -mu^T dF_a/dp. Then K^T (lambda'_d, -lambda_a) = (dF_d/dy)^T lambda_d - dh/dy, the equations of
+/// the backward run.
 pub(super) fn start_of_backward_problem<S: Dae, F: Functional>(
     system: &mut AdjointDae<S, F>,
     (t, y, yp): Point<'_>,
@@ -56,7 +57,7 @@ pub(super) fn start_of_backward_problem<S: Dae, F: Functional>(
     Ok((Vector::from_slice(&lambda, context)?, Vector::from_slice(&slope, context)?))
 }
 
-/// Factorizes K^T; whether it is regular beyond rounding, as a known solution tells.
+/// Factorizes K^T. Returns whether it is regular beyond rounding, tested by a known solution.
 fn factorize<S, F: Functional>(
     system: &AdjointDae<S, F>,
     linear: &mut Linear,
@@ -69,13 +70,13 @@ fn factorize<S, F: Functional>(
         true => by_state[place],
         false => by_slope[place],
     };
-    // SAFETY: the linear solver was made for that of the way back.
+    // SAFETY: the linear solver was made as that of the backward run.
     let factorized = unsafe {
         linear.factorize(&equations.backward, n, |entries| {
             jacobian.write_transposed(&equations.backward, entries, value);
         })
     };
-    // a number for each equation, in its units
+    // the known solution: a number for each equation, in its units
     let mut known = vec![0.0; n];
     jacobian.each_place(|i, _, place| known[i] = value(i, place).abs().max(known[i]));
     known.iter_mut().enumerate().for_each(|(i, largest)| *largest = uneven(i) / *largest);

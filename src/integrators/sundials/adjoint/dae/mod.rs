@@ -1,4 +1,4 @@
-//! Of differential-algebraic equations, by IDAS.
+//! Adjoint gradients of differential-algebraic equations, by IDAS.
 
 mod callbacks;
 mod end;

@@ -1,4 +1,4 @@
-//! The run forward and the way back.
+//! The forward run and the backward run.
 
 use super::{
     callbacks::{jacobian, quadratures, residual},
@@ -19,10 +19,10 @@ use crate::integrators::{
     },
 };
 
-/// Where the run forward starts: time, state and its time derivative.
+/// Where the forward run starts: time, state and its time derivative.
 pub(super) type Start = (f64, Vec<f64>, Vec<f64>);
 
-/// The solver of one run forward and back, as for an ODE.
+/// The solver of one forward and one backward run, as for an ODE.
 pub(super) struct AdjointRun<'a, S, F> {
     solver: Session<IdaKind, Borrowed<'a, AdjointDae<S, F>>>,
     options: &'a AdjointOptions,
@@ -44,10 +44,10 @@ impl<'a, S: Dae, F: Functional> AdjointRun<'a, S, F> {
     /// Runs to time `t` and back.
     pub(super) fn gradient(mut self, t: f64) -> Result<Gradient, Error> {
         self.solver.consistent_start(InitialCondition::Algebraic, t)?;
-        // At the last moment: without the run IDAS would free pointers that it never wrote (6.4.1).
+        // As late as possible: if no run follows, IDAS 6.4.1 frees pointers that it never wrote.
         // SAFETY: the functions are those of IDA.
         unsafe { self.solver.keep_checkpoints(&BACKWARD, self.options)? };
-        // there may be a jump behind
+        // steps must not pass `t`: the equations may jump there
         self.solver.set_stop_time(Some(t))?;
         self.solver.solve_to(t)?;
         let (y, yp) = (self.solver.y().to_vec(), self.solver.yp().to_vec());
@@ -63,7 +63,7 @@ impl<'a, S: Dae, F: Functional> AdjointRun<'a, S, F> {
         Ok(gradient)
     }
 
-    /// Makes the backward problem, which starts at this point from what `end` has of g.
+    /// Makes the backward problem, which starts at this point from the slopes of g in `end`.
     fn start_back(
         &mut self,
         (t, y, yp): (f64, &[f64], &[f64]),
@@ -80,7 +80,8 @@ impl<'a, S: Dae, F: Functional> AdjointRun<'a, S, F> {
         };
         let (lambda, slope) =
             start_of_backward_problem(system, (t, y, yp), end, &mut linear, context)?;
-        // SAFETY: memory and vectors are alive when these are called, and the callbacks fit the host that is their data.
+        // SAFETY: memory and vectors are alive when these are called, and the callbacks fit the host that is
+        // their data.
         unsafe {
             let callbacks = Callbacks {
                 init: |which, lambda, slope| {

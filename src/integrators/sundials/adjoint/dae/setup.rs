@@ -15,14 +15,16 @@ use crate::integrators::{
     },
 };
 
-/// Gradients of a [`Functional`] of the solution of F(t, y, y', p) = 0, with respect to any number of parameters and to
-/// the differential unknowns of the initial state, as [`Adjoint`](crate::integrators::sundials::Adjoint) has them of an ODE: a run forward
-/// with checkpoints, and one of the adjoint lambda back in time, (dF/dy')^T lambda' = (dF/dy)^T lambda - dh/dy. For
+/// Gradients of a [`Functional`] of the solution of F(t, y, y', p) = 0, by the adjoint method.
+///
+/// They are taken with respect to any number of parameters and to the differential unknowns of the initial
+/// state, as by [`Adjoint`](crate::integrators::sundials::Adjoint) for an ODE: by a forward run with
+/// checkpoints and a backward run of the adjoint lambda, (dF/dy')^T lambda' = (dF/dy)^T lambda - dh/dy. For
 /// F = y' - f this lambda is dG/dy(t).
 ///
-/// The equations have to be of index 1 with a constant dF/dy' (which may depend on parameters), and separate: some of them
-/// without derivatives, as many as there are algebraic unknowns, and the others with derivatives of differential
-/// unknowns alone. Rows may stand in any order.
+/// The equations have to be of index 1 with a constant dF/dy' (which may depend on parameters), and be
+/// separated: as many of them as there are algebraic unknowns contain no derivatives, and the others contain
+/// derivatives of differential unknowns only. Rows may be in any order.
 ///
 /// ```
 /// use pliant::{
@@ -83,15 +85,17 @@ impl<S, F> fmt::Debug for DaeAdjoint<S, F> {
 }
 
 impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
-    /// For the solution that starts at time `t0` from the differential unknowns of `y0`, by these options of the run forward,
-    /// which have to say which these [are](IdaOptions::differential), and of the way back. The algebraic unknowns and
-    /// `yp0` are guesses: they follow from the equations and their parameters, as in
+    /// For the solution that starts at time `t0` from the differential unknowns of `y0`.
+    ///
+    /// `forward` are the options of the forward run, which have to say which unknowns are
+    /// [differential](IdaOptions::differential); `options` are those of the backward run. The algebraic
+    /// unknowns and `yp0` are guesses: they follow from the equations and their parameters, as with
     /// [`InitialCondition::Algebraic`](crate::integrators::sundials::InitialCondition::Algebraic).
     ///
     /// # Errors
-    /// [`Error::Input`] for options or initial values that cannot be used, for equations that are not as they have to be,
-    /// and for systems with root functions: at an event lambda jumps. [`Error::Integration`] where the equations fail at
-    /// the start.
+    /// [`Error::Input`] for options or initial values that cannot be used, for equations without the required
+    /// form, and for systems with root functions, as lambda jumps at an event. [`Error::Integration`] where
+    /// the equations fail at the start.
     ///
     /// # Panics
     /// A panic of the system passes through.
@@ -118,16 +122,17 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
         let start = (t0, y0.to_vec(), yp0.to_vec());
         let (forward, options) = (forward.clone(), options.clone());
         let mut adjoint = Self { system, start, forward, options };
-        // finds what else can not be used
+        // finds other inputs that cannot be used
         adjoint.run()?;
         Ok(adjoint)
     }
 
-    /// Value and gradient of the functional at the end time T = `t`. Each call runs anew, with the present parameters of the
-    /// [system](Self::system_mut).
+    /// Value and gradient of the functional at the end time T = `t`.
+    ///
+    /// Each call integrates again, with the present parameters of the [system](Self::system_mut).
     ///
     /// # Errors
-    /// [`Error::Integration`] if the integration stopped, forward or on the way back, with the reason, such as a dF/dy'
+    /// [`Error::Integration`] if the forward or the backward run stopped, with the reason, such as a dF/dy'
     /// that is not constant; [`Error::Input`] if `t` is not finite or not later than the start.
     ///
     /// # Panics
@@ -155,7 +160,7 @@ impl<S: Dae, F: Functional> DaeAdjoint<S, F> {
         &self.system.equations.system
     }
 
-    /// The system, to be given other parameters; the next [`gradient`](Self::gradient) is theirs.
+    /// The system, to change its parameters; the next [`gradient`](Self::gradient) uses them.
     pub fn system_mut(&mut self) -> &mut S {
         &mut self.system.equations.system
     }

@@ -1,4 +1,4 @@
-//! A system with a functional: what the run forward integrates, and the equations of the way back.
+//! A system with a functional: what the forward run integrates, and the equations of the backward run.
 
 use faer::MatMut;
 
@@ -18,16 +18,17 @@ use crate::integrators::{
 /// Time, state and its time derivative.
 pub(super) type Point<'a> = (f64, &'a [f64], &'a [f64]);
 
-/// A [`Dae`] F(t, y, y') = 0 with the integral of a functional beside it. dF/dy' is constant, so that F is linear in y'.
+/// A [`Dae`] F(t, y, y') = 0 with the integral of a functional in addition. dF/dy' is constant, so that F is
+/// linear in y'.
 pub(super) struct AdjointDae<S, F> {
     pub(super) equations: Equations<S, F>,
-    /// Which unknowns are said to be differential.
+    /// Which unknowns were declared differential.
     differential: Vec<bool>,
     /// dF/dy'
     pub(super) mass: StoredJacobian,
-    /// Which equations are without y'.
+    /// Which equations contain no y'.
     pub(super) algebraic: Vec<bool>,
-    /// Two y', and F there.
+    /// Two shifted y', and F at both.
     moved: [Vec<f64>; 2],
     residuals: [Vec<f64>; 2],
 }
@@ -51,9 +52,10 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         })
     }
 
-    /// Finds dF/dy' at the start, and the algebraic equations, which have to be as many as algebraic unknowns.
+    /// Finds dF/dy' at the start, and the algebraic equations: there have to be as many as algebraic
+    /// unknowns.
     pub(super) fn start(&mut self, (t, y, yp): Point<'_>) -> Result<(), Error> {
-        // F is linear in y', so that large steps leave nothing but dF/dy' of the difference
+        // F is linear in y', so that differences over large steps contain nothing but dF/dy'
         const LARGE: f64 = 1024.0 * 1024.0;
         self.equations.forget();
         let step = |j: usize| LARGE * self.equations.size(j, y[j]).max(yp[j].abs());
@@ -106,7 +108,7 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         Ok(())
     }
 
-    /// Writes what, integrated back in time, gives dG/dp: (dF/dp)^T lambda - dh/dp.
+    /// Writes the integrand that, integrated back in time, gives dG/dp: (dF/dp)^T lambda - dh/dp.
     pub(super) fn backward_quadratures(
         &mut self,
         (t, y, yp): Point<'_>,
@@ -131,7 +133,8 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         self.equations.parameter_differences(lambda, out, evaluate)
     }
 
-    /// Writes the derivative of `backward_residual` by lambda, with lambda' = cj lambda: cj (dF/dy')^T - (dF/dy)^T.
+    /// Writes the derivative of `backward_residual` with respect to lambda, with lambda' = cj lambda:
+    /// cj (dF/dy')^T - (dF/dy)^T.
     pub(super) fn backward_jacobian(
         &mut self,
         point: Point<'_>,
@@ -146,7 +149,7 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         Ok(())
     }
 
-    /// Makes dF/dy that of this point, and checks that dF/dy' is there as it was.
+    /// Updates dF/dy to this point, and checks that dF/dy' is unchanged there.
     pub(super) fn update_jacobian(&mut self, (t, y, yp): Point<'_>) -> Result<(), Failure> {
         let supplied = |system: &mut S, entries: Entries<'_>, _: &mut [f64]| match entries {
             Entries::Dense(matrix) => system.dense_jacobian(t, 0.0, y, yp, matrix),
@@ -167,11 +170,12 @@ impl<S: Dae, F: Functional> AdjointDae<S, F> {
         Ok(())
     }
 
-    /// Checks that F changes by dF/dy' of the start with all y' at once, each by another amount.
+    /// Checks that F changes as dF/dy' of the start predicts, if all y' change at once, each by another
+    /// amount.
     fn check_mass(&mut self, (t, y, yp): Point<'_>) -> Result<(), Failure> {
-        // no multiple of the steps that dF/dy' was found with: F may not be linear in y'
+        // not a multiple of the steps by which dF/dy' was found, as F may not be linear in y'
         const LARGE: f64 = 70_000.0;
-        // smaller changes do not matter to gradients
+        // smaller changes do not matter for gradients
         const TOLERANCE: f64 = 1e-6;
         for j in 0..y.len() {
             let step = LARGE * uneven(j) * self.equations.size(j, y[j]).max(yp[j].abs());

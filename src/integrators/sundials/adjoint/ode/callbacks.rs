@@ -1,4 +1,4 @@
-//! The C functions through which CVODES asks for the equations of the way back.
+//! The C functions through which CVODES evaluates the equations of the backward run.
 //!
 //! All of them get the [`Host`] of the solver as their data pointer and vectors of its length;
 //! that is what their SAFETY comments refer to.
@@ -25,7 +25,7 @@ pub(super) unsafe extern "C" fn rhs<S: Ode, F: Functional>(
     out: ffi::N_Vector,
     data: *mut c_void,
 ) -> i32 {
-    // SAFETY: see the module; `out` is a vector of its own.
+    // SAFETY: see the module; `out` is a separate vector.
     let (host, y, lambda, out) = unsafe {
         let host = &mut *data.cast::<Host<Borrowed<'_, AdjointSystem<S, F>>>>();
         let n = host.n;

@@ -1,4 +1,4 @@
-//! Of ordinary differential equations, by CVODES.
+//! Adjoint gradients of ordinary differential equations, by CVODES.
 
 mod callbacks;
 mod run;

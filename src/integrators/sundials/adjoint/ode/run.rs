@@ -1,4 +1,4 @@
-//! The run forward and the way back.
+//! The forward run and the backward run.
 
 use super::{
     callbacks::{jacobian, quadratures, rhs},
@@ -19,8 +19,8 @@ use crate::integrators::{
     },
 };
 
-/// The solver of one run forward and back. A further one would begin with the first step of this one, whatever
-/// has changed: the way back leaves it in C (6.4.1).
+/// The solver of one forward and one backward run. A further run would begin with the first step size of this
+/// one, whatever has changed: the backward run leaves it in C (6.4.1).
 pub(super) struct AdjointRun<'a, S, F> {
     solver: Session<CvodeKind, Borrowed<'a, AdjointSystem<S, F>>>,
     options: &'a AdjointOptions,
@@ -43,7 +43,7 @@ impl<'a, S: Ode, F: Functional> AdjointRun<'a, S, F> {
 
     /// Runs to time `t` and back.
     pub(super) fn gradient(mut self, t: f64) -> Result<Gradient, Error> {
-        // there may be a jump behind
+        // steps must not pass `t`: the equations may jump there
         self.solver.set_stop_time(Some(t))?;
         self.solver.solve_to(t)?;
         let y = self.solver.y().to_vec();
@@ -69,7 +69,8 @@ impl<'a, S: Ode, F: Functional> AdjointRun<'a, S, F> {
             let kind = &equations.backward;
             Linear::new::<Borrowed<'a, AdjointSystem<S, F>>>(kind, &lambda, context, data)?
         };
-        // SAFETY: memory and vectors are alive when these are called, and the callbacks fit the host that is their data.
+        // SAFETY: memory and vectors are alive when these are called, and the callbacks fit the host that is
+        // their data.
         unsafe {
             let callbacks = Callbacks {
                 init: |which, lambda, _| {

@@ -12,9 +12,11 @@ use crate::integrators::{
     },
 };
 
-/// Gradients of a [`Functional`] of the solution of y' = f(t, y, p), with respect to any number of parameters and to
-/// the initial state: a run forward with checkpoints, and one of the adjoint lambda back in time,
-/// lambda' = -(df/dy)^T lambda - dh/dy from lambda(T) = dg/dy.
+/// Gradients of a [`Functional`] of the solution of y' = f(t, y, p), by the adjoint method.
+///
+/// They are taken with respect to any number of parameters and to the initial state, by a forward run with
+/// checkpoints and a backward run of the adjoint lambda, lambda' = -(df/dy)^T lambda - dh/dy from
+/// lambda(T) = dg/dy.
 ///
 /// ```
 /// use pliant::{
@@ -71,11 +73,12 @@ impl<S, F> fmt::Debug for Adjoint<S, F> {
 }
 
 impl<S: Ode, F: Functional> Adjoint<S, F> {
-    /// For the solution that starts at time `t0` from `y0`, by these options of the run forward and of the way back.
+    /// For the solution that starts at time `t0` from `y0`, with options of the forward and of the backward
+    /// run.
     ///
     /// # Errors
-    /// [`Error::Input`] for options or initial values that cannot be used, and for systems with root functions: at an
-    /// event lambda jumps.
+    /// [`Error::Input`] for options or initial values that cannot be used, and for systems with root
+    /// functions, as lambda jumps at an event.
     pub fn new(
         system: S,
         functional: F,
@@ -94,17 +97,18 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         let system = AdjointSystem::new(system, functional, y0.len(), equations, options)?;
         let (start, forward, options) = ((t0, y0.to_vec()), forward.clone(), options.clone());
         let mut adjoint = Self { system, start, forward, options };
-        // finds what else can not be used
+        // finds other inputs that cannot be used
         adjoint.run()?;
         Ok(adjoint)
     }
 
-    /// Value and gradient of the functional at the end time T = `t`. Each call runs anew, with the present parameters of the
-    /// [system](Self::system_mut).
+    /// Value and gradient of the functional at the end time T = `t`.
+    ///
+    /// Each call integrates again, with the present parameters of the [system](Self::system_mut).
     ///
     /// # Errors
-    /// [`Error::Integration`] if the integration stopped, forward or on the way back, with the reason; [`Error::Input`] if
-    /// `t` is not finite or is the start.
+    /// [`Error::Integration`] if the forward or the backward run stopped, with the reason; [`Error::Input`]
+    /// if `t` is not finite or is the start.
     ///
     /// # Panics
     /// A panic of the system or the functional passes through.
@@ -126,7 +130,7 @@ impl<S: Ode, F: Functional> Adjoint<S, F> {
         &self.system.equations.system
     }
 
-    /// The system, to be given other parameters; the next [`gradient`](Self::gradient) is theirs.
+    /// The system, to change its parameters; the next [`gradient`](Self::gradient) uses them.
     pub fn system_mut(&mut self) -> &mut S {
         &mut self.system.equations.system
     }

@@ -1,4 +1,4 @@
-//! A system with a functional: what the run forward integrates, and the right-hand sides of the way back.
+//! A system with a functional: what the forward run integrates, and the right-hand sides of the backward run.
 
 use faer::MatMut;
 
@@ -14,7 +14,7 @@ use crate::integrators::{
     },
 };
 
-/// An [`Ode`] with the integral of a functional beside it.
+/// An [`Ode`] with the integral of a functional in addition.
 pub(super) struct AdjointSystem<S, F> {
     pub(super) equations: Equations<S, F>,
     supplied_rhs: bool,
@@ -57,7 +57,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         Ok(())
     }
 
-    /// Writes what, integrated back in time, gives dG/dp: -(df/dp)^T lambda - dh/dp.
+    /// Writes the integrand that, integrated back in time, gives dG/dp: -(df/dp)^T lambda - dh/dp.
     pub(super) fn backward_quadratures(
         &mut self,
         t: f64,
@@ -76,7 +76,7 @@ impl<S: Ode, F: Functional> AdjointSystem<S, F> {
         Ok(())
     }
 
-    /// Writes the derivative of `backward_rhs` by lambda: -(df/dy)^T.
+    /// Writes the derivative of `backward_rhs` with respect to lambda: -(df/dy)^T.
     pub(super) fn backward_jacobian(
         &mut self,
         t: f64,
