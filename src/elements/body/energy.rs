@@ -11,7 +11,7 @@ use crate::base::tensor::Real;
 use crate::elements::material::{ByPoint, Deformation, Elastic, ElasticLaw};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Strain energy (J), added up in the order of cells, whatever the machine computes at once.
+    /// Strain energy (J), added up in the order of cells, however many the machine computes at once.
     pub(super) fn strain_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
         let all = 0..self.nodes.len();
         regions.runs(&all).fold(0.0, |sum, (cells, laws)| match &laws.elastic {
@@ -92,13 +92,13 @@ impl Density for ByPoint {
     }
 }
 
-/// The energy of a run of cells of one law, compiled for each kind of machine.
+/// The energy of a run of cells of one law, compiled for each instruction set.
 struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
     elements: &'a ElementsOf<N, M, D, Q>,
     cells: Range<usize>,
     u: &'a [[f64; D]],
     law: &'a L,
-    /// That of the cells before.
+    /// The energy of the cells before.
     sum: f64,
 }
 
@@ -151,8 +151,8 @@ mod tests {
     use crate::elements::mesh::{Cells, Mesh, SolidCells};
     use crate::studies::samples::SQUARE_MATERIAL;
 
-    /// Against the energy densities of the cells, each computed by itself, on meshes that fill no whole number of registers
-    /// and change the material within one.
+    /// Against the energy densities of the cells, each computed by itself, on meshes that fill no whole
+    /// number of registers and change the material within one.
     #[test]
     fn energies_of_cells_add_up() {
         let meshes = [
