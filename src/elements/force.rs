@@ -72,7 +72,7 @@ impl NodalForces {
 #[derive(Debug, Clone)]
 pub struct ForceVector {
     values: Vec<f64>,
-    /// Whether nobody could change it since it was cleared.
+    /// Whether it has not been borrowed mutably since it was cleared.
     is_zero: bool,
 }
 
@@ -131,8 +131,8 @@ pub struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// A bound (m) on how far any node moves, if each component of a displacement goes by the cubic
-    /// that has its values and velocities at both ends.
+    /// A bound (m) on how far any node moves, if each component of a displacement follows the cubic that has
+    /// its values and velocities at both ends.
     pub(crate) fn reach(&self, dimension: usize) -> f64 {
         let third = (self.times[1] - self.times[0]) / 3.0;
         let ([u0, u1], [v0, v1]) = (self.u, self.v);
@@ -147,7 +147,7 @@ impl Step<'_> {
     }
 }
 
-/// Where the tangents of a force come from: the answer of [`Force::add_tangents`].
+/// Where the tangents of a force come from, as [`Force::add_tangents`] returns it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tangents {
     /// The force has added them.
@@ -160,24 +160,27 @@ pub enum Tangents {
 ///
 /// [`Scene::force`](crate::Scene::force) adds one of any crate to a scene. It has to implement
 /// [`add_forces`](Self::add_forces), and with a conservative part [`potential`](Self::potential) and
-/// [`reservoir`](Self::reservoir); the rest is for forces that couple distant nodes, have kinks or should cost less.
+/// [`reservoir`](Self::reservoir); the rest is for forces that couple distant nodes, have kinks or should
+/// cost less.
 ///
 /// # What a force may rely on, and what it has to keep
 ///
 /// - `u` and `v` have dimension components for each node of the body, node after node.
-/// - Integrators ask at trial points: in any order, back and forth in time, off the motion, more than once.
-///   The force is a function of (t, u, v) (and of held switches) alone, without a memory of earlier calls. What is not finite
-///   is refused like [`Failure::Recoverable`].
-/// - One simulation calls from one thread at a time, though not always the same. Clones of a scene and forks of a simulation
-///   share their forces, so those that run on several threads call at once. As they share held switches, too, a force with
-///   switches is for one simulation at a time.
-/// - The conservative part is -dU/du of the [`potential`](Self::potential) U: [`NodalForces`] says which part counts as
-///   heat and which as supplied. The energy balance of the report shows what a force does not account for.
-/// - [`hold_switches`](Self::hold_switches) is called with `None` at the start of a phase and after each change of the
-///   integrator; where contact events are located, with the switches as they are then, and anew after each event.
+/// - Integrators evaluate the force at trial points: in any order, back and forth in time, off the motion,
+///   more than once. The force is a function of (t, u, v) (and of held switches) alone, without a memory of
+///   earlier calls. Values that are not finite are refused like [`Failure::Recoverable`].
+/// - One simulation calls from one thread at a time, though not always the same. Clones of a scene and forks
+///   of a simulation share their forces, so those that run on several threads call at the same time. They
+///   share held switches, too, so a force with switches is for one simulation at a time.
+/// - The conservative part is -dU/du of the [`potential`](Self::potential) U: [`NodalForces`] says which part
+///   counts as heat and which as supplied. The energy balance of the report shows what a force does not
+///   account for.
+/// - [`hold_switches`](Self::hold_switches) is called with `None` at the start of a phase and after each
+///   change of the integrator. If contact events are located, it is then called with the switches as they are
+///   at that time, and again after each event.
 /// - A panic passes through all integrators, those in C included, to the caller of
-///   [`Scene::simulate`](crate::Scene::simulate). A [`Simulation`](crate::Simulation) makes an error of it, and can go on from
-///   the step before.
+///   [`Scene::simulate`](crate::Scene::simulate). A [`Simulation`](crate::Simulation) turns it into an error,
+///   and can continue from the step before.
 pub trait Force: Send + Sync {
     /// Adds the force at (t, u, v).
     ///
@@ -193,7 +196,7 @@ pub trait Force: Send + Sync {
         forces: &mut NodalForces,
     ) -> Result<(), Failure>;
 
-    /// Looks back on a step that was taken, to time `t`, from displacements `before` to `after`.
+    /// Checks a step after it was taken, to time `t`, from displacements `before` to `after`.
     ///
     /// # Errors
     /// A step that leapt over states in which the force has no meaning.
@@ -204,10 +207,12 @@ pub trait Force: Send + Sync {
     /// Adds -df/du to `stiffness` and -df/dv to `damping`. They need not be symmetric: the Newton
     /// matrix takes their symmetric part.
     ///
-    /// A force that leaves this out (and answers [`Tangents::ByDifferences`], without adding anything) gets finite differences
-    /// of [`add_forces`](Self::add_forces). They cost one evaluation at the state itself, and for each of the two matrices
-    /// one if the force does not depend on u or v, else one more than the dimension of space if it acts on each node by
-    /// itself, and some times as many if it couples nodes. The report tells how many there were. A force whose [`is_nonlinear`](Self::is_nonlinear) is false has no tangents.
+    /// A force that leaves this out (and returns [`Tangents::ByDifferences`], without adding anything) gets
+    /// finite differences of [`add_forces`](Self::add_forces). They cost one evaluation at the state itself
+    /// and, for each of the two matrices: one if the force does not depend on u (or v); else one more than
+    /// the dimension of space if it acts on each node by itself, and several times as many if it couples
+    /// nodes. The report gives their number. A force whose [`is_nonlinear`](Self::is_nonlinear) is false has
+    /// no tangents.
     fn add_tangents(
         &self,
         _t: f64,
@@ -219,9 +224,8 @@ pub trait Force: Send + Sync {
         Tangents::ByDifferences
     }
 
-    /// Adds, node by node, bounds on what -df/du (to `stiffness`, N/m) and -df/dv (to `damping`,
-    /// N s/m) may grow by from one moment to the next: contacts that do not touch yet, and what slides and
-    /// may stick.
+    /// Adds, node by node, bounds on how much -df/du (to `stiffness`, N/m) and -df/dv (to `damping`, N s/m)
+    /// may suddenly grow: by points that do not touch yet, and by points that slide and may stick.
     fn add_reserves(
         &self,
         _t: f64,
@@ -232,8 +236,8 @@ pub trait Force: Send + Sync {
     ) {
     }
 
-    /// Whether the force depends on u or v, so that the Newton matrix must follow it. One that changes with time alone saves
-    /// the search for its tangents by `false`.
+    /// Whether the force depends on u or v, so that the Newton matrix must follow it. For a force that
+    /// changes with time alone, `false` saves the search for its tangents.
     fn is_nonlinear(&self) -> bool {
         true
     }
@@ -248,7 +252,7 @@ pub trait Force: Send + Sync {
         Reservoir::None
     }
 
-    /// Velocity (m/s) at time `t` (s) of what the force comes from, if that moves by itself: an obstacle.
+    /// Velocity (m/s) at time `t` (s) of the source of the force, if it moves by itself: an obstacle.
     fn velocity(&self, _t: f64) -> Option<[f64; 3]> {
         None
     }
@@ -265,8 +269,10 @@ pub trait Force: Send + Sync {
     /// of them act by their values again.
     fn hold_switches(&self, _on: Option<&[bool]>) {}
 
-    /// The name of what the body rubs against, and whether all points that press there slide, or none does, if it
-    /// is one of these: by the switches as they are held. `None` if they are not, without contact or friction.
+    /// The name of what the body rubs against, and whether the points that press there slide, by the held
+    /// switches: all (`Some(true)`), none (`Some(false)`) or some (`None`).
+    ///
+    /// `None` without held switches, contact or friction.
     fn slides(&self) -> Option<(&str, Option<bool>)> {
         None
     }
@@ -274,14 +280,14 @@ pub trait Force: Send + Sync {
     /// A time (s) within a step at which a part of the force acts that the ends of the step do not
     /// show, as they lie before and behind an obstacle. Depths below `tolerance` (m) do not matter.
     ///
-    /// `clearances` has a number for each switch: a bound (m) on how far the body can still move
-    /// without a change of that switch. 0 is always right; the search renews it.
+    /// `clearances` has a number for each switch: a bound (m) on how far the body can still move without a
+    /// change of that switch. 0 is always right; the search updates it.
     fn passage(&self, _step: &Step, _tolerance: f64, _clearances: &mut [f64]) -> Option<f64> {
         None
     }
 
-    /// Pairs of nodes (counted from 0) that the force couples, u or v of one acting on the other: the tangents have no
-    /// room for others, but for nodes that share a cell, which need not be named.
+    /// Pairs of nodes (counted from 0) that the force couples: u or v of one acts on the other. The tangents
+    /// have entries for these pairs only, and for nodes that share a cell, which need not be named.
     ///
     /// Finite differences look for couplings of the named pairs alone first, which is cheap, and of
     /// nodes that share a cell if those do not explain how the force changes.

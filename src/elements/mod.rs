@@ -1,7 +1,9 @@
-//! Bodies as finite elements: a mesh and a material become inertia M, stiffness K, damping B and nonlinear forces.
+//! Bodies as finite elements: a mesh and a material become inertia M, stiffness K, damping B and nonlinear
+//! forces.
 //!
-//! [`mesh`] has nodes and cells, `basis` the shape functions and quadrature of one cell, [`material`] the laws at
-//! one point, [`body`] the loops over cells, and [`force`](mod@force) the trait of all that exerts forces.
+//! [`mesh`] has nodes and cells, `basis` the shape functions and quadrature of one cell, [`material`] the
+//! laws at one point, [`body`] the loops over cells, and [`force`](mod@force) the trait of all that exerts
+//! forces.
 
 pub(crate) mod basis;
 pub mod body;

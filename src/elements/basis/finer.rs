@@ -10,9 +10,9 @@ use crate::elements::mesh::{CellKind, Mesh};
 /// A mesh made finer: nodes keep their numbers, and new ones follow.
 pub(crate) struct Finer {
     pub(crate) mesh: Mesh,
-    /// Cells that each cell has become.
+    /// Number of cells that each cell is divided into.
     pub(crate) children: usize,
-    /// The nodes of the first mesh, and where all nodes are in it.
+    /// Number of nodes of the first mesh, and the place of every node in it.
     old: usize,
     places: Vec<Place>,
     /// Node numbers by their places.
@@ -27,19 +27,21 @@ struct Place {
     shares: Vec<(usize, f64)>,
 }
 
-/// Corners of a cell with their parts of a point, ascending: the same from all cells around it.
+/// A point, given by corners of a cell and their weights, ascending: the same from all cells around it.
 type Corners = Vec<(usize, u32)>;
 
-/// The parts of the corners add up to this: points at quarters of edges and middles of hexahedra are whole numbers.
+/// The weights of the corners add up to this, so that those of quarter points of edges and of the middle of a
+/// hexahedron are whole numbers.
 const WHOLE: f64 = 64.0;
 
 /// A point of the reference cell; coordinates beyond its dimension are 0.
 type Point = [f64; 3];
 
 impl Mesh {
-    /// The same mesh with each cell divided into 2, 4 or 8 of its kind, at the middles of its edges. Nodes keep their
-    /// numbers. New ones follow; they belong to the node sets that all corners around them belong to, and those of
-    /// cell c (from 0), n each, are the cells n c to n c + n - 1.
+    /// The same mesh with each cell divided into 2, 4 or 8 of its kind, at the middles of its edges.
+    ///
+    /// Nodes keep their numbers, and new ones follow. A new node belongs to the node sets that all corners
+    /// around it belong to. Cell c (from 0), divided into n cells, becomes the cells n c to n c + n - 1.
     ///
     /// ```
     /// use pliant::{Cells, Mesh};
@@ -55,12 +57,13 @@ impl Mesh {
         self.divided().mesh
     }
 
-    /// The same mesh with quadratic cells: triangles, tetrahedra and hexahedra get a node in the middle of each edge,
-    /// quadrilaterals are divided into two such triangles first. Nodes keep their numbers, as in
-    /// [`halved`](Self::halved).
+    /// The same mesh with quadratic cells.
+    ///
+    /// Triangles, tetrahedra and hexahedra get a node in the middle of each edge; quadrilaterals are first
+    /// divided into two triangles. Nodes keep their numbers, as in [`halved`](Self::halved).
     ///
     /// # Errors
-    /// Cells that are quadratic, or of which there are none that are (segments).
+    /// Cells that are quadratic already, or that have no quadratic kind (segments).
     pub fn quadratic(&self) -> Result<Self, InputError> {
         self.elevated().map(|finer| finer.mesh)
     }
@@ -90,7 +93,8 @@ impl Mesh {
 }
 
 impl Finer {
-    /// `mesh` with cells of a `kind` in place of its own: `children` are the corners of each in the reference cell.
+    /// `mesh` with cells of this `kind`: `children` are the corners, in the reference cell, of those that
+    /// each cell is divided into.
     fn new(mesh: &Mesh, kind: CellKind, children: &[Vec<Point>]) -> Self {
         let old = mesh.node_count();
         let mut finer = Self {
@@ -110,7 +114,7 @@ impl Finer {
                 places[*node] = Some(place);
             }
         }
-        // nodes of no cell are where they are
+        // nodes of no cell keep their places
         let alone = |(node, place): (usize, Option<Place>)| {
             place.unwrap_or_else(|| Place {
                 corners: vec![(node, WHOLE as u32)],
@@ -149,7 +153,7 @@ impl Finer {
         finer
     }
 
-    /// The cells (from 0) that those of the first mesh have become.
+    /// The cells (from 0) into which these `cells` of the first mesh are divided.
     pub(crate) fn children_of(&self, cells: &[usize]) -> Vec<usize> {
         cells
             .iter()
@@ -157,8 +161,8 @@ impl Finer {
             .collect()
     }
 
-    /// Nodes (from 0) of the first mesh, with the new ones between them, in the order in which they run. Where all
-    /// given ones are on the boundary, so are the new ones.
+    /// Nodes (from 0) of the first mesh in the given order, with the new ones between them. If all given
+    /// nodes are on the boundary, only new ones on the boundary are added.
     pub(crate) fn extended(&self, nodes: &[usize]) -> Vec<usize> {
         let mut is_given = vec![false; self.old];
         nodes.iter().for_each(|&node| is_given[node] = true);
@@ -182,7 +186,7 @@ impl Finer {
         run
     }
 
-    /// The number (from 0) of a node of the first mesh, or of a point mass, which come last.
+    /// The new number (from 0) of a node of the first mesh or of a point mass; point masses come last.
     #[cfg(feature = "study")]
     pub(crate) fn number(&self, node: usize) -> usize {
         if node < self.old { node } else { node + self.places.len() - self.old }
@@ -194,7 +198,8 @@ impl Finer {
         self.old..self.places.len()
     }
 
-    /// A field of vectors, given at the nodes of the first mesh, at all nodes. Those of point masses, which come last, still do.
+    /// Interpolates a vector field from the nodes of the first mesh to all nodes. The vectors of point masses
+    /// stay last.
     pub(crate) fn interpolated(&self, field: &[f64], dimension: usize) -> Vec<f64> {
         let (field, points) = field.split_at((self.old * dimension).min(field.len()));
         let mut values = field.to_vec();
@@ -214,7 +219,7 @@ impl Finer {
 }
 
 impl Place {
-    /// The place `at` of the reference cell in a cell of a `kind`.
+    /// The place of the point `at` of the reference cell, in a `cell` of this `kind`.
     fn new(kind: CellKind, cell: &[usize], at: &Point) -> Self {
         let parts = shape_functions(linear(kind), at);
         let parts =
@@ -226,7 +231,7 @@ impl Place {
     }
 }
 
-/// The middle between two places, as it is known by its corners.
+/// The middle between two places, identified by its corners.
 fn middle(one: &Corners, other: &Corners) -> Corners {
     let mut parts = BTreeMap::new();
     for (corner, part) in one.iter().chain(other) {
@@ -258,7 +263,7 @@ fn between(a: &Point, b: &Point) -> Point {
     std::array::from_fn(|i| 0.5 * (a[i] + b[i]))
 }
 
-/// Corners of the cells into which one of linear shape functions is divided.
+/// Corners of the cells into which a linear cell is divided.
 fn halves(kind: CellKind) -> Vec<Vec<Point>> {
     let corners = nodes(kind);
     let simplices: &[&[usize]] = match kind {
@@ -274,7 +279,7 @@ fn halves(kind: CellKind) -> Vec<Vec<Point>> {
             &[6, 9, 7, 8],
             &[5, 9, 6, 8],
         ],
-        // each corner draws the cell to itself
+        // one at each corner: the cell, halved towards it
         _ => {
             let child = |corner: &Point| corners.iter().map(|node| between(node, corner)).collect();
             return corners.iter().map(child).collect();

@@ -1,12 +1,12 @@
-//! Twenty-node hexahedron on the unit cube, the serendipity one: corners as in the eight-node one, then the middles of the
-//! edges in the order of VTK.
+//! Twenty-node serendipity hexahedron on the unit cube: corners as in the eight-node one, then the middles of
+//! the edges in the order of VTK.
 
 use super::ReferenceCell;
 use super::quadrilateral8::{serendipity, serendipity_derivatives};
 use super::segment3::Segment3;
 
-/// Points and weights of the rule of degree 5 with 14 points (Irons 1971): six on the lines from the middle to the faces,
-/// eight on those to the corners, at distances sqrt(19/30)/2 and sqrt(19/33)/2 along the axes.
+/// Points and weights of the rule of degree 5 with 14 points (Irons 1971): six on the lines from the middle
+/// to the faces, eight on those to the corners, at distances sqrt(19/30)/2 and sqrt(19/33)/2 along the axes.
 const FACE: f64 = 0.397_911_212_877_110_7;
 const FACE_WEIGHT: f64 = 40.0 / 361.0;
 const CORNER: f64 = 0.379_393_455_319_664_07;
@@ -58,9 +58,10 @@ impl ReferenceCell<20, 3> for Hexahedron20 {
         [1.0, 1.0, 0.5],
         [0.0, 1.0, 0.5],
     ];
-    /// Of full rank. Gauss's rule with two points along each axis, with 8 points the cheaper one, does not see
-    /// u = (x (3 y^2 - 1), -y (3 x^2 - 1), 0) f(z), in coordinates from -1 to 1, whatever f is at the ends of the cell: a row of
-    /// cells, one thick, would have a free motion in each plane between two of them, even where its end is clamped.
+    /// The stiffness has full rank. With Gauss's rule of two points along each axis (8 points, cheaper) it
+    /// does not: at these points the strain of u = (x (3 y^2 - 1), -y (3 x^2 - 1), 0) f(z), in coordinates
+    /// from -1 to 1, is 0, whatever f is at the ends of the cell. A row of cells, one thick, would have such
+    /// a zero-energy mode in each plane between two of them, even where its end is clamped.
     const STIFFNESS_RULE: &'static [([f64; 3], f64)] = &[
         face([-1.0, 0.0, 0.0]),
         face([1.0, 0.0, 0.0]),

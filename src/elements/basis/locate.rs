@@ -5,20 +5,20 @@ use nalgebra::{SMatrix, SVector};
 use super::{ReferenceCell, jacobian, size, with_element};
 use crate::elements::mesh::Mesh;
 
-/// Round-off, and points that a person has rounded, outside the reference cell by no more than this count as on its
-/// boundary.
+/// Points outside the reference cell by no more than this, by round-off or because someone rounded them,
+/// count as on its boundary.
 const TOLERANCE: f64 = 1e-6;
-/// Newton's method ends after so many rounds: it takes one in cells with straight edges, few in others.
+/// Most iterations of Newton's method: it takes one in cells with straight edges, a few in others.
 const ROUNDS: usize = 20;
 
-/// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there; `None` outside
-/// the body.
+/// The nodes of the cell in which the undeformed position `x` (m) lies, with their shape functions there;
+/// `None` outside the body.
 pub(crate) fn shares_at(mesh: &Mesh, x: &[f64]) -> Option<Vec<(usize, f64)>> {
     mesh.cells().find_map(|cell| shares_in(mesh, mesh.positions(), cell, x))
 }
 
-/// The nodes of a cell with their shape functions at the point `x` (m), if nodes are at `positions` (m); `None` outside the
-/// cell.
+/// The nodes of a cell with their shape functions at the point `x` (m), if nodes are at `positions` (m);
+/// `None` outside the cell.
 pub(crate) fn shares_in(
     mesh: &Mesh,
     positions: &[f64],
@@ -59,7 +59,7 @@ fn values_at<
         let step = square.try_inverse()? * map.tr_mul(&missing);
         xi += step;
         if step.norm() < 1e-12 {
-            // beside a cell of lower dimension than space something is missing
+            // off a cell of lower dimension than space a residual is left
             let is_on = missing.norm() <= TOLERANCE * size;
             return (is_on && is_within::<C, N, M>(&xi)).then(|| C::values(xi.into()).to_vec());
         }
@@ -68,7 +68,7 @@ fn values_at<
 }
 
 fn is_within<C: ReferenceCell<N, M>, const N: usize, const M: usize>(xi: &SVector<f64, M>) -> bool {
-    // the last corner of a cube is far from the origin
+    // only a cube has a corner whose coordinates add up to more than 1
     let reach = C::NODES.iter().map(|node| node.iter().sum::<f64>()).fold(0.0, f64::max);
     let is_cube = reach > 1.0;
     let below = if is_cube { xi.max() <= 1.0 + TOLERANCE } else { xi.sum() <= 1.0 + TOLERANCE };

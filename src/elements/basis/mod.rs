@@ -1,8 +1,7 @@
 //! Elements: shape functions and quadrature, one small file per cell.
 //!
-//! A cell is known to the rest of the crate by its quadrature points only: the gradients g_a of
-//! its shape functions and a weight each. The map from the reference cell to the undeformed shape is
-//! isoparametric for all cells.
+//! The rest of the crate sees only the quadrature points of a cell: the gradients g_a of its shape functions
+//! and a weight each. The map from the reference cell to the undeformed shape is isoparametric for all cells.
 //!
 //! A cell of dimension M may live in a space of higher dimension D (a string, a membrane). It is
 //! then described in coordinates of its own, along an orthonormal frame in its tangent space.
@@ -43,8 +42,8 @@ pub(crate) use triangle6::Triangle6;
 
 use crate::base::tensor::{Matrix, determinant};
 
-/// Calls a function that is generic over the reference cell, its nodes, its dimension, that of space and the
-/// number of strain points with those of a kind of cell.
+/// Calls a function that is generic over the reference cell, its number of nodes, its dimension, the
+/// dimension of space and the number of strain points, with those of a kind of cell.
 macro_rules! with_element {
     ($kind:expr, $space:expr, $function:ident ( $($argument:expr),* )) => {{
         use $crate::elements::basis::*;

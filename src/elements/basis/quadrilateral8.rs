@@ -1,12 +1,13 @@
-//! Eight-node quadrilateral on [0, 1] x [0, 1], the serendipity one: corners as in the four-node one, then the middles
+//! Eight-node serendipity quadrilateral on [0, 1] x [0, 1]: corners as in the four-node one, then the middles
 //! of the edges 1-2, 2-3, 3-4, 4-1. No body consists of them: they are the faces of hexahedra of 20 nodes.
 
 use super::ReferenceCell;
 use super::quadrilateral::GAUSS;
 use super::segment3::Segment3;
 
-/// The shape functions of serendipity cells of degree 2 at `x`: at a corner the product of linear functions f, g (, h) times
-/// 2 (f + g (+ h)) - (2 M - 1), at the middle of an edge the product of a parabola along it and linear functions.
+/// The shape functions of serendipity cells of degree 2 at `x`: at a corner the product of linear functions
+/// f, g (, h) times 2 (f + g (+ h)) - (2 M - 1), at the middle of an edge the product of a parabola along it
+/// and linear functions.
 pub(super) fn serendipity<const N: usize, const M: usize>(
     nodes: [[f64; M]; N],
     x: [f64; M],
@@ -41,7 +42,8 @@ fn corner_factor<const M: usize>(node: [f64; M], x: [f64; M]) -> f64 {
     2.0 * sum - (2.0 * M as f64 - 1.0)
 }
 
-/// The function along an axis that is 1 at `node` and 0 at the other ends, and its slope: a parabola for the middle.
+/// The factor of a shape function along an axis, and its slope: a parabola for a `node` in the middle, else
+/// linear; 1 at `node`, 0 at the other ends.
 fn along(node: f64, x: f64) -> (f64, f64) {
     match node {
         0.5 => (4.0 * x * (1.0 - x), 4.0 - 8.0 * x),

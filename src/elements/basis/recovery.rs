@@ -1,12 +1,13 @@
-//! From strain points to nodes.
+//! Extrapolation from strain points to nodes.
 
 use nalgebra::DMatrix;
 
 use super::ReferenceCell;
 
-/// What values at the `Q` strain points of a cell count for at each of its nodes: row a has their factors in the value
-/// at node a of the polynomial through them, constant for one point, else linear in a simplex and along each axis of
-/// a cube; of more points than that has coefficients, of the one nearest to them by least squares.
+/// The weights by which values at the `Q` strain points of a cell are extrapolated to its nodes: row a gives
+/// the value at node a of the polynomial through them. It is constant for one point, else linear in a
+/// simplex, and linear along each axis of a cube; with more points than coefficients it is the least-squares
+/// fit.
 pub(crate) fn extrapolation<
     C: ReferenceCell<N, M>,
     const N: usize,

@@ -1,4 +1,4 @@
-//! What a cell gives of itself: shape functions and quadrature in its own coordinates.
+//! Reference cells: shape functions and quadrature in their own coordinates.
 
 /// A reference cell of `N` nodes in dimension `M`.
 pub(crate) trait ReferenceCell<const N: usize, const M: usize> {

@@ -79,8 +79,9 @@ fn quadrilateral8() {
     rule_is_exact(Quadrilateral8::MASS_RULE, Exact::Cube(5));
 }
 
-/// The motion of a hexahedron of 20 nodes that Gauss's points, two along each axis, do not see, and the points of its own rule do:
-/// u = (x (3 y^2 - 1), -y (3 x^2 - 1), 0) (1 + z), in coordinates from -1 to 1.
+/// The motion of a hexahedron of 20 nodes whose strain is 0 at Gauss's points, two along each axis, but not
+/// at the points of its own rule: u = (x (3 y^2 - 1), -y (3 x^2 - 1), 0) (1 + z), in coordinates from -1
+/// to 1.
 #[test]
 fn hexahedron20_needs_more_than_8_points() {
     let u = Hexahedron20::NODES.map(|node| {

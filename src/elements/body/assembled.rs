@@ -1,4 +1,4 @@
-//! A body as it is assembled: its constant matrices, and what follows from displacements.
+//! An assembled body: its constant matrices, and what is computed from displacements.
 
 use std::fmt;
 use std::sync::Arc;
@@ -103,7 +103,7 @@ impl Body {
         self.recipe.dilatation
     }
 
-    /// What it is made of, and after that each of its regions.
+    /// What it is made of, then what each of its regions is made of.
     pub fn substances(&self) -> impl Iterator<Item = &Substance> {
         let regions = self.recipe.regions.iter().map(|(_, substance)| substance);
         std::iter::once(&self.recipe.material).chain(regions)
@@ -162,13 +162,13 @@ impl Body {
         })
     }
 
-    /// Present over natural volume (area, length) of each cell under the displacements `u` (m).
+    /// Ratio of present to natural volume (area, length) of each cell under the displacements `u` (m).
     pub fn volume_ratios(&self, u: &[f64]) -> Vec<f64> {
         self.elements.volume_ratios(u)
     }
 
-    /// Angle (rad, 0 to pi) by which each cell has turned under the displacements `u` (m): that of the rotation
-    /// nearest to its mean deformation gradient.
+    /// Angle (rad, 0 to pi) by which each cell has turned under the displacements `u` (m): that of the
+    /// rotation nearest to its mean deformation gradient.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh};
@@ -202,8 +202,8 @@ impl Body {
         self.elements.fields(&self.regions, u)
     }
 
-    /// Part of the strain energy (0 to 1) under the displacements `u` (m) that is stored in differences between the
-    /// strain and a continuous one. `None` without strain.
+    /// Part of the strain energy (0 to 1) under the displacements `u` (m) that is stored in the difference
+    /// between the strain and a continuous one. `None` without strain.
     pub(crate) fn strain_jumps(&self, u: &[f64]) -> Option<f64> {
         let [energy, jumps] = self.elements.jumps(&self.regions, self.strain, u);
         (energy > 0.0).then(|| jumps / energy)
@@ -214,9 +214,10 @@ impl Body {
         self.elements.inverted(u)
     }
 
-    /// Strain and stress at each node under the displacements `u` (m): those of the cells around it, extrapolated from
-    /// where they are computed, in the mean over the volumes of the cells. What is linear in space comes out exact
-    /// with quadratic cells.
+    /// Strain and stress at each node under the displacements `u` (m).
+    ///
+    /// They are those of the cells around it, extrapolated from where they are computed, in the mean weighted
+    /// by the volumes of the cells. With quadratic cells fields that are linear in space come out exact.
     ///
     /// Where materials meet, it is a mean over both: look at [`cell_fields`](Self::cell_fields) there.
     ///
@@ -255,7 +256,7 @@ impl Body {
         })
     }
 
-    /// What reads the sum of the fields at nodes (counted from 0), each times its weight.
+    /// A probe that reads the sum of the fields at nodes (counted from 0), each times its weight.
     pub(crate) fn probe(&self, weights: &[(usize, f64)]) -> Probe {
         Probe::new(&self.mesh, &self.cell_volumes(), weights)
     }
@@ -277,7 +278,7 @@ impl Body {
     /// A cell for which the material's law has no meaning: one that `u` turns inside out, with Green
     /// strain.
     pub fn add_elastic_forces(&self, u: &[f64], forces: &mut NodalForces) -> Result<(), Failure> {
-        // without objective viscosity velocities count for nothing
+        // without objective viscosity velocities are not used
         let terms = Terms { elastic: true, viscous: false };
         self.elements.add_forces(&self.regions, terms, u, u, forces)
     }
@@ -318,7 +319,7 @@ impl Body {
         self.mass_damping.clone()
     }
 
-    /// Whether -B v is least work with the matrix of all constant damping.
+    /// Whether -B v costs least by the matrix of all constant damping.
     pub(crate) fn damps_by_matrix(&self) -> bool {
         self.has_natural_viscosity() && !self.is_linear_by_cells()
     }
@@ -339,15 +340,15 @@ impl Body {
         self.inertia.values.iter().sum()
     }
 
-    /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, corners of
-    /// quadratic cells may have none, or less than none.
+    /// Mass that moves with each node (kg): the row sums of m. Unless inertia is lumped, those of corners of
+    /// quadratic cells may be 0 or below.
     pub fn nodal_masses(&self) -> Vec<f64> {
         let pattern = self.inertia.pattern();
         let row_sum = |row| pattern.row(row).map(|(entry, _)| self.inertia.values[entry]).sum();
         (0..pattern.nodes()).map(row_sum).collect()
     }
 
-    /// Mean of `x`, dimension components per node, over the mass.
+    /// Mean of `x` (dimension components per node), weighted by mass.
     pub(crate) fn mass_average(&self, x: &[f64]) -> Vec<f64> {
         let (dimension, mass) = (self.dimension(), self.mass());
         let mut average = vec![0.0; dimension];
@@ -357,9 +358,9 @@ impl Body {
         average
     }
 
-    /// Angle (rad, counter-clockwise) by which a body of the plane has turned as a whole under the displacements
-    /// `u` (m): that of the rotation which, in the mean over its mass, brings the undeformed shape nearest to the
-    /// present one. `None` in other dimensions.
+    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole under the
+    /// displacements `u` (m): that of the rotation which, in the mean over its mass, brings the undeformed
+    /// shape nearest to the present one. `None` in other dimensions.
     pub(crate) fn rotation(&self, u: &[f64]) -> Option<f64> {
         if self.dimension() != 2 {
             return None;
@@ -367,7 +368,8 @@ impl Body {
         Some(self.rotation_by(&self.arms(), u))
     }
 
-    /// The mass of each node of a body in the plane times where the node naturally is from the centre of mass (kg m). They add up to 0.
+    /// The mass of each node of a body in the plane, times its natural position relative to the centre of
+    /// mass (kg m). They add up to 0.
     pub(crate) fn arms(&self) -> Vec<[f64; 2]> {
         let positions = self.mesh().positions();
         let centre = self.mass_average(positions);
@@ -381,7 +383,7 @@ impl Body {
         let nodes = self.mesh().positions().chunks_exact(2).zip(u.chunks_exact(2));
         let (mut along, mut across) = (0.0, 0.0);
         for ([a, b], (x, u)) in arms.iter().zip(nodes) {
-            // from any point: the arms add up to 0
+            // relative to any point: the arms add up to 0
             let [x, y] = [x[0] + u[0], x[1] + u[1]];
             along += a * x + b * y;
             across += a * y - b * x;

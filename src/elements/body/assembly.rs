@@ -1,4 +1,4 @@
-//! Elements behind an interface without kind and dimension.
+//! One interface to the elements of all kinds of cells and dimensions.
 
 use super::branches::Branched;
 use super::elements::ElementsOf;
@@ -24,7 +24,8 @@ impl<T> Elements for T where
 {
 }
 
-/// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
+/// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of
+/// the body.
 pub(super) fn elements(
     mesh: &Mesh,
     section: f64,

@@ -1,16 +1,17 @@
 //! The Maxwell branches of all elements: their forces, and their internal strains as unknowns.
 //!
-//! A branch has a strain G at each strain point of a cell, its components one after the other: those of the branches of a point, of
-//! the points of a cell, of the cells. Nothing couples those of two points but the displacements, so that the Newton system
-//! is solved for them point by point: with P = 1 / (1 + gamma/tau), or what a flow above the yield stress makes of it, and the
-//! change B xu of the strain,
+//! A branch has a strain G at each strain point of a cell. Their components are stored one after the other:
+//! by cell, then by point, then by branch. Only the displacements couple the strains of two points, so that
+//! the Newton system is solved for them point by point: with P = 1 / (1 + gamma/tau) (another P, in a flow
+//! above the yield stress) and the change B xu of the strain,
 //!
 //! ```text
 //! xG = P rG + (I - P) B xu
 //! (... + gamma^2 sum B^T C P B) xv = ... + gamma sum B^T C P rG
 //! ```
 //!
-//! With a mean dilatation the stress at a point takes the mean over the cell of the trace of E - G, which no other equation does.
+//! With a mean dilatation the stress at a point takes the trace of E - G as its mean over the cell; no other
+//! equation does.
 
 use super::elements::{ElementsOf, gradient};
 use super::forces::{collect, relative};
@@ -74,7 +75,7 @@ struct Site<'a, const N: usize, const M: usize, const D: usize> {
     point: &'a StrainPoint<f64, N, M, D>,
     at: Strained<M, D>,
     cell: usize,
-    /// Place of its internal strain among all.
+    /// Index of the first component of its internal strain.
     first: usize,
 }
 
@@ -91,7 +92,7 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
         Self { branch, point, at, cell, first }
     }
 
-    /// Its own of the internal strains, or of their rates or residuals.
+    /// Its components of the internal strains, or of their rates or residuals.
     fn own(&self, internal: &[f64]) -> Components {
         let mut own = Components::default();
         let all = &internal[self.first..][..self.branch.components()];
@@ -103,7 +104,7 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
         &mut internal[self.first..][..self.branch.components()]
     }
 
-    /// What passes to E - G in a step of the parameter `gamma`.
+    /// How a change of the strain passes to E - G in a step of the parameter `gamma`: see `Step`.
     fn step(&self, gamma: f64, internal: &[f64]) -> Step {
         self.branch.step::<M>(gamma, &self.apart(internal))
     }
@@ -118,7 +119,7 @@ impl<'a, const N: usize, const M: usize, const D: usize> Site<'a, N, M, D> {
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Visits all branches at all points, with the strains of their springs that `strains` tells of each.
+    /// Visits all branches at all points, with the strains that `strains` returns for each.
     fn visit<const K: usize>(
         &self,
         regions: &Regions,
@@ -138,7 +139,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 |count: usize| branches[..count].iter().map(Relaxing::components).sum::<usize>();
             let all = of_point(branches.len());
             let own = |point: usize, branch: usize| of_cells + point * all + of_point(branch);
-            // a mean is that of one branch
+            // each branch has its own mean over the cell
             let together = if self.mean_dilatation { 1 } else { branches.len() };
             for start in (0..branches.len()).step_by(together) {
                 let mean = self.mean_dilatation.then(|| {
@@ -190,8 +191,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         }
     }
 
-    /// Adds what the mean dilatation of each cell adds to the tangents: lambda/V G_a G_b^T of what a branch feels of a step, with
-    /// G_a = sum w F g_a.
+    /// Adds the tangents of the mean dilatation of each cell: lambda/V G_a G_b^T with G_a = sum w F g_a,
+    /// times the `part` of a step that passes to the spring of a branch.
     fn add_mean_tangents(
         &self,
         regions: &Regions,
@@ -213,7 +214,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 }
                 (volume, points) = (volume + point.volume, points + 1);
                 if points == Q {
-                    // what flows keeps its volume
+                    // flow above a yield stress keeps the volume: the part is that without strain
                     let part = branch.step::<M>(gamma, &Components::default()).part;
                     let share = part * branch.lambda() / volume;
                     add_blocks(&self.entries[*cell], stiffness, &OfMean { swelling, share });
@@ -315,7 +316,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         residuals: &[f64],
         right: &mut [f64],
     ) {
-        // what passes is not the same part at all points, so that the mean is that of all of it
+        // the part that passes differs from point to point, so that the mean includes it
         let passed = |site: &Site<'_, N, M, D>| {
             let step = site.step(gamma, internal);
             let passed = step.passed::<M>(&site.own(residuals));
@@ -360,7 +361,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Branched
         );
         let mut power = 0.0;
         let apart = |site: &Site<'_, N, M, D>| {
-            // below the yield stress rates do not tell it
+            // with a yield stress the rates do not determine E - G: below it they are 0
             let before = match site.branch.yields() {
                 true => site.apart(internal),
                 false => site.own(rates).map(|rate| site.branch.time * rate),

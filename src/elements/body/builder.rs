@@ -1,4 +1,4 @@
-//! A body in the making: options, checks, assembly.
+//! The builder of a body: options, checks, assembly.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::elements::basis::Finer;
 use crate::elements::material::{Plane, Strain, Substance, Viscosity};
 use crate::elements::mesh::Mesh;
 
-/// A body in the making: see [`Body::new`].
+/// The builder of a body: see [`Body::new`].
 #[derive(Debug, Clone)]
 pub struct BodyBuilder {
     mesh: Mesh,
@@ -81,8 +81,8 @@ impl BodyBuilder {
         self
     }
 
-    /// What resists a change of volume: at each point (default), or in the mean over each cell, which does not lock where
-    /// the body is nearly incompressible.
+    /// Where a change of volume is resisted: at each point (default), or in the mean over each cell, which
+    /// does not lock where the body is nearly incompressible.
     pub fn dilatation(mut self, dilatation: Dilatation) -> Self {
         self.recipe.dilatation = dilatation;
         self
@@ -107,14 +107,14 @@ impl BodyBuilder {
         Ok(Self { mesh: finer.mesh.clone(), ..self })
     }
 
-    /// Without viscosity, in its regions, too.
+    /// The same without viscosity, in its regions, too.
     pub(crate) fn without_viscosity(mut self) -> Self {
         self.recipe.material.material.viscosity = 0.0;
         self.recipe.regions.iter_mut().for_each(|(_, region)| region.material.viscosity = 0.0);
         self
     }
 
-    /// Another material, everywhere that regions have none of their own.
+    /// Another material, everywhere outside regions.
     pub fn material(mut self, substance: impl Into<Substance>) -> Self {
         self.recipe.material = substance.into();
         self
@@ -197,8 +197,9 @@ impl BodyBuilder {
 }
 
 impl Body {
-    /// Starts a body of `mesh`, made of `substance`, a [`Material`](crate::Material) or one with a [`Law`](crate::Law); [`BodyBuilder::build`] assembles it.
-    #[allow(clippy::new_ret_no_self)] // the one way to a body starts here
+    /// Starts a body of `mesh`, made of `substance`, a [`Material`](crate::Material) or one with a
+    /// [`Law`](crate::Law); [`BodyBuilder::build`] assembles it.
+    #[allow(clippy::new_ret_no_self)] // a body is made by its builder alone
     pub fn new(mesh: Mesh, substance: impl Into<Substance>) -> BodyBuilder {
         let recipe = Recipe {
             material: substance.into(),
@@ -215,7 +216,7 @@ impl Body {
         BodyBuilder { mesh, recipe }
     }
 
-    /// The builder that has made it, for a body that differs in something.
+    /// The builder that made it, for a body that differs in some options.
     ///
     /// ```
     /// use pliant::{Body, Cells, Inertia, Material, Mesh};

@@ -1,5 +1,5 @@
-//! Cells in a row: their nodes are numbered on from cell to cell, as in meshes of rectangles and cuboids, so that those of
-//! several cells lie side by side in memory.
+//! Cells in a row: the numbers of their nodes grow by 1 from cell to cell, as in meshes of rectangles and
+//! cuboids, so that the vectors of several cells are contiguous in memory.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
@@ -9,12 +9,12 @@ use pulp::Simd;
 
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 
-/// Which of each [`SIDE_BY_SIDE`] cells of `N` nodes are in a row.
+/// Which blocks of [`SIDE_BY_SIDE`] cells of `N` nodes are in a row.
 #[derive(Debug)]
 pub(super) struct ContiguousCells<const N: usize>(Vec<Option<Order<N>>>);
 
-/// The nodes of a cell from the greatest number to the least. In this order a node that is the a-th of one cell and the b-th of
-/// another gets the forces of the two in the order of the cells.
+/// The nodes of a cell (local numbers), from the greatest node number to the least. In this order a node that
+/// is the a-th of one cell and the b-th of another gets the forces of the two in the order of the cells.
 type Order<const N: usize> = [u8; N];
 
 impl<const N: usize> ContiguousCells<N> {
@@ -22,7 +22,7 @@ impl<const N: usize> ContiguousCells<N> {
         Self(cells.as_chunks::<SIDE_BY_SIDE>().0.iter().map(order).collect())
     }
 
-    /// The order of the nodes of the cells side by side from number `block` of these on, if they are in a row.
+    /// The order of the nodes of the cells in a `block`, if they are in a row.
     #[inline(always)]
     pub(super) fn at(&self, block: usize) -> Option<&Order<N>> {
         self.0.get(block)?.as_ref()
@@ -36,7 +36,7 @@ fn order<const N: usize>(cells: &[[usize; N]; SIDE_BY_SIDE]) -> Option<Order<N>>
     cells.windows(2).all(numbered_on).then_some(order)
 }
 
-/// As many of `vectors` as a register holds, less as many of `others`, by their components.
+/// As many of `vectors` as a register holds, minus as many of `others`, by their components.
 #[inline(always)]
 pub(super) fn differences<S: Simd, const D: usize>(
     simd: S,
@@ -76,7 +76,7 @@ pub(super) fn vectors<S: Simd, const D: usize>(
     vectors
 }
 
-/// Subtracts `vectors` from as many as a register holds.
+/// Subtracts `vectors` from the first of `from`, as many as a register holds.
 #[inline(always)]
 pub(super) fn subtract<S: Simd, const D: usize>(
     simd: S,
@@ -107,8 +107,8 @@ mod tests {
     use crate::elements::mesh::{Cells, Mesh, SolidCells};
     use crate::studies::samples::SQUARE_MATERIAL;
 
-    /// The forces of cells in a row and of the same cells one by one are the same to the last bit: each node gets them in the
-    /// same order. A region begins and ends within a row.
+    /// The forces of cells in a row and of the same cells one by one are the same to the last bit: each node
+    /// gets them in the same order. A region begins and ends within a row.
     fn are_those_of_single_cells<
         C: ReferenceCell<N, M>,
         const N: usize,

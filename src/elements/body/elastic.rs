@@ -85,8 +85,9 @@ impl Body {
         (terms.elastic || terms.viscous).then_some(Elastic { elements, regions, terms })
     }
 
-    /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of K has some 7
-    /// blocks in a mesh of triangles, and 15 in one of tetrahedra, each of which adds up in its turn.
+    /// The forces -K u and -B v element by element, where that is less work than with the matrices: a row of
+    /// K has some 7 blocks in a mesh of triangles, and 15 in one of tetrahedra, which are added up one after
+    /// the other.
     pub(crate) fn linear_by_cells(&self) -> Option<LinearByCells> {
         let terms = Terms {
             elastic: self.constant_stiffness().is_some(),

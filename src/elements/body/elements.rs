@@ -4,7 +4,7 @@
 //! loop over these points: -sum w P g_a, with the first Piola stress P that the material's law gives for
 //! H (and its rate, if the law is viscous). Tangents are loops over the derivatives of P, likewise.
 //!
-//! What elements are good for is in chapters: their inertia, forces, tangents and fields.
+//! Inertia, forces, tangents and fields of the elements are modules of their own.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
@@ -24,29 +24,32 @@ use crate::elements::mesh::Mesh;
 /// Elements of `N` nodes, dimension `M` and `Q` strain points in a space of dimension `D`.
 pub(super) struct ElementsOf<const N: usize, const M: usize, const D: usize, const Q: usize> {
     pub(super) nodes: Vec<[usize; N]>,
-    /// For each cell the entries of all pairs of its nodes in the pattern of the body, by which tangents are added up.
+    /// For each cell the entries of all pairs of its nodes in the pattern of the body, to which tangents are
+    /// added.
     pub(super) entries: Vec<[[u32; N]; N]>,
-    /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes times section.
-    /// Cells that are missing at the end repeat the last one.
+    /// Strain points of [`SIDE_BY_SIDE`] cells each, those of the same cells one after the other; volumes
+    /// times section. Cells that are missing at the end repeat the last one.
     points: Vec<StrainPoint<Packed, N, M, D>>,
     /// Shape functions at the strain points of a cell.
     pub(super) values: [[f64; N]; Q],
-    /// What values at the strain points of a cell count for at each of its nodes.
+    /// The weights by which values at the strain points of a cell are extrapolated to its nodes.
     pub(super) extrapolation: [[f64; Q]; N],
     /// For each cell, sum w N_a N_b (m^3).
     pub(super) products: Vec<[[f64; N]; N]>,
     pub(super) quadratic: bool,
-    /// Whether what resists a change of volume takes the mean of that over each cell.
+    /// Whether a change of volume is resisted in the mean over each cell.
     pub(super) mean_dilatation: bool,
     pub(super) shares: Partition,
     pub(super) rows: ContiguousCells<N>,
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Whether a mean dilatation is something else than that of the points; where it is not, no loops are compiled for it.
+    /// Whether a mean dilatation differs from that of the points; where it does not, no loops are compiled
+    /// for it.
     pub(super) const CAN_LOCK: bool = M == D && M > 1 && Q > 1;
 
-    /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness of the body.
+    /// The elements on the cells of `mesh`, whose nodes `pattern` couples; `section` is the area or thickness
+    /// of the body.
     pub(super) fn new<C: ReferenceCell<N, M>>(
         mesh: &Mesh,
         section: f64,
@@ -100,8 +103,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         })
     }
 
-    /// Elements of one dimension on the nodes of some of these cells, with strain points of their own, on a mesh of `node_count`
-    /// nodes.
+    /// Elements of one dimension on the nodes of some of these cells, with strain points of their own, on a
+    /// mesh of `node_count` nodes.
     pub(super) fn with_points(
         &self,
         cells: &[usize],
@@ -123,7 +126,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         }
     }
 
-    /// The strain points of [`SIDE_BY_SIDE`] cells at once, from those of the first cells on.
+    /// The strain points, packed for blocks of [`SIDE_BY_SIDE`] cells.
     pub(super) fn abreast(&self) -> &[[StrainPoint<Packed, N, M, D>; Q]] {
         self.points.as_chunks::<Q>().0
     }
@@ -137,7 +140,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
 }
 
 impl<const N: usize, const M: usize, const D: usize> StrainPoint<Packed, N, M, D> {
-    /// Those of as many cells as a register holds, from number `part` of these registers.
+    /// The points of as many cells as a register holds: of the registers of these cells, number `part`.
     #[inline(always)]
     pub(super) fn lane<S: Simd>(&self, simd: S, part: usize) -> StrainPoint<Lane<S>, N, M, D> {
         let zero = Lane::splat(simd, 0.0);
@@ -153,7 +156,7 @@ impl<const N: usize, const M: usize, const D: usize> StrainPoint<Packed, N, M, D
         StrainPoint { gradients, frame, volume: Lane::load(simd, &self.volume.0, part) }
     }
 
-    /// That of one of the cells.
+    /// The point of one of the cells.
     #[inline(always)]
     fn of_cell(&self, lane: usize) -> StrainPoint<f64, N, M, D> {
         let (mut gradients, mut frame) = ([[0.0; M]; N], [[0.0; D]; M]);
@@ -191,8 +194,8 @@ fn side_by_side<const N: usize, const M: usize, const D: usize, const Q: usize>(
     lanes
 }
 
-/// H = sum x_a g_a^T, with the vectors x of the nodes from number `first` on and the gradients g of their shape functions:
-/// from 1 on, if they are relative to that of the first node.
+/// H = sum x_a g_a^T, with the vectors x of the nodes from number `first` on and the gradients g of their
+/// shape functions. `first` is 1 if the vectors are relative to that of the first node.
 #[inline(always)]
 pub(super) fn gradient<T: Real, const N: usize, const M: usize, const D: usize>(
     first: usize,

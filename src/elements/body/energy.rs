@@ -10,7 +10,7 @@ use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::elements::material::{CellLaw, Deformation, Elastic};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Strain energy (J), added up in the order of cells, whatever the machine computes at once.
+    /// Strain energy (J), added up in the order of cells, however many the machine computes at once.
     pub(super) fn strain_energy(&self, regions: &Regions, u: &[f64]) -> f64 {
         let all = 0..self.nodes.len();
         regions.runs(&all).fold(0.0, |sum, (cells, laws)| match &laws.elastic {
@@ -32,13 +32,13 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
-/// The energy of a run of cells of one law, compiled for each kind of machine.
+/// The energy of a run of cells of one law, compiled for each instruction set.
 struct Pass<'a, L, const N: usize, const M: usize, const D: usize, const Q: usize> {
     elements: &'a ElementsOf<N, M, D, Q>,
     cells: Range<usize>,
     u: &'a [[f64; D]],
     law: &'a L,
-    /// That of the cells before.
+    /// The energy of the cells before.
     sum: f64,
 }
 
@@ -92,8 +92,8 @@ mod tests {
     use crate::elements::mesh::{Cells, Mesh, SolidCells};
     use crate::studies::samples::SQUARE_MATERIAL;
 
-    /// Against the energy densities of the cells, each computed by itself, on meshes that fill no whole number of registers
-    /// and change the material within one.
+    /// Against the energy densities of the cells, each computed by itself, on meshes that fill no whole
+    /// number of registers and change the material within one.
     #[test]
     fn energies_of_cells_add_up() {
         let meshes = [

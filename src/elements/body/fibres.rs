@@ -1,7 +1,7 @@
 //! The fibres of a body: strings through the strain points of its cells.
 //!
-//! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the same nodes: its
-//! gradients are those of the shape functions along it, and its frame is its direction.
+//! A fibre at a point of a cell sees one direction of the strain there. It is a cell of one dimension on the
+//! same nodes: its gradients are those of the shape functions along it, and its frame is its direction.
 
 use super::elements::ElementsOf;
 use super::forces::ElasticStress;
@@ -29,7 +29,8 @@ pub(super) trait Reinforced {
 pub(super) trait Strings: Send + Sync {
     fn add_forces(&self, law: &Fibre, u: &[f64], forces: &mut [f64]) -> Result<(), Failure>;
 
-    /// Adds tangents to the stiffness; the rows of the damping are shared out alike.
+    /// Adds tangents to the stiffness. The damping does not change: its rows are only divided among threads
+    /// with those of the stiffness.
     fn add_tangents(
         &self,
         law: &Fibre,
@@ -65,7 +66,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Reinforced
                     point.frame[j].iter().zip(&direction).map(|(e, d)| e * d).sum()
                 });
                 let length = dot(&own, &own).sqrt();
-                // what is left of a unit vector by rounding
+                // round-off of the components of a unit vector
                 if length < 1e-9 {
                     let help = "fibres have no direction there: move their axis out of the cell, turn them into the membrane, or \
                                 give them a region of their own";

@@ -1,4 +1,4 @@
-//! Strain, stress and energy density of the cells, to look at.
+//! Strain, stress and energy density of the cells, for output.
 //!
 //! Tensors are those of the three-dimensional body that a cell stands for. With the frame F_0, E and
 //! S of a cell, and n its unit normals (none in a solid, one in a plane or membrane, two in a string):
@@ -27,31 +27,36 @@ use crate::elements::material::{Deformation, ElasticLaw, Strain, with_law};
 /// Strain, stress and strain energy density of one cell: means over its natural volume.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellField {
-    /// Cauchy's or Green's strain, as the body's; a tensor along the axes of space. Strains across
+    /// Cauchy's or Green's strain, as the body measures it; a tensor along the axes of space. Strains across
     /// cells in plane stress and across strings are those that leave them without stress.
     pub strain: [[f64; 3]; 3],
-    /// Stress (Pa), a tensor along the axes of space. With Green strain it is the true stress, force
-    /// per present area; thickness and cross-section of cells that do not fill space count as they were in the undeformed shape
-    /// in St. Venant-Kirchhoff material, and as they are with the laws of rubber.
-    /// It is that of the elasticity alone: what Maxwell branches pull with hangs on what went before, and not on the shape.
+    /// Stress (Pa), a tensor along the axes of space. With Green strain it is the true stress, force per
+    /// present area; thickness and cross-section of cells that do not fill space count as they were in the
+    /// undeformed shape in St. Venant-Kirchhoff material, and as deformed with the other laws. It is the
+    /// stress of the elasticity alone: that of Maxwell branches depends on earlier deformations, and not on
+    /// the shape.
     pub stress: [[f64; 3]; 3],
     /// Strain energy per natural volume (J/m^3), of the elasticity alone.
     pub energy_density: f64,
 }
 
 impl CellField {
-    /// The stress of von Mises (Pa): sqrt(3/2) times the norm of the stress without its mean pressure.
+    /// The von Mises stress (Pa): sqrt(3/2) times the norm of the stress without its mean pressure.
     pub fn von_mises(&self) -> f64 {
         von_mises(&self.stress)
     }
 
-    /// The pressure (Pa): the mean normal stress with the other sign, above 0 where the body is pressed together.
+    /// The pressure (Pa): the mean normal stress with the other sign, above 0 where the body is pressed
+    /// together.
     pub fn pressure(&self) -> f64 {
         -Matrix3::from(self.stress).trace() / 3.0
     }
 
-    /// The principal stretches (1), the largest first: how many times as long as before fibres along the principal axes of the strain
-    /// are. `strain` is the measure of the body: of Green's strain E they are sqrt(1 + 2 E), of Cauchy's 1 more than it.
+    /// The principal stretches (1), the largest first: ratios of present to natural length along the
+    /// principal axes of the strain.
+    ///
+    /// `strain` is the measure of the body: the stretches are sqrt(1 + 2 E) of Green's strain E, and 1 + E of
+    /// Cauchy's.
     pub fn stretches(&self, strain: Strain) -> [f64; 3] {
         let principal = Matrix3::from(self.strain).symmetric_eigenvalues();
         let mut stretches = principal.map(|value| match strain {
@@ -63,7 +68,7 @@ impl CellField {
     }
 }
 
-/// The stress of von Mises (Pa) that a stress comes to.
+/// The von Mises stress (Pa) of a stress.
 pub(crate) fn von_mises(stress: &[[f64; 3]; 3]) -> f64 {
     let stress = Matrix3::from(*stress);
     let deviator = stress - Matrix3::identity() * (stress.trace() / 3.0);
@@ -78,7 +83,8 @@ pub(super) trait Fields {
     /// Strain, stress and energy density of each cell.
     fn fields(&self, regions: &Regions, u: &[f64]) -> Vec<CellField>;
 
-    /// Shows `see` the number of each node of a cell, its number among the nodes of the cell, and the tensors there.
+    /// Calls `see` with the number of each node of a cell, its number among the nodes of the cell, and the
+    /// tensors there.
     fn each_node(
         &self,
         regions: &Regions,
@@ -93,7 +99,7 @@ pub(super) trait Fields {
     /// Cells with det F <= 0 somewhere; none where cells do not fill space.
     fn inverted(&self, u: &[f64]) -> Vec<usize>;
 
-    /// Present over natural volume of each cell.
+    /// Ratio of present to natural volume of each cell.
     fn volume_ratios(&self, u: &[f64]) -> Vec<f64>;
 
     /// Natural volume of each cell (m^3).
@@ -190,7 +196,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
-/// What a mean dilatation says at the points of its cell.
+/// What a mean dilatation gives at the points of its cell.
 #[derive(Clone, Copy)]
 struct OfMean {
     /// U' there, and U (J/m^3).
@@ -199,7 +205,7 @@ struct OfMean {
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// That of a cell, if its mean dilatation counts.
+    /// The values for a cell, if it has a mean dilatation.
     fn pull_on<L: ElasticLaw>(&self, law: &L, cell: usize, u: &[f64]) -> Option<OfMean> {
         let of_mean = || {
             let sums = self.deformed(cell, u).fold([0.0; 2], |[sum, whole], (volume, at)| {
@@ -226,7 +232,7 @@ impl Tensors {
         self.stress += other.stress * share;
     }
 
-    /// Strain and stress, of which this is `weight` times as much.
+    /// Strain and stress: this sum divided by `weight`.
     fn over(&self, weight: f64) -> [[[f64; 3]; 3]; 2] {
         let tensor = |sum: Matrix3<f64>| ((sum + sum.transpose()) / (2.0 * weight)).into();
         [tensor(self.strain), tensor(self.stress)]
@@ -298,8 +304,8 @@ fn normal<const M: usize>(frame: &SMatrix<f64, 3, M>) -> Vector3<f64> {
     }
 }
 
-/// Angle (rad) of the rotation nearest to the map `a` of a cell of dimension `M`; of a segment, which `a` maps along
-/// its tangent alone, the angle between its tangents.
+/// Angle (rad) of the rotation nearest to the map `a` of a cell of dimension `M`; of a segment, which `a`
+/// maps along its tangent alone, the angle between its tangents.
 fn rotation<const M: usize>(a: &Matrix3<f64>) -> f64 {
     if M == 1 {
         return (a.trace() / a.norm()).clamp(-1.0, 1.0).acos();
@@ -323,7 +329,7 @@ fn rotation<const M: usize>(a: &Matrix3<f64>) -> f64 {
 fn normal_part<const M: usize>(frame: &SMatrix<f64, 3, M>) -> Matrix3<f64> {
     match frame.tr_mul(frame).try_inverse() {
         Some(inverse) if M < 3 => Matrix3::identity() - frame * inverse * frame.transpose(),
-        // nothing is across a solid; what is across a cell pressed flat has no direction
+        // a solid has no normals; those of a cell pressed flat are undefined
         _ => Matrix3::zeros(),
     }
 }

@@ -1,14 +1,13 @@
 //! The forces of all elements: the loop in which explicit methods spend their time.
 //!
-//! It is compiled for each kind of machine (`pulp`), which computes as many cells at once as its registers hold numbers;
-//! the forces of these cells are added to each node in the order of the cells: one cell after the other, or for cells in a row
-//! (`rows`) one of their nodes after the other. So results are the same to the last bit on
-//! all machines. What the loop calls has to be compiled in place: a function of its own would be one for the
-//! oldest machine.
+//! It is compiled for each instruction set (`pulp`), and computes as many cells at once as a register holds
+//! numbers. The forces of these cells are added to each node in the order of the cells: cell by cell, or for
+//! cells in a row (`contiguous`) node by node. So results are the same to the last bit on all machines. What
+//! the loop calls has to be inlined: a separate function would be compiled for the oldest instruction set.
 //!
-//! The shape functions of a cell add up to 1 and their gradients to 0. So displacements count
-//! relative to the first node, whose force balances those on the others: less work, and forces far
-//! from home are as precise as there.
+//! The shape functions of a cell add up to 1 and their gradients to 0. So displacements are taken relative to
+//! the first node, whose force balances those on the others: this is less work, and forces stay as precise
+//! when the body has moved far.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
@@ -135,8 +134,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Forces
 }
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// Calls `add` for all runs of cells with the forces on each share of the nodes and the first of
-    /// these, on threads if there are several shares.
+    /// Calls `add` for all runs of cells of each share of the nodes, with the first of these nodes and the
+    /// forces on them; on threads if there are several shares.
     pub(super) fn share_out(
         &self,
         forces: &mut [f64],
@@ -154,8 +153,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         failed.map_or(Ok(()), Err)
     }
 
-    /// Adds the forces of `cells` to those on the nodes from `first` on, by the `fields` that `pull` asks for: in the order of
-    /// cells, whatever the machine computes at once.
+    /// Adds the forces of `cells` to those on the nodes from `first` on, by the `fields` that `pull`
+    /// requires: in the order of cells, however many the machine computes at once.
     pub(super) fn add<const K: usize>(
         &self,
         cells: Range<usize>,
@@ -167,7 +166,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         Arch::new().dispatch(Pass { elements: self, cells, fields, first, forces, pull })
     }
 
-    /// Says what is wrong with the first of `cells` that is outside the domain.
+    /// Fails with a message about the first of `cells` that is outside the domain of its law.
     #[cold]
     fn outside<const K: usize>(
         &self,
@@ -183,7 +182,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
                 let gradients = gradients(1, &x, &point.gradients);
                 let at = Deformation::new(point.frame, gradients[0]);
                 let (_, domain) = pull.stress(&at, &gradients, None, point.volume);
-                // which NaN is not
+                // false for NaN
                 let is_inside = domain > 0.0;
                 if !is_inside {
                     let (nodes, problem) = (nodes.map(|node| node + 1), pull.outside(domain));
@@ -196,7 +195,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
     }
 }
 
-/// The forces of a run of cells of one law, compiled for each kind of machine.
+/// The forces of a run of cells of one law, compiled for each instruction set.
 struct Pass<'a, P, const N: usize, const M: usize, const D: usize, const Q: usize, const K: usize> {
     elements: &'a ElementsOf<N, M, D, Q>,
     cells: Range<usize>,
@@ -331,8 +330,8 @@ fn balance<T: Real, const N: usize, const D: usize>(pulls: &mut [[T; D]; N]) {
     }
 }
 
-/// Subtracts the forces of one cell of a lane from those on a share of the nodes, which begins with node `first`;
-/// the first node of the cell gets what balances the others.
+/// Subtracts the forces of the cell in one lane from those on a share of the nodes, which begins with node
+/// `first`; the first node of the cell gets what balances the others.
 #[inline(always)]
 fn subtract<const N: usize, const D: usize>(
     nodes: &[usize; N],

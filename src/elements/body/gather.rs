@@ -1,4 +1,4 @@
-//! What the nodes of several cells bring to them, in lanes.
+//! The vectors of the nodes of several cells, gathered into lanes.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
@@ -9,8 +9,8 @@ use super::elements::ElementsOf;
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 
 impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<N, M, D, Q> {
-    /// The vectors `x` of the nodes of as many cells as a register holds, from cell `start` on, less those of their first
-    /// nodes. Cells that are missing at the end repeat the last one.
+    /// The vectors `x` of the nodes of as many cells as a register holds, from cell `start` on, minus those
+    /// of their first nodes. Cells that are missing at the end repeat the last one.
     #[inline(always)]
     pub(super) fn gather<S: Simd>(
         &self,
@@ -49,7 +49,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         gathered
     }
 
-    /// The same of cells in a row.
+    /// The same for cells in a row.
     #[inline(always)]
     fn gather_row<S: Simd>(&self, simd: S, start: usize, x: &[[f64; D]]) -> [[Lane<S>; D]; N] {
         let nodes = &self.nodes[start];

@@ -7,12 +7,12 @@ use crate::base::sparse::NodeMatrix;
 /// How the inertia of the cells is shared out among their nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Inertia {
-    /// M as the shape functions have it: nodes of one cell share inertia.
+    /// M as it follows from the shape functions: inertia couples the nodes of a cell.
     #[default]
     Consistent,
-    /// All mass in the nodes, so that M is diagonal: what makes explicit methods cheap. Other
-    /// equations than the consistent ones, with lower frequencies: both tend to the same motion
-    /// when the mesh is refined.
+    /// All mass in the nodes, so that M is diagonal, which makes explicit methods cheap. The equations are
+    /// not the consistent ones, and have lower frequencies; both converge to the same motion when the mesh is
+    /// refined.
     ///
     /// Nodes of linear cells get the integrals of their shape functions (row sums). At corners of
     /// quadratic cells those are 0 or below, so nodes of these get the diagonal of the consistent
@@ -23,7 +23,8 @@ pub enum Inertia {
 
 /// Elements as masses.
 pub(super) trait Masses {
-    /// Adds the inertia of all cells to `matrix`, `sharing` telling how, with what `density` (kg/m^3) makes of their laws.
+    /// Adds the inertia of all cells to `matrix`, shared out as `sharing` says, with the `density` (kg/m^3)
+    /// of their laws.
     fn add_inertia(
         &self,
         regions: &Regions,
@@ -56,8 +57,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Masses
     }
 }
 
-/// `products` as a diagonal matrix with the same sum: its row sums, or those of quadratic cells
-/// being 0 or below at corners, its scaled diagonal.
+/// `products` as a diagonal matrix with the same sum: its row sums or, for quadratic cells, whose row sums
+/// are 0 or below at corners, its scaled diagonal.
 fn lumped<const N: usize>(products: &[[f64; N]; N], quadratic: bool) -> [[f64; N]; N] {
     let row_sums = products.map(|row| row.iter().sum::<f64>());
     let trace: f64 = (0..N).map(|a| products[a][a]).sum();

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use crate::base::sparse::Rows;
 
-/// Nodes from which threads pay: some 100 microseconds of work.
+/// Number of nodes from which threads pay off: some 100 microseconds of work.
 const LARGE: usize = 4000;
 /// Numbers of shares that are tried, and the part of the cells that may be computed twice.
 const NUMBERS: [usize; 4] = [64, 32, 16, 8];

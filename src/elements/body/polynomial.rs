@@ -21,7 +21,7 @@ use crate::base::input::InputError;
 use crate::base::sparse::BlockMatrix;
 use crate::elements::mesh::CellKind;
 
-/// Most nodes whose numbers fit three into 64 bits.
+/// Most nodes for which three node numbers fit into 64 bits.
 const MOST_NODES: usize = (1 << 21) - 2;
 
 /// The coefficient matrices of the second and third order.
@@ -43,9 +43,10 @@ pub enum Coefficients {
     C,
 }
 
-/// Green forces of a body of triangles by direct computation: a second way to the forces that
-/// [`Body::add_elastic_forces`] of a body with Green strain sums up cell by cell, equal to it but for
-/// round-off.
+/// Green forces of a body of triangles by direct computation.
+///
+/// It is a second way to compute the forces that [`Body::add_elastic_forces`] of a body with Green strain
+/// sums up cell by cell; both are equal but for round-off.
 ///
 /// It does not notice cells that are inverted.
 ///
@@ -137,7 +138,7 @@ impl GreenPolynomial {
         }
         let cells: Vec<[usize; 3]> = mesh.cells().map(|cell| [cell[0], cell[1], cell[2]]).collect();
 
-        // (n_p + 1)-base numbers of the suffixes; their order is the lexicographic one
+        // the suffixes as a number to the base n_p + 1; the order of these is the lexicographic one
         let base = nodes as u64 + 1;
         let number = |suffixes: &[usize]| {
             suffixes.iter().fold(0, |number, &node| base * number + node as u64 + 1)

@@ -1,4 +1,4 @@
-//! How a body is made of a mesh.
+//! The options by which a body is made of a mesh.
 
 use super::dilatation::Dilatation;
 use super::inertia::Inertia;
@@ -7,7 +7,7 @@ use crate::base::input::{InputError, positive};
 use crate::elements::material::{Plane, Strain, Substance, Viscosity};
 use crate::elements::mesh::Mesh;
 
-/// What is made of a mesh.
+/// The options of a body.
 #[derive(Debug, Clone)]
 pub(super) struct Recipe {
     pub(super) material: Substance,
@@ -23,7 +23,7 @@ pub(super) struct Recipe {
 }
 
 impl Recipe {
-    /// Thickness (m) or cross section (m^2), as the cells of `mesh` have it; 1 of solids.
+    /// Thickness (m) or cross section (m^2) of the cells of `mesh`; 1 for solids.
     ///
     /// # Errors
     /// One that is missing, or that such cells do not have.

@@ -1,8 +1,8 @@
-//! How far strains jump from cell to cell: the error of a mesh, measured on the result.
+//! How far strains jump from cell to cell: an estimate, from the result, of the error that the mesh causes.
 //!
-//! Zienkiewicz and Zhu's estimate (Int. J. Numer. Meth. Eng. 24, 1987): strains of linear cells are wrong by about as much as
-//! they differ from a continuous field, the mean at each node of what the cells around it say there. Each
-//! material has a mean of its own, for strains do jump where materials meet.
+//! Zienkiewicz and Zhu's estimate (Int. J. Numer. Meth. Eng. 24, 1987): the error of the strains of linear
+//! cells is about their difference from a continuous field, which at each node is the mean of the cells
+//! around it. Each material has its own mean, for strains do jump where materials meet.
 
 use super::elements::ElementsOf;
 use super::regions::Regions;
@@ -11,8 +11,9 @@ use crate::elements::material::{Deformation, Strain};
 
 /// Elements whose strains can be made continuous.
 pub(super) trait Recovery {
-    /// Strain energy (J), and that of the difference between the strain and its continuous mean, both by Hooke's
-    /// law of small strains, without what resists a change of volume if that takes the mean over each cell.
+    /// Strain energy (J), and that of the difference between the strain and its continuous mean, both by
+    /// Hooke's law of small strains, and without the energy of a change of volume if that is resisted in the
+    /// mean over each cell.
     fn jumps(&self, regions: &Regions, strain: Strain, u: &[f64]) -> [f64; 2];
 }
 
@@ -26,7 +27,7 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> Recovery
             for &cell in &cells {
                 let mut hooke = regions.of(cell).hooke;
                 if self.mean_dilatation {
-                    // the volume changes at points as it likes
+                    // nothing resists a change of volume at the points
                     hooke = hooke.of_shear();
                 }
                 for ((volume, own), values) in self.strains(cell, strain, u).zip(&self.values) {
@@ -60,7 +61,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         })
     }
 
-    /// Means at the nodes of twice the strain that the `cells` around them have there, by their volumes.
+    /// Means at the nodes of twice the strain that the `cells` around them have there, weighted by their
+    /// volumes.
     fn means(&self, cells: &[usize], strain: Strain, u: &[f64]) -> Vec<Matrix<f64, M, M>> {
         let count = u.len() / D;
         let (mut means, mut volumes) = (vec![[[0.0; M]; M]; count], vec![0.0; count]);

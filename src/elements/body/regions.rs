@@ -95,7 +95,7 @@ impl CellSelection {
     }
 }
 
-/// What the elements of a region take: density (kg/m^3), rate of mass damping (1/s), laws and branches.
+/// What the elements of a region need: density (kg/m^3), rate of mass damping (1/s), laws and branches.
 #[derive(Debug, Clone)]
 pub(super) struct Laws {
     pub(super) density: f64,
@@ -125,7 +125,7 @@ pub(super) struct Regions {
 }
 
 impl Regions {
-    /// `base` everywhere but in `regions`, of which the last one that holds a cell counts.
+    /// `base` everywhere but in `regions`, of which the last one that contains a cell counts.
     pub(super) fn new(
         mesh: &Mesh,
         strain: Strain,

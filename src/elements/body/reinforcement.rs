@@ -14,7 +14,7 @@ use crate::integrators::ode::Failure;
 /// The families of fibres of a body, each with its law.
 pub(super) type Families = Vec<(Box<dyn Strings>, Fibre)>;
 
-/// Those of substances in the cells of each.
+/// The families of `substances`, each in the cells of its substance.
 pub(super) fn families<'a>(
     mesh: &Mesh,
     elements: &dyn Elements,
@@ -33,7 +33,7 @@ pub(super) fn families<'a>(
     Ok(families)
 }
 
-/// Adds what families of fibres do around the undeformed shape.
+/// Adds the tangents of families of fibres in the undeformed shape.
 pub(super) fn add_at_rest(
     families: &Families,
     dofs: usize,

@@ -23,13 +23,13 @@ impl Branches {
         self.regions.branches().map(|branch| 1.0 / branch.time).fold(0.0, f64::max)
     }
 
-    /// Writes the internal strains with which nothing pulls at the displacements `u` (m).
+    /// Writes the internal strains with which the branches have no stress at the displacements `u` (m).
     pub(crate) fn relax(&self, u: &[f64], internal: &mut [f64]) {
         self.elements.relax(&self.regions, u, internal);
     }
 
-    /// Adds the forces (N) at the displacements `u` (m), and writes the rates (1/s) of the internal strains; gives the
-    /// power (W) that is dissipated.
+    /// Adds the forces (N) at the displacements `u` (m), and writes the rates (1/s) of the internal strains;
+    /// returns the power (W) that is dissipated.
     pub(crate) fn add_forces(
         &self,
         u: &[f64],
@@ -45,7 +45,7 @@ impl Branches {
         self.elements.branch_energy(&self.regions, u, internal)
     }
 
-    /// Adds the stiffness that a step of the parameter `gamma` (s) feels, at once if that is 0.
+    /// Adds the stiffness of the branches in a step of the parameter `gamma` (s); 0 is a sudden change.
     pub(crate) fn add_tangents(
         &self,
         gamma: f64,
@@ -56,7 +56,8 @@ impl Branches {
         self.elements.add_branch_tangents(&self.regions, gamma, [u, internal], stiffness);
     }
 
-    /// Adds gamma sum B^T C P rG, of the `residuals` rG, in a step from the displacements and internal strains `at`.
+    /// Adds gamma sum B^T C P rG, of the `residuals` rG, in a step from the displacements and internal
+    /// strains `at`.
     pub(crate) fn add_residuals(
         &self,
         gamma: f64,
@@ -67,8 +68,9 @@ impl Branches {
         self.elements.add_branch_residuals(&self.regions, gamma, at, residuals, right);
     }
 
-    /// Makes xG of the residuals `x`, with the changes `xu` of the displacements; gives how the power dissipated (W) changes
-    /// from where the internal strains had the `rates`: exactly under small strains and without a yield stress.
+    /// Turns the residuals `x` into xG, with the changes `xu` of the displacements. Returns the change of the
+    /// dissipated power (W) from where the internal strains had the `rates`; it is exact under small strains
+    /// and without a yield stress.
     pub(crate) fn solve(
         &self,
         gamma: f64,

@@ -1,9 +1,9 @@
 //! The tangents of all elements, and the constant matrices, which are tangents at rest.
 //!
-//! Tangents are computed as forces are: compiled for each kind of machine, several cells at once, in an order of
-//! additions that is the same on all machines. Those of a cell are summed up over its points, and added to the matrix once.
-//! The gradients of a cell add up to 0, and so do the rows and columns of its tangent: the blocks of its first node
-//! balance the others. Of a symmetric tangent half of the blocks are computed.
+//! Tangents are computed as forces are: compiled for each instruction set, several cells at once, in an order
+//! of additions that is the same on all machines. Those of a cell are summed up over its points, and added to
+//! the matrix once. The gradients of a cell add up to 0, and so do the rows and columns of its tangent: the
+//! blocks of its first node balance the others. Of a symmetric tangent half of the blocks are computed.
 
 use std::ops::Range;
 
@@ -27,7 +27,8 @@ use tangent::{OfMean, RateTangent, TangentTerm, ViscousTangent};
 
 /// Elements as matrices.
 pub(super) trait Tangents {
-    /// Adds the tangents at rest of the law that `law` tells: sum w (lambda g_a g_b^T + mu ((g_a . g_b) I + g_b g_a^T)).
+    /// Adds the tangents at rest of the law that `law` returns: sum w (lambda g_a g_b^T + mu ((g_a . g_b)
+    /// I + g_b g_a^T)).
     fn add_stiffness(
         &self,
         regions: &Regions,
@@ -143,7 +144,8 @@ impl<const N: usize, const M: usize, const D: usize, const Q: usize> ElementsOf<
         }
     }
 
-    /// Adds the tangents of `cells`, cell after cell, to the rows of a matrix, by the `fields` that `slope` asks for.
+    /// Adds the tangents of `cells`, cell after cell, to the rows of a matrix, by the `fields` that `slope`
+    /// requires.
     pub(super) fn add_to<const K: usize>(
         &self,
         rows: &mut Rows<'_, D>,

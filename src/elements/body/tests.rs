@@ -72,8 +72,8 @@ fn bodies_with(strain: Strain, inertia: Inertia) -> Vec<(String, Body)> {
     bodies
 }
 
-/// The corners of a solid and the middles of its edges, off by `bend` or less. (The strain points of bent hexahedra do not count
-/// their volumes exactly.)
+/// The corners of a solid and the middles of its edges, off by `bend` or less. (The strain points of bent
+/// hexahedra do not integrate their volumes exactly.)
 fn with_mid_nodes(kind: CellKind, corners: &[f64], bend: f64) -> Vec<f64> {
     let mut positions = corners.to_vec();
     for (k, edge) in kind.edges().iter().enumerate() {
@@ -194,7 +194,7 @@ fn at_rest_the_tangents_are_k_and_b() {
     }
 }
 
-/// Two ways to linear forces: element by element, and by the assembled K.
+/// Two ways to compute linear forces: element by element, and by the assembled K.
 #[test]
 fn elastic_forces_of_cauchy_bodies_are_k_u() {
     for (name, body) in bodies(Strain::Cauchy) {
@@ -209,7 +209,7 @@ fn elastic_forces_of_cauchy_bodies_are_k_u() {
     }
 }
 
-/// -K u, -B v and the energy of a scene whose cells are simple, by its system, against its matrices.
+/// -K u, -B v and the energy of bodies whose linear forces are computed cell by cell, against their matrices.
 #[test]
 fn linear_forces_by_cells_are_those_of_the_matrices() {
     for (name, body) in bodies(Strain::Cauchy) {
@@ -301,7 +301,7 @@ fn a_point_mass_is_a_node_without_cells() {
     assert!(Arc::ptr_eq(body.inertia().pattern(), body.stiffness().pattern()));
 }
 
-/// Lumping keeps the mass of each body and leaves every node some: with linear shape functions, its
+/// Lumping keeps the mass of each body and gives every node some: with linear shape functions, the sum of its
 /// row of the consistent matrix.
 #[test]
 fn lumped_inertia_is_diagonal_and_all_there() {

@@ -1,4 +1,4 @@
-//! Maxwell branches: springs that relax, beside the elasticity of a substance.
+//! Maxwell branches: springs that relax, parallel to the elasticity of a substance.
 
 use super::deformation::Deformation;
 use super::flow::{Components, Flowing, Step, components, trace};
@@ -9,22 +9,24 @@ use super::{Material, Plane, Strain};
 use crate::base::input::{InputError, not_negative, positive};
 use crate::base::tensor::{Matrix, dot, product, times};
 
-/// A spring and a damper in a row, beside the elasticity of a [`Substance`](crate::Substance): what is strained at once and
-/// kept so pulls by the spring, less and less, as exp(-t/tau).
+/// A spring and a damper in series, parallel to the elasticity of a [`Substance`](crate::Substance).
 ///
-/// Its energy is Hooke's, with g times the material's Young's modulus and the same Poisson's ratio, of the strain E - G: E
-/// is that of the body (Green's, or Cauchy's with Cauchy strain), and G, an unknown at each point of a cell where stress is
-/// computed, goes after it by G' = (E - G)/tau (finite viscoelasticity by internal variables: J. C. Simo, T. J. R. Hughes,
-/// *Computational Inelasticity*, chapter 10). So it is not felt by rigid rotation under Green's strain, and dissipates
-/// S : G' >= 0.
+/// Under a strain that is applied suddenly and kept, the stress of the spring decays as exp(-t/tau).
 ///
-/// With a yield stress Y the damper holds up to it, as dough does and tissue: pressed, held and let go, it keeps part of its shape. With the
-/// von Mises stress q of the spring, G' = max(0, 1 - Y/q) dev(E - G)/tau (P. Perzyna, Advances in Applied Mechanics 9 (1966)
-/// 243-377, with a linear overstress): what shears relaxes to q = Y and no further, and a change of volume not at all.
+/// Its energy is that of Hooke's law for the strain E - G, with g times the material's Young's modulus and
+/// the same Poisson's ratio. E is the strain of the body (Green's, or Cauchy's with Cauchy strain); G, an
+/// unknown at each point of a cell where stress is computed, follows it by G' = (E - G)/tau (finite
+/// viscoelasticity by internal variables: J. C. Simo, T. J. R. Hughes, *Computational Inelasticity*, chapter
+/// 10). So under Green's strain a rigid rotation causes no stress in it, and it dissipates S : G' >= 0.
+///
+/// With a yield stress Y the damper does not move below it, like dough and tissue: pressed, held and
+/// released, these keep part of the deformation. With the von Mises stress q of the spring, G' = max(0,
+/// 1 - Y/q) dev(E - G)/tau (P. Perzyna, Advances in Applied Mechanics 9 (1966) 243-377, with a linear
+/// overstress): the stress of shear relaxes to q = Y and no further, that of a change of volume not at all.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaxwellBranch {
-    /// Share g of stiffness (1), above 0: Young's modulus of the spring over that of the material, which is what is left
-    /// when all has relaxed.
+    /// Share g of stiffness (1), above 0: Young's modulus of the spring over that of the material, which is
+    /// what remains when all branches have relaxed.
     pub share: f64,
     /// Relaxation time tau (s), above 0.
     pub time: f64,
@@ -40,7 +42,7 @@ impl MaxwellBranch {
     }
 }
 
-/// A branch in cells of one dimension.
+/// A branch in cells of a given dimension.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Relaxing {
     hooke: Hooke,
@@ -55,7 +57,7 @@ pub(crate) struct Relaxing {
 pub(crate) struct Strained<const M: usize, const D: usize> {
     /// 2 E
     twice: Matrix<f64, M, M>,
-    /// As it is deformed, or not at all under small strains.
+    /// The deformation of the point; none under small strains.
     shape: Deformation<f64, M, D>,
 }
 
@@ -63,12 +65,12 @@ pub(crate) struct Strained<const M: usize, const D: usize> {
 #[derive(Clone, Copy)]
 pub(crate) struct Stretch {
     pub(crate) strain: Components,
-    /// What resists a change of volume takes this trace: its own, or the mean of that over the cell.
+    /// The trace that the stress of a change of volume takes: that of `strain`, or its mean over the cell.
     pub(crate) trace: f64,
 }
 
 impl Relaxing {
-    /// That of cells of `dimension`.
+    /// The branch in cells of `dimension`.
     pub(crate) fn new(
         branch: &MaxwellBranch,
         material: &Material,
@@ -89,7 +91,7 @@ impl Relaxing {
         components(self.dimension) + usize::from(across)
     }
 
-    /// Whether it holds up to a stress.
+    /// Whether it has a yield stress.
     pub(crate) fn yields(&self) -> bool {
         self.flowing.is_some()
     }
@@ -102,7 +104,7 @@ impl Relaxing {
         }
     }
 
-    /// The heat S : G' of the time tau (J/m^3).
+    /// tau S : G' (J/m^3): the heat S : G' during a time tau.
     pub(crate) fn loss<const M: usize>(&self, apart: &Stretch) -> f64 {
         match &self.flowing {
             None => self.twice_energy::<M>(apart),
@@ -110,7 +112,7 @@ impl Relaxing {
         }
     }
 
-    /// How that changes `from` one strain `to` another: with a yield stress to first order.
+    /// The change of this loss `from` one strain `to` another; to first order with a yield stress.
     pub(crate) fn loss_change<const M: usize>(&self, from: &Stretch, to: &Stretch) -> f64 {
         match &self.flowing {
             None => self.twice_energy::<M>(to) - self.twice_energy::<M>(from),
@@ -121,7 +123,8 @@ impl Relaxing {
         }
     }
 
-    /// What passes to E - G in a step of the parameter `gamma` (s), where it is `apart` now.
+    /// How a change of the strain passes to E - G in a step of the parameter `gamma` (s), where E - G is
+    /// `apart` now.
     pub(crate) fn step<const M: usize>(&self, gamma: f64, apart: &Components) -> Step {
         match &self.flowing {
             None => Step::of_all(1.0 / (1.0 + gamma / self.time)),
@@ -144,7 +147,7 @@ impl Relaxing {
         }
     }
 
-    /// What it resists a change of volume with (Pa).
+    /// Its modulus lambda against a change of volume (Pa).
     pub(crate) fn lambda(&self) -> f64 {
         self.hooke.lame.lambda
     }
@@ -173,8 +176,9 @@ impl Relaxing {
         product(&at.shape.gradient(), &self.second(apart, weight))
     }
 
-    /// The stiffness between nodes, as of [`ElasticLaw::tangent`](super::ElasticLaw::tangent), times `weight`: what a `step`
-    /// feels of that of the spring with `lambda` (Pa) for its own, and what the turning of the stress of E - G adds.
+    /// The stiffness between nodes, as in [`ElasticLaw::tangent`](super::ElasticLaw::tangent), times
+    /// `weight`: that of the spring in a `step`, with `lambda` (Pa) in place of its own, and the geometric
+    /// stiffness of the stress of E - G.
     pub(crate) fn tangent<'a, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Strained<M, D>,
@@ -203,12 +207,12 @@ impl<const M: usize, const D: usize> Strained<M, D> {
         halved(&self.twice)
     }
 
-    /// How E changes with the displacements, whose change has the gradient `h`.
+    /// The change of E with the displacements, whose change has the gradient `h`.
     pub(crate) fn change(&self, h: &Matrix<f64, D, M>) -> Components {
         halved(&self.shape.twice_green_rate(h))
     }
 
-    /// How the trace of E follows the nodes, times `weight`.
+    /// The derivative of the trace of E by the displacements of the nodes, times `weight`.
     pub(crate) fn swelling<const N: usize>(
         &self,
         gradients: &[[f64; M]; N],
@@ -241,7 +245,7 @@ pub(crate) struct Tangent<'a, const N: usize, const M: usize, const D: usize> {
     spread: Spread<'a, f64, N, M, D>,
     /// S g_a, times the weight
     pulls: [[f64; M]; N],
-    /// What the direction of a flow takes off: `drop` times the products of these vectors.
+    /// In the direction of a flow the stiffness is less: by `drop` times the products of these vectors.
     along: [[f64; D]; N],
     drop: f64,
 }

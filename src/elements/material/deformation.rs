@@ -5,7 +5,7 @@
 use crate::base::tensor::{Matrix, Real, determinant, dot, symmetric};
 
 /// The deformation gradient F = F_0 + H of a cell of dimension `M` in a space of dimension `D`, by its
-/// difference H: strains that are written by H keep their digits however small they are.
+/// difference H: strains computed from H lose no digits, however small they are.
 ///
 /// F_0 is the frame of the cell: the identity where the cell fills space (`M == D`), else an orthonormal
 /// frame of its tangent space.
@@ -63,7 +63,7 @@ impl<T: Real, const M: usize, const D: usize> Deformation<T, M, D> {
         symmetric!(f[0][0]; j, k => dot(&f[j], &rate[k]) + dot(&f[k], &rate[j]))
     }
 
-    /// Factor by which F stretches a volume: det F, or its size where the cell does not fill space.
+    /// Factor by which F stretches a volume: det F, or sqrt(det(F^T F)) where the cell does not fill space.
     #[inline(always)]
     pub(crate) fn stretch(&self) -> T {
         let f = self.gradient();

@@ -3,7 +3,7 @@
 use crate::base::input::{InputError, finite, not_negative, positive};
 use crate::base::vector::norm;
 
-/// A family of fibres that stiffens the material it lies in along its course.
+/// A family of fibres that stiffens the material in its direction.
 ///
 /// With the stretch l of a fibre and E = (l^2 - 1) / 2 it adds the strain energy per natural volume
 ///
@@ -11,9 +11,10 @@ use crate::base::vector::norm;
 /// W = (young / (8 k2)) (exp(4 k2 E^2) - 1) if l > 1, else 0
 /// ```
 ///
-/// k2 being `stiffening`, or young E^2 / 2 if that is 0: fibres take tension, and buckle under compression (G. A. Holzapfel, T. C.
-/// Gasser, R. W. Ogden, Journal of Elasticity 61 (2000) 1-48, with k1 = young / 4). Around its undeformed shape a body is as stiff as
-/// with fibres that are stretched. The stress of fields is that of the material between fibres.
+/// k2 is `stiffening`; if that is 0, W is young E^2 / 2. Fibres take tension, and buckle under compression
+/// (G. A. Holzapfel, T. C. Gasser, R. W. Ogden, Journal of Elasticity 61 (2000) 1-48, with k1 = young / 4).
+/// In its undeformed shape a body is as stiff as with stretched fibres. The stress of fields is that of the
+/// material between fibres.
 ///
 /// ```
 /// use pliant::{Body, Fibres, Law, Material, Mesh, SolidCells};
@@ -29,8 +30,8 @@ use crate::base::vector::norm;
 pub struct Fibres {
     /// Which way they run.
     pub course: FibreDirection,
-    /// Young's modulus (Pa, above 0) that they add along their course when they are slightly stretched: that of a fibre, times
-    /// its share of the section.
+    /// Young's modulus (Pa, above 0) that they add in their direction when they are slightly stretched: that
+    /// of a fibre, times its share of the section.
     pub young: f64,
     /// k2 (1, 0 or above): how fast they stiffen.
     pub stiffening: f64,
@@ -39,13 +40,13 @@ pub struct Fibres {
 /// Which way fibres run in the undeformed shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FibreDirection {
-    /// Along this vector, of any length above 0. In membranes it counts as its part along them.
+    /// Along this vector, of any length above 0. In membranes only its component along them counts.
     Along(Vec<f64>),
     /// Around an axis.
     Around {
         /// A point of the axis (m).
         centre: Vec<f64>,
-        /// Its direction, of any length above 0; empty in the plane, where it is across.
+        /// Its direction, of any length above 0; empty in the plane, where it is normal to it.
         axis: Vec<f64>,
         /// Angle (rad) by which they climb along the axis: 0 are rings, others helices.
         pitch: f64,
@@ -58,14 +59,16 @@ impl Fibres {
         Self { course: FibreDirection::Along(direction.into()), young, stiffening: 0.0 }
     }
 
-    /// Rings around the axis through `centre` (m), in the direction of `axis`, with Young's modulus `young` (Pa).
+    /// Rings around the axis through `centre` (m), in the direction of `axis`, with Young's modulus `young`
+    /// (Pa).
     pub fn around(centre: impl Into<Vec<f64>>, axis: impl Into<Vec<f64>>, young: f64) -> Self {
         let course =
             FibreDirection::Around { centre: centre.into(), axis: axis.into(), pitch: 0.0 };
         Self { course, young, stiffening: 0.0 }
     }
 
-    /// The same as helices, which climb along the axis by the angle `pitch` (rad); nothing changes along a vector.
+    /// The same as helices, which climb along the axis by the angle `pitch` (rad); fibres along a vector do
+    /// not change.
     pub fn pitch(mut self, angle: f64) -> Self {
         if let FibreDirection::Around { pitch, .. } = &mut self.course {
             *pitch = angle;
@@ -96,7 +99,7 @@ impl Fibres {
 }
 
 impl FibreDirection {
-    /// Checks that it is one of a space of `dimension`.
+    /// Checks that its vectors are those of a space of `dimension`.
     pub(crate) fn validate_in(&self, dimension: usize) -> Result<(), InputError> {
         let is = |name: &str, vector: &[f64], expected: usize| match vector.len() == expected {
             true => Ok(()),

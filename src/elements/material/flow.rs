@@ -1,8 +1,10 @@
 //! How the internal strain of a branch with a yield stress flows.
 //!
-//! With the spring's stress S, its von Mises stress q and the part Pi S of S that shears, G' = f Pi S / (2 mu tau), f = max(0, 1 - Y/q), is the
-//! gradient of <q - Y>^2 / (6 mu tau) by S. So S : G' >= 0, and with C = dS/dE what a step of gamma leaves, C P = (C^-1 + gamma dG'/dS)^-1, is
-//! symmetric. Isotropic but for the direction of the flow, it is known in closed form: of a strain of n dimensions,
+//! With the spring's stress S, its von Mises stress q and its shearing part Pi S, G' = f Pi S / (2 mu tau),
+//! f = max(0, 1 - Y/q), is the gradient of <q - Y>^2 / (6 mu tau) by S. So S : G' >= 0, and the stiffness in
+//! a step of gamma, C P = (C^-1 + gamma dG'/dS)^-1 with C = dS/dE, is symmetric. It is isotropic but for the
+//! direction of the flow, and has a closed form: for a strain of n dimensions, its spherical part being its
+//! sphere,
 //!
 //! ```text
 //! Pi = I on deviators, (3 - n)/3 on spheres;   q^2 = (3/2) S : Pi S
@@ -10,8 +12,9 @@
 //! 2 mu tau dG'/dS = f Pi + (3 Y / 2 q^3) (Pi S) (Pi S)^T
 //! ```
 //!
-//! n is 3 where the cell fills space, or is held across in plane strain, whose G has a component across. Where there is no stress across a
-//! cell, n is the cell's dimension: Pi S is what Pi of all axes leaves along it, and what happens across follows.
+//! n is 3 where the cell fills space, and in plane strain, where G has a component across the plane. Where
+//! there is no stress across a cell, n is the cell's dimension: Pi S is the part along the cell of Pi S in
+//! three dimensions, and the strain across follows.
 
 use super::hooke::{Hooke, Plane};
 
@@ -20,7 +23,8 @@ pub(crate) const fn components(dimension: usize) -> usize {
     dimension * (dimension + 1) / 2
 }
 
-/// A strain by its components, as [`axes`](super::response::axes) counts them; 0 where cells have none. In the plane the one across comes behind.
+/// A strain by its components, as [`axes`](super::response::axes) counts them; 0 where cells have none. In
+/// the plane the component across comes after the others.
 pub(crate) type Components = [f64; components(3)];
 
 /// Whether a component is on the diagonal, in cells of dimension `M`.
@@ -39,7 +43,8 @@ fn dot<const M: usize>(a: &Components, b: &Components) -> f64 {
     (0..a.len()).map(|v| times(v) * a[v] * b[v]).sum()
 }
 
-/// What of a strain passes to E - G in a step: P X = `part` (X + `swelling` times its sphere - `drop` times `back` (`along` : X)).
+/// How a change X of the strain passes to E - G in a step: P X = `part` (X + `swelling` times its
+/// sphere - `drop` times `back` (`along` : X)).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Step {
     pub(crate) part: f64,
@@ -52,7 +57,7 @@ pub(crate) struct Step {
 }
 
 impl Step {
-    /// Alike for all strains.
+    /// The same `part` of all strains.
     pub(crate) fn of_all(part: f64) -> Self {
         let none = Components::default();
         Self { part, swelling: 0.0, drop: 0.0, along: none, back: none, axes: 3.0 }
@@ -66,13 +71,13 @@ impl Step {
         passed
     }
 
-    /// What a modulus by axes counts for in all of them.
+    /// The lambda that acts like a `modulus` on spheres: `modulus` / n.
     pub(crate) fn of_mean(&self, modulus: f64) -> f64 {
         modulus / self.axes
     }
 }
 
-/// A strain whose sphere and deviator count by so much, in `axes` dimensions.
+/// The strain with its sphere and its deviator times these factors, in `axes` dimensions.
 fn sphered<const M: usize>(
     strain: &Components,
     axes: f64,
@@ -101,7 +106,7 @@ pub(super) struct Flowing {
     share: f64,
 }
 
-/// A strain that flows.
+/// The direction and the von Mises stress of a flow.
 struct Flow {
     /// Pi S / 2 mu
     along: Components,
@@ -146,7 +151,7 @@ impl Flowing {
         (mises - self.yield_stress).max(0.0) * mises / (1.5 * self.shear)
     }
 
-    /// How tau S : G' follows a small change: (2 - Y/q) C Pi D : `change`.
+    /// The change of tau S : G' with a small change of E - G: (2 - Y/q) C Pi S : `change` / (2 mu).
     pub(super) fn loss_change<const M: usize>(
         &self,
         apart: &Components,
@@ -160,7 +165,7 @@ impl Flowing {
         (2.0 - self.yield_stress / mises) * self.shear * dot::<M>(&pull, change)
     }
 
-    /// Of the parameter gamma/tau = `gamma`.
+    /// The step of the parameter gamma/tau = `gamma`.
     pub(super) fn step<const M: usize>(&self, gamma: f64, apart: &Components) -> Step {
         let Flow { along, mises } = self.flow::<M>(apart);
         if mises <= self.yield_stress {

@@ -37,13 +37,13 @@ impl Plane {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hooke {
     pub(crate) lame: Lame,
-    /// What there is across the cell, if it does not fill space.
+    /// What is assumed across the cell, if it does not fill space.
     pub(super) across: Plane,
 }
 
 impl Hooke {
-    /// The law of a cell of `cell_dimension`: cells of lower dimension than space have no stress across
-    /// them, so that a segment stretches with E = lambda + 2 mu exactly.
+    /// The law of a cell of `cell_dimension`: segments have no stress across them, so that they stretch with
+    /// E = lambda + 2 mu exactly; cells of two dimensions are as `plane` says.
     pub(crate) fn new(lame: Lame, cell_dimension: usize, plane: Plane) -> Self {
         let Lame { lambda, mu } = lame;
         let across = if cell_dimension == 1 { Plane::Stress } else { plane };
@@ -57,7 +57,7 @@ impl Hooke {
         Self { lame: Lame { lambda, mu }, across }
     }
 
-    /// What resists a change of volume is left out.
+    /// The same with lambda = 0, without the resistance to a change of volume.
     #[inline(always)]
     pub(crate) fn of_shear(&self) -> Self {
         Self { lame: Lame { lambda: 0.0, ..self.lame }, ..*self }
@@ -75,7 +75,7 @@ impl Hooke {
         self.lame == Lame { lambda: 0.0, mu: 0.0 }
     }
 
-    /// lambda tr(E)^2 / 2 + mu E : E of 2 E
+    /// lambda tr(E)^2 / 2 + mu E : E, given 2 E
     #[inline(always)]
     pub(crate) fn energy<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> T {
         let strain = times(*twice, twice[0][0].constant(0.5));
@@ -87,7 +87,7 @@ impl Hooke {
         trace * (0.5 * self.lame.lambda) * trace + square * self.lame.mu
     }
 
-    /// lambda tr(E) I + 2 mu E, times `weight`, of 2 E, with a `pull` in place of lambda tr(E).
+    /// lambda tr(E) I + 2 mu E, times `weight`, given 2 E; a `pull` takes the place of lambda tr(E).
     #[inline(always)]
     pub(super) fn stress<T: Real, const M: usize>(
         &self,
@@ -119,8 +119,8 @@ impl Hooke {
     }
 }
 
-/// What the change of strain adds to tangents of Hooke's law. What the turning of the stress S adds to them is
-/// g_a . S g_b on the diagonal.
+/// The material part of tangents of Hooke's law. Their geometric part, of the stress S, is g_a . S g_b on the
+/// diagonal.
 pub(super) struct Spread<'a, T, const N: usize, const M: usize, const D: usize> {
     pub(super) gradients: &'a [[T; M]; N],
     /// F g_a

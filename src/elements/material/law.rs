@@ -1,9 +1,9 @@
-//! What a material law is: the one formula for energy, stress and tangent that forces, tangents of
-//! forces and fields take.
+//! What a material law is: the one formula for energy, stress and tangent that forces, tangents of forces and
+//! fields use.
 //!
-//! Laws see one point of a cell of dimension `M`, by its strain in the coordinates of the cell. They are written over a
-//! number `T` that may be a lane of several points, so no branch may depend on a value: where a law has
-//! meaning is a number of its own ([`ElasticLaw::domain`]), apart from its stress.
+//! Laws see one point of a cell of dimension `M`, by its strain in the coordinates of the cell. They are
+//! generic over a number `T` that may be a lane of several points, so no branch may depend on a value: where
+//! a law has meaning is given by a separate number ([`ElasticLaw::domain`]), not by its stress.
 
 use super::deformation::Deformation;
 use crate::base::tensor::{Matrix, Real};
@@ -19,17 +19,18 @@ pub(crate) trait Blocks<T, const D: usize> {
 
 /// A hyperelastic law: strain energy W per natural volume as a function of the strain E, and its derivatives.
 ///
-/// Its resistance to a change of volume is apart, W = W_shape + U(g), with a measure g of the volume that is 0 at rest, so
-/// that U may be given the mean of g over a cell ("mean dilatation") in place of g at each point: then `pull` is U' of that
-/// mean, and else `None`.
+/// Its resistance to a change of volume is a separate term: W = W_shape + U(g), with a measure g of the
+/// volume that is 0 at rest. So U may be given the mean of g over a cell ("mean dilatation") in place of g at
+/// each point; then `pull` is U' of that mean, else `None`.
 pub(crate) trait ElasticLaw {
-    /// Whether strains are taken for small: E is Cauchy's then and else Green's, and natural and present shape count as one.
+    /// Whether strains are taken as small: then E is Cauchy's strain, and natural and present shape count as
+    /// the same; else E is Green's.
     const SMALL_STRAIN: bool = false;
 
-    /// What the formulas share at a point.
+    /// The values at a point that the formulas share.
     type Point<T: Real, const M: usize>;
 
-    /// That of a point with `twice` the strain E.
+    /// These values at a point with `twice` the strain E.
     fn point<T: Real, const M: usize>(&self, twice: Matrix<T, M, M>) -> Self::Point<T, M>;
 
     /// W (J/m^3), with U at the point.
@@ -55,9 +56,10 @@ pub(crate) trait ElasticLaw {
         weight: T,
     ) -> Matrix<T, M, M>;
 
-    /// dP/dF of the first Piola stress P = F S, as the stiffness between two nodes: with the `gradients` g of their shape
-    /// functions, the block of nodes a and b has the entries sum_jl g_a[j] dP_ij/dF_kl g_b[l], times `weight`. That of b and
-    /// a is the same transposed, as P has a potential. A `pull` stays as it is.
+    /// dP/dF of the first Piola stress P = F S, as the stiffness between two nodes: with the `gradients` g of
+    /// their shape functions, the block of nodes a and b has the entries sum_jl g_a[j] dP_ij/dF_kl g_b[l],
+    /// times `weight`. That of b and a is the same transposed, as P has a potential. A `pull` is kept
+    /// constant.
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         f: Matrix<T, D, M>,
@@ -70,16 +72,16 @@ pub(crate) trait ElasticLaw {
     /// Strain and stress S (Pa) across a cell that does not fill space.
     fn across<T: Real, const M: usize>(&self, at: &Self::Point<T, M>, pull: Option<T>) -> [T; 2];
 
-    /// Present over natural thickness, or section, of a cell that does not fill space.
+    /// Ratio of present to natural thickness, or section, of a cell that does not fill space.
     fn thickness<T: Real, const M: usize>(&self, at: &Self::Point<T, M>) -> T;
 
     /// A number above 0 where the law has meaning, such as det F, with the `stretch` of the cell.
     fn domain<T: Real, const M: usize>(&self, stretch: T, at: &Self::Point<T, M>) -> T;
 
-    /// Says of a cell whose `domain` is not above 0 what happened to it.
+    /// The message for a cell whose `domain` is not above 0.
     fn outside(&self, domain: f64) -> String;
 
-    /// Twice the strain that counts.
+    /// Twice the strain E of the law.
     #[inline(always)]
     fn twice_strain<T: Real, const M: usize, const D: usize>(
         at: &Deformation<T, M, D>,

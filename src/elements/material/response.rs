@@ -8,7 +8,7 @@ use crate::base::tensor::{Matrix, Real, dot, product, times};
 /// Components of a symmetric tensor of a cell, at most: the diagonal, and what is above it.
 const PAIRS: usize = 6;
 
-/// The axes of each component, of cells of `M` dimensions the first M (M + 1) / 2 of them.
+/// The axes of each component; cells of `M` dimensions have the first M (M + 1) / 2 of them.
 pub(crate) const fn axes<const M: usize>(component: usize) -> (usize, usize) {
     const PLANE: [(usize, usize); 3] = [(0, 0), (1, 1), (0, 1)];
     const SPACE: [(usize, usize); PAIRS] = [(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)];
@@ -18,10 +18,10 @@ pub(crate) const fn axes<const M: usize>(component: usize) -> (usize, usize) {
     }
 }
 
-/// dS/dE, a component for each two of symmetric tensors.
+/// dS/dE: an entry for each pair of components of symmetric tensors.
 pub(crate) type Elasticity<T> = [[T; PAIRS]; PAIRS];
 
-/// How a point of a cell of dimension `M` resists a change of its strain.
+/// Stress at a point of a cell of dimension `M`, and its derivative by the strain.
 pub(crate) struct Response<T, const M: usize> {
     /// Second Piola stress S (Pa).
     pub(crate) stress: Matrix<T, M, M>,
@@ -29,7 +29,7 @@ pub(crate) struct Response<T, const M: usize> {
     pub(crate) elasticity: Elasticity<T>,
 }
 
-/// sum B_a^T (dS/dE) B_b + (g_a . S g_b) I, with the change B_a of the strain that node a makes.
+/// sum B_a^T (dS/dE) B_b + (g_a . S g_b) I, with the change B_a of the strain by node a.
 pub(crate) struct Tangent<'a, T, const N: usize, const M: usize, const D: usize> {
     gradients: &'a [[T; M]; N],
     /// B_a, by components of strain, those off the diagonal twice.
@@ -42,7 +42,8 @@ pub(crate) struct Tangent<'a, T, const N: usize, const M: usize, const D: usize>
 }
 
 impl<'a, T: Real, const N: usize, const M: usize, const D: usize> Tangent<'a, T, N, M, D> {
-    /// That of a point with the deformation gradient `f` and the `gradients` of the shape functions, times `weight`.
+    /// That of a point with the deformation gradient `f` and the `gradients` of the shape functions, times
+    /// `weight`.
     #[inline(always)]
     pub(crate) fn new(
         f: &Matrix<T, D, M>,

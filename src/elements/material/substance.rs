@@ -1,12 +1,13 @@
-//! What a body, or a region of it, is made of: a material, the law that it keeps to when strains are large, and its damping.
+//! What a body, or a region of it, is made of: a material, its law at large strains, its damping, branches
+//! and fibres.
 
 use super::{Fibres, Material, MaxwellBranch, laws::Law};
 use crate::base::input::{InputError, not_negative};
 
-/// A material with the law of its elasticity, damping in proportion to its mass, and springs that relax.
+/// A material with its elastic law, damping in proportion to its mass, springs that relax, and fibres.
 ///
-/// [`Material::law`], [`Material::mass_damping`] and [`Material::maxwell`] make it. A [`Material`] alone counts as one with the
-/// law that the body's [`Strain`](crate::Strain) stands for, without the others.
+/// [`Material::law`], [`Material::mass_damping`] and [`Material::maxwell`] make it. A [`Material`] alone
+/// counts as one with the law that the body's [`Strain`](crate::Strain) stands for, without the others.
 ///
 /// ```
 /// use pliant::{Body, Law, Material, Mesh, SolidCells};
@@ -21,11 +22,11 @@ use crate::base::input::{InputError, not_negative};
 pub struct Substance {
     /// Density, moduli at small strains, viscosity.
     pub material: Material,
-    /// What becomes of the moduli at large strains; `None` is as the body's [`Strain`](crate::Strain) says.
+    /// The law at large strains; `None` is the one of the body's [`Strain`](crate::Strain).
     pub law: Option<Law>,
     /// Rate a of the force -a M v (1/s), 0 or above.
     pub mass_damping: f64,
-    /// Maxwell branches beside the elasticity.
+    /// Maxwell branches, parallel to the elasticity.
     pub branches: Vec<MaxwellBranch>,
     /// Families of fibres in it.
     pub fibres: Vec<Fibres>,
@@ -48,13 +49,14 @@ impl Material {
         Substance::from(self).mass_damping(rate)
     }
 
-    /// This material, with the viscosity `time` (s) times Young's modulus: see [`Substance::stiffness_damping`].
+    /// This material, with the viscosity `time` (s) times Young's modulus: see
+    /// [`Substance::stiffness_damping`].
     pub fn stiffness_damping(self, time: f64) -> Substance {
         Substance::from(self).stiffness_damping(time)
     }
 
-    /// This material, with a Maxwell branch of the share of stiffness `share` (1) and the relaxation time `time` (s): see
-    /// [`Substance::maxwell`].
+    /// This material, with a Maxwell branch of the share of stiffness `share` (1) and the relaxation time
+    /// `time` (s): see [`Substance::maxwell`].
     pub fn maxwell(self, share: f64, time: f64) -> Substance {
         Substance::from(self).maxwell(share, time)
     }
@@ -64,13 +66,14 @@ impl Material {
         Substance::from(self).fibres(fibres)
     }
 
-    /// This material, with a Maxwell branch that flows above a yield stress (Pa) alone: see [`Substance::yielding`].
+    /// This material, with a Maxwell branch that flows only above a yield stress (Pa): see
+    /// [`Substance::yielding`].
     pub fn yielding(self, share: f64, time: f64, yield_stress: f64) -> Substance {
         Substance::from(self).yielding(share, time, yield_stress)
     }
 
-    /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as laws of rubber have them: of
-    /// Mooney-Rivlin's law 2 (c1 + c2), of Yeoh's 2 c1.
+    /// The material with the shear modulus `shear` and the bulk modulus `bulk` (Pa), as used by laws of
+    /// rubber: the shear modulus is 2 (c1 + c2) in Mooney-Rivlin's law, 2 c1 in Yeoh's.
     ///
     /// ```
     /// let rubber = pliant::Material::of_moduli(1070.0, 1e5, 5e6, 0.0);
@@ -89,13 +92,15 @@ impl Substance {
         Self { law: Some(law), ..self }
     }
 
-    /// The same, with the force -a M v at the rate a = `rate` (1/s, 0 or above), M being the inertia of what is made of this,
-    /// consistent or lumped as that of the body; point masses have none of it. It brakes all motion against the ground,
-    /// rigid motion too, which decays as exp(-a t), and damps a vibration of the angular frequency omega with the ratio
-    /// a / (2 omega).
+    /// The same, with the force -a M v at the rate a = `rate` (1/s, 0 or above).
+    ///
+    /// M is the inertia of what is made of this, consistent or lumped as that of the body; it does not act on
+    /// point masses. The force brakes all motion relative to the ground, rigid motion too, which decays as
+    /// exp(-a t), and damps a vibration of the angular frequency omega with the ratio a / (2 omega).
     ///
     /// With [`stiffness_damping`](Self::stiffness_damping) this is Rayleigh's damping: the ratio is
-    /// (a / omega + beta omega) / 2, which two numbers fit to the measured ratios of two vibrations.
+    /// (a / omega + beta omega) / 2, so that two numbers can be fitted to the measured ratios of two
+    /// vibrations.
     ///
     /// ```
     /// use pliant::{Body, Material, Mesh};
@@ -111,26 +116,30 @@ impl Substance {
         Self { mass_damping: rate, ..self }
     }
 
-    /// The same, with damping in proportion to its stiffness: the viscosity beta E, beta being `time` (s, 0 or above), which
-    /// is natural (the force -beta K v) or objective as the [`Viscosity`](crate::Viscosity) of the body is. A vibration of
-    /// the angular frequency omega is damped with the ratio beta omega / 2.
+    /// The same, with damping in proportion to its stiffness: the viscosity beta E with beta = `time` (s, 0
+    /// or above).
+    ///
+    /// It is natural (the force -beta K v) or objective, as the [`Viscosity`](crate::Viscosity) of the body
+    /// is. A vibration of the angular frequency omega is damped with the ratio beta omega / 2.
     pub fn stiffness_damping(mut self, time: f64) -> Self {
         self.material.viscosity = time * self.material.young;
         self
     }
 
-    /// The same, with one more [Maxwell branch](MaxwellBranch): its share g = `share` (1, above 0) of stiffness beside Young's
-    /// modulus, and its relaxation time tau = `time` (s, above 0). With branches (g_i, tau_i) what is strained at once and
-    /// kept so pulls with E (1 + sum g_i exp(-t/tau_i)), and what swings slowly with the angular frequency omega has the complex
-    /// modulus
+    /// The same, with one more [Maxwell branch](MaxwellBranch), of the share g = `share` (1, above 0) of
+    /// Young's modulus and the relaxation time tau = `time` (s, above 0).
+    ///
+    /// With branches (g_i, tau_i) the modulus under a strain that is applied suddenly and kept is E (1 + sum
+    /// g_i exp(-t/tau_i)), and the complex modulus of a slow vibration with the angular frequency omega is
     ///
     /// ```text
     /// E (1 + sum g_i i omega tau_i / (1 + i omega tau_i)) + i omega c
     /// ```
     ///
-    /// A motion begins relaxed in its first shape, as if it had been in it for long; so is an equilibrium, which branches
-    /// leave as it is. Fields of strain and stress are those of the elasticity alone. A body with branches is integrated by the
-    /// methods `cvode-bdf`, `cvode-adams`, `arkode` and `rk`, of which `auto` chooses.
+    /// At the start of a motion the branches have relaxed, as if the body had been in its first shape for
+    /// long; so they have in an equilibrium, which they do not change. Fields of strain and stress are those
+    /// of the elasticity alone. A body with branches is integrated by the methods `cvode-bdf`, `cvode-adams`,
+    /// `arkode` and `rk`, from which `auto` chooses.
     ///
     /// ```
     /// use pliant::{Body, Material, Mesh};
@@ -146,13 +155,17 @@ impl Substance {
         self
     }
 
-    /// The same, with one more [branch](MaxwellBranch) that flows above its `yield_stress` (Pa, 0 or above) alone: below it is a spring,
-    /// and what flowed stays. As dough it keeps part of its shape: where the branch pulls with Y against the elasticity E of
-    /// the material, all that is above a strain of about Y/E springs back.
+    /// The same, with one more [branch](MaxwellBranch) that flows only above its `yield_stress` (Pa, 0 or
+    /// above).
     ///
-    /// Stress is measured in the axes of the body as it was made (second Piola stress), by von Mises; what relaxes is its deviator.
-    /// Sheared and held, it is Y + (q - Y) exp(-t/tau); a string takes 1.5/(1 + nu) times as long, as its stretching shears less.
-    /// Motion and equilibria begin as with [`maxwell`](Self::maxwell), in a shape that pulls nowhere.
+    /// Below it the branch is a spring, and what has flowed remains. Like dough, the body keeps part of a
+    /// deformation: the branch pulls with at most Y against the elasticity E of the material, so that what
+    /// exceeds a strain of about Y/E springs back.
+    ///
+    /// The stress is the von Mises stress of the second Piola stress, which is taken in the axes of the
+    /// undeformed body; its deviator relaxes. In a body that is sheared and held, it is Y + (q - Y)
+    /// exp(-t/tau); a string takes 1.5/(1 + nu) times as long, as stretching shears it less. Motion and
+    /// equilibria begin as with [`maxwell`](Self::maxwell), in a shape in which the branches have no stress.
     ///
     /// ```
     /// use pliant::Material;

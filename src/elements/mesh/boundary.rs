@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use super::{FaceKind, Mesh};
 
-/// A face of a cell: a node in 1D, an edge in 2D, a face in 3D. Its corners come first and run so
-/// that the body lies to the left (2D), counter-clockwise as seen from outside (3D); the mid nodes
-/// of a quadratic cell follow, as in [`CellKind::faces`](super::CellKind::faces).
+/// A face of a cell: a node in 1D, an edge in 2D, a face in 3D.
+///
+/// Its corners come first and run so that the body lies to the left (2D), counter-clockwise as seen from
+/// outside (3D); the mid nodes of a quadratic cell follow, as in [`CellKind::faces`](super::CellKind::faces).
 pub type Face = Vec<usize>;
 
 impl Mesh {
@@ -28,8 +29,8 @@ impl Mesh {
         once.map(|face| (cell(face), self.face(face).collect())).collect()
     }
 
-    /// The faces of cells that belong to one cell only, whatever the dimension of space: those on the rim of a
-    /// membrane, the ends of a string.
+    /// The faces of cells that belong to one cell only, whatever the dimension of space: those on the rim of
+    /// a membrane, the ends of a string.
     pub(crate) fn outer_faces(&self) -> Vec<Face> {
         self.faces_of_one_cell().into_iter().map(|face| self.face(face).collect()).collect()
     }
@@ -89,7 +90,7 @@ impl Mesh {
     }
 }
 
-/// Those of `faces` whose nodes no other one of them has.
+/// Those of `faces` that have the same nodes as no other one of them.
 fn without_match<I: Iterator<Item = usize>>(
     faces: &[usize],
     nodes: impl Fn(usize) -> I,

@@ -1,6 +1,6 @@
 //! Kinds of cells: one row of a table each.
 
-// some columns of the table serve the readers of files and the pictures alone
+// some columns of the table are used only by readers of files and by pictures
 #![cfg_attr(not(all(feature = "gmsh", feature = "output")), allow(dead_code))]
 
 /// What the kinds of cells differ by. Local numbers of nodes count from 0.
@@ -19,7 +19,7 @@ struct Shape {
     edges: &'static [&'static [usize]],
     /// The nodes in the order of a cell that is turned over.
     turned_over: &'static [usize],
-    /// The corners at the other ends of the edges at the first one; these edges make a right-handed system.
+    /// The corners at the other ends of the edges from the first one; these edges form a right-handed system.
     neighbours: &'static [usize],
     /// The number of its type in Gmsh, and the nodes of Gmsh's cell in the order of ours.
     gmsh: (u8, &'static [usize]),
@@ -200,8 +200,8 @@ cell_kinds! {
         neighbours: &[1, 3, 4],
         gmsh: (5, &[0, 1, 2, 3, 4, 5, 6, 7]),
     },
-    /// Twenty nodes: the corners as in [`CellKind::Hexahedron`], then the middles of the edges 1-2, 2-3, 3-4, 4-1,
-    /// 5-6, 6-7, 7-8, 8-5, 1-5, 2-6, 3-7, 4-8.
+    /// Twenty nodes: the corners as in [`CellKind::Hexahedron`], then the middles of the edges 1-2, 2-3, 3-4,
+    /// 4-1, 5-6, 6-7, 7-8, 8-5, 1-5, 2-6, 3-7, 4-8.
     Hexahedron20 => Shape {
         name: "hexahedra of 20 nodes",
         dimension: 3,
@@ -260,9 +260,9 @@ impl CellKind {
     }
 
     /// The faces of the cell as local node numbers (from 0): its ends in 1D, its edges in 2D.
-    /// Corners come first and run in positive order as seen from outside (in 2D: with the cell to
-    /// their left); the mid nodes of a quadratic cell follow, in the order of the edges of the
-    /// face.
+    ///
+    /// Corners come first and run in positive order as seen from outside (in 2D: with the cell to their
+    /// left); the mid nodes of a quadratic cell follow, in the order of the edges of the face.
     pub fn faces(self) -> &'static [&'static [usize]] {
         self.shape().faces
     }
@@ -272,7 +272,7 @@ impl CellKind {
         self.shape().face
     }
 
-    /// What the cell itself is as a face: of a body that is thinner than space, all of it is boundary.
+    /// What the cell itself is as a face: a body of lower dimension than space is all boundary.
     pub(crate) fn as_face(self) -> Option<FaceKind> {
         self.shape().as_face
     }

@@ -16,16 +16,17 @@ use crate::base::input::{InputError, read_at_most};
 const MOST_BYTES: u64 = 2 << 30;
 
 impl Mesh {
-    /// Reads a mesh from a file of Gmsh: format MSH 4.1, text or binary. Coordinates are taken as
-    /// metres; for a drawing in millimetres, give Gmsh `Mesh.ScalingFactor = 0.001`.
+    /// Reads a mesh from a file of Gmsh: format MSH 4.1, text or binary.
     ///
-    /// - **Cells** are the elements of the highest dimension, in the order of the file. All must be
-    ///   of one kind: lines of 2 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4
-    ///   or 10, hexahedra of 8 or 20 (`Mesh.SecondOrderIncomplete = 1`). If physical groups exist, Gmsh saves the elements in them only.
-    /// - **Nodes** keep the order of the file; those that belong to no cell (points of the
-    ///   geometry, centres of circles) are left out, and the others count on without gaps. A file
-    ///   without such nodes whose tags ascend from 1, as Gmsh writes them after meshing, keeps its
-    ///   tags as node numbers.
+    /// Coordinates are taken as metres; for a drawing in millimetres, give Gmsh `Mesh.ScalingFactor = 0.001`.
+    ///
+    /// - **Cells** are the elements of the highest dimension, in the order of the file. All must be of one
+    ///   kind: lines of 2 nodes, triangles of 3 or 6, quadrilaterals of 4, tetrahedra of 4 or 10, hexahedra
+    ///   of 8 or 20 (`Mesh.SecondOrderIncomplete = 1`). If physical groups exist, Gmsh saves only the
+    ///   elements in them.
+    /// - **Nodes** keep the order of the file; those that belong to no cell (points of the geometry, centres
+    ///   of circles) are left out, and the others are numbered without gaps. A file without such nodes whose
+    ///   tags ascend from 1, as Gmsh writes them after meshing, keeps its tags as node numbers.
     /// - **Node sets** are the physical groups of all dimensions: all nodes of cells on their
     ///   points, curves, surfaces or volumes, ascending. Groups of the same name become one; a group
     ///   without a name is called by its tag, as in `curve 7`; one without nodes of cells is left out.
@@ -34,16 +35,16 @@ impl Mesh {
     /// - **Space** has as many dimensions as the body needs: a surface with z = 0 lies in the plane
     ///   and a line with y = z = 0 on an axis (but for round-off, 1e-10 of the size); otherwise they
     ///   are a membrane or a string in space.
-    /// - **Orientation**: if all cells of an entity run the wrong way round (clockwise in the
-    ///   plane), as the surface was drawn so, they are turned over.
+    /// - **Orientation**: if all cells of an entity run the wrong way round (clockwise in the plane), because
+    ///   the surface was drawn so, they are turned over.
     ///
-    /// Periodicity and data of views are left aside. Nodes with parametric coordinates
-    /// (`Mesh.SaveParametric`) cannot be read.
+    /// Periodicity and data of views are ignored. Nodes with parametric coordinates (`Mesh.SaveParametric`)
+    /// cannot be read.
     ///
     /// # Errors
-    /// A file that cannot be read, is empty, broken, partitioned or of another
-    /// version, element types that do not exist here, cells of several kinds, a physical group that
-    /// is called `all` or `boundary` and is not that.
+    /// A file that cannot be read, is empty, broken, partitioned or of another version, element types that do
+    /// not exist here, cells of several kinds, a physical group that is called `all` or `boundary` but has
+    /// other nodes.
     pub fn read_gmsh(path: impl AsRef<Path>) -> Result<Self, InputError> {
         let path = path.as_ref();
         let file = read_at_most(path, MOST_BYTES);
@@ -59,7 +60,7 @@ fn build(contents: &Contents) -> Result<Mesh, String> {
     let is_body = |block: &&Block| cell_kind(block.kind) == Some(kind);
     let body: Vec<&Block> = contents.blocks.iter().filter(is_body).collect();
 
-    // nodes of cells count on in the order of the file
+    // nodes of cells are numbered in the order of the file
     let mut numbers = vec![None; contents.nodes.len()];
     for &place in body.iter().flat_map(|block| block.elements.iter().flatten()) {
         numbers[place] = Some(0);

@@ -38,12 +38,15 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// A mesh from its parts: `positions` holds `dimension` coordinates (m) per node, one node
-    /// after the other; `connectivity` the nodes of one cell after the other, counted from 0.
+    /// A mesh from its parts.
+    ///
+    /// `positions` holds `dimension` coordinates (m) per node, one node after the other; `connectivity` the
+    /// nodes of one cell after the other, counted from 0.
     ///
     /// # Errors
-    /// Coordinates that are not finite, a dimension below that of the cells or above 3, a cell with
-    /// a node that does not exist, two cells of the same nodes. (Inverted and flat cells are found when a body is made of it.)
+    /// Coordinates that are not finite, a dimension below that of the cells or above 3, a cell with a node
+    /// that does not exist, two cells of the same nodes. (Inverted and flat cells are found when a body is
+    /// made of it.)
     pub fn new(
         dimension: usize,
         positions: Vec<f64>,
@@ -131,7 +134,7 @@ impl Mesh {
         mesh
     }
 
-    /// Other cells, with the nodes that they need: sets and groups are those of every mesh.
+    /// A mesh of other cells and their nodes, with no sets but those that every mesh has.
     pub(crate) fn with_cells(
         &self,
         positions: Vec<f64>,
@@ -170,9 +173,10 @@ impl Mesh {
         Ok(self)
     }
 
-    /// The same mesh with the node at x (m) moved to `map(x)` (m): a grid bent into another shape,
-    /// or placed in a space of higher dimension. Cells and node sets stay what they are; the set
-    /// `boundary` is found anew if the dimension changes.
+    /// The same mesh with the node at x (m) moved to `map(x)` (m).
+    ///
+    /// This bends a grid into another shape, or places it in a space of higher dimension. Cells and node sets
+    /// stay what they are; the set `boundary` is found anew if the dimension changes.
     ///
     /// ```
     /// # use pliant::{Cells, Mesh};
@@ -243,8 +247,10 @@ impl Mesh {
         self.connectivity.chunks_exact(self.kind.nodes())
     }
 
-    /// The named node sets (nodes counted from 0, in the order in which they were named; those of
-    /// the generators run along their side, `all` and `boundary` ascend).
+    /// The named node sets.
+    ///
+    /// Nodes are counted from 0 and in the order in which they were named; those of the generators run along
+    /// their side, `all` and `boundary` ascend.
     pub fn sets(&self) -> &BTreeMap<String, Vec<usize>> {
         &self.sets
     }

@@ -50,8 +50,9 @@ fn moved(x: &[f64], j: usize, by: f64) -> Vec<f64> {
     x
 }
 
-/// Forces are the slope of the energy, tangents that of the forces, and the constant stiffness is the tangent at rest. By central differences,
-/// off by the square of h over the size 0.1 of cells, times third derivatives, and by round-off of 1e-16/h.
+/// Forces are the derivatives of the energy, tangents those of the forces, and the constant stiffness is the
+/// tangent at rest. By central differences: off by the square of h over the size 0.1 of cells, times third
+/// derivatives, and by round-off of 1e-16/h.
 #[test]
 fn forces_and_tangents_are_derivatives() {
     let h = 1e-5;
@@ -124,7 +125,7 @@ fn viscous_tangents_are_derivatives() {
     }
 }
 
-/// Where a body is deformed alike everywhere, nothing changes; and its forces are other ones where it is not.
+/// Under a homogeneous deformation forces are those without a mean dilatation; under another one they differ.
 #[test]
 fn homogeneous_deformations_have_the_same_forces() {
     for (name, body) in with_mean() {

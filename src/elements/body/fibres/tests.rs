@@ -40,8 +40,8 @@ fn pair(dimension: usize) -> [Fibres; 2] {
     [along(&[1.0, 0.4, -0.3]), if dimension == 3 { around.pitch(0.4) } else { around }]
 }
 
-/// Along one direction, by central differences: off by 1e-8 of the largest, by terms of third order and round-off; more at
-/// points where a fibre is just about to be pulled, of which there is none here.
+/// Along one direction, by central differences: off by 1e-8 of the largest, by terms of third order and
+/// round-off; more at points where a fibre is just becoming taut, of which there is none here.
 #[test]
 fn forces_and_tangents_are_derivatives() {
     for mesh in meshes() {
@@ -78,7 +78,8 @@ fn forces_and_tangents_are_derivatives() {
     }
 }
 
-/// K has them as they are when slightly pulled: along x a bar of one row of cells gets stiffer by young A / length.
+/// K contains the fibres as if slightly stretched: along x they stiffen a bar of one row of cells by young
+/// A / length.
 #[test]
 fn they_stiffen_the_undeformed_shape() {
     let mesh = Mesh::rectangle([1.0, 0.1], [5, 2], Cells::Rectangles).unwrap();
@@ -96,7 +97,7 @@ fn they_stiffen_the_undeformed_shape() {
     assert!((energy(&stiff) - energy(&plain) - 7e5 * 1e-3).abs() < 1e-9 * 7e2);
 }
 
-/// What no fibre can be is refused, and names the key, the value and the mend.
+/// Fibres that cannot exist are refused, with an error that names the key, the value and the help.
 #[test]
 fn nonsense_is_named() {
     let build = |fibres: Fibres| {

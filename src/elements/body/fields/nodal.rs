@@ -1,5 +1,6 @@
-//! Fields at nodes: what the cells around a node give there, each extrapolated from its strain points, in the mean
-//! over the volumes of the cells (Hinton and Campbell 1974; Hughes, *The Finite Element Method*, section 4.10).
+//! Fields at nodes: what the cells around a node give there, each extrapolated from its strain points, in the
+//! mean weighted by the volumes of the cells (Hinton and Campbell 1974; Hughes, *The Finite Element Method*,
+//! section 4.10).
 
 use super::{Fields, Tensors, von_mises};
 use crate::elements::body::regions::Regions;
@@ -8,14 +9,14 @@ use crate::elements::mesh::Mesh;
 /// Strain and stress at a node, as [`CellField`](crate::CellField) has them for cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodalField {
-    /// Cauchy's or Green's strain, as the body's.
+    /// Cauchy's or Green's strain, as the body measures it.
     pub strain: [[f64; 3]; 3],
     /// Stress (Pa).
     pub stress: [[f64; 3]; 3],
 }
 
 impl NodalField {
-    /// The stress of von Mises (Pa): sqrt(3/2) times the norm of the stress without its mean pressure.
+    /// The von Mises stress (Pa): sqrt(3/2) times the norm of the stress without its mean pressure.
     pub fn von_mises(&self) -> f64 {
         von_mises(&self.stress)
     }
@@ -49,7 +50,7 @@ pub(in crate::elements::body) fn nodal_fields<E: Fields + ?Sized>(
 /// Reads the sum of the fields at some nodes, each times a weight.
 #[derive(Debug, Clone)]
 pub(crate) struct Probe {
-    /// Cells, with what the fields at each of their nodes count for.
+    /// Cells, with the weights of the fields at their nodes.
     cells: Vec<(usize, Vec<f64>)>,
 }
 

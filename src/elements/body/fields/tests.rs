@@ -313,8 +313,8 @@ fn stress_that_is_linear_is_exact_at_nodes_of_quadratic_cells() {
     }
 }
 
-/// Bilinear cells bend by sigma_xx linear across, which is exact at their Gauss points and so at their nodes, with a
-/// shear that they are not asked for: what they say along x is compared.
+/// Bent bilinear cells have a sigma_xx that is linear across them, exact at their Gauss points and so at
+/// their nodes, and a spurious shear: only the stress along x is compared.
 #[test]
 fn bilinear_cells_extrapolate_what_they_have_at_gauss_points() {
     let k = 0.02;
@@ -328,7 +328,7 @@ fn bilinear_cells_extrapolate_what_they_have_at_gauss_points() {
     }
 }
 
-/// The mean over the volumes of the cells around a node, written out.
+/// The mean over the cells around a node, weighted by their volumes, written out.
 #[test]
 fn nodes_between_cells_have_the_mean_over_their_volumes() {
     let mesh = Mesh::new(1, vec![0.0, 0.01, 0.04], CellKind::Segment, vec![0, 1, 1, 2]);

@@ -1,15 +1,16 @@
-//! What pulls at the points of cells: elastic laws and viscosity, at points or with a mean dilatation.
+//! What causes stress at the points of cells: elastic laws and viscosity, at points or with a mean
+//! dilatation.
 
 use crate::base::tensor::{Matrix, Real};
 use crate::elements::material::{CellLaw, Deformation, ObjectiveViscosity};
 
-/// What pulls at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
+/// A stress at a point, by the gradients of `K` fields: of displacements and, if K is 2, of velocities.
 pub(in crate::elements::body) trait StressTerm<const K: usize> {
-    /// Whether what resists a change of volume takes the mean of that over the cell.
+    /// Whether a change of volume is resisted in the mean over the cell.
     fn is_mean(&self) -> bool;
 
-    /// First Piola stress P times the `volume` of the point, with the `pull` of the mean dilatation if that counts, and a number
-    /// above 0 where it has meaning.
+    /// First Piola stress P times the `volume` of the point, with the `pull` of the mean dilatation if there
+    /// is one, and a number that is above 0 where the stress has meaning.
     fn stress<T: Real, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
@@ -18,17 +19,17 @@ pub(in crate::elements::body) trait StressTerm<const K: usize> {
         volume: T,
     ) -> (Matrix<T, D, M>, T);
 
-    /// The dilatation of a point, or the rate of it.
+    /// The dilatation of a point, or its rate.
     fn dilatation<T: Real, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
         gradients: &[Matrix<T, D, M>; K],
     ) -> T;
 
-    /// What pulls at all points of a cell of this mean dilatation.
+    /// The `pull` at all points of a cell of this mean dilatation.
     fn of_mean<T: Real>(&self, dilatation: T) -> T;
 
-    /// Says what happened where the number of [`Self::stress`] is not above 0.
+    /// The message for a cell where the number of [`Self::stress`] is not above 0.
     fn outside(&self, domain: f64) -> String;
 }
 

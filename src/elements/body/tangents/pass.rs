@@ -12,7 +12,7 @@ use crate::base::sparse::Rows;
 use crate::elements::body::elements::{ElementsOf, gradients};
 use crate::elements::material::{Block, Blocks, Deformation};
 
-/// The tangents of a run of cells of one law, compiled for each kind of machine.
+/// The tangents of a run of cells of one law, compiled for each instruction set.
 pub(super) struct Pass<
     'a,
     'r,
@@ -30,7 +30,7 @@ pub(super) struct Pass<
     pub(super) slope: P,
 }
 
-/// The tangents of several cells. Of symmetric ones blocks below the diagonal are left out.
+/// The tangents of several cells. Blocks of symmetric ones below the diagonal are left out.
 type OfCells<const N: usize, const D: usize> = [[Block<Packed, D>; N]; N];
 
 impl<

@@ -1,4 +1,5 @@
-//! The tangents at the points of cells: of elastic laws and of viscosity, at points or with a mean dilatation.
+//! The tangents at the points of cells: of elastic laws and of viscosity, at points or with a mean
+//! dilatation.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
@@ -10,10 +11,10 @@ pub(in crate::elements::body) trait TangentTerm<const K: usize> {
     /// Whether the block of nodes b and a is that of a and b, transposed.
     const IS_SYMMETRIC: bool;
 
-    /// Whether what resists a change of volume takes the mean of that over the cell.
+    /// Whether a change of volume is resisted in the mean over the cell.
     fn is_mean(&self) -> bool;
 
-    /// The tangent of a point of this `volume`, where a `pull` of a mean dilatation stays as it is.
+    /// The tangent of a point of this `volume`, with the `pull` of a mean dilatation kept constant.
     fn blocks<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
@@ -23,7 +24,8 @@ pub(in crate::elements::body) trait TangentTerm<const K: usize> {
         volume: T,
     ) -> impl Blocks<T, D>;
 
-    /// The dilatation of a point, how forces follow what pulls there, and how the dilatation follows the nodes, times its `volume`.
+    /// The dilatation of a point, the derivative of the nodal forces by the `pull` there, and that of the
+    /// dilatation by the motion of the nodes, all times its `volume`.
     fn swelling<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
         at: &Deformation<T, M, D>,
@@ -32,11 +34,12 @@ pub(in crate::elements::body) trait TangentTerm<const K: usize> {
         volume: T,
     ) -> (T, [[T; D]; N], [[T; D]; N]);
 
-    /// What pulls at all points of a cell of this mean dilatation, and its derivative by that.
+    /// The `pull` at all points of a cell of this mean dilatation, and its derivative by that.
     fn of_mean<T: Real>(&self, dilatation: T) -> [T; 2];
 }
 
-/// What a change of the mean dilatation adds: `share` times the product of how forces follow it and how it follows the nodes.
+/// What a change of the mean dilatation adds: `share` times the product of the derivatives of the forces by
+/// the `pull` and of the dilatation by the motion of the nodes.
 pub(super) struct OfMean<T, const N: usize, const D: usize> {
     pub(super) force: [[T; D]; N],
     pub(super) motion: [[T; D]; N],
@@ -102,7 +105,7 @@ impl<L: CellLaw> TangentTerm<1> for ElasticTangent<'_, L> {
     }
 }
 
-/// That of viscous stress by the rate.
+/// The tangent of viscous stress by the rate.
 pub(super) struct RateTangent<'l> {
     pub(super) law: &'l ObjectiveViscosity,
     pub(super) is_mean: bool,
@@ -146,7 +149,7 @@ impl TangentTerm<1> for RateTangent<'_> {
     }
 }
 
-/// That of viscous stress by the deformation.
+/// The tangent of viscous stress by the deformation.
 pub(super) struct ViscousTangent<'l> {
     pub(super) law: &'l ObjectiveViscosity,
     pub(super) is_mean: bool,

@@ -1,5 +1,5 @@
-//! Tangents of several cells at once, of many regions, and on wider patterns. That they are derivatives of forces is
-//! tested with these (`body/tests.rs`).
+//! Tangents of several cells at once, of many regions, and on wider patterns. That they are derivatives of
+//! forces is tested with the forces (`body/tests.rs`).
 
 use std::sync::Arc;
 
@@ -17,8 +17,8 @@ use crate::elements::material::{Hooke, Lame, Material, ObjectiveViscosity, Plane
 use crate::elements::mesh::{Cells, Mesh, SolidCells};
 use crate::studies::samples::SQUARE_MATERIAL;
 
-/// Tangents of some cells of a mesh, which begin and end within a register: the same to the last bit, whether computed
-/// one by one or as many at once as the machine can.
+/// Tangents of some cells of a mesh, which begin and end within a register: the same to the last bit, whether
+/// computed one by one or as many at once as the machine can.
 fn is_the_same_on_all_machines<
     C: ReferenceCell<N, M>,
     const N: usize,
@@ -88,8 +88,9 @@ fn tangents(body: &Body, pattern: &Arc<NodePattern>, u: &[f64], v: &[f64]) -> [B
     [stiffness, damping]
 }
 
-/// Cells of another material begin and end anywhere within a register. Along one direction, by central differences: forces
-/// are cubic, so that these are off by (1e-6/0.1)^2 of the tangents, and by round-off of 1e-16/1e-6.
+/// Cells of another material begin and end anywhere within a register. Along one direction, by central
+/// differences: forces are cubic, so that these are off by (1e-6/0.1)^2 of the tangents, and by round-off of
+/// 1e-16/1e-6.
 #[test]
 fn regions_end_within_registers() {
     let (mesh, h) = (Mesh::rectangle([1.0, 0.5], [6, 5], Cells::Triangles).unwrap(), 1e-6);
@@ -123,8 +124,8 @@ fn regions_end_within_registers() {
     }
 }
 
-/// A pattern with more pairs has the same tangents where the body couples nodes, and zeros elsewhere; also if it was
-/// widened twice.
+/// A pattern with more pairs has the same tangents where the body couples nodes, and zeros elsewhere; also if
+/// it was widened twice.
 #[test]
 fn wider_patterns_have_the_same_tangents() {
     let mesh = Mesh::rectangle([1.0, 0.5], [6, 5], Cells::Triangles).unwrap();
@@ -145,7 +146,8 @@ fn wider_patterns_have_the_same_tangents() {
     }
 }
 
-/// Nothing is gained or lost by a shift of the whole body; elastic tangents are symmetric.
+/// A shift of the whole body changes no force, and no motion the sum of the forces; elastic tangents are
+/// symmetric.
 #[test]
 fn tangents_balance() {
     for (name, body) in bodies(Strain::Green) {

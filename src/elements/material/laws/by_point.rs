@@ -1,8 +1,9 @@
 //! Laws that the loops over cells call at each point: strain in, stress and elasticity out.
 //!
-//! What a law makes of a strain depends on the dimension of the cell alone, and not on its nodes and points. So these formulas
-//! are compiled for each dimension and kind of register, and loops for each kind of cell: laws and cells add up.
-//! (Hooke's laws are so short that a call would cost more than they do; loops are compiled for each of them.)
+//! What a law computes from a strain depends on the dimension of the cell alone, and not on its nodes and
+//! points. So these formulas are compiled for each dimension and kind of register, and loops for each kind of
+//! cell, but not for each pair of law and cell. (Hooke's laws are so short that a call would cost more than
+//! they do; loops are compiled for each of them.)
 
 use pulp::NullaryFnOnce;
 
@@ -12,7 +13,7 @@ use crate::base::tensor::{Matrix, Real};
 use crate::elements::material::law::ElasticLaw;
 use crate::elements::material::response::Response;
 
-/// A law that is called. All are of Green's strain.
+/// A law that is called as a function. All are of Green's strain.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum ByPoint {
     Rivlin(Rivlin),
@@ -29,7 +30,8 @@ macro_rules! with_called_law {
     };
 }
 
-/// A formula of a law at a point, as a function of twice the strain E and of what else is given, compiled by itself.
+/// A formula of a law at a point, as a function of twice the strain E and of the other arguments, compiled
+/// separately.
 macro_rules! formula {
     ($(#[$meta:meta])* $name:ident($($given:ident: $kind:ty),*) -> $made:ty, $law:ident, $point:ident => $formula:expr) => {
         $(#[$meta])*
@@ -64,7 +66,8 @@ macro_rules! formula {
 /// A `pull` is that of a mean dilatation, as in [`ElasticLaw`].
 impl ByPoint {
     formula! {
-        /// Second Piola stress S (Pa) times `weight`, and the domain of the law at a point that stretches a volume by `stretch`.
+        /// Second Piola stress S (Pa) times `weight`, and the domain of the law at a point that stretches a
+        /// volume by `stretch`.
         stress(stretch: T, pull: Option<T>, weight: T) -> (Matrix<T, M, M>, T),
         law, point => (law.stress(&point, pull, weight), law.domain(stretch, &point))
     }

@@ -4,8 +4,8 @@ use crate::base::tensor::{Matrix, Real};
 use crate::elements::material::law::{Blocks, ElasticLaw};
 use crate::elements::material::response::{Response, Tangent};
 
-/// W = (young / (8 k2)) (exp(4 k2 E^2) - 1) of a stretched fibre, else 0; all of it counts as energy of shape. Its cell has one
-/// dimension.
+/// W = (young / (8 k2)) (exp(4 k2 E^2) - 1) of a stretched fibre, else 0; all of it counts as energy of
+/// shape. Its cell has one dimension.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Fibre {
     /// Young's modulus (Pa).
@@ -14,7 +14,7 @@ pub(crate) struct Fibre {
     pub(crate) stiffening: f64,
 }
 
-/// The largest exponent 4 k2 E^2: what it makes of moduli is still a number.
+/// The largest exponent 4 k2 E^2: with it moduli are still finite.
 const LARGEST: f64 = 300.0;
 
 impl Fibre {
@@ -22,7 +22,7 @@ impl Fibre {
     fn slopes(&self, twice: f64) -> [f64; 3] {
         let Self { young, stiffening } = *self;
         let strain = 0.5 * twice;
-        // at rest as if stretched
+        // at rest a fibre counts as stretched
         if strain < 0.0 {
             return [0.0; 3];
         }

@@ -1,4 +1,5 @@
-//! Hooke's law for a strain of the cell: linear elasticity for Cauchy's, St. Venant-Kirchhoff material for Green's.
+//! Hooke's law for a strain of the cell: linear elasticity for Cauchy's, St. Venant-Kirchhoff material for
+//! Green's.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
@@ -6,8 +7,8 @@ use crate::base::tensor::{Matrix, Real, dot, product, symmetric, times, trace};
 use crate::elements::material::hooke::{Hooke, Spread};
 use crate::elements::material::law::{Block, Blocks, ElasticLaw};
 
-/// W = lambda tr(E)^2 / 2 + mu E : E and S = lambda tr(E) I + 2 mu E, with g = tr(E): P = F_0 S and E = sym(F_0^T H) of
-/// `SMALL` strain, else P = F S and E = (F^T F - I) / 2.
+/// W = lambda tr(E)^2 / 2 + mu E : E and S = lambda tr(E) I + 2 mu E, with g = tr(E): P = F_0 S and
+/// E = sym(F_0^T H) for `SMALL` strain, else P = F S and E = (F^T F - I) / 2.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Hookean<const SMALL: bool>(pub(crate) Hooke);
 
@@ -61,7 +62,8 @@ impl<const SMALL: bool> ElasticLaw for Hookean<SMALL> {
         self.0.stress(twice, pull, weight)
     }
 
-    /// lambda f_a f_b^T + mu ((g_a . g_b) F F^T + f_b f_a^T) + (g_a . S g_b) I, f_a = F g_a, without S of small strain
+    /// lambda f_a f_b^T + mu ((g_a . g_b) F F^T + f_b f_a^T) + (g_a . S g_b) I, f_a = F g_a; for small strain
+    /// without the term of S
     #[inline(always)]
     fn tangent<T: Real, const N: usize, const M: usize, const D: usize>(
         &self,
@@ -91,7 +93,7 @@ impl<const SMALL: bool> ElasticLaw for Hookean<SMALL> {
         }
     }
 
-    /// It counts as it was: Hooke's law has sections shrink to nothing at large strains.
+    /// It counts as undeformed: by Hooke's law sections would shrink to nothing at large strains.
     #[inline(always)]
     fn thickness<T: Real, const M: usize>(&self, twice: &Matrix<T, M, M>) -> T {
         twice[0][0].constant(1.0)

@@ -1,10 +1,11 @@
-//! How a point is strained, by its invariants: with what is across the cell, and so that small strains keep their digits.
+//! The strain of a point by its invariants: with the strain across the cell, and so that small strains keep
+//! their digits.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
 use crate::base::tensor::{Matrix, Real, inverse_cube_root, symmetric, trace};
 
-/// How a point is strained, with what is across the cell.
+/// The strain of a point, with that across the cell.
 pub(crate) struct Strained<T, const M: usize> {
     /// G along the cell.
     pub(super) along: Matrix<T, M, M>,
@@ -58,7 +59,8 @@ impl<T: Real, const M: usize> Strained<T, M> {
         (self.swelling + 1.0).sqrt()
     }
 
-    /// I1 - 3 and I2 - 3 of what is left without the change of volume: differences of what is small of second order.
+    /// I1 - 3 and I2 - 3 of J^(-2/3) C, the deformation without its change of volume: as differences of terms
+    /// of second order, so that they keep their digits.
     #[inline(always)]
     pub(super) fn above_rest(&self) -> [T; 2] {
         let [g, minors, determinant] = self.invariants;
@@ -74,8 +76,8 @@ impl<T: Real, const M: usize> Strained<T, M> {
         [first * share, second * share * self.shrink]
     }
 
-    /// C (the first invariant of which is trace + 3) times the derivative of I1 by C, over J^(-2/3), at the component `g` of G
-    /// on the diagonal: g - tr(G) / 3.
+    /// C (whose trace is tr(G) + 3) times the derivative of I1 by C, over J^(-2/3), for the component
+    /// g = `of` of G on the diagonal: g - tr(G) / 3.
     #[inline(always)]
     pub(super) fn first_slope(&self, of: T) -> T {
         of - self.invariants[0] * (1.0 / 3.0)
@@ -89,7 +91,8 @@ impl<T: Real, const M: usize> Strained<T, M> {
     }
 }
 
-/// Trace, sum of the principal minors and determinant of a symmetric matrix; what a small one does not have is 0.
+/// Trace, sum of the principal minors and determinant of a symmetric matrix; those that a matrix is too small
+/// for are 0.
 #[inline(always)]
 pub(super) fn invariants_of<T: Real, const M: usize>(g: &Matrix<T, M, M>) -> [T; 3] {
     let zero = g[0][0].constant(0.0);

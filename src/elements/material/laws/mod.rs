@@ -34,11 +34,14 @@ pub enum Strain {
     Green,
 }
 
-/// What becomes of the moduli of a [`Material`](crate::Material) at large strains. Each law has the material's Young's
-/// modulus and Poisson's ratio at small strains; what else it has are ratios, without unit.
+/// The elastic law of a [`Material`](crate::Material) at large strains.
+///
+/// Each law has the material's Young's modulus and Poisson's ratio at small strains; its other parameters are
+/// ratios, without unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
-    /// Hooke's law for Green's strain. It softens under compression, until a bar collapses that is pressed to 58 % of its length (1/sqrt 3).
+    /// Hooke's law for Green's strain. It softens under compression: a bar pressed to 58 % of its length
+    /// (1/sqrt 3) collapses.
     StVenantKirchhoff,
     /// W = c1 (I1 - 3) + U, with I1 of J^(-2/3) C and U = (kappa/4) (J^2 - 1 - 2 ln J); c1 = mu/2. Rubber at
     /// strains up to a half.
@@ -55,16 +58,18 @@ pub enum Law {
         /// c3 / c1
         third: f64,
     },
-    /// W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) over three terms, + U, with the principal stretches l
-    /// without the change of volume, J^(-1/3) of those of F: rubber over its whole range. The sum of mu_p alpha_p is 2 mu.
+    /// W = sum of mu_p / alpha_p (l1^alpha_p + l2^alpha_p + l3^alpha_p - 3) over three terms, + U, with the
+    /// principal stretches l without the change of volume, J^(-1/3) times those of F: rubber over its whole
+    /// range. The sum of mu_p alpha_p is 2 mu.
     Ogden {
         /// alpha_p (1), not 0
         exponents: [f64; 3],
         /// mu_p alpha_p / (2 mu) (1): none is below 0, and they add up to 1. A share of 0 leaves a term out.
         shares: [f64; 3],
     },
-    /// W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with the stretch U of each point, U^2 = F^T F: Hooke's law in a frame that turns along,
-    /// for large rotations and small strains. Under compression it stays stiff, as St. Venant-Kirchhoff material does not.
+    /// W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with the stretch U of each point, U^2 = F^T F: Hooke's law
+    /// in a frame that rotates with the point, for large rotations and small strains. Unlike St.
+    /// Venant-Kirchhoff material it stays stiff under compression.
     Corotated,
 }
 
@@ -151,7 +156,7 @@ pub(crate) enum Elastic {
 }
 
 impl Elastic {
-    /// The law of cells of `cell_dimension`, `law` or else the one that `strain` stands for, with the moduli of `lame`.
+    /// The law of cells of `cell_dimension`: `law`, or else the one of `strain`, with the moduli of `lame`.
     pub(crate) fn new(
         strain: Strain,
         law: Option<Law>,

@@ -12,7 +12,8 @@ use crate::elements::material::law::{Block, Blocks};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ObjectiveViscosity(pub(crate) Hooke);
 
-/// A `pull` is lambda times the mean rate of dilatation over a cell, where that counts in place of lambda tr(E').
+/// A `pull` is lambda times the mean rate of dilatation over a cell, where that takes the place of lambda
+/// tr(E').
 impl ObjectiveViscosity {
     /// tr(E')
     #[inline(always)]
@@ -24,7 +25,7 @@ impl ObjectiveViscosity {
         trace(&at.twice_green_rate(rate)) * 0.5
     }
 
-    /// lambda tr(E') of its mean, and lambda.
+    /// lambda times a mean `rate` tr(E'), and lambda.
     #[inline(always)]
     pub(crate) fn of_volume<T: Real>(&self, rate: T) -> [T; 2] {
         let [_, pull, stiff] = self.0.of_volume(rate);
@@ -69,7 +70,7 @@ impl ObjectiveViscosity {
         }
     }
 
-    /// dP/dF', likewise, and symmetric; `is_mean` leaves the part of a mean out.
+    /// dP/dF', likewise, and symmetric; `is_mean` leaves out the part of a mean dilatation.
     #[inline(always)]
     pub(crate) fn rate_tangent<'a, T: Real, const N: usize, const M: usize, const D: usize>(
         &self,

@@ -1,11 +1,12 @@
-//! Principal strains of a point and their directions, and how a law of the stretches resists a change of strain.
+//! Principal strains of a point and their directions, and the response of a law of the stretches to a change
+//! of strain.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
 use crate::base::tensor::{Matrix, Real, symmetric};
 use crate::elements::material::response::{Elasticity, Response, axes};
 
-/// How a point of a cell of dimension `M` is strained, in principal directions.
+/// The strain of a point of a cell of dimension `M`, in principal directions.
 pub(crate) struct Principal<T, const M: usize> {
     /// Principal values of 2E: along the cell and across it.
     pub(super) twice: [T; 3],
@@ -14,7 +15,8 @@ pub(crate) struct Principal<T, const M: usize> {
 }
 
 impl<T: Real, const M: usize> Principal<T, M> {
-    /// Those of a point with `twice` the strain along the cell; `across` tells 2E across it by that along it.
+    /// Those of a point with `twice` the strain along the cell; `across` gives 2E across it from that along
+    /// it.
     #[inline(always)]
     pub(super) fn new(twice: Matrix<T, M, M>, across: impl Fn([f64; 3]) -> f64) -> Self {
         let (along, directions) = principal_of(twice);
@@ -30,7 +32,7 @@ impl<T: Real, const M: usize> Principal<T, M> {
         Self { twice: values, directions }
     }
 
-    /// What `of` makes of the principal values and of `pull`, if there is one.
+    /// What `of` returns for the principal values and for `pull`, if there is one.
     #[inline(always)]
     pub(super) fn each_with<const O: usize>(
         &self,
@@ -74,7 +76,7 @@ impl<T: Real, const M: usize> Principal<T, M> {
                         sum += numbers[3 + 3 * a + b] * square;
                     }
                 }
-                // of the pair (a, b), by the direction that is left
+                // of the pair (a, b), stored under the third direction
                 for a in 0..M {
                     for b in 0..a {
                         let left = n[a][j] * n[b][l] + n[a][l] * n[b][j];
@@ -98,12 +100,13 @@ pub(super) struct Slopes {
     pub(super) stress: [f64; 3],
     /// dS_i/dE_j (Pa)
     pub(super) normal: [[f64; 3]; 3],
-    /// (S_j - S_k) / (E_j - E_k) of the two directions beside each (Pa)
+    /// (S_j - S_k) / (E_j - E_k) of the two directions other than each (Pa)
     pub(super) shear: [f64; 3],
 }
 
 impl Slopes {
-    /// Lets the section of a cell of dimension `M` follow, so that no stress comes up across it.
+    /// Lets the section of a cell of dimension `M` change with the strain along it, so that there is no
+    /// stress across it.
     pub(super) fn free_across<const M: usize>(&mut self) {
         let own: f64 = self.normal[2][M..].iter().sum();
         let by_along = self.normal[2];
@@ -125,12 +128,12 @@ impl Slopes {
     }
 }
 
-/// Turns of a symmetric matrix after which it is diagonal to the last digit: six times about each axis (Jacobi's method, whose digits
-/// double with each).
+/// Sweeps of Jacobi's method, one rotation about each axis, after which a symmetric matrix is diagonal to the
+/// last digit: each doubles the correct digits.
 const ROUNDS: usize = 6;
 
-/// Principal values and directions of a symmetric matrix, by Jacobi's method: the same work for all matrices, so that several are
-/// computed at once.
+/// Principal values and directions of a symmetric matrix, by Jacobi's method: the same work for all matrices,
+/// so that several are computed at once.
 #[inline(always)]
 fn principal_of<T: Real, const M: usize>(mut a: Matrix<T, M, M>) -> ([T; M], Matrix<T, M, M>) {
     let zero = a[0][0].constant(0.0);
@@ -142,7 +145,7 @@ fn principal_of<T: Real, const M: usize>(mut a: Matrix<T, M, M>) -> ([T; M], Mat
     for _ in 0..ROUNDS {
         for p in 0..M {
             for q in p + 1..M {
-                // the tangent t of the smaller angle that makes a_pq vanish; 0 if it has
+                // the tangent t of the smaller angle that makes a_pq vanish; 0 if a_pq is 0
                 let apart = a[q][q] - a[p][p];
                 let twice = a[p][q] * 2.0;
                 let sign = apart.sign();
@@ -182,7 +185,8 @@ mod tests {
 
     use super::*;
 
-    /// Against nalgebra's, with values far apart, alike, in pairs, and of any size: to the last digits of the largest one.
+    /// Against nalgebra's, with values far apart, alike, in pairs, and of any size: to the last digits of the
+    /// largest one.
     #[test]
     fn principal_values_and_directions() {
         let turn = nalgebra::Rotation3::new(nalgebra::Vector3::new(0.7, -1.1, 0.9));

@@ -1,4 +1,5 @@
-//! Rubber: a polynomial in the invariants of the deformation without its change of volume, and a resistance to that.
+//! Rubber: a polynomial in the invariants of the deformation without its change of volume, and an energy of
+//! that change.
 
 #![allow(clippy::needless_range_loop, reason = "closures would not be compiled in place")]
 
@@ -9,12 +10,12 @@ use crate::elements::material::hooke::Plane;
 use crate::elements::material::law::{Blocks, ElasticLaw};
 use crate::elements::material::response::{Elasticity, Response, Tangent, axes};
 
-/// W = c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3 + c01 (I2 - 3) + (kappa/4) (J^2 - 1 - 2 ln J), with the invariants
-/// I1 and I2 of J^(-2/3) C: neo-Hookean with c10 alone, Mooney-Rivlin with c01, Yeoh with c20 and c30
-/// (G. A. Holzapfel, *Nonlinear Solid Mechanics*, chapter 6; the part of the volume: J. C. Simo, R. L. Taylor,
-/// Computer Methods in Applied Mechanics and Engineering 85 (1991) 273-310).
+/// W = c10 (I1 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3 + c01 (I2 - 3) + (kappa/4) (J^2 - 1 - 2 ln J), with the
+/// invariants I1 and I2 of J^(-2/3) C: neo-Hookean with c10 alone, Mooney-Rivlin with c01, Yeoh with c20 and
+/// c30 (G. A. Holzapfel, *Nonlinear Solid Mechanics*, chapter 6; the part of the volume: J. C. Simo, R. L.
+/// Taylor, Computer Methods in Applied Mechanics and Engineering 85 (1991) 273-310).
 ///
-/// All is written by G = 2 E = C - I, so that small strains keep their digits.
+/// All formulas use G = 2 E = C - I, so that small strains keep their digits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Rivlin {
     /// c10, c20, c30 (Pa)
@@ -23,12 +24,12 @@ pub(crate) struct Rivlin {
     pub(super) second: f64,
     /// kappa (Pa)
     pub(super) bulk: f64,
-    /// What there is across a cell that does not fill space.
+    /// What is assumed across a cell that does not fill space.
     pub(super) across: Plane,
 }
 
 impl Rivlin {
-    /// G across a cell that is free to change its thickness: where there is no stress.
+    /// G across a cell that is free to change its thickness: the one without stress there.
     #[inline(always)]
     fn free_across<T: Real, const M: usize>(&self, along: &Matrix<T, M, M>) -> T {
         let [trace, minors, _] = invariants_of(along);
@@ -37,16 +38,16 @@ impl Rivlin {
         across
     }
 
-    /// G across a cell of `M` dimensions with these invariants of G along it, by Newton's method in ln C across; NaN if there
-    /// is none.
+    /// G across a cell of `M` dimensions with these invariants of G along it, by Newton's method in ln C
+    /// across; NaN if there is none.
     fn without_stress<const M: usize>(&self, trace: f64, minors: f64) -> f64 {
-        /// More than strains of any size take.
+        /// Most iterations: more than strains of any size take.
         const MOST: usize = 100;
         let m = directions::<M>();
         // det C and tr C along the cell
         let area = 1.0 + trace + minors;
         let in_plane = M as f64 + trace;
-        // as if the volume did not change
+        // start: the volume does not change
         let mut c = area.powf(-1.0 / m);
         for _ in 0..MOST {
             let volume = area * c.powf(m);
@@ -54,7 +55,8 @@ impl Rivlin {
             let i2 = m * c * in_plane + if M == 1 { c * c } else { area };
             let r = volume.powf(-1.0 / 3.0);
             let [w1, w11] = self.slopes(r * i1 - 3.0);
-            // c dI/dc of the invariants without volume, by one direction across: x, y; times 2 is S c
+            // x, y: c dI1/dc and c dI2/dc of the invariants without volume, by one direction across; 2 (W1
+            // x + W2 y) + J U' is S c
             let x = r * (c - i1 / 3.0);
             let y = r * r * (i1 * c - c * c - 2.0 / 3.0 * i2);
             let stress = 2.0 * (w1 * x + self.second * y) + 0.5 * self.bulk * (volume - 1.0);
@@ -85,7 +87,7 @@ impl Rivlin {
 }
 
 impl Rivlin {
-    /// J U'(J) and J^2 U''(J) of the volume at the point, or J times a `pull`, which stays as it is.
+    /// J U'(J) and J^2 U''(J) at the point; with a `pull`, which is constant, J times it and 0.
     #[inline(always)]
     fn volume<T: Real, const M: usize>(&self, at: &Strained<T, M>, pull: Option<T>) -> [T; 2] {
         match pull {
@@ -155,8 +157,8 @@ impl Rivlin {
         }
         let slope = times(product(&at.inverse, &inner), r);
         let slope_across = at.first_slope(at.across) * at.inverse_across * r;
-        // factors of C^-1 (x) C^-1, of the product of C^-1 with itself that is symmetric in all pairs, of I (x) I less the
-        // identity, and the tensor P in C^-1 (x) P + P (x) C^-1
+        // factors of C^-1 (x) C^-1, of the product of C^-1 with itself that is symmetric in all pairs, of
+        // I (x) I less the identity, and the tensor P in C^-1 (x) P + P (x) C^-1
         let dyadic = (w1 * r * i1 * (1.0 / 9.0) + r2 * i2 * (self.second * 4.0 / 9.0)) * 4.0
             + volume
             + stiffness;

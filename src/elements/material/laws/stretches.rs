@@ -13,22 +13,22 @@ use crate::elements::material::response::{Response, Tangent};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ByStretches {
     pub(super) kind: Kind,
-    /// What there is across a cell that does not fill space.
+    /// What is assumed across a cell that does not fill space.
     pub(super) across: Plane,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
-    /// W = sum (mu_p / alpha_p) (sum_i l_i^alpha_p / J^(alpha_p / 3) - 3) + (kappa/4) (J^2 - 1 - 2 ln J), g = J - 1
-    /// (R. W. Ogden, Proceedings of the Royal Society A 328 (1972) 567-583).
+    /// W = sum (mu_p / alpha_p) (sum_i l_i^alpha_p / J^(alpha_p / 3) - 3) + (kappa/4) (J^2 - 1 - 2 ln J),
+    /// g = J - 1 (R. W. Ogden, Proceedings of the Royal Society A 328 (1972) 567-583).
     Ogden {
         /// mu_p (Pa) and alpha_p
         terms: [[f64; 2]; 3],
         /// kappa (Pa)
         bulk: f64,
     },
-    /// W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with U^2 = F^T F, g = tr(U - I): Hooke's law in the frame that turns along with
-    /// the point.
+    /// W = mu |U - I|^2 + (lambda/2) tr(U - I)^2 with U^2 = F^T F, g = tr(U - I): Hooke's law in the frame
+    /// that rotates with the point.
     Corotated(Lame),
 }
 
@@ -83,7 +83,7 @@ impl Kind {
         }
     }
 
-    /// U' and U'', which a `pull` leaves out.
+    /// U' and U''; with a `pull`, which is constant, it and 0.
     fn volume(self, twice: [f64; 3], pull: Option<f64>) -> [f64; 2] {
         match pull {
             Some(pull) => [pull, 0.0],
@@ -120,7 +120,7 @@ impl Kind {
         }
     }
 
-    /// S_i and its derivatives by E_j; a `pull` stays as it is.
+    /// S_i and its derivatives by E_j; a `pull` is kept constant.
     #[inline(never)]
     fn slopes(self, twice: [f64; 3], pull: Option<f64>) -> Slopes {
         let stress = self.stress(twice, pull);
@@ -131,8 +131,8 @@ impl Kind {
         }
     }
 
-    /// 2E across a cell of dimension `M` where there is no stress, given that along it; NaN if there is none. With Ogden's law by
-    /// Newton's method in the logarithm.
+    /// 2E across a cell of dimension `M` without stress there, given 2E along it; NaN if there is none. With
+    /// Ogden's law by Newton's method in the logarithm.
     #[inline(never)]
     fn free_across<const M: usize>(self, along: [f64; 3]) -> f64 {
         if let Self::Corotated(Lame { lambda, mu }) = self {
@@ -141,7 +141,7 @@ impl Kind {
             let across = -lambda * sum / (2.0 * mu + (3 - M) as f64 * lambda);
             return if across > -1.0 { across * (across + 2.0) } else { f64::NAN };
         }
-        /// More than strains of any size take.
+        /// Most iterations: more than strains of any size take.
         const MOST: usize = 100;
         let mut twice = along;
         let m = (3 - M) as f64;
@@ -161,12 +161,12 @@ impl Kind {
     }
 }
 
-/// ln l of l^2 - 1
+/// ln l, given l^2 - 1
 fn logarithm(twice: f64) -> f64 {
     0.5 * twice.ln_1p()
 }
 
-/// l - 1 of l^2 - 1
+/// l - 1, given l^2 - 1
 fn longer(twice: f64) -> f64 {
     twice / ((twice + 1.0).sqrt() + 1.0)
 }

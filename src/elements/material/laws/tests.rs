@@ -1,5 +1,5 @@
-//! What every law has to keep, checked for all laws by the same functions at random deformations of cells of
-//! every dimension in every space.
+//! What every law has to satisfy, checked for all laws by the same functions at random deformations of cells
+//! of every dimension in every space.
 
 use nalgebra::{Rotation3, Vector3};
 use pulp::{Arch, Scalar, Simd, WithSimd};
@@ -11,7 +11,7 @@ use crate::elements::material::{Blocks, Deformation, ElasticLaw, Lame, Plane};
 
 /// Moduli of a soft material, Pa.
 const LAME: Lame = Lame { lambda: 2.0, mu: 1.0 };
-/// All laws, with what there is across a plane.
+/// All laws, with what is assumed across a plane.
 const LAWS: [(Strain, Option<Law>, Plane); 13] = [
     (Strain::Cauchy, None, Plane::Strain),
     (Strain::Cauchy, None, Plane::Stress),
@@ -307,8 +307,9 @@ fn laws_are_linear_elasticity_at_small_strains() {
     in_all_dimensions!(check);
 }
 
-/// Simple shear by gamma: the shear stress P_12 in closed form. Rubber: 2 (W1 + W2) gamma at I1 - 3 = gamma^2, and with Ogden's law
-/// the sum of mu_p (l^alpha_p - l^-alpha_p) / (l + 1/l) of the stretches l and 1/l, with l - 1/l = gamma.
+/// Simple shear by gamma: the shear stress P_12 in closed form. Rubber: 2 (W1 + W2) gamma at
+/// I1 - 3 = gamma^2, and with Ogden's law the sum of mu_p (l^alpha_p - l^-alpha_p) / (l + 1/l) of the
+/// stretches l and 1/l, with l - 1/l = gamma.
 #[test]
 fn simple_shear() {
     let Lame { lambda, mu } = LAME;
@@ -407,7 +408,7 @@ fn several_points_at_once() {
     in_all_dimensions!(check);
 }
 
-/// The words for a cell that is turned inside out, and the number that tells it.
+/// The message for a cell that is turned inside out, and the number that detects it.
 #[test]
 fn what_is_inverted_is_outside_the_domain() {
     let frame = units::<2>();

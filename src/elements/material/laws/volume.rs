@@ -1,4 +1,4 @@
-//! How rubber resists a change of its volume, to all digits where that is small.
+//! The energy of a change of volume of rubber, to all digits where the change is small.
 
 /// U = (kappa/4) (J^2 - 1 - 2 ln J), U' and U'' by g = J - 1, `bulk` being kappa (Pa).
 pub(super) fn swollen(bulk: f64, dilatation: f64) -> [f64; 3] {

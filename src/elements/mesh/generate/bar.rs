@@ -6,6 +6,7 @@ use crate::elements::mesh::{CellKind, Mesh};
 
 impl Mesh {
     /// A bar of `length` (m) along x from 0 with `nodes` equidistant nodes; sets `left`, `right`.
+    ///
     /// [`Mesh::mapped`] makes a string in the plane or in space of it.
     ///
     /// # Errors

@@ -19,8 +19,9 @@ pub enum SolidCells {
     /// there; the nodes in the middle of edges come after all of them, in the order of the grid
     /// with half the spacing.
     Tetrahedra10,
-    /// One twenty-node hexahedron per grid cell. Corner nodes are numbered as in [`SolidCells::Hexahedra`]; the nodes in the
-    /// middle of edges come after all of them, in the order of the grid with half the spacing.
+    /// One twenty-node hexahedron per grid cell. Corner nodes are numbered as in [`SolidCells::Hexahedra`];
+    /// the nodes in the middle of edges come after all of them, in the order of the grid with half the
+    /// spacing.
     Hexahedra20,
 }
 
@@ -59,10 +60,11 @@ const HEXAHEDRON: [[[usize; 3]; 8]; 1] =
     [[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]]];
 
 impl Mesh {
-    /// A cuboid of `size` = [along x, along y, along z] (m) with its least corner at the origin and
-    /// `nodes` corner nodes along the axes, numbered along x first, then y, then z; sets `left`,
-    /// `right` (its ends along x), `front`, `back` (along y) and `bottom`, `top` (along z), with
-    /// the mid nodes on them.
+    /// A cuboid of `size` = [along x, along y, along z] (m) with its least corner at the origin.
+    ///
+    /// It has `nodes` corner nodes along the axes, numbered along x first, then y, then z, and the sets
+    /// `left`, `right` (its ends along x), `front`, `back` (along y) and `bottom`, `top` (along z), with the
+    /// mid nodes on them.
     ///
     /// # Errors
     /// A side that is not above 0, fewer than 2 nodes along a side.
@@ -74,12 +76,14 @@ impl Mesh {
         Self::graded_cuboid(size, nodes, [1.0; 3], cells)
     }
 
-    /// A [cuboid](Self::cuboid) with cells that get longer or shorter along its axes: along each, the last one is
-    /// `grading` times as long as the first, and each by the same factor as the one before it. Mid nodes are in the
-    /// middles of edges.
+    /// A [cuboid](Self::cuboid) with cells that get longer or shorter along its axes.
+    ///
+    /// Along each, the last one is `grading` times as long as the first, and each by the same factor as the
+    /// one before it. Mid nodes are in the middles of edges.
     ///
     /// # Errors
-    /// As [`cuboid`](Self::cuboid); a grading that is not within 1e-4 and 1e4, or is not 1 for one cell alone.
+    /// As [`cuboid`](Self::cuboid); a grading that is not within 1e-4 and 1e4, or is not 1 for one cell
+    /// alone.
     pub fn graded_cuboid(
         size: [f64; 3],
         nodes: [usize; 3],

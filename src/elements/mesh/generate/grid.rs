@@ -46,7 +46,7 @@ impl Cells {
         }
     }
 
-    /// The nodes that a grid of them has beside the corners.
+    /// The nodes that a grid of them has in addition to the corners.
     pub(super) fn mid_nodes(self) -> MidNodes {
         match self {
             Self::Triangles6 => MidNodes::Everywhere,
@@ -99,7 +99,7 @@ impl Diagonal {
     }
 }
 
-/// Which nodes a grid has beside the corners of its cells.
+/// Which nodes a grid has in addition to the corners of its cells.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MidNodes {
     None,

@@ -11,7 +11,8 @@ pub use grid::Cells;
 
 use crate::base::input::{InputError, check_memory, positive};
 
-/// Memory (bytes) that a body takes at least for each node, in the plane and with linear cells: its matrices alone.
+/// Memory (bytes) that a body takes at least for each node, in the plane and with linear cells: its matrices
+/// alone.
 pub(crate) const BYTES_PER_NODE: f64 = 4e3;
 
 /// Checks the numbers of nodes along the axes of a grid.
@@ -31,10 +32,10 @@ fn check_nodes<const D: usize>(generator: &str, nodes: [usize; D]) -> Result<(),
     check_memory(&input, format!("{nodes:?}"), bytes, "choose fewer nodes")
 }
 
-/// The last cell of a side may be so many times as long as the first one, or the other way round.
+/// The greatest ratio of the lengths of the last and the first cell of a side, or the other way round.
 const STEEPEST: f64 = 1e4;
 
-/// Checks how cells change in size along the axes of a grid: the last cell by the first one.
+/// Checks how cells change in size along the axes of a grid: the ratios of the last cell to the first one.
 fn check_grading<const D: usize>(
     generator: &str,
     nodes: [usize; D],
@@ -62,8 +63,8 @@ fn grid_line(i: usize, count: usize, length: f64) -> f64 {
     length * (i as f64 / count as f64)
 }
 
-/// Coordinates of the lines across a side of `length` with `cells` cells in `steps` equal steps each, the last cell
-/// `grading` times as long as the first: each by the same factor as the one before it.
+/// Coordinates of the lines across a side of `length` with `cells` cells in `steps` equal steps each, the
+/// last cell `grading` times as long as the first: each by the same factor as the one before it.
 fn grid_lines(cells: usize, steps: usize, length: f64, grading: f64) -> Vec<f64> {
     if grading == 1.0 {
         return (0..=steps * cells).map(|i| grid_line(i, steps * cells, length)).collect();

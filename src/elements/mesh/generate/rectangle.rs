@@ -6,9 +6,10 @@ use crate::base::input::{InputError, positive};
 use crate::elements::mesh::Mesh;
 
 impl Mesh {
-    /// A rectangle of `size` = [width, height] (m) with its lower left corner at the origin and
-    /// `nodes` = [along x, along y] corner nodes, numbered row by row from the lower left; sets
-    /// `bottom`, `top` (from left to right), `left`, `right` (upward), with the mid nodes on them.
+    /// A rectangle of `size` = [width, height] (m) with its lower left corner at the origin.
+    ///
+    /// It has `nodes` = [along x, along y] corner nodes, numbered row by row from the lower left, and the
+    /// sets `bottom`, `top` (from left to right), `left`, `right` (upward), with the mid nodes on them.
     ///
     /// # Errors
     /// A side that is not above 0, fewer than 2 nodes along a side.
@@ -16,9 +17,10 @@ impl Mesh {
         Self::graded_rectangle(size, nodes, [1.0; 2], cells)
     }
 
-    /// A [rectangle](Self::rectangle) with cells that get longer or shorter along its axes: along each, the last one
-    /// is `grading` times as long as the first, and each by the same factor as the one before it. Mid nodes are in the
-    /// middles of edges.
+    /// A [rectangle](Self::rectangle) with cells that get longer or shorter along its axes.
+    ///
+    /// Along each, the last one is `grading` times as long as the first, and each by the same factor as the
+    /// one before it. Mid nodes are in the middles of edges.
     ///
     /// ```
     /// use pliant::{Cells, Mesh};
@@ -30,7 +32,8 @@ impl Mesh {
     /// ```
     ///
     /// # Errors
-    /// As [`rectangle`](Self::rectangle); a grading that is not within 1e-4 and 1e4, or is not 1 for one cell alone.
+    /// As [`rectangle`](Self::rectangle); a grading that is not within 1e-4 and 1e4, or is not 1 for one cell
+    /// alone.
     pub fn graded_rectangle(
         size: [f64; 2],
         nodes: [usize; 2],

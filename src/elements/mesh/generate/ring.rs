@@ -8,11 +8,12 @@ use crate::base::input::{InputError, positive};
 use crate::elements::mesh::Mesh;
 
 impl Mesh {
-    /// A ring around the origin with the radii `inner` and `outer` (m) and `nodes` =
-    /// [around, radial] corner nodes. Stations follow each other counter-clockwise, the first one
-    /// straight down; the nodes of a station are numbered from inside out, so that number
-    /// (station) radial + k + 1 is the k-th node (from 0) of a station (from 0). Sets `inner` and
-    /// `outer`, counter-clockwise from straight down.
+    /// A ring around the origin with the radii `inner` and `outer` (m) and `nodes` = [around, radial] corner
+    /// nodes.
+    ///
+    /// Stations follow each other counter-clockwise, the first one straight down; the nodes of a station are
+    /// numbered from inside out, so that node k (from 0) of station s (from 0) has the number
+    /// `s * radial + k + 1`. Node sets are `inner` and `outer`, counter-clockwise from straight down.
     ///
     /// All corner nodes lie on circles, so do mid nodes: edges along the circles of a mesh of
     /// [`Cells::Triangles6`] are curved, and its diagonals a little.
@@ -42,10 +43,12 @@ impl Mesh {
         annulus(&grid, [inner, outer], [radial - 1, around], cells, from_below)
     }
 
-    /// The upper half of a ring around the origin, an arch, with the radii `inner` and `outer` (m)
-    /// and `nodes` = [around, radial] corner nodes. Stations follow each other counter-clockwise
-    /// from the right end to the left one, numbered as in [`Mesh::ring`]. Sets `inner`, `outer`
-    /// (from right to left), and the ends `left` and `right` (from inside out).
+    /// The upper half of a ring around the origin, an arch, with the radii `inner` and `outer` (m) and
+    /// `nodes` = [around, radial] corner nodes.
+    ///
+    /// Stations follow each other counter-clockwise from the right end to the left one, numbered as in
+    /// [`Mesh::ring`]. Node sets are `inner`, `outer` (from right to left), and the ends `left` and `right`
+    /// (from inside out).
     ///
     /// # Errors
     /// An inner radius that is not above 0 or not below the outer one, fewer than 2 nodes around or
@@ -67,7 +70,8 @@ impl Mesh {
     }
 }
 
-/// A mesh of `grid`, wound around the origin: `direction` of the step (of all steps) around.
+/// A mesh of `grid`, wound around the origin: `direction` returns the direction at a step around, given also
+/// the number of all steps.
 fn annulus(
     grid: &Grid<2>,
     [inner, outer]: [f64; 2],

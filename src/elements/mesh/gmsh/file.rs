@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use mshio::error::MshParserErrorKind;
 use mshio::{ElementType, Entities, MshData, MshParserError};
 
-/// Physical groups and entities are known by dimension and tag.
+/// Physical groups and entities are identified by dimension and tag.
 type Key = (i32, i32);
 
 /// What a mesh is made from.
@@ -104,10 +104,10 @@ fn find<'a>(file: &'a [u8], name: &'a str) -> impl Iterator<Item = usize> + 'a {
     windows.filter(|(_, window)| *window == name.as_bytes()).map(|(at, _)| at + name.len())
 }
 
-/// Checks that a section exists and is not empty, which `mshio` takes for granted, and sets the
-/// greatest tag in its header to the greatest there is. For `mshio` keeps tags only where they must
-/// have gaps by what the header says; yet tags without gaps need not be in order either (they are
-/// not after the order of a mesh was raised), and the nodes of elements would be other ones.
+/// Checks that a section exists and is not empty, which `mshio` takes for granted, and sets the greatest tag
+/// in its header to the greatest number. For `mshio` keeps tags only if the header says that they have gaps;
+/// but tags without gaps may be out of order, too (as after the order of a mesh was raised), and elements
+/// would get wrong nodes.
 fn prepare_section(file: &mut Vec<u8>, name: &str, binary: bool) -> Result<(), String> {
     let mut places = find(file, name);
     let (Some(start), None) = (places.next(), places.next()) else {
@@ -161,7 +161,7 @@ fn broken(file: &[u8], binary: bool, error: &MshParserError<&[u8]>) -> String {
     }
 }
 
-/// The section of physical names: a dimension, a tag and a name in quotes to a line.
+/// The section of physical names: a dimension, a tag and a name in quotes on each line.
 fn physical_names(file: &[u8]) -> HashMap<Key, String> {
     let bounds = (find(file, "$PhysicalNames").next(), find(file, "$EndPhysicalNames").next());
     let (Some(start), Some(end)) = bounds else { return HashMap::new() };
@@ -184,7 +184,7 @@ fn groups(
     let mut groups = HashMap::new();
     let mut add = |dimension: i32, what: &str, entity: i32, tags: &[i32]| {
         let name = |tag: &i32| {
-            let tag = tag.wrapping_abs(); // its sign tells the orientation in the group
+            let tag = tag.wrapping_abs(); // its sign is the orientation in the group
             names.get(&(dimension, tag)).cloned().unwrap_or_else(|| format!("{what} {tag}"))
         };
         groups.insert((dimension, entity), tags.iter().map(name).collect());
