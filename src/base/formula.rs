@@ -1,9 +1,9 @@
 //! Formulas of time, as a person writes them: `2000 * sin(2*pi*3*t)`.
 //!
-//! Numbers, `t` (s), `pi`, `e`, `+ - * / ^`, parentheses and the functions of [`FUNCTIONS`], with the precedence of
-//! mathematics: `-t^2` is -(t^2), `2^3^2` is 2^9. Each evaluation gives the first and second derivatives by t too, by
-//! the rules of differentiation applied to numbers (truncated Taylor series; Griewank and Walther, *Evaluating
-//! Derivatives*, chapter 13), and allocates nothing.
+//! Numbers, `t` (s), `pi`, `e`, `+ - * / ^`, parentheses and the functions of [`FUNCTIONS`], with the
+//! precedence of mathematics: `-t^2` is -(t^2), `2^3^2` is 2^9. Each evaluation gives the first and second
+//! derivatives by t too, by the rules of differentiation applied to numbers (truncated Taylor series;
+//! Griewank and Walther, *Evaluating Derivatives*, chapter 13), and allocates nothing.
 
 use std::fmt;
 
@@ -39,7 +39,7 @@ enum Operator {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Jet(pub(crate) [f64; 3]);
 
-/// A function that formulas know.
+/// A function that a formula can call.
 struct Function {
     name: &'static str,
     rule: Rule,
@@ -50,7 +50,7 @@ enum Rule {
     Smooth(fn(f64) -> [f64; 3]),
     /// The same, with a kink.
     Kinked(fn(f64) -> [f64; 3]),
-    /// Whether the first of two is taken.
+    /// Whether the first of two arguments is selected.
     Choice(fn(f64, f64) -> bool),
 }
 
@@ -114,13 +114,13 @@ static FUNCTIONS: [Function; 17] = [
         }),
     },
     Function { name: "abs", rule: Kinked(|x| [x.abs(), x.signum(), 0.0]) },
-    // 0 before its argument is 0, 1 from there on
+    // 0 for arguments below 0, 1 from 0 on
     Function { name: "step", rule: Kinked(|x| [f64::from(x >= 0.0), 0.0, 0.0]) },
     Function { name: "min", rule: Choice(|a, b| a <= b || a.is_nan()) },
     Function { name: "max", rule: Choice(|a, b| a >= b || a.is_nan()) },
 ];
 
-/// Numbers that wait for an operator at most, and parentheses in each other.
+/// Largest number of operands that wait for an operator, and deepest nesting of parentheses.
 const DEEPEST: usize = 32;
 
 impl Formula {
@@ -153,7 +153,7 @@ impl Formula {
         &self.text
     }
 
-    /// The function without derivatives in it, if there is one.
+    /// The first function in it that has a kink, if there is one.
     fn kink(&self) -> Option<&'static str> {
         self.steps.iter().find_map(|step| match step {
             Step::Function(Function { name, rule: Kinked(_) | Choice(_) }) => Some(*name),
@@ -161,7 +161,7 @@ impl Formula {
         })
     }
 
-    /// Checks that a path can follow it: that its derivatives exist.
+    /// Checks that it can describe a path: that its derivatives exist.
     pub(crate) fn check_smooth(&self) -> Result<(), InputError> {
         self.kink().map_or(Ok(()), |name| {
             let help = format!(
@@ -174,7 +174,7 @@ impl Formula {
     /// Its value at time `t` (s), with its derivatives.
     pub(crate) fn at(&self, t: f64) -> Jet {
         let mut stack = [Jet::constant(0.0); DEEPEST];
-        // the number of those that wait; parsing has made sure that there are enough, and not too many
+        // number of operands on the stack; parsing has made sure that there are enough, and not too many
         let mut n = 0;
         for step in &self.steps {
             match step {
@@ -232,10 +232,10 @@ impl Jet {
         Self([a * b, a1 * b + a * b1, a2 * b + 2.0 * a1 * b1 + a * b2])
     }
 
-    /// f of it, where f, f' and f'' have these values.
+    /// f of this number by the chain rule, given f, f' and f'' at its value.
     fn through(self, [f, slope, bend]: [f64; 3]) -> Self {
         let Self([_, first, second]) = self;
-        // what does not change has no derivatives, whatever those of f are
+        // the derivatives of a constant are 0, even where those of f are infinite
         let times = |by: f64, x: f64| if x == 0.0 { 0.0 } else { by * x };
         Self([f, times(slope, first), times(bend, first * first) + times(slope, second)])
     }
@@ -272,9 +272,9 @@ impl Jet {
 /// Reads by recursive descent.
 struct Parser<'a> {
     text: &'a str,
-    /// Bytes that are read.
+    /// Number of bytes read so far.
     at: usize,
-    /// Parentheses that are open, and signs and powers that wait.
+    /// Number of open parentheses, and of signs and powers whose operand is not complete.
     depth: usize,
     steps: Vec<Step>,
 }
@@ -284,7 +284,7 @@ impl<'a> Parser<'a> {
         &self.text[self.at..]
     }
 
-    /// The next character that is no space.
+    /// The next character that is not a space.
     fn peek(&mut self) -> Option<char> {
         let rest = self.rest();
         self.at += rest.len() - rest.trim_start().len();
@@ -341,7 +341,7 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    /// -power, +power or a power: a sign counts after a power.
+    /// -power, +power or a power: a power binds tighter than a sign before it.
     fn signed(&mut self) -> Result<(), String> {
         if self.take('-') {
             self.nested(Self::signed)?;
@@ -353,14 +353,14 @@ impl<'a> Parser<'a> {
         }
         self.value()?;
         if self.take('^') {
-            // from the right
+            // right-associative
             self.nested(Self::signed)?;
             self.steps.push(Step::Operator(Operator::Power));
         }
         Ok(())
     }
 
-    /// A number, a name, a function or what is in parentheses.
+    /// A number, a name, a function or an expression in parentheses.
     fn value(&mut self) -> Result<(), String> {
         match self.peek() {
             Some('(') => {
@@ -487,8 +487,8 @@ mod tests {
         }
     }
 
-    /// Derivatives, against central differences with h = 1e-5: off by h^2/6 times third and fourth derivatives, 4e5 at
-    /// most here (of t^-1.5 at 0.2), and by round-off over h.
+    /// Derivatives, against central differences with h = 1e-5, whose error is h^2/6 times third and fourth
+    /// derivatives, 4e5 at most here (of t^-1.5 at 0.2), and round-off over h.
     #[test]
     fn derivatives_are_those_of_the_values() {
         for text in [
@@ -515,7 +515,7 @@ mod tests {
         }
     }
 
-    /// Where a number is 0 or does not change, nothing of its derivatives is lost to 0 times infinity.
+    /// Where a number is 0 or constant, its derivatives do not become NaN by 0 times infinity.
     #[test]
     fn derivatives_at_the_start() {
         for (text, expected) in [

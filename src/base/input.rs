@@ -20,7 +20,7 @@ pub(crate) use nearest::list;
 pub(crate) use nearest::{unknown, unknown_among};
 pub(crate) use words::{percent, short, told};
 
-/// An input that cannot be used: which one, its value, and how to mend it.
+/// An input that cannot be used: which one, its value, and what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{input} = {value} cannot be used: {help}")]
 pub struct InputError {
@@ -43,8 +43,8 @@ impl InputError {
     }
 }
 
-/// Position of `name` among the names of all `what` (springs, chambers) that the scene has; `input` is where it was
-/// given.
+/// Position of `name` among the names of all `what` (springs, chambers) that the scene has; `input` is where
+/// it was given.
 pub(crate) fn find<'a>(
     name: &str,
     known: impl Iterator<Item = &'a str> + Clone,
@@ -57,11 +57,11 @@ pub(crate) fn find<'a>(
     })
 }
 
-/// Numbers above this are none that anything is measured in: what follows from them is beyond the range of double
-/// precision.
+/// Largest number that is accepted: no quantity is larger, and results computed from larger numbers may
+/// exceed the range of double precision.
 const MOST: f64 = 1e30;
 
-/// What is said of them.
+/// The message about a number above that.
 fn too_large(value: f64) -> Option<&'static str> {
     (value.is_finite() && value.abs() > MOST)
         .then_some("nothing is as large as that: it may be 1e30 at most")

@@ -1,7 +1,7 @@
-//! Numbers of several cells, or of several components of vectors, that a machine computes at once, in one register.
+//! Numbers of several cells, or of several components of vectors, computed at once in one SIMD register.
 //!
-//! Arithmetic on a lane is that on each of its numbers, in the same order and without fused operations, so that results
-//! are those of one cell after the other to the last bit, on any machine.
+//! Arithmetic on a lane acts on each of its numbers, in the same order and without fused operations, so that
+//! results are the same to the last bit as those of one cell after the other, on any machine.
 
 use std::ops::{Add, AddAssign, Div, Mul, Sub};
 
@@ -9,7 +9,7 @@ use pulp::{NullaryFnOnce, Simd, WithSimd};
 
 use crate::base::tensor::Real;
 
-/// Cells that are kept side by side: as many as the widest register has numbers.
+/// Cells that are kept side by side: as many as there are numbers in the widest register.
 pub(crate) const SIDE_BY_SIDE: usize = 8;
 
 /// One number for each of [`SIDE_BY_SIDE`] cells, in memory.
@@ -126,7 +126,7 @@ impl<S: Simd> Real for Lane<S> {
         std::array::from_fn(|o| Self::load(simd, &made[o].0, 0))
     }
 
-    /// Entered through `vectorize`, or it would be compiled for the oldest machine.
+    /// Called through `vectorize`: otherwise it would be compiled for the oldest supported processor.
     #[inline(never)]
     fn apart<F: NullaryFnOnce>(self, formula: F) -> F::Output {
         struct Vectorized<F>(F);

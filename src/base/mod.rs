@@ -1,5 +1,5 @@
-//! What all rooms stand on and what says nothing of mechanics: vectors, small tensors, registers of the machine,
-//! matrices over pairs of nodes, formulas of time, the error of an input.
+//! What all rooms use and what knows nothing of mechanics: vectors, small tensors, SIMD registers, matrices
+//! over pairs of nodes, formulas of time, the error of an input.
 
 #[cfg(feature = "bodies")]
 pub(crate) mod formula;

@@ -1,7 +1,8 @@
 //! Formulas over long vectors, for as many components at once as a register of the machine holds.
 //!
-//! The loop is compiled for each kind of machine (`pulp`). Sums are those of [`SIDE_BY_SIDE`] interleaved parts on all of
-//! them, so that results are the same to the last bit. A call costs some nanoseconds more than a plain loop.
+//! The loop is compiled for each kind of machine (`pulp`). On all of them a sum is made of [`SIDE_BY_SIDE`]
+//! interleaved partial sums, so that results are the same to the last bit. A call costs some nanoseconds more
+//! than a plain loop.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
@@ -10,13 +11,14 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::base::lane::{Lane, SIDE_BY_SIDE};
 use crate::base::tensor::Real;
 
-/// What becomes of each component by itself: new numbers of `O` vectors, and terms of `P` sums.
+/// A formula for each component by itself: it gives new numbers of `O` vectors, and terms of `P` sums.
 pub(crate) trait Formula<const I: usize, const O: usize, const P: usize> {
-    /// The new numbers and the terms, by those of `I` other vectors and the `old` ones. It has to be compiled in place.
+    /// The new numbers and the terms, from the numbers of `I` other vectors and the `old` ones. It has to be
+    /// inlined.
     fn at<T: Real>(&self, x: [T; I], old: [T; O]) -> ([T; O], [T; P]);
 }
 
-/// Writes what `formula` makes of the vectors `from` to the vectors `to`, all of one length. Returns the sums.
+/// Applies `formula` to the vectors `from` and writes the vectors `to`, all of one length. Returns the sums.
 pub(crate) fn each<const I: usize, const O: usize, const P: usize>(
     formula: impl Formula<I, O, P>,
     from: [&[f64]; I],
@@ -41,7 +43,7 @@ impl Formula<1, 1, 0> for Sum {
 
 type Chunks = [[f64; SIDE_BY_SIDE]];
 
-/// The loop over vectors, in chunks and what is left of them.
+/// The loop over vectors: whole chunks, and the components left over.
 struct Pass<'a, F, const I: usize, const O: usize, const P: usize> {
     formula: F,
     from: [(&'a Chunks, &'a [f64]); I],
@@ -64,7 +66,7 @@ impl<F: Formula<I, O, P>, const I: usize, const O: usize, const P: usize> WithSi
     fn with_simd<S: Simd>(self, simd: S) -> [f64; P] {
         let Self { formula, from, to } = self;
         let zero = Lane::splat(simd, 0.0);
-        // a register of each part of a chunk: as many as there are
+        // one register of partial sums for each part of a chunk, of which there are `SIDE_BY_SIDE` at most
         let mut parts = [[zero; SIDE_BY_SIDE]; P];
         let lengths = from.iter().map(|x| x.0.len()).chain(to.iter().map(|y| y.0.len()));
         for chunk in 0..lengths.min().unwrap_or(0) {
@@ -147,7 +149,7 @@ mod tests {
                 expected[1] += x[k];
             }
             for (sum, expected) in sums.into_iter().zip(expected) {
-                // another order of at most 40 numbers below 1
+                // the same sum of at most 40 numbers below 1, in another order
                 assert!((sum - expected).abs() <= 40.0 * f64::EPSILON, "{sum}, {expected}");
             }
         }

@@ -38,7 +38,7 @@ impl NodeMatrix {
         Self { pattern: pattern.clone(), values: vec![0.0; pattern.entries()] }
     }
 
-    /// Zeros for each of `nodes` nodes by itself.
+    /// A diagonal matrix of zeros for `nodes` nodes.
     pub(crate) fn diagonal(nodes: usize) -> Self {
         Self::zeros(&Arc::new(NodePattern::new(nodes, std::iter::empty())))
     }
@@ -69,7 +69,7 @@ impl NodeMatrix {
         moved
     }
 
-    /// Whether no two nodes share anything.
+    /// Whether no entry couples two different nodes.
     pub(crate) fn is_diagonal(&self) -> bool {
         let row_is = |row| {
             self.pattern.row(row).all(|(entry, column)| column == row || self.values[entry] == 0.0)
@@ -176,7 +176,7 @@ impl BlockMatrix {
         Some(&mut self.values[entry * size..][..size])
     }
 
-    /// Adds m (x) I, of a matrix `m` that couples no other nodes.
+    /// Adds m (x) I, for a matrix `m` that couples no further nodes.
     pub(crate) fn add_on_all_axes(&mut self, m: &NodeMatrix) {
         let d = self.dimension;
         for row in 0..m.pattern.nodes() {
@@ -253,7 +253,7 @@ impl BlockMatrix {
         }
     }
 
-    /// |A| x, all entries taken by their size, at one degree of freedom.
+    /// |A| x, with the absolute values of all entries, at one degree of freedom.
     pub(crate) fn absolute_row_product(&self, dof: usize, x: &[f64]) -> f64 {
         let d = self.dimension;
         let (node, axis) = (dof / d, dof % d);
@@ -287,8 +287,8 @@ impl<'a, const D: usize> Rows<'a, D> {
         (Self { pattern, first, blocks: before }, Self { pattern, first: middle, blocks: after })
     }
 
-    /// The block of a pair of nodes, if its row is among them. `entry` is that of the pattern before it was
-    /// widened: what cells know, whatever else is coupled.
+    /// The block of a pair of nodes, if its row is among them. `entry` is its index in the pattern before
+    /// that was widened: the index that cells know, whatever pairs were added.
     #[inline(always)]
     pub(crate) fn block_mut(&mut self, entry: u32) -> Option<&mut [[f64; D]; D]> {
         let entry = match &self.pattern.widened {
@@ -299,7 +299,7 @@ impl<'a, const D: usize> Rows<'a, D> {
     }
 }
 
-/// The rows of some nodes from `first` on.
+/// The product in the rows of `y`, which are those of the nodes from `first` on.
 fn node_product<const D: usize>(
     pattern: &NodePattern,
     values: &[f64],
@@ -345,7 +345,7 @@ fn node_row<const D: usize>(
     sum
 }
 
-/// The rows of some nodes from `first` on.
+/// The product in the rows of `y`, which are those of the nodes from `first` on.
 fn block_product<const D: usize>(
     pattern: &NodePattern,
     values: &[f64],

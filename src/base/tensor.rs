@@ -1,7 +1,6 @@
-//! Numbers and small dense matrices: what the formulas at one point of a cell are written in.
+//! Numbers and small dense matrices, in which the formulas at one point of a cell are written.
 //!
-//! Loops, and no closures: what is not compiled in place loses the instructions for several numbers
-//! at once.
+//! Loops and no closures: a function that is not inlined loses the SIMD instructions.
 
 #![allow(clippy::needless_range_loop, reason = "indices that several arrays share read best")]
 
@@ -26,16 +25,16 @@ pub(crate) trait Real:
     /// -1 where it is below 0, else 1.
     fn sign(self) -> Self;
 
-    /// Another number, of this kind.
+    /// A constant, as a number of this kind.
     fn constant(self, number: f64) -> Self;
 
-    /// What `f` makes of some numbers, for each cell by itself.
+    /// The function `f` of some numbers, for each cell by itself.
     fn each<const I: usize, const O: usize>(
         numbers: [Self; I],
         f: impl Fn([f64; I]) -> [f64; O],
     ) -> [Self; O];
 
-    /// What a formula of numbers of this kind makes, in a function of its own: compiled once, however many call it.
+    /// The result of `formula`, in a function that is not inlined: compiled once, however many call it.
     fn apart<F: NullaryFnOnce>(self, formula: F) -> F::Output;
 }
 
@@ -69,10 +68,10 @@ impl Real for f64 {
     }
 }
 
-/// x^(-1/3) of a number above 0; of others any number.
+/// x^(-1/3) for x above 0, otherwise an arbitrary number.
 #[inline(always)]
 pub(crate) fn inverse_cube_root<T: Real>(x: T) -> T {
-    // a third of the bits, and with them of the exponent: 3.5 % off at most
+    // minus a third of the bits, and so of the exponent: 3.5 % off at most
     let [mut root] = T::each([x], |[x]| [f64::from_bits(0x553e_f000_0000_0000 - x.to_bits() / 3)]);
     // Newton's method doubles the digits
     for _ in 0..4 {
@@ -100,7 +99,7 @@ pub(crate) fn apply<T: Real, const R: usize, const C: usize>(
     a: &Matrix<T, R, C>,
     x: &[T; C],
 ) -> [T; R] {
-    // any numbers, which are all replaced
+    // arbitrary numbers, which are all replaced
     let mut y = a[0];
     for i in 0..R {
         y[i] = a[0][i] * x[0];
@@ -156,8 +155,8 @@ pub(crate) fn product_transposed<T: Real, const R: usize, const K: usize, const 
     product
 }
 
-/// The matrix of numbers `like` one, with `entry` at each row and column not beyond it, made symmetric. (A macro, as no closure can be told to be
-/// compiled in place.)
+/// The symmetric matrix with `entry` at each pair k <= j, of the same kind of numbers as `like`. (A macro, as
+/// a closure cannot be forced to be inlined.)
 macro_rules! symmetric {
     ($like:expr; $j:ident, $k:ident => $entry:expr) => {{
         let mut matrix = [[$like; M]; M];

@@ -1,11 +1,11 @@
 //! Products and norms of vectors.
 
-/// Largest size of a component; 0 of none.
+/// Largest absolute value of a component; 0 if there are none.
 pub(crate) fn largest(x: &[f64]) -> f64 {
     x.iter().fold(0.0, |largest, x| x.abs().max(largest))
 }
 
-/// The size of a number, or 1 of zero: what changes of it are measured by.
+/// The absolute value of a number, or 1 for zero: the scale of its changes.
 pub(crate) fn size_or_one(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.abs() }
 }
@@ -33,7 +33,7 @@ pub(crate) fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// Numbers between -1 and 1 without a pattern, the same in all runs.
+/// Pseudorandom numbers between -1 and 1, the same in all runs.
 pub(crate) fn noise(length: usize, seed: usize) -> Vec<f64> {
     let number =
         |i: usize| (12.9898 * (i + 1 + 7919 * seed) as f64).sin().mul_add(43.758, 0.3).sin();

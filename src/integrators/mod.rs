@@ -1,8 +1,8 @@
-//! Integrators of any ordinary differential or differential-algebraic equations; they know no bodies.
+//! Integrators of ordinary differential and differential-algebraic equations; they know nothing of bodies.
 //!
-//! [`ode`] has the traits of what is integrated, [`solve`](mod@solve) integrates by one call. Below it stand the
-//! integrators themselves: [`sundials`] (CVODE, IDA, ARKODE), [`rk`] (Dormand and Prince), [`rosenbrock`] and
-//! [`central_difference`], which share the options and the trait of [`common`].
+//! [`ode`] has the traits of the systems to integrate, [`solve`](mod@solve) integrates by one call. Below it
+//! are the integrators themselves: [`sundials`] (CVODE, IDA, ARKODE), [`rk`] (Dormand and Prince),
+//! [`rosenbrock`] and [`central_difference`], which share the options and the trait of [`common`].
 
 pub mod central_difference;
 pub mod common;

@@ -4,7 +4,7 @@ use std::str::FromStr;
 
 use super::InputError;
 
-/// A part of a whole, above 0 and below 1, as an accuracy is given: `0.01`, or `1%`.
+/// A part of a whole, above 0 and below 1, such as an accuracy: `0.01`, or `1%`.
 ///
 /// ```
 /// assert_eq!("1%".parse::<pliant::Fraction>()?.0, 0.01);
@@ -17,7 +17,7 @@ pub struct Fraction(pub f64);
 
 impl Fraction {
     /// # Errors
-    /// A number that is none, or not above 0 and below 1; `input` is where it was given.
+    /// If the number is NaN, or not above 0 and below 1; `input` names where it was given.
     pub(crate) fn check(input: &str, part: f64) -> Result<f64, InputError> {
         if part > 0.0 && part < 1.0 {
             return Ok(part);

@@ -1,10 +1,10 @@
-//! Whether something fits in memory, before it is begun.
+//! Checks whether something fits in memory, before it is computed.
 
 use std::fs;
 
 use super::InputError;
 
-/// Passes what takes at least so many `bytes`, if they are free; `help` says what takes less.
+/// Checks that at least so many `bytes` of memory are free; `help` says what takes less.
 pub(crate) fn check_memory(
     input: &str,
     value: String,
@@ -20,7 +20,7 @@ pub(crate) fn check_memory(
     Err(InputError::new(input, value, help))
 }
 
-/// What is taken to be free where the system does not tell.
+/// Memory (bytes) assumed to be free where the system does not report it.
 const A_LOT: u64 = 1 << 40;
 
 /// Memory (bytes) that is free for new data.

@@ -2,7 +2,7 @@
 
 use strsim::damerau_levenshtein;
 
-/// Message about a `word` that is none of the `known` ones.
+/// Message about a `word` that is not among the `known` ones.
 pub(crate) fn unknown(word: &str, known: &[&str]) -> String {
     match (nearest(word, known), known) {
         (_, []) => "there are none".into(),
@@ -12,7 +12,7 @@ pub(crate) fn unknown(word: &str, known: &[&str]) -> String {
     }
 }
 
-/// The same where the known ones are all `what` (springs, node sets) that the `owner` (scene, mesh) has.
+/// The same, where the known words name all `what` (springs, node sets) that the `owner` (scene, mesh) has.
 pub(crate) fn unknown_among(word: &str, known: &[&str], owner: &str, what: &str) -> String {
     match (nearest(word, known), known) {
         (_, []) => format!("the {owner} has no {what}"),
@@ -28,8 +28,8 @@ pub(crate) fn list(words: &[&str]) -> String {
     words.iter().map(|word| format!("\"{word}\"")).collect::<Vec<_>>().join(", ")
 }
 
-/// The known word that begins with `word`, or the one with the fewest typing errors between both,
-/// if more of the longer one is right than wrong.
+/// The known word that begins with `word`, or else the one that differs from it by the fewest typing errors,
+/// if these are fewer than half the letters of the longer word.
 fn nearest<'a>(word: &str, known: &[&'a str]) -> Option<&'a str> {
     if word.len() > 2
         && let Some(whole) = known.iter().find(|known| known.starts_with(word))

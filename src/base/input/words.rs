@@ -1,12 +1,12 @@
-//! Numbers in words.
+//! Numbers as messages show them.
 
-/// A number with four digits, as messages tell times.
+/// A number with four significant digits, as messages show times.
 pub(crate) fn told(value: f64) -> String {
     let rounded = format!("{value:.3e}").parse().unwrap_or(value);
     format!("{rounded:?}").trim_end_matches(".0").to_owned()
 }
 
-/// A number with two digits.
+/// A number with two significant digits.
 pub(crate) fn short(value: f64) -> String {
     match value.abs() {
         1e5.. => format!("{value:.1e}"),
@@ -14,7 +14,7 @@ pub(crate) fn short(value: f64) -> String {
     }
 }
 
-/// A part in percent, with two digits.
+/// A fraction in percent, with two significant digits.
 pub(crate) fn percent(part: f64) -> String {
     format!("{} %", short(100.0 * part))
 }

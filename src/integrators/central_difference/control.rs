@@ -1,10 +1,10 @@
-//! Step sizes: constant for as long as possible, for a change of step costs central differences what
-//! they are best at, an energy that does not drift.
+//! Step sizes: constant for as long as possible, because each change of the step spoils the main strength of
+//! central differences, an energy that does not drift.
 
-/// Part of the largest error that new steps aim at.
+/// Error norm that new steps aim at; 1 is the largest that is accepted.
 const TARGET: f64 = 0.5;
-/// Steps after which a longer step is thought of, and how much longer it must be, at least, and may
-/// be, at most.
+/// Number of steps after which a longer step is considered, and the smallest and the largest factor by which
+/// it may be longer.
 const PATIENCE: usize = 50;
 const WORTHWHILE: f64 = 1.25;
 const LARGEST_FACTOR: f64 = 4.0;
@@ -14,20 +14,20 @@ const REJECTED_FACTOR: f64 = 0.8;
 /// Shortening after forces that could not be evaluated.
 const REFUSED_FACTOR: f64 = 0.25;
 
-/// Equal steps from one time to the stop time, until a reason turns up to change them.
+/// Equal steps from one time to the stop time, until there is a reason to change them.
 #[derive(Debug, Clone)]
 pub(super) struct Control {
     from: f64,
     /// The stop time; infinite if there is none.
     end: f64,
-    /// Step size wanted (s), and number and size of the equal ones.
+    /// Step size wanted (s), and number and size of the equal steps.
     planned: f64,
     count: f64,
     step: f64,
     taken: f64,
     /// Longest step that is stable and allowed (s).
     limit: f64,
-    /// Largest error since the last change or thought of one, and steps since then.
+    /// Largest error since a change of the step was last made or considered, and steps since then.
     worst: f64,
     watched: usize,
 }
@@ -56,7 +56,7 @@ impl Control {
         self.divide(t, self.planned);
     }
 
-    /// Divides what lies ahead of `t` into equal steps no longer than `step`.
+    /// Divides the time from `t` to the end into equal steps no longer than `step`.
     fn divide(&mut self, t: f64, step: f64) {
         (self.from, self.planned) = (t, step);
         // round-off must not add a step
@@ -82,7 +82,7 @@ impl Control {
         }
     }
 
-    /// A step to `t` was good, with an error norm of at most 1.
+    /// A step to `t` was accepted, with an error norm of at most 1.
     pub(super) fn accept(&mut self, t: f64, error: f64) {
         self.taken += 1.0;
         self.worst = self.worst.max(error);
@@ -105,7 +105,7 @@ impl Control {
         self.divide(t, factor * self.step);
     }
 
-    /// The step from `t` met forces that have no meaning.
+    /// In the step from `t` the forces could not be evaluated.
     pub(super) fn refuse(&mut self, t: f64) {
         self.divide(t, REFUSED_FACTOR * self.step);
     }

@@ -8,10 +8,10 @@
 //! v_(n+1) = w + (h/2) M^-1 f_(n+1)
 //! ```
 //!
-//! One evaluation of the forces per step, order 2. Without damping the method is symplectic: a
-//! modified energy is conserved, and the energy proper does not drift (T. Belytschko et al.,
-//! *Nonlinear Finite Elements for Continua and Structures*, chapter 6; E. Hairer, C. Lubich, G. Wanner,
-//! Acta Numerica 12 (2003) 399-450). It is fastest with lumped inertia, where M^-1 is a division.
+//! One evaluation of the forces per step, order 2. Without damping the method is symplectic: a modified
+//! energy is conserved, and the energy itself does not drift (T. Belytschko et al., *Nonlinear Finite
+//! Elements for Continua and Structures*, chapter 6; E. Hairer, C. Lubich, G. Wanner, Acta Numerica 12 (2003)
+//! 399-450). It is fastest with lumped inertia, where M^-1 is a division.
 //!
 //! ```
 //! use pliant::central_difference::{CentralDifference, Integrator, Options};
@@ -53,9 +53,9 @@
 //! # Ok::<(), pliant::central_difference::Error>(())
 //! ```
 //!
-//! **Damping.** Viscous forces see the velocity 2 w - v_n = v_n + h v_n', extrapolated to the end of
-//! the step. Taking w instead, as is often done, allows twice the step where damping rules, but makes the
-//! method first order.
+//! **Damping.** Viscous forces are evaluated with the velocity 2 w - v_n = v_n + h v_n', extrapolated to the
+//! end of the step. Taking w instead, as is often done, allows twice the step where damping dominates, but
+//! makes the method first order.
 //!
 //! **Stability.** For a vibration of frequency omega and damping rate r (u'' + r u' + omega^2 u = 0) the
 //! growth factors s solve
@@ -70,11 +70,12 @@
 //! h = 2 / (r + sqrt(r^2 + omega^2)).
 //! ```
 //!
-//! The largest omega and the largest r, each by itself, make that a bound for a whole body.
+//! With the largest omega and the largest r of a whole body, each taken by itself, this is a bound for the
+//! body.
 //!
-//! **Energies.** The kinetic energy changes in one step by h w . (f_n + f_(n+1))/2, but for a bounded
-//! remainder. So the trapezoidal rule for the powers of damping and applied forces is the work that
-//! these forces do in the scheme. That of the constraint forces is what the kicks book.
+//! **Energies.** The kinetic energy changes in one step by h w . (f_n + f_(n+1))/2, up to a bounded
+//! remainder. So the trapezoidal rule for the powers of damping and applied forces gives the work that these
+//! forces do in the scheme. The work of the constraint forces is summed up in the kicks.
 
 mod control;
 mod solver;

@@ -13,7 +13,7 @@ use crate::integrators::ode::{Failure, SecondOrder, call};
 /// Order of the method.
 const ORDER: u32 = 2;
 
-/// Steps in which the weights of the error norm are kept.
+/// Number of steps for which the weights of the error norm are kept.
 const KEPT: u64 = 16;
 
 /// Integrates M u'' = f(t, u, u') forward in time by central differences.
@@ -32,22 +32,22 @@ pub struct CentralDifference<S> {
     /// End and start of the last step; equal when there is nothing to interpolate in.
     pub(super) t: f64,
     t_before: f64,
-    /// Time within the last step at which the last call came to rest, unless at its end, and the state
-    /// there.
+    /// Time within the last step at which the last call stopped, unless at its end, and the state there.
     rest: Option<f64>,
     output: Vec<f64>,
-    /// (u, v, integrals) at t, and at `t_before`: room for a trial, in between.
+    /// (u, v, integrals) at t, and at `t_before`; while a step is tried, the latter holds the trial state.
     pub(super) y: Vec<f64>,
     pub(super) y_before: Vec<f64>,
     /// Forces at t.
     pub(super) force: Vec<f64>,
     pub(super) trial_force: Vec<f64>,
-    /// Time derivatives of the integrals at t, constraints left out.
+    /// Time derivatives of the integrals at t, without those of constraints.
     pub(super) powers: Vec<f64>,
     pub(super) trial_powers: Vec<f64>,
     /// What the constraints add to the integrals in a step.
     pub(super) work: Vec<f64>,
-    /// Accelerations at the beginning of the step before the last, at that of the last, and at its end.
+    /// Accelerations at the beginning of the step before the last, at the beginning of the last, and at its
+    /// end.
     pub(super) earlier: Vec<f64>,
     pub(super) first: Vec<f64>,
     pub(super) second: Vec<f64>,
@@ -68,8 +68,8 @@ impl<S: SecondOrder> CentralDifference<S> {
     /// of the integrals are not used, for nothing depends on them.
     ///
     /// # Errors
-    /// [`Error::Input`] names what cannot be used; [`Error::Integration`] for forces or constraints that have no meaning at
-    /// the start.
+    /// [`Error::Input`] names what cannot be used; [`Error::Integration`] if forces or constraints cannot be
+    /// evaluated at the start.
     pub fn new(system: S, t: f64, y: &[f64], options: &ExplicitOptions) -> Result<Self, Error> {
         check_start(t, y)?;
         options.check(y)?;
@@ -143,7 +143,7 @@ impl<S: SecondOrder> CentralDifference<S> {
                 Ok(error) => {
                     self.statistics.error_test_failures += 1;
                     self.control.reject(t, error);
-                    // errors that grow from step to step are how a step that is too long shows
+                    // a step that is too long to be stable shows by errors that grow from step to step
                     let limit = self.longest_step();
                     self.control.set_limit(t, limit);
                 }
@@ -190,8 +190,8 @@ impl<S: SecondOrder> CentralDifference<S> {
         self.options.steps.max_step.unwrap_or(f64::INFINITY)
     }
 
-    /// The state within the last step: cubic in u and in v, each with its own derivative at both ends,
-    /// linear in the integrals. Known components are what they are at that time.
+    /// The state within the last step: cubic in u and in v, each with its own derivative at both ends, linear
+    /// in the integrals. Known components have their prescribed values at that time.
     fn interpolate_state(&mut self, t: f64, y: &mut [f64]) -> Result<(), Error> {
         if t == self.t {
             y.copy_from_slice(&self.y);
@@ -277,7 +277,7 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
         ORDER
     }
 
-    /// Hermite's cubic polynomials; what a constraint prescribes is taken at its time.
+    /// Hermite's cubic polynomials; prescribed components are evaluated at the time itself.
     fn interpolant_degree(&self) -> u32 {
         3
     }
@@ -294,7 +294,7 @@ impl<S: SecondOrder> Integrator for CentralDifference<S> {
         self.interpolate_state(t, out)
     }
 
-    /// Steps up to the stop time are equal, unless the motion needs others.
+    /// Steps up to the stop time are equal, unless accuracy or stability requires others.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error> {
         if let Some(stop) = t {
             check_stop_time(stop, self.t, self.t())?;

@@ -5,15 +5,15 @@ use crate::integrators::ode::{EnergyBalance, Rates, SecondOrder};
 
 /// Part of the longest stable step that is used: rates may grow until they are bounded anew.
 const SAFETY: f64 = 0.98;
-/// Steps from one bound on the rates to the next: at first, and at most.
+/// Number of steps from one bound on the rates to the next: at first, and at most.
 const FIRST_INTERVAL: usize = 64;
 const LONGEST_INTERVAL: usize = 4096;
-/// Change of the limit from one bound to the next that calls for more of them, and one that allows
-/// fewer.
+/// Relative change of the limit from one bound to the next above which bounds become more frequent, and below
+/// which they become less frequent.
 const MUCH: f64 = 0.04;
 const LITTLE: f64 = 0.01;
-/// Steps between two looks at the energy, the part of it that must not seem to be created, and what
-/// becomes of the step if it does.
+/// Number of steps between two checks of the energy, the part of it whose apparent creation shortens the
+/// steps, and the factor by which it does.
 const LOOK: usize = 128;
 const CREATED: f64 = 0.05;
 const SHORTENED: f64 = 0.7;
@@ -30,7 +30,7 @@ pub(super) struct Stability {
     /// Part of the bound in use.
     safety: f64,
     interval: usize,
-    /// Steps since the last bound, and since the last look at the energy.
+    /// Steps since the last bound, and since the last check of the energy.
     since: usize,
     unseen: usize,
     /// Lowest energy balance of the scheme so far, and the largest scale of it.
@@ -53,7 +53,7 @@ impl Stability {
         }
     }
 
-    /// Bounds the longest stable step at the state `y`; infinite if nothing vibrates.
+    /// Bounds the longest stable step at the state `y`; infinite if nothing vibrates or decays.
     pub(super) fn limit(&mut self, system: &mut impl SecondOrder, t: f64, y: &[f64]) -> f64 {
         let (u, v, _) = split(system, y);
         self.rates = system.rates(t, u, v);
@@ -103,8 +103,8 @@ impl Stability {
         Some(limit)
     }
 
-    /// Whether kinetic + potential + dissipated - supplied has grown, in the sense of the scheme: less
-    /// h^2 a.M a/8, which makes the sum constant for linear forces.
+    /// Whether the energy, kinetic + potential + dissipated - supplied, has grown. It is taken as in the
+    /// scheme, minus h^2 a.M a/8, which makes the sum constant for linear forces.
     fn creates_energy(
         &mut self,
         system: &impl SecondOrder,

@@ -18,7 +18,7 @@ impl<S: SecondOrder> CentralDifference<S> {
         let half = 0.5 * h;
         let is_coupled = system.aim_at_mean_rates(self.t, h)?;
         let kick = Kick { duration: half, force: &self.force, before: v };
-        // else those at the end of the step before
+        // otherwise `first` holds those at the end of the step before
         if self.step_before.is_none() || is_coupled {
             call::accelerations(system, &kick, &mut self.first);
         }
@@ -30,7 +30,7 @@ impl<S: SecondOrder> CentralDifference<S> {
         call::forces(system, next, u_next, extrapolated, &mut self.trial_force)?;
         let kick = Kick { duration: half, force: &self.trial_force, before: middle };
         call::accelerations(system, &kick, &mut self.second);
-        // differences of steps of different size; without a step before the first one will do
+        // differences over steps of different size; without a step before, the first difference is used
         let (ratio, scale) = match self.step_before {
             Some(before) => (h / before, 2.0 * h / (before + h)),
             None => (0.0, 1.0),
@@ -53,8 +53,8 @@ impl<S: SecondOrder> CentralDifference<S> {
     }
 }
 
-/// From u, v and a at the beginning of a step to velocities w in its middle, u at its end, and velocities extrapolated
-/// to there.
+/// From u, v and a at the beginning of a step to velocities w in its middle, u at its end, and velocities
+/// extrapolated to there.
 struct Drift {
     h: f64,
 }
@@ -67,7 +67,8 @@ impl Formula<3, 3, 0> for Drift {
     }
 }
 
-/// From velocities w in the middle of a step to those at its end, and the sums of the squares of the local errors
+/// From velocities w in the middle of a step to those at its end, and the sums of the squares of the local
+/// errors
 ///
 /// ```text
 /// h^3 u'''/6 = h^2 (a_(n+1) - a_n)/6,    h^3 v'''/12 = h (a_(n+1) - 2 a_n + a_(n-1))/12
@@ -76,7 +77,7 @@ impl Formula<3, 3, 0> for Drift {
 /// without the factors of h, weighted by the tolerances.
 struct Arrive {
     half: f64,
-    /// Of the size of the step to that of the one before.
+    /// Ratio of the size of the step to that of the one before.
     ratio: f64,
 }
 

@@ -45,7 +45,7 @@ impl Error {
         Self::Call { function, code, message: String::new() }
     }
 
-    /// A C function that returned nothing.
+    /// A C function that returned NULL.
     pub(crate) fn out_of_memory(function: &'static str) -> Self {
         Self::Call { function, code: 0, message: "no memory".into() }
     }
@@ -79,7 +79,8 @@ pub enum Callback {
     Quadratures,
     /// `project`
     Projection,
-    /// A [`Functional`](crate::integrators::ode::Functional), `adjoint_rhs`, `adjoint_parameters`, or the equations in their place
+    /// A [`Functional`](crate::integrators::ode::Functional), `adjoint_rhs`, `adjoint_parameters`, or the
+    /// equations in their place
     Adjoint,
     /// `sensitivity_rhs` or `sensitivity_residual`, or the equations with a changed parameter in their place
     Sensitivities,
@@ -135,22 +136,22 @@ pub enum Cause {
         /// Its value.
         value: f64,
     },
-    /// One call took as many steps as it may. Calling again goes on.
+    /// One call took the largest number of steps allowed. Another call continues.
     TooManySteps {
         /// Steps taken by the call.
         steps: u64,
-        /// Time asked for.
+        /// Target time.
         target: f64,
         /// What the integrator noticed about its steps
         /// ([`Integrator::notice`](super::Integrator::notice)).
         notice: Option<String>,
     },
-    /// Time stands still: steps as short as rounding allows do not lead on. Calling again goes on.
+    /// Time stands still: steps as short as rounding allows make no progress. Another call continues.
     StandsStill {
-        /// How many of them were taken.
+        /// How many such steps were taken.
         steps: u64,
     },
-    /// The tolerances ask for more digits than double precision has.
+    /// The tolerances require more digits than double precision has.
     TooMuchAccuracy,
     /// The local error stayed too large down to the smallest step.
     ErrorTest,
@@ -162,7 +163,7 @@ pub enum Cause {
         method: &'static str,
         /// The equation in which it is wrong, or the first of several.
         row: usize,
-        /// The unknown by which its derivative is most wrong; none among very many unknowns.
+        /// The unknown for which the derivative is most wrong; `None` if there are too many to search.
         column: Option<usize>,
         /// What was supplied: this entry, or the product of the row with a direction.
         supplied: f64,
@@ -176,15 +177,15 @@ pub enum Cause {
     /// The Krylov method did not solve the linear systems of the nonlinear iteration down to the
     /// smallest step.
     LinearConvergence,
-    /// The initial values of a DAE do not satisfy its equations, or none could be found.
+    /// The initial values of a DAE do not satisfy its equations, or consistent ones could not be found.
     InconsistentStart,
     /// A DAE is of index 2 or higher: the equations without derivatives leave an unknown undetermined.
     HigherIndex {
         /// The unknown, or one of several.
         unknown: usize,
     },
-    /// An unknown does not keep the sign that `sign_constraints` ask for, whatever the step size, or the steps
-    /// towards its bound have become too small.
+    /// An unknown does not keep the sign that `sign_constraints` require, whatever the step size, or the
+    /// steps towards its bound have become too small.
     SignConstraint {
         /// The unknown, or the first of several.
         unknown: usize,

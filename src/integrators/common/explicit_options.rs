@@ -19,8 +19,8 @@ pub(crate) fn check_target(t: f64, limit: &str, earliest: f64) -> Result<(), Inp
     Ok(())
 }
 
-/// Checks that a stop time is finite and ahead, where the steps have reached `reached` and the state in hand
-/// is that of the time `t`.
+/// Checks that a stop time is finite and ahead, where the steps have reached the time `reached` and the
+/// present state is that of the time `t`.
 pub(crate) fn check_stop_time(stop: f64, reached: f64, t: f64) -> Result<(), InputError> {
     const INPUT: &str = "stop time";
     check_time(INPUT, stop)?;
@@ -32,7 +32,8 @@ pub(crate) fn check_stop_time(stop: f64, reached: f64, t: f64) -> Result<(), Inp
 }
 
 /// Tolerances and limits of an explicit method: [`DormandPrince`](crate::integrators::rk::DormandPrince) or
-/// [`CentralDifference`](crate::integrators::central_difference::CentralDifference), which export it as `Options`.
+/// [`CentralDifference`](crate::integrators::central_difference::CentralDifference), which export it as
+/// `Options`.
 ///
 /// ```
 /// use pliant::rk::Options;

@@ -13,7 +13,7 @@ pub trait Integrator {
     /// Time of the state [`y`](Self::y).
     fn t(&self) -> f64;
 
-    /// The state at time [`t`](Self::t). After a failure it is the last one that was good; where numbers overflow,
+    /// The state at time [`t`](Self::t). After a failure it is the last accepted one; where numbers overflow,
     /// that may be the one that the call began with.
     fn y(&self) -> &[f64];
 
@@ -31,8 +31,8 @@ pub trait Integrator {
     /// A panic of the system passes through.
     fn solve_to(&mut self, t: f64) -> Result<Reached, Error>;
 
-    /// Makes one step in the direction of time `towards`, which the step may pass. If the last call was
-    /// [`solve_to`](Self::solve_to), which rests within its last step, that step's end comes first.
+    /// Makes one step in the direction of time `towards`, which the step may pass. After a
+    /// [`solve_to`](Self::solve_to) that stopped within its last step, it first goes to the end of that step.
     ///
     /// # Errors
     /// As for [`solve_to`](Self::solve_to).
@@ -41,21 +41,21 @@ pub trait Integrator {
     /// A panic of the system passes through.
     fn step(&mut self, towards: f64) -> Result<Reached, Error>;
 
-    /// The times between which [`interpolate`](Self::interpolate) works: start and end of the
-    /// last step; twice the start before the first.
+    /// The times between which [`interpolate`](Self::interpolate) works: start and end of the last step.
+    /// Before the first one, both are the start.
     fn last_step(&self) -> (f64, f64);
 
     /// Order of the last step. Before the first it is 0 in methods of variable order.
     fn last_order(&self) -> u32;
 
-    /// Degree in time of what [`interpolate`](Self::interpolate) gives within the last step.
+    /// Degree in time of the polynomial that [`interpolate`](Self::interpolate) uses within the last step.
     fn interpolant_degree(&self) -> u32;
 
     /// Writes the `derivative`-th time derivative of the solution at time `t`, within the
     /// [last step](Self::last_step), into `out`: 0 for the state itself.
     ///
-    /// Where there is no step to interpolate in, before the first one, only the state itself is known;
-    /// so too after a failure of ARKODE.
+    /// Before the first step, and after a failure of ARKODE, there is no step to interpolate in: only the
+    /// state itself is known.
     ///
     /// # Errors
     /// [`Error::Input`] if `t` lies outside the last step, `derivative` is larger than the method
@@ -66,15 +66,17 @@ pub trait Integrator {
     /// A panic of the system passes through.
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error>;
 
-    /// Lets the integration stop exactly at time `t`, without evaluating the system beyond
-    /// (`None`: no longer). For discontinuities at known times. It holds once.
+    /// Makes the integration stop exactly at time `t`, without evaluating the system beyond it.
+    ///
+    /// For discontinuities at known times. It applies once; `None` removes a stop time.
     ///
     /// # Errors
     /// [`Error::Input`] if `t` is not finite or lies behind the steps already taken.
     fn set_stop_time(&mut self, t: Option<f64>) -> Result<(), Error>;
 
-    /// Starts again at time `t` from `y`, with the same options and allocations, as after a jump of the
-    /// state or of the system. Counters start at zero; a stop time is forgotten.
+    /// Starts again at time `t` from `y`, with the same options and allocations.
+    ///
+    /// For use after a jump of the state or of the system. Counters start at zero; a stop time is removed.
     ///
     /// A DAE keeps its present y', which has to fit `y`; [`Ida::reinit_with`] sets both.
     ///
@@ -84,11 +86,12 @@ pub trait Integrator {
     /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
     fn reinit(&mut self, t: f64, y: &[f64]) -> Result<(), Error>;
 
-    /// Goes on at time `t` from `y`, with the step size, the options and the counters of before, after a change of
-    /// the system that leaves its unknowns what they were. A stop time is forgotten.
+    /// Continues at time `t` from `y`, with the present step size, options and counters.
     ///
-    /// `false`, and nothing done, where the method needs a new start, [`reinit`](Self::reinit): multistep methods
-    /// build on steps under the system of before.
+    /// For use after a change of the system that keeps the meaning of its unknowns. A stop time is removed.
+    ///
+    /// Returns `false`, and does nothing, where the method needs a new start by [`reinit`](Self::reinit):
+    /// multistep methods depend on earlier steps, taken with the old system.
     ///
     /// # Errors
     /// [`Error::Input`] if `t` or `y` is not finite or `y` has the wrong length.
@@ -123,12 +126,12 @@ pub trait Integrator {
         Self: Sized;
 }
 
-/// Where an integration call came to an end.
+/// Where an integration call ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reached {
     /// At the requested time, or, for a single step, at the end of the step.
     Time,
-    /// Where a root function changes sign; [`Integrator::roots_found`] gives which.
+    /// Where a root function changes sign; [`Integrator::roots_found`] says which one.
     Root,
     /// At the stop time, which is then no longer set.
     StopTime,

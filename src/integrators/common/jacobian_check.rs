@@ -1,25 +1,27 @@
-//! Whether a supplied Jacobian is that of the equations, looked at while an integrator uses it.
+//! Checks whether a supplied Jacobian is that of the equations, while an integrator uses it.
 
 use super::{error::Cause, tolerances::Tolerances};
 
-/// Holds products of a supplied Jacobian with directions against difference quotients of the equations.
+/// Checks products of a supplied Jacobian with directions against difference quotients of the equations.
 ///
-/// That is done with the first Jacobian, the second, the fourth, the eighth and so on, along two directions that share no unknown: where
-/// unknowns start at zero, the first says little. It costs three evaluations of the equations, more where they do not agree, and two products.
+/// It checks the first Jacobian, the second, the fourth, the eighth and so on (where unknowns start at zero,
+/// the first says little), along two directions that share no unknown. A check costs three evaluations of the
+/// equations, more where product and quotient do not agree, and two products.
 #[derive(Debug)]
 pub(crate) struct JacobianCheck {
     tolerances: Tolerances,
-    /// How many Jacobians there were, and which is looked at next.
+    /// How many Jacobians there were, and the number of the next one to check.
     seen: u64,
     next: u64,
     /// State of a generator of random numbers, the same in every run.
     random: u64,
     direction: Vec<f64>,
-    /// The state moved along it, and the time derivative of a DAE.
+    /// The state moved along the direction, and the time derivative of a DAE.
     moved: [Vec<f64>; 2],
     /// Products with both directions.
     products: [Vec<f64>; 2],
-    /// Sizes of the terms of each equation, which may cancel each other: the sum of the sizes of its products with both directions.
+    /// Size of the terms of each equation, which may cancel each other: the sum of the absolute values of its
+    /// products with both directions.
     terms: Vec<f64>,
     base: Vec<f64>,
     ahead: Vec<f64>,
@@ -32,13 +34,13 @@ pub(crate) struct JacobianCheck {
 enum RowState {
     /// Nothing yet.
     Open,
-    /// It is right, as far as differences tell.
+    /// It is right, as far as differences can show.
     Right,
     /// The quotient of the last shift says that it is wrong.
     Suspicious(f64),
 }
 
-/// Where a Jacobian is looked at: that of the equations F(y), or of F(y, y') by y and, `cj` times, by y'.
+/// Where a Jacobian is checked: dF/dy of equations F(y), or dF/dy + cj dF/dy' of equations F(y, y').
 #[derive(Clone, Copy)]
 pub(crate) struct Point<'a> {
     pub(crate) y: &'a [f64],
@@ -47,11 +49,11 @@ pub(crate) struct Point<'a> {
     pub(crate) cj: f64,
 }
 
-/// Shifts in parts of the unknowns' sizes.
+/// Shifts relative to the sizes of the unknowns.
 const SHIFTS: [f64; 3] = [1e-3, 1e-5, 1e-7];
-/// By how much of the larger of both product and quotient may differ.
+/// Largest difference allowed between product and quotient, relative to the larger of both.
 const TOLERANCE: f64 = 0.01;
-/// Unknowns up to which the entry that is wrong is looked for.
+/// Largest number of unknowns for which the wrong entry is searched.
 const MOST_UNKNOWNS: usize = 1000;
 
 impl JacobianCheck {
@@ -74,7 +76,7 @@ impl JacobianCheck {
         }
     }
 
-    /// Whether the Jacobian that was just evaluated is to be looked at.
+    /// Whether the Jacobian that was just evaluated is to be checked.
     pub(crate) fn is_due(&mut self) -> bool {
         self.seen += 1;
         let is_due = self.seen == self.next;
@@ -86,8 +88,9 @@ impl JacobianCheck {
 
     /// What is wrong with the Jacobian that `method` supplied at the point.
     ///
-    /// `multiply` writes its product with a vector, and `evaluate` the equations at a state and time derivative; both may say that they have no
-    /// number to give. Nothing is wrong where differences cannot tell: beside a jump or a kink, or where they do not converge.
+    /// `multiply` writes its product with a vector, and `evaluate` the equations at a state and time
+    /// derivative; both return `false` where they have no value. The result is `None` where differences
+    /// cannot show an error: next to a jump or a kink, or where they do not converge.
     pub(crate) fn find<S>(
         &mut self,
         system: &mut S,
@@ -130,7 +133,7 @@ impl JacobianCheck {
             sizes.for_each(|(size, product)| *size += product.abs());
         }
         for half in [0, 1] {
-            // what is small in a row shows where the largest is left out
+            // small terms of a row show in the direction that leaves out the largest one
             self.random = seed;
             self.choose_direction(y, half);
             if self.direction.iter().all(|v| *v == 0.0) {
@@ -157,7 +160,7 @@ impl JacobianCheck {
                     cause = (off, Some(j), entry / size, quotient / size);
                 }
             }
-            // whoever goes on all the same is told again
+            // whoever continues nevertheless gets this error again
             self.next = self.seen + 1;
             let (_, column, supplied, difference) = cause;
             return Some(Cause::WrongJacobian { method, row, column, supplied, difference });
@@ -165,10 +168,11 @@ impl JacobianCheck {
         None
     }
 
-    /// A random direction away from zero: some unknowns, each in its size, or the others.
+    /// A random direction away from zero: some of the unknowns, each in proportion to its size, or the
+    /// others.
     fn choose_direction(&mut self, y: &[f64], half: usize) {
         for (j, (v, y)) in self.direction.iter_mut().zip(y).enumerate() {
-            // Knuth's linear congruences, of which the upper digits are used
+            // Knuth's linear congruential generator, of which the upper bits are used
             self.random = self
                 .random
                 .wrapping_mul(6_364_136_223_846_793_005)
@@ -179,8 +183,8 @@ impl JacobianCheck {
         }
     }
 
-    /// A row of the product that differences along the direction refute, and what they say: two shifts agree with each other, and
-    /// not with it.
+    /// A row of the product that differences along the direction refute, and their value: the quotients of
+    /// two shifts agree with each other, but not with the product.
     fn wrong_row<S>(
         &mut self,
         system: &mut S,
@@ -203,7 +207,7 @@ impl JacobianCheck {
             if rows.iter().all(|row| *row == RowState::Right) {
                 return None;
             }
-            // the other side of a kink may be meant
+            // the Jacobian may be that of the other side of a kink
             if !at(system, moved, direction, -shift, behind) {
                 continue;
             }
@@ -232,13 +236,13 @@ impl JacobianCheck {
     }
 }
 
-/// What rounding may make of a quotient of an equation with values and terms of these sizes.
+/// Largest rounding error of a quotient of an equation with values and terms of these sizes.
 fn rounding(sizes: [f64; 3], shift: f64) -> f64 {
     let size = sizes.into_iter().fold(0.0, |most: f64, size| most.max(size.abs()));
     (1e3 * f64::EPSILON * size + f64::MIN_POSITIVE) / shift
 }
 
-/// Whether two numbers are the same, but for rounding.
+/// Whether two numbers agree within the tolerance and rounding.
 fn fits(a: f64, b: f64, rounding: f64) -> bool {
     (a - b).abs() <= TOLERANCE * a.abs().max(b.abs()) + rounding
 }

@@ -1,4 +1,4 @@
-//! What a one-step method works on, and what it does itself.
+//! The data that a one-step method works on, and the trait of such a method.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use super::roots::Roots;
 use super::statistics::Statistics;
 use crate::integrators::ode::{Failure, Ode};
 
-/// How far an integration by single steps has come.
+/// State of an integration by a one-step method.
 #[derive(Debug)]
 pub struct March<S> {
     /// Name and order of the method.
@@ -25,15 +25,14 @@ pub struct March<S> {
     pub(crate) slope: Vec<f64>,
     /// Whether `slope` is f(t, y).
     pub(crate) slope_known: bool,
-    /// Start of the last accepted step; equal to `t` when there is nothing to interpolate in. The solution there and f;
-    /// while a step is tried, those at its end.
+    /// Start of the last accepted step; equal to `t` when there is nothing to interpolate in. The solution
+    /// there and f; while a step is tried, those at its end.
     pub(crate) t_old: f64,
     pub(crate) y_old: Vec<f64>,
     pub(crate) slope_old: Vec<f64>,
     /// Argument of a stage.
     pub(crate) argument: Vec<f64>,
-    /// Time within the last step at which the last call came to rest, unless at its end, and the
-    /// solution there.
+    /// Time within the last step at which the last call stopped, unless at its end, and the solution there.
     pub(crate) rest: Option<f64>,
     pub(crate) output: Vec<f64>,
     pub(crate) roots: Roots,
@@ -45,7 +44,8 @@ pub struct March<S> {
 }
 
 impl<S: Ode> March<S> {
-    /// Separates what a smaller step may heal from what ends the integration, in a call at time `t` on a step of size `step`.
+    /// Separates failures that a smaller step may remedy from those that end the integration, in a call at
+    /// time `t` on a step of size `step`.
     pub(crate) fn classify(
         &self,
         outcome: Result<(), Failure>,
@@ -65,7 +65,7 @@ impl<S: Ode> March<S> {
         }
     }
 
-    /// The integration stopped with a step.
+    /// The error of an integration that stopped in a step.
     pub(crate) fn stopped(&self, cause: Cause, step: f64) -> IntegrationError {
         let Self { integrator, order, t, .. } = *self;
         IntegrationError { integrator, cause, t, step, order, message: String::new(), source: None }
@@ -78,8 +78,10 @@ pub(crate) fn not_finite(t: f64, slope: &[f64]) -> Option<Cause> {
     Some(Cause::NotFinite { callback: Callback::Rhs, t, component, value: slope[component] })
 }
 
-/// A method whose steps know nothing of each other but their size: what it does with a step. Starts, stops, roots and all
-/// that leads from step to step is [`OneStep`](super::OneStep)'s.
+/// What a one-step method does in a step.
+///
+/// Steps know nothing of each other but their size. Starts, stops, roots and all that leads from step to step
+/// are done by [`OneStep`](super::OneStep).
 pub trait StepMethod: fmt::Debug {
     /// Begins anew.
     fn restart(&mut self);
@@ -92,7 +94,7 @@ pub trait StepMethod: fmt::Debug {
 
     /// Tries a step to `t_new`, `h` later; `y_old` then holds the new solution and `slope_old` f there.
     ///
-    /// The inner result is the norm of the error estimate, at most 1 when the step will do, or why
+    /// The inner result is the norm of the error estimate, at most 1 if the step can be accepted, or why
     /// there is none.
     fn try_step<S: Ode>(
         &mut self,
@@ -101,7 +103,7 @@ pub trait StepMethod: fmt::Debug {
         h: f64,
     ) -> Result<Result<f64, Cause>, Error>;
 
-    /// The step just tried is taken: the size of the next one.
+    /// Accepts the step just tried. Returns the size of the next one.
     fn accept<S: Ode>(&mut self, march: &March<S>, t_new: f64, h: f64, error: f64) -> f64;
 
     /// The size to retry with after an error norm above 1.

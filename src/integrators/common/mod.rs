@@ -1,8 +1,10 @@
 //! What all integrators have in common: what they can do ([`Integrator`]), how accurate they are to be
 //! ([`Tolerances`]), what they cost ([`Statistics`]) and how they fail ([`Error`]).
 //!
-//! The integrators are those of [`sundials`](crate::integrators::sundials), [`rk`](crate::integrators::rk) and [`rosenbrock`](crate::integrators::rosenbrock); what they integrate is
-//! in [`ode`](crate::integrators::ode).
+//! The integrators are those of [`sundials`](crate::integrators::sundials), [`rk`](crate::integrators::rk),
+//! [`rosenbrock`](crate::integrators::rosenbrock) and
+//! [`central_difference`](crate::integrators::central_difference); what they integrate is in
+//! [`ode`](crate::integrators::ode).
 
 mod error;
 mod explicit_options;

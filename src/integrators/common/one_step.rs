@@ -1,4 +1,4 @@
-//! Integration by steps that know nothing of each other but their size.
+//! Integration by one-step methods, whose steps know nothing of each other but their size.
 
 use std::mem::{swap, take};
 
@@ -13,7 +13,7 @@ use crate::integrators::ode::{Ode, call};
 
 /// Integrates y' = f(t, y) forward in time by the one-step method M.
 ///
-/// Asking for output does not change the steps. Stepping allocates nothing.
+/// Output times do not change the steps. Stepping allocates nothing.
 #[derive(Debug)]
 pub struct OneStep<S, M> {
     pub(super) march: March<S>,
@@ -89,7 +89,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         }
     }
 
-    /// How a call ended that came to rest without a root.
+    /// How a call ended that did not stop at a root.
     fn reached(&mut self) -> Reached {
         let t = self.t();
         match self.march.stop_time.take_if(|stop| *stop == t) {
@@ -98,7 +98,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         }
     }
 
-    /// Evaluates f(t, y), where no smaller step can help.
+    /// Evaluates f(t, y) at the start of a step, where no smaller step can remedy a failure.
     fn evaluate_slope(&mut self) -> Result<(), Error> {
         let march = &mut self.march;
         march.statistics.evaluations += 1;
@@ -111,8 +111,8 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         Ok(())
     }
 
-    /// Initial step size after E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations I", 2nd ed.,
-    /// section II.4, "Starting step size".
+    /// Initial step size after E. Hairer, S. P. Norsett, G. Wanner, "Solving Ordinary Differential Equations
+    /// I", 2nd ed., section II.4, "Starting step size".
     fn estimate_initial_step(&mut self) -> Result<f64, Error> {
         let max_step = self.max_step();
         let Self { march, method } = self;
@@ -147,7 +147,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         let time_scale = slope_size / curvature;
         let exponent = 1.0 / f64::from(march.order);
         let from_error = time_scale * (0.01 / (slope_size * time_scale)).powf(exponent);
-        // Not a number or zero when the slopes vanish or are not finite: h will do.
+        // NaN or zero if the slopes vanish or are not finite: then h is used.
         Ok(if from_error > 0.0 { from_error.min(100.0 * h) } else { h })
     }
 
@@ -168,7 +168,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         self.start_roots(self.march.stop_time.map_or(h, |stop| h.min(stop - self.march.t)))?;
         let Self { march, method } = self;
         loop {
-            // A step may stretch by 1 % to hit the stop time rather than leave a sliver.
+            // A step may stretch by 1 % to hit the stop time rather than leave a tiny one.
             let stop = march.stop_time.filter(|stop| march.t + 1.01 * h >= *stop);
             if stop.is_none() && march.t + 0.1 * h == march.t {
                 march.next_step = None;
@@ -195,7 +195,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
             if proposed > step {
                 march.setback = None;
             }
-            // A step cut short by the stop time says nothing against the one that was planned.
+            // A step shortened by the stop time is no reason to give up the size that was planned.
             march.next_step = Some(if stop.is_some() { proposed.max(h) } else { proposed });
             march.statistics.steps += 1;
             march.statistics.last_step = step;
@@ -207,7 +207,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         }
     }
 
-    /// Makes `y` at `t` the state, of whose step nothing is known.
+    /// Sets the state `y` at time `t`, without a last step to interpolate in.
     fn set_state(&mut self, t: f64, y: &[f64]) -> Result<(), Error> {
         let march = &mut self.march;
         check_length("length of y", y.len(), march.y.len())?;
@@ -285,7 +285,7 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
         self.method.interpolant_degree()
     }
 
-    /// The state, or, for `derivative` 1, the derivative of what is interpolated.
+    /// The state, or, for `derivative` 1, the derivative of the interpolant.
     fn interpolate(&mut self, t: f64, derivative: u32, out: &mut [f64]) -> Result<(), Error> {
         let March { t: end, t_old: start, y, .. } = &self.march;
         check_length("length of out", out.len(), y.len())?;
@@ -346,7 +346,7 @@ impl<S: Ode, M: StepMethod> Integrator for OneStep<S, M> {
         &self.march.system
     }
 
-    /// The next step evaluates it afresh.
+    /// The next step evaluates the system anew.
     fn system_mut(&mut self) -> &mut S {
         self.march.slope_known = false;
         self.method.forget();

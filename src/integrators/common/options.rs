@@ -64,12 +64,12 @@ pub(crate) fn check_start(t0: f64, y0: &[f64]) -> Result<(), InputError> {
     check_finite("y0", y0)
 }
 
-/// Step sizes and starts are not larger: integrators compute powers of them, which would overflow.
+/// Upper bound of step sizes and start times: integrators compute powers of them, which would overflow.
 const LONGEST: f64 = 1e100;
-/// They are not smaller, for the same reason.
+/// Lower bound of step sizes, for the same reason.
 pub(crate) const SHORTEST: f64 = 1e-100;
 
-/// Checks a time to start from. (Times that merely tell a direction may be any that are finite.)
+/// Checks a time to start from. (Times that only give a direction may have any finite value.)
 pub(crate) fn check_start_time(input: &str, t: f64) -> Result<(), InputError> {
     if t.abs() <= LONGEST {
         return Ok(());

@@ -10,7 +10,8 @@ use crate::integrators::ode::{Ode, call};
 impl<S: Ode, M: StepMethod> OneStep<S, M> {
     /// Evaluates the root functions at the start; `step` is the size of the first step.
     ///
-    /// One that is 0 there is a root no longer, and followed from its value a tenth of a step later.
+    /// A function that is 0 there is not reported as a root; it is followed from its value a tenth of a step
+    /// later.
     pub(super) fn start_roots(&mut self, step: f64) -> Result<(), Error> {
         let March { t, y, argument, roots, .. } = &mut self.march;
         if roots.started || roots.found.is_empty() {
@@ -33,7 +34,7 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         result
     }
 
-    /// Leaves the root last found behind.
+    /// Moves on from the root last found.
     pub(super) fn pass_root(&mut self) -> Result<(), Error> {
         let tolerance = self.time_tolerance();
         let mut roots = take(&mut self.march.roots);
@@ -86,13 +87,13 @@ impl<S: Ode, M: StepMethod> OneStep<S, M> {
         }
     }
 
-    /// To how much of the time a root within the last step is found.
+    /// Accuracy in time of a root within the last step.
     fn time_tolerance(&self) -> f64 {
         time_tolerance(self.march.t, self.march.t - self.march.t_old)
     }
 }
 
-/// To how much of the time a root is found.
+/// Accuracy in time of a root.
 fn time_tolerance(t: f64, step: f64) -> f64 {
     100.0 * f64::EPSILON * (t.abs() + step)
 }

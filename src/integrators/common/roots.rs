@@ -15,13 +15,13 @@ pub(crate) struct Roots {
     pub(crate) started: bool,
     /// Whether there is a root at `low`.
     pub(crate) rests: bool,
-    /// Up to where sign changes were looked for, and g there.
+    /// Time up to which sign changes were searched, and g there.
     pub(crate) low: f64,
     pub(crate) at_low: Vec<f64>,
     /// g at the end of the interval that holds a sign change.
     at_high: Vec<f64>,
     pub(crate) trial: Vec<f64>,
-    /// Functions that are 0 and stay so are left out until they leave it.
+    /// Whether a function is followed: those that are 0 and stay so are left out until they leave 0.
     active: Vec<bool>,
     /// For each function 0, or the sign of its change at the root last found.
     pub(crate) found: Vec<i32>,
@@ -32,7 +32,7 @@ enum Change {
     None,
     /// One or more become 0 at the later time.
     Zero,
-    /// The sign of this one changes, the earliest of all by their secants.
+    /// The sign of this one changes, the earliest of all according to their secants.
     Sign(usize),
 }
 
@@ -62,7 +62,7 @@ impl Roots {
         self.found.fill(0);
     }
 
-    /// Goes on with the values a little later, in `trial`, where a function is 0 at `low`.
+    /// Where a function is 0 at `low`, replaces its value by that a little later, in `trial`.
     pub(crate) fn leave_zeros(&mut self) {
         for (i, at_low) in self.at_low.iter_mut().enumerate().filter(|(_, value)| **value == 0.0) {
             *at_low = self.trial[i];
@@ -70,7 +70,7 @@ impl Roots {
         }
     }
 
-    /// Finds the first sign change between `low` and `high`, to within `tolerance`, or else goes on to
+    /// Finds the first sign change between `low` and `high`, to within `tolerance`, or else moves `low` to
     /// `high`.
     pub(crate) fn search(
         &mut self,
@@ -93,7 +93,7 @@ impl Roots {
             moved_before = moved;
             let width = high - self.low;
             let part = self.at_high[i] / (self.at_high[i] - weight * self.at_low[i]);
-            // too near to an end, it would tell nothing new
+            // a point too near to an end would tell nothing new
             let edge = 0.5 * tolerance / width;
             let inward = if width > 5.0 * tolerance { 0.1 } else { edge };
             let part = match part {
@@ -126,7 +126,7 @@ impl Roots {
         Ok(self.rests.then_some(high))
     }
 
-    /// What happens from `low` on to where the functions are `values`.
+    /// What happens between `low` and the time at which the functions are `values`.
     fn change(&self, values: &[f64]) -> Change {
         let (mut change, mut largest) = (Change::None, 0.0);
         for (i, (&before, &after)) in self.at_low.iter().zip(values).enumerate() {

@@ -23,7 +23,7 @@ pub struct Statistics {
     pub difference_quotient_evaluations: u64,
     /// Evaluations of the Jacobian.
     pub jacobian_evaluations: u64,
-    /// Factorizations of the Newton matrix, or what a Krylov method has instead.
+    /// Factorizations of the Newton matrix, or the setups that a Krylov method has instead.
     pub linear_setups: u64,
     /// Iterations of the Krylov method.
     pub linear_iterations: u64,
@@ -64,14 +64,14 @@ pub struct Statistics {
     pub current_step: f64,
     /// Time that the steps have reached; `solve_to` may have returned an earlier one.
     pub current_time: f64,
-    /// Factor by which the tolerances should be raised if they ask for too much accuracy; 1 if not
+    /// Factor by which the tolerances should be raised if they require too much accuracy; 1 if not
     /// (SUNDIALS).
     pub tolerance_scale: f64,
 }
 
 impl Statistics {
-    /// The counters of both of two runs, the second of which started where the first ended; steps, orders and times are those
-    /// of the second.
+    /// The summed counters of two runs, the second of which started where the first ended; step sizes, orders
+    /// and times are those of the second.
     #[must_use]
     pub(crate) fn followed_by(&self, later: &Self) -> Self {
         let mut sum = later.clone();

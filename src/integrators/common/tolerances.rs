@@ -49,7 +49,7 @@ pub struct Tolerances {
 }
 
 impl Tolerances {
-    /// From both parts.
+    /// Made of both tolerances.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         Self { rtol, atol: atol.into() }
     }
@@ -93,19 +93,20 @@ impl Tolerances {
         }
     }
 
-    /// The size of an unknown with the value `y`: its own and that below which it is noise, or 1.
+    /// The size of an unknown with the value `y`: |y| plus that below which it is noise; 1 if both are 0.
     pub(crate) fn size_of(&self, unknown: usize, y: f64) -> f64 {
         size_or_one(y.abs() + self.atol_of(unknown) / self.rtol)
     }
 
-    /// How far to go from the state `y` along `direction` for an unknown to change by its size, or `longest` if none does
-    /// before: the scale of differences along it.
+    /// The distance from the state `y` along `direction` at which the first unknown has changed by its size,
+    /// but at most `longest`: the scale of differences along it.
     pub(crate) fn reach(&self, y: &[f64], direction: &[f64], longest: f64) -> f64 {
         let distances = direction.iter().enumerate().map(|(i, d)| self.size_of(i, y[i]) / d.abs());
         distances.fold(longest, f64::min)
     }
 
-    /// The smallest absolute tolerance that is not zero, or `rtol` if all are: for numbers beside the unknowns.
+    /// The smallest absolute tolerance that is not zero, or `rtol` if all are: for numbers other than the
+    /// unknowns.
     pub(crate) fn least_atol(&self) -> f64 {
         let least = match &self.atol {
             AbsoluteTolerance::Scalar(atol) => *atol,

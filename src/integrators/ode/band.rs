@@ -1,4 +1,4 @@
-//! Band matrices, as a Jacobian fills them.
+//! Band matrices, to be filled by a Jacobian.
 
 use std::ops::{Index, IndexMut};
 

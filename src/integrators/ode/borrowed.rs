@@ -11,12 +11,12 @@ use super::mass::MassKind;
 
 /// A system lent to an integrator, which otherwise owns it.
 ///
-/// (`&mut` of a struct can not be a system by itself: closures already are, and Rust takes
-/// `&mut closure` for a closure.)
+/// (`&mut` of a struct can not be a system by itself: closures already are, and to Rust `&mut closure` is a
+/// closure, too.)
 #[derive(Debug)]
 pub struct Borrowed<'a, S: ?Sized>(pub &'a mut S);
 
-/// A system behind a box, such as a `dyn Ode` of a type that is known at run time alone.
+/// A system behind a box, such as a `dyn Ode` of a type that is known only at run time.
 ///
 /// (A `Box` can not be a system by itself, for the same reason.)
 #[derive(Debug)]

@@ -1,7 +1,7 @@
-//! How integrators call a system: what it writes is zero on entry.
+//! How integrators call a system: its outputs are zero on entry.
 //!
-//! Outputs are memory of C, or hold what the last call has left. Whoever calls equations does it through these functions, so
-//! that a system may add to its output (`tests/house.rs` looks for calls around them).
+//! Outputs are memory of C, or hold what the last call has left. All calls of equations go through these
+//! functions, so that a system may add to its output (`tests/house.rs` looks for calls that bypass them).
 
 use super::dae::Dae;
 use super::failure::Failure;

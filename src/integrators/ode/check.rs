@@ -1,7 +1,7 @@
-//! Supplied derivatives against central differences, without a solver: for tests of equations.
+//! Checks of supplied derivatives against central differences, without a solver: for tests of equations.
 //!
-//! Each function compares at one point, which should be an ordinary one, not zero. Differences are taken with two step
-//! sizes, whose results tell how far they can be trusted.
+//! Each function compares at one point, which should be a general one, not zero. Differences are taken with
+//! two step sizes, whose results show how accurate they are.
 //!
 //! ```
 //! use pliant::ode::{check, with_jacobian};
@@ -40,7 +40,7 @@ use crate::base::input::InputError;
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CheckError {
-    /// A supplied number is not what differences say.
+    /// A supplied derivative does not agree with differences.
     #[error(
         "{method}: entry {entry:?} is {supplied:?}, but {difference:?} by central differences, which are right to \
          {tolerance:.1e}"
@@ -71,7 +71,7 @@ impl From<Failure> for CheckError {
     }
 }
 
-/// Which of the Jacobians of a system is checked. Entries that it leaves out have to be zero.
+/// Which of the Jacobians of a system is checked. Entries outside its band or pattern have to be zero.
 #[derive(Clone, Copy, Debug)]
 pub enum Storage<'a> {
     /// `dense_jacobian`
@@ -95,7 +95,7 @@ pub enum Storage<'a> {
 /// Checks df/dy of an [`Ode`].
 ///
 /// # Errors
-/// The first entry that is off, or why nothing can be said.
+/// The first entry that is wrong, or why none can be checked.
 pub fn jacobian(
     system: &mut (impl Ode + ?Sized),
     t: f64,
@@ -255,7 +255,8 @@ pub fn adjoint_parameters(
     Ok(())
 }
 
-/// Checks the slopes of a [`Functional`]. Columns of [`CheckError::Mismatch`] are the unknowns, then the parameters.
+/// Checks the slopes of a [`Functional`]. Columns of [`CheckError::Mismatch`] are the unknowns, then the
+/// parameters.
 ///
 /// # Errors
 /// As for [`jacobian`].
@@ -364,8 +365,8 @@ fn entries(
     Ok(matrix)
 }
 
-/// The slope of `evaluate(step, out)` at 0, and by how much it may be off, for each result; `size` is that of
-/// what is moved.
+/// The slope of `evaluate(step, out)` at step 0, and its largest error, for each result; `size` is that of
+/// the number that is varied.
 fn slope(
     count: usize,
     size: f64,
@@ -414,7 +415,7 @@ fn size(values: &[f64], i: usize) -> f64 {
     }
 }
 
-/// How far one can go along `s` before a number has changed by its size.
+/// The distance along `s` at which the first number of `y` has changed by its size.
 fn along(y: &[f64], s: &[f64]) -> f64 {
     let ratios = s.iter().enumerate().map(|(i, s)| size(y, i) / s.abs());
     ratios.fold(f64::INFINITY, f64::min)

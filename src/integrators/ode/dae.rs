@@ -7,7 +7,8 @@ use super::failure::{Failure, missing};
 
 /// F(t, y, y') = 0.
 ///
-/// Only [`residual`](Self::residual) is required, as in [`Ode`](super::Ode). What a method writes into is zero on entry, as there.
+/// Only [`residual`](Self::residual) is required, as in [`Ode`](super::Ode). What a method writes into is
+/// zero on entry, as there.
 pub trait Dae {
     /// Writes F(t, y, y') into `residual` (same length as `y`, zero on entry).
     fn residual(
@@ -70,7 +71,7 @@ pub trait Dae {
 
     /// Prepares to solve (dF/dy + cj dF/dy') x = r.
     ///
-    /// For a Krylov method that this preconditions, the solution may be approximate.
+    /// As the preconditioner of a Krylov method, it may be solved approximately.
     fn newton_setup(&mut self, _t: f64, _cj: f64, _y: &[f64], _yp: &[f64]) -> Result<(), Failure> {
         Err(missing("newton_setup"))
     }
@@ -90,12 +91,13 @@ pub trait Dae {
         Err(missing("roots"))
     }
 
-    /// Number of integrals that are computed beside the run; 0 means none.
+    /// Number of integrals that are computed along with the solution; 0 means none.
     fn quadrature_count(&self) -> usize {
         0
     }
 
-    /// Writes the integrands h(t, y, y') of the integrals q' = h into `qdot` (zero on entry), as in [`Ode`](super::Ode).
+    /// Writes the integrands h(t, y, y') of the integrals q' = h into `qdot` (zero on entry), as in
+    /// [`Ode`](super::Ode).
     fn quadratures(
         &mut self,
         _t: f64,
@@ -107,7 +109,8 @@ pub trait Dae {
     }
 
     /// Writes the residual of the sensitivity s = dy/dp of a parameter p, given by its place among the
-    /// [`parameters`](Self::parameters), into `residual` (zero on entry): (dF/dy) s + (dF/dy') s' + dF/dp. `sp` is s'.
+    /// [`parameters`](Self::parameters), into `residual` (zero on entry): (dF/dy) s + (dF/dy') s' + dF/dp.
+    /// `sp` is s'.
     #[allow(clippy::too_many_arguments)] // two states, two sensitivities
     fn sensitivity_residual(
         &mut self,
@@ -122,16 +125,16 @@ pub trait Dae {
         Err(missing("sensitivity_residual"))
     }
 
-    /// The parameters that the equations depend on, for what changes them or asks for derivatives with
+    /// The parameters that the equations depend on, for callers that change them or require derivatives with
     /// respect to them. Default: none.
     fn parameters(&self) -> &[f64] {
         &[]
     }
 
-    /// Gives the [`parameters`](Self::parameters) these values; there are as many.
+    /// Sets the [`parameters`](Self::parameters) to these values, of which there are as many.
     ///
     /// # Panics
-    /// May panic if there are not, as [`WithParameters`](super::WithParameters) does.
+    /// May panic if their number differs, as [`WithParameters`](super::WithParameters) does.
     fn set_parameters(&mut self, _values: &[f64]) {}
 }
 

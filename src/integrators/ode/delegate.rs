@@ -1,7 +1,7 @@
 //! Systems within other ones.
 
-/// Implements methods of [`Ode`](super::Ode) by those of the system in a field: all but what belongs to a mass
-/// matrix, a split right-hand side, sensitivities, or linear solvers of the system's own.
+/// Implements methods of [`Ode`](super::Ode) by those of the system in a field: all but what belongs to a
+/// mass matrix, a split right-hand side, sensitivities, or linear solvers of the system's own.
 macro_rules! delegate_ode {
     ($field:tt) => {
         fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {

@@ -5,9 +5,9 @@ use std::fmt;
 
 /// Why a callback of a system failed.
 ///
-/// Any `std` error converts into [`Failure::Fatal`], so `?` works inside callbacks. By the same token it is no
-/// [`Error`] itself, or it would convert into itself in two ways; outside of callbacks `?` makes one of it: a
-/// `Box<dyn Error + Send + Sync>`.
+/// Any `std` error converts into [`Failure::Fatal`], so `?` works inside callbacks. For that reason it is not
+/// an [`Error`] itself: it would convert into itself in two ways. Outside of callbacks `?` converts it into
+/// one, a `Box<dyn Error + Send + Sync>`.
 ///
 /// ```
 /// use pliant::ode::Ode;
@@ -29,7 +29,7 @@ use std::fmt;
 /// ```
 #[derive(Debug)]
 pub enum Failure {
-    /// This trial point is no good (outside the domain, say): retry with a smaller step.
+    /// This trial point cannot be used (it lies outside the domain, say): retry with a smaller step.
     Recoverable(String),
     /// Stop the integration and hand the error to the caller.
     Fatal(Box<dyn Error + Send + Sync>),

@@ -11,8 +11,9 @@ use super::mass::MassKind;
 /// Only [`rhs`](Self::rhs) is required. The other methods are called when the integrator was
 /// configured to use them; their defaults fail with [`Failure::Fatal`].
 ///
-/// What a method writes into is zero on entry, whatever integrator calls: it may add to it, and need not write zeros. (What
-/// [`newton_solve`](Self::newton_solve) and [`project`](Self::project) are given to change is no such output.)
+/// What a method writes into is zero on entry, whichever integrator calls it: it may add to it, and need not
+/// write zeros. (The arguments that [`newton_solve`](Self::newton_solve) and [`project`](Self::project)
+/// change in place are not such outputs.)
 pub trait Ode {
     /// Writes f(t, y) into `ydot` (same length as `y`, zero on entry).
     fn rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure>;
@@ -68,7 +69,7 @@ pub trait Ode {
     /// `reuse` allows an older df/dy to be kept (only gamma changed). Returns whether df/dy is
     /// current, that is, was evaluated at this (t, y).
     ///
-    /// For a Krylov method that this preconditions, the solution may be approximate.
+    /// As the preconditioner of a Krylov method, it may be solved approximately.
     fn newton_setup(
         &mut self,
         _t: f64,
@@ -82,8 +83,8 @@ pub trait Ode {
 
     /// Replaces the right-hand side `r` by the solution x of the system last set up.
     ///
-    /// `gamma` is the step parameter by now, which may have changed a little since then. It matters
-    /// to systems with a [`newton_rhs`](Self::newton_rhs) of their own, and is 0 where `r` was made with all of
+    /// `gamma` is its present value, which may have changed a little since the setup. It matters to systems
+    /// with their own [`newton_rhs`](Self::newton_rhs), and is 0 where `r` was computed with all of
     /// [`rhs`](Self::rhs).
     fn newton_solve(&mut self, _gamma: f64, _r: &mut [f64]) -> Result<(), Failure> {
         Err(missing("newton_solve"))
@@ -92,24 +93,25 @@ pub trait Ode {
     /// As [`rhs`](Self::rhs), for the residual y - y0 - gamma f(t, y) of an implicit step, if
     /// [`newton_solve`](Self::newton_solve) solves its linear systems.
     ///
-    /// What is left out here, `newton_solve` has to add to its right-hand side, times `gamma`. So M y' = f
-    /// need not be solved for y' in each iteration, only for M x = M r + gamma f where M is a part
-    /// of the matrix anyway. Default: all of `rhs`.
+    /// Terms that are left out here have to be added by `newton_solve` to its right-hand side, times `gamma`.
+    /// So M y' = f need not be solved for y' in each iteration: where M is a part of the matrix anyway, the
+    /// right-hand side is M r + gamma f. Default: all of `rhs`.
     fn newton_rhs(&mut self, t: f64, y: &[f64], ydot: &mut [f64]) -> Result<(), Failure> {
         self.rhs(t, y, ydot)
     }
 
-    /// How many of the last unknowns are integrals: no right-hand side depends on them. Methods may then leave them out
-    /// of their matrix and of the error test. Default: none.
+    /// How many of the last unknowns are integrals: no right-hand side depends on them. Methods may then
+    /// leave them out of their matrix and of the error test. Default: none.
     fn integrals(&self) -> usize {
         0
     }
 
-    /// Writes into `correction` (zero on entry) what takes the state `y` to the nearest one that keeps the
-    /// invariants of the equations, such as lengths or energy.
+    /// Writes into `correction` (zero on entry) the change from the state `y` to the nearest one that keeps
+    /// the invariants of the equations, such as lengths or energy.
     ///
-    /// `error` is an estimate of the error of `y`. What of it leads away from the invariants will be corrected; to
-    /// take that part away allows longer steps. Leaving it as it is is right, too.
+    /// `error` is an estimate of the error of `y`. The part of it that leads away from the invariants is
+    /// removed from `y` by the correction; removing it from `error`, too, allows longer steps. It is also
+    /// correct to leave `error` unchanged.
     fn project(
         &mut self,
         _t: f64,
@@ -120,15 +122,17 @@ pub trait Ode {
         Err(missing("project"))
     }
 
-    /// Whether f is split: the sum of [`rhs`](Self::rhs), which is its stiff part then, and of
-    /// [`explicit_rhs`](Self::explicit_rhs). For the ImEx methods of [`Arkode`](crate::integrators::sundials::Arkode); others
-    /// refuse such a system. Default: it is not.
+    /// Whether f is split into a stiff part and one that is not stiff.
+    ///
+    /// It is then the sum of [`rhs`](Self::rhs), the stiff part, and [`explicit_rhs`](Self::explicit_rhs).
+    /// For the ImEx methods of [`Arkode`](crate::integrators::sundials::Arkode); others refuse such a system.
+    /// Default: it is not.
     fn is_split(&self) -> bool {
         false
     }
 
-    /// Writes the part of f(t, y) that is not stiff into `ydot` (zero on entry), if f is [split](Self::is_split). Jacobians are
-    /// those of the other part.
+    /// Writes the part of f(t, y) that is not stiff into `ydot` (zero on entry), if f is
+    /// [split](Self::is_split). Jacobians are those of the other part.
     fn explicit_rhs(&mut self, _t: f64, _y: &[f64], _ydot: &mut [f64]) -> Result<(), Failure> {
         Err(missing("explicit_rhs"))
     }
@@ -163,18 +167,19 @@ pub trait Ode {
         0
     }
 
-    /// Writes the root functions g(t, y) into `g` (zero on entry); the integrator stops where one of them changes sign.
+    /// Writes the root functions g(t, y) into `g` (zero on entry); the integrator stops where one of them
+    /// changes sign.
     fn roots(&mut self, _t: f64, _y: &[f64], _g: &mut [f64]) -> Result<(), Failure> {
         Err(missing("roots"))
     }
 
-    /// Number of integrals that are computed beside the run; 0 means none.
+    /// Number of integrals that are computed along with the solution; 0 means none.
     fn quadrature_count(&self) -> usize {
         0
     }
 
-    /// Writes the integrands h(t, y) of the integrals q' = h, which are zero at the start, into `qdot` (zero on entry). No equation depends on
-    /// them, so that they cost less than further unknowns.
+    /// Writes the integrands h(t, y) of the integrals q' = h, which are zero at the start, into `qdot` (zero
+    /// on entry). No equation depends on them, so that they cost less than further unknowns.
     fn quadratures(&mut self, _t: f64, _y: &[f64], _qdot: &mut [f64]) -> Result<(), Failure> {
         Err(missing("quadratures"))
     }
@@ -204,7 +209,8 @@ pub trait Ode {
         Err(missing("adjoint_rhs"))
     }
 
-    /// Writes (df/dp)^T lambda into `out` (zero on entry), a number for each of the [`parameters`](Self::parameters).
+    /// Writes (df/dp)^T lambda into `out` (zero on entry), a number for each of the
+    /// [`parameters`](Self::parameters).
     fn adjoint_parameters(
         &mut self,
         _t: f64,
@@ -215,16 +221,16 @@ pub trait Ode {
         Err(missing("adjoint_parameters"))
     }
 
-    /// The parameters that the equations depend on, for what changes them or asks for derivatives with
+    /// The parameters that the equations depend on, for callers that change them or require derivatives with
     /// respect to them. Default: none.
     fn parameters(&self) -> &[f64] {
         &[]
     }
 
-    /// Gives the [`parameters`](Self::parameters) these values; there are as many.
+    /// Sets the [`parameters`](Self::parameters) to these values, of which there are as many.
     ///
     /// # Panics
-    /// May panic if there are not, as [`WithParameters`](super::WithParameters) does.
+    /// May panic if their number differs, as [`WithParameters`](super::WithParameters) does.
     fn set_parameters(&mut self, _values: &[f64]) {}
 }
 

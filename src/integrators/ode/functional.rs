@@ -1,11 +1,11 @@
-//! What a gradient is taken of.
+//! The functional whose gradient is computed.
 
 use super::failure::Failure;
 
 /// The functional G = g(T, y(T), p) + integral of h(t, y, p) from the start to T, of a solution y and
 /// the parameters p of its equations.
 pub trait Functional {
-    /// h(t, y, p). Where `slopes` are asked for, it writes dh/dy and dh/dp (zero on entry), too. Default: none.
+    /// h(t, y, p). If `slopes` are given, it also writes dh/dy and dh/dp (zero on entry). Default: 0.
     fn running(
         &mut self,
         _t: f64,
@@ -16,7 +16,7 @@ pub trait Functional {
         Ok(0.0)
     }
 
-    /// g(T, y, p). Where `slopes` are asked for, it writes dg/dy and dg/dp (zero on entry), too. Default: none.
+    /// g(T, y, p). If `slopes` are given, it also writes dg/dy and dg/dp (zero on entry). Default: 0.
     fn terminal(
         &mut self,
         _t: f64,

@@ -1,12 +1,12 @@
 //! What an integrator is given: systems of ordinary differential equations (ODE), of
 //! differential-algebraic equations (DAE), and of [second order](SecondOrder).
 //!
-//! The same traits feed [`crate::integrators::sundials`] and the internal Runge-Kutta method `rk`.
-//! Any closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
-//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with parameters,
-//! [`with_mass`] with a mass matrix, [`split`] with a part that is not stiff; a struct implements
-//! the trait when it wants to hand over root functions or a linear solver of its own. An
-//! integrator owns its system; [`Borrowed`] lends it one instead. [`check`] holds supplied derivatives against differences.
+//! The same traits serve [`crate::integrators::sundials`] and the internal methods `rk` and `rosenbrock`. Any
+//! closure `FnMut(t, y, ydot) -> Result<(), Failure>` is an [`Ode`]; [`with_jacobian`] and
+//! [`with_sparse_jacobian`] bundle it with a second closure for the Jacobian, [`with_parameters`] with
+//! parameters, [`with_mass`] with a mass matrix, [`split`] with a part that is not stiff; a struct implements
+//! the trait to supply root functions or its own linear solver. An integrator owns its system; [`Borrowed`]
+//! lends it one instead. [`check`] compares supplied derivatives with differences.
 
 mod band;
 mod borrowed;

@@ -9,14 +9,14 @@ use super::failure::Failure;
 /// check of the energy. The last four are for constrained systems, where part of the motion is known
 /// beforehand.
 pub trait SecondOrder {
-    /// Writes the forces f(t, u, v) into `f` (zero on entry), those of constraints left out.
+    /// Writes the forces f(t, u, v) into `f` (zero on entry), without those of constraints.
     ///
     /// # Errors
-    /// [`Failure::Recoverable`] where they have no meaning: the step is repeated with a smaller size.
+    /// [`Failure::Recoverable`] where they cannot be evaluated: the step is repeated with a smaller size.
     fn forces(&mut self, t: f64, u: &[f64], v: &[f64], f: &mut [f64]) -> Result<(), Failure>;
 
-    /// Writes the accelerations M^-1 f under the force of a kick into `a` (zero on entry); 0 in components that are
-    /// [known](Self::prescribe).
+    /// Writes the accelerations M^-1 f under the force of a kick into `a` (zero on entry); 0 in components
+    /// that are [known](Self::prescribe).
     fn accelerations(&mut self, kick: &Kick<'_>, a: &mut [f64]);
 
     /// Upper bounds on how fast the stiffest motions near (t, u, v) are: they bound the step.
@@ -27,12 +27,12 @@ pub trait SecondOrder {
         0
     }
 
-    /// Writes the time derivatives of the integrals at the forces last evaluated and the velocities `v` into `powers`
-    /// (zero on entry).
+    /// Writes the time derivatives of the integrals at the forces last evaluated and the velocities `v` into
+    /// `powers` (zero on entry).
     fn powers(&self, _v: &[f64], _powers: &mut [f64]) {}
 
-    /// The energy balance of a state, to find out steps that create energy; `None` (the default) leaves
-    /// that check out.
+    /// The energy balance of a state, to detect steps that create energy; `None` (the default) leaves that
+    /// check out.
     fn balance(
         &self,
         _t: f64,
@@ -46,33 +46,32 @@ pub trait SecondOrder {
     /// Called where an integration starts, at (t, u, v).
     ///
     /// # Errors
-    /// Constraints that have no meaning there.
+    /// If the constraints cannot be evaluated there.
     fn start(&mut self, _t: f64, _u: &[f64], _v: &[f64]) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// Has [`accelerations`](Self::accelerations) and [`lead`](Self::lead) aim at the mean rates of the
-    /// known motion from `t` to `t + h`. Returns whether accelerations depend on that aim, as they
+    /// Sets the target rates of [`accelerations`](Self::accelerations) and [`lead`](Self::lead) to the mean
+    /// rates of the known motion from `t` to `t + h`. Returns whether accelerations depend on them, as they
     /// do where constraints couple components.
     ///
     /// # Errors
-    /// Constraints that have no meaning.
+    /// If the constraints cannot be evaluated.
     fn aim_at_mean_rates(&mut self, _t: f64, _h: f64) -> Result<bool, Failure> {
         Ok(false)
     }
 
-    /// Writes the components of `u` and `v` that are known at time `t`, and has
-    /// [`accelerations`](Self::accelerations) and [`lead`](Self::lead) aim at the rates known for that
-    /// time.
+    /// Writes the components of `u` and `v` that are known at time `t`, and sets the target rates of
+    /// [`accelerations`](Self::accelerations) and [`lead`](Self::lead) to those known for that time.
     ///
     /// # Errors
-    /// Constraints that have no meaning.
+    /// If the constraints cannot be evaluated.
     fn prescribe(&mut self, _t: f64, _u: &mut [f64], _v: &mut [f64]) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// Puts known components of the velocities `after` a kick, which are v + duration a, to the rates
-    /// that are aimed at. Adds what the constraint forces contribute to the integrals.
+    /// Sets known components of the velocities `after` a kick, which are v + duration a, to the target rates.
+    /// Adds to `work` what the constraint forces contribute to the integrals.
     fn lead(&mut self, _kick: &Kick<'_>, _after: &mut [f64], _work: &mut [f64]) {}
 }
 
@@ -104,6 +103,6 @@ pub struct Rates {
 pub struct EnergyBalance {
     /// Kinetic + potential + dissipated - supplied energy: constant along an exact motion.
     pub energy: f64,
-    /// Size of the energies in it, to measure errors by.
+    /// Size of the energies in it, as the scale of errors.
     pub scale: f64,
 }

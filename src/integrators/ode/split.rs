@@ -1,4 +1,4 @@
-//! Right-hand sides of a stiff and an explicit part.
+//! Right-hand sides made of a stiff and an explicit part.
 
 use faer::MatMut;
 
@@ -18,7 +18,7 @@ pub struct Split<S, E> {
 /// The ODE y' = f(t, y) + g(t, y), where `stiff` gives f, with its Jacobian if it has one, and the closure
 /// `explicit(t, y, ydot)` gives g, which is not stiff.
 ///
-/// An ImEx method takes f implicitly and g explicitly: g enters no matrix and no iteration.
+/// An ImEx method treats f implicitly and g explicitly: g enters no matrix and no iteration.
 ///
 /// ```
 /// use pliant::{

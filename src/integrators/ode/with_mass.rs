@@ -40,7 +40,7 @@ impl From<Mat<f64>> for MassMatrix {
 }
 
 impl MassMatrix {
-    /// Checks that there are `actual` numbers of what the integrator has room for `expected`.
+    /// Checks that the `actual` number of entries is the `expected` one, for which the integrator has room.
     fn check(&self, actual: usize, expected: usize) -> Result<(), Failure> {
         let what = match self {
             Self::Diagonal(_) => "numbers on its diagonal",
@@ -73,11 +73,12 @@ pub struct WithMass<S> {
     mass: MassMatrix,
 }
 
-/// The equations M y' = f(t, y), where `system` gives f and its Jacobian: a closure, say. (A mass matrix of its own is
-/// not used.)
+/// The equations M y' = f(t, y), where `system` gives f and its Jacobian: a closure, say. (If it has a mass
+/// matrix itself, that is not used.)
 ///
 /// [`Arkode`](crate::integrators::sundials::Arkode) integrates them if M is regular,
-/// [`Ida`](crate::integrators::sundials::Ida) by [`MassForm`](crate::integrators::sundials::MassForm) if it is singular, too.
+/// [`Ida`](crate::integrators::sundials::Ida) by [`MassForm`](crate::integrators::sundials::MassForm) also if
+/// it is singular.
 ///
 /// ```
 /// use pliant::{

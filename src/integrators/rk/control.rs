@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// Factor kept in hand below the step that would just pass the error test.
+/// Safety factor on the step that would just pass the error test.
 const SAFETY: f64 = 0.9;
 /// Weight of the previous error: the integral part of the controller.
 const BETA: f64 = 0.04;
@@ -10,7 +10,7 @@ const BETA: f64 = 0.04;
 const ALPHA: f64 = 0.2 - 0.75 * BETA;
 const SMALLEST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 10.0;
-/// Shrinking after a right-hand side that could not be evaluated.
+/// Factor on the step after a right-hand side that could not be evaluated.
 const REFUSED_FACTOR: f64 = 0.25;
 
 /// Proportional-integral step size control: K. Gustafsson, ACM TOMS 17 (1991) 533-554; E.
@@ -55,9 +55,9 @@ impl Controller {
 /// lambda of df/dy, even for motions that have long died away. For the Dormand-Prince pair the
 /// region reaches to 3.3 along the negative real axis.
 ///
-/// The notice is about damped motions, the stabilization of constraints among them. Oscillations
-/// without damping are held at h |lambda| of about 1 to 2, which is also where they can just be
-/// followed, so those steps are not counted.
+/// The notice is about damped motions, the stabilization of constraints among them. For oscillations without
+/// damping stability holds h |lambda| at about 1 to 2. That is also about the step that resolves them, so
+/// those steps are not counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StabilityLimit {
     /// Time at which the limit was established.
@@ -83,7 +83,7 @@ impl fmt::Display for StabilityLimit {
 
 /// Beyond this h |lambda| a step is at the border of the stability region (at 3.307).
 const LIMITED: f64 = 3.25;
-/// Limited steps, not interrupted by `CLEAR_AFTER` others, that establish the notice.
+/// Number of limited steps, not interrupted by `CLEAR_AFTER` others, after which the notice is given.
 const ESTABLISH_AFTER: usize = 15;
 const CLEAR_AFTER: usize = 6;
 

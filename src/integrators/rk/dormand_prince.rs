@@ -1,4 +1,4 @@
-//! The method: what it keeps beside the state, and what is known within the last step.
+//! The method: what it keeps in addition to the state, and the solution within the last step.
 
 use super::control::{Controller, StabilityLimit, StabilityMonitor};
 use super::tableau::{
@@ -11,11 +11,11 @@ use crate::integrators::ode::{Ode, call};
 
 /// Integrates y' = f(t, y) forward in time with the Dormand-Prince pair of order 5(4).
 ///
-/// Steps of automatic size keep the local error within tolerance; six evaluations of the
-/// right-hand side each. Solutions between the ends of a step come from a continuous extension of
-/// order 4, so asking for output does not change the steps, and there root functions are followed,
-/// as in CVODE. Its derivative is of order 3, and f(t, y) at both ends of the step (L. F. Shampine, Math. Comp. 46 (1986)
-/// 135-150; HNW I, section II.6). Stepping allocates nothing.
+/// Steps of automatic size keep the local error within tolerance, with six evaluations of the right-hand side
+/// each. Solutions between the ends of a step come from a continuous extension of order 4, so output times do
+/// not change the steps; root functions are followed on it, as in CVODE. Its derivative is of order 3, and
+/// equals f(t, y) at both ends of the step (L. F. Shampine, Math. Comp. 46 (1986) 135-150; HNW I, section
+/// II.6). Stepping allocates nothing.
 pub type DormandPrince<S> = OneStep<S, Pair>;
 
 /// Dormand and Prince's pair at work.
@@ -43,7 +43,7 @@ impl<S: Ode> DormandPrince<S> {
         Self::start(system, t, y, options, ("Dormand-Prince 5(4)", 5, pair))
     }
 
-    /// Whether stability, not accuracy, limits the steps: set once such steps are the rule.
+    /// Whether stability, not accuracy, limits the steps: set once such steps are frequent.
     pub fn stability_limit(&self) -> Option<StabilityLimit> {
         self.method.monitor.limit()
     }
@@ -54,7 +54,7 @@ impl StepMethod for Pair {
         (self.controller, self.monitor) = (Controller::new(), StabilityMonitor::default());
     }
 
-    /// It knows nothing of it.
+    /// It keeps nothing that depends on the system.
     fn forget(&mut self) {}
 
     fn norm(&self, x: &[f64], weight: &[f64]) -> f64 {

@@ -1,9 +1,8 @@
 //! Explicit Runge-Kutta integration: the method of Dormand and Prince, order 5(4).
 //!
-//! The right tool for systems that are not stiff, and an independent check on the implicit methods
-//! of SUNDIALS for those that are. Error norm and tolerances mean the same as there.
-//! On a stiff system the integrator is slow, but right; it notices, and says so in
-//! [`DormandPrince::stability_limit`].
+//! The right tool for systems that are not stiff, and an independent check on the implicit methods of
+//! SUNDIALS for those that are. Error norm and tolerances mean the same as there. On a stiff system the
+//! integrator is slow, but correct; it notices this and reports it by [`DormandPrince::stability_limit`].
 //!
 //! ```
 //! use pliant::ode::Failure;

@@ -1,12 +1,12 @@
 //! Step size control.
 
-/// Factor kept in hand below the step that would just pass the error test.
+/// Safety factor on the step that would just pass the error test.
 const SAFETY: f64 = 0.9;
 const SMALLEST_FACTOR: f64 = 0.2;
 const LARGEST_FACTOR: f64 = 6.0;
-/// Shrinking after equations that could not be evaluated or solved.
+/// Factor on the step after equations that could not be evaluated or solved.
 const REFUSED_FACTOR: f64 = 0.25;
-/// A step that could grow by less than this stays as it is where the factors of its matrix serve again.
+/// A step that could grow by less than this factor keeps its size, where its factorization can be used again.
 const WORTH_A_FACTORIZATION: f64 = 1.2;
 
 /// Proportional-integral step size control, the predictive controller of K. Gustafsson (ACM TOMS 20 (1994)

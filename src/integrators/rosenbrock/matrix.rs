@@ -21,7 +21,7 @@ pub(super) enum Matrix {
 }
 
 impl Matrix {
-    /// That of `solver`, for `n` unknowns; none if the system keeps it to itself.
+    /// The matrix of `solver`, for `n` unknowns; `None` if the system has its own linear solver.
     pub(super) fn new(
         solver: &LinearSolver,
         n: usize,
@@ -37,7 +37,7 @@ impl Matrix {
         })
     }
 
-    /// Makes J that at (t, y), where f is `slope`. Returns how often f was evaluated.
+    /// Evaluates J at (t, y), where `at` is y and f(t, y). Returns how often f was evaluated.
     pub(super) fn update<S: Ode>(
         &mut self,
         system: &mut S,
@@ -81,7 +81,7 @@ impl Matrix {
         }
     }
 
-    /// Replaces `r` by the solution; whether there is one.
+    /// Replaces `r` by the solution; returns whether there is one.
     pub(super) fn solve(&mut self, r: &mut [f64]) -> bool {
         match self {
             Self::Dense(dense) => {

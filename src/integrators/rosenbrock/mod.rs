@@ -1,17 +1,17 @@
 //! Rosenbrock methods: implicit, and without an iteration.
 //!
-//! Each step factorizes I - gamma h df/dy once and solves with it once a stage. Nothing has to converge: a step whose
-//! error is too large is repeated with a smaller size, and that is all. Two methods, both L-stable and stiffly accurate, with
-//! dense output:
+//! Each step factorizes I - gamma h df/dy once and solves with it once a stage. Nothing has to converge: a
+//! step whose error is too large is repeated with a smaller size, and that is all. Two methods, both L-stable
+//! and stiffly accurate, with dense output:
 //!
-//! - order 4, RODASP2, with six stages: for a matrix that is the Jacobian. With one that is merely like it the order
-//!   falls to 2, with an error in proportion to the difference.
-//! - order 3, ROS34PW2, with four stages. A W-method: it has its order with any matrix, and needs a good one for
-//!   stability alone.
+//! - order 4, RODASP2, with six stages: for a matrix that is the Jacobian. With an approximation of it the
+//!   order falls to 2, with an error in proportion to the difference.
+//! - order 3, ROS34PW2, with four stages. A W-method: it has its order with any matrix, and needs a good one
+//!   only for stability.
 //!
-//! The error is controlled at the ends of steps. In between the solution is a cubic, as precise as these steps mostly are; where the ends
-//! are far more precise than was asked for, as below, steps may become so long that the cubic is not: bound them then, or stop at the times that
-//! matter.
+//! The error is controlled at the ends of steps. In between the solution is a cubic, mostly as accurate as
+//! the ends. Where the ends are far more accurate than required, as below, steps may become so long that the
+//! cubic is not: then bound the steps, or stop at the times that matter.
 //!
 //! ```
 //! use pliant::ode::Failure;

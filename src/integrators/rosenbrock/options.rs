@@ -33,10 +33,10 @@ impl Default for Options {
 }
 
 impl Options {
-    /// These tolerances, order 4, a dense matrix of differences.
+    /// These tolerances, order 4, a dense matrix of difference quotients.
     ///
-    /// Local errors are kept below `rtol |y_i| + atol_i` in the root mean square, the norm of CVODE. `rtol` is at
-    /// least 1e-14, `atol` positive.
+    /// Local errors are kept below `rtol |y_i| + atol_i` in the root mean square, the norm of CVODE. `rtol`
+    /// is at least 1e-14, `atol` positive.
     pub fn new(rtol: f64, atol: impl Into<AbsoluteTolerance>) -> Self {
         let forward = ExplicitOptions::new(rtol, atol);
         let solver = LinearSolver::Dense(Jacobian::DifferenceQuotients);
@@ -49,22 +49,23 @@ impl Options {
         self
     }
 
-    /// How the linear systems with the matrix I - gamma h df/dy are solved, and where df/dy comes from: dense (the default, with difference
-    /// quotients), of band form, sparse, or by the system's own `newton_setup` and `newton_solve`. A Krylov method cannot.
+    /// How the linear systems with the matrix I - gamma h df/dy are solved, and where df/dy comes from: dense
+    /// (the default, with difference quotients), of band form, sparse, or by the system's own `newton_setup`
+    /// and `newton_solve`. A Krylov method cannot be used.
     pub fn newton(mut self, solver: LinearSolver) -> Self {
         self.solver = solver;
         self
     }
 
-    /// As [`CvodeOptions::check_jacobian`](crate::integrators::sundials::CvodeOptions::check_jacobian): whether a Jacobian that the system supplies is held
-    /// against differences. Default: yes.
+    /// As [`CvodeOptions::check_jacobian`](crate::integrators::sundials::CvodeOptions::check_jacobian):
+    /// whether a Jacobian that the system supplies is compared with differences. Default: yes.
     pub fn check_jacobian(mut self, on: bool) -> Self {
         self.trusts_jacobian = !on;
         self
     }
 
-    /// The Jacobian never changes: it is evaluated once, and factorized only where the step size changes, which
-    /// it does less often.
+    /// States that the Jacobian never changes: it is evaluated once, and I - gamma h df/dy is factorized only
+    /// when the step size changes, which it then does less often.
     pub fn linear(mut self) -> Self {
         self.linear = true;
         self

@@ -1,4 +1,4 @@
-//! The method: what it keeps beside the state, and what is known within the last step.
+//! The method: what it keeps in addition to the state, and the solution within the last step.
 
 use super::control::Controller;
 use super::matrix::Matrix;
@@ -9,22 +9,22 @@ use crate::integrators::ode::Ode;
 
 /// Integrates y' = f(t, y) forward in time by a Rosenbrock method.
 ///
-/// Steps of automatic size keep the local error within tolerance. Solutions between the ends of a step come from
-/// stages that are there anyway, so asking for output does not change the steps; they are of an order one less than the
-/// method's. df/dt is a difference quotient: one more evaluation a step. Stepping allocates nothing.
+/// Steps of automatic size keep the local error within tolerance. Solutions between the ends of a step come
+/// from its stages, so output times do not change the steps; their order is one less than the method's. df/dt
+/// is a difference quotient: one more evaluation per step. Stepping allocates nothing.
 pub type Rosenbrock<S> = OneStep<S, LinearlyImplicit>;
 
 /// A Rosenbrock method at work.
 #[derive(Debug)]
 pub struct LinearlyImplicit {
     pub(super) tableau: &'static Tableau,
-    /// Looks at the Jacobian that the system supplies, by this method.
+    /// Checks the Jacobian that the system supplies by the method of this name.
     pub(super) check: Option<(&'static str, JacobianCheck)>,
     /// Whether the Jacobian never changes.
     pub(super) is_linear: bool,
-    /// The matrix, unless the system keeps it to itself.
+    /// The matrix, unless the system has its own linear solver.
     pub(super) matrix: Option<Matrix>,
-    /// Unknowns but for the integrals at the end of the state.
+    /// Number of unknowns without the integrals at the end of the state.
     pub(super) coupled: usize,
     /// df/dt.
     pub(super) time_slope: Vec<f64>,
@@ -34,12 +34,12 @@ pub struct LinearlyImplicit {
     pub(super) bends: [Vec<f64>; 2],
     /// What is known at (t, y).
     pub(super) known: Known,
-    /// gamma h of the factors at hand.
+    /// gamma h of the present factorization.
     pub(super) factored: Option<f64>,
     controller: Controller,
 }
 
-/// What has been evaluated at (t, y), beside f.
+/// What has been evaluated at (t, y), in addition to f.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Known {
     pub(super) time_slope: bool,
@@ -91,7 +91,7 @@ impl StepMethod for LinearlyImplicit {
         (self.known, self.factored) = (Known::default(), None);
     }
 
-    /// Root mean square by the error weights, but for the integrals.
+    /// Root mean square with the error weights, without the integrals.
     fn norm(&self, x: &[f64], weight: &[f64]) -> f64 {
         let terms = x[..self.coupled].iter().zip(weight).map(|(x, weight)| (x * weight).powi(2));
         (terms.sum::<f64>() / x.len() as f64).sqrt()

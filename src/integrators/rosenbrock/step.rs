@@ -81,7 +81,7 @@ impl LinearlyImplicit {
         Ok((!is_regular).then_some(Cause::LinearSolver))
     }
 
-    /// What is wrong with the Jacobian that the system has just supplied, if it is due to be looked at.
+    /// What is wrong with the Jacobian that the system has just supplied, if its check is due.
     fn wrong_jacobian<S: Ode>(&mut self, march: &mut March<S>) -> Option<Cause> {
         let (matrix, (method, check)) = (self.matrix.as_ref()?, self.check.as_mut()?);
         if !check.is_due() {
@@ -130,7 +130,7 @@ impl LinearlyImplicit {
         let t = march.t + tableau.alpha[i] * h;
         let (before, rest) = self.stages.split_at_mut(i);
         let u = &mut rest[0];
-        // what the system leaves out of f, it adds in the solution
+        // what the system leaves out of f in `newton_rhs`, it adds in `newton_solve`
         let mut share = 0.0;
         if i == 0 {
             u.copy_from_slice(&march.slope);
@@ -193,7 +193,7 @@ impl LinearlyImplicit {
         if setback.is_some() || coupled == march.y.len() {
             return Ok(setback);
         }
-        // Simpson's rule, and the cubic through the slopes at both ends
+        // the integrals: Simpson's rule, and the cubic through the slopes at both ends
         let middle = march.t + 0.5 * h;
         interpolate([&march.y, &march.y_old], &self.bends, 0.5, &mut march.argument);
         march.statistics.evaluations += 1;
@@ -209,7 +209,7 @@ impl LinearlyImplicit {
     }
 }
 
-/// Adds the sum of the vectors, weighted.
+/// Adds the weighted sum of the vectors.
 fn add(out: &mut [f64], weights: &[f64], vectors: &[Vec<f64>]) {
     for (weight, vector) in weights.iter().zip(vectors).filter(|(weight, _)| **weight != 0.0) {
         out.iter_mut().zip(vector).for_each(|(out, x)| *out += weight * x);

@@ -1,4 +1,4 @@
-//! The coefficients of the methods, in the form that multiplies no vector with the Jacobian.
+//! The coefficients of the methods, in the form without products of the Jacobian with vectors.
 //!
 //! With J = df/dy at the start (t, y) of a step of size h, stage i solves
 //!
@@ -6,7 +6,8 @@
 //! (I - gamma h J) u_i = gamma h f(t + alpha_i h, y + sum_j a_ij u_j) + gamma sum_j c_ij u_j + gamma gamma_i h^2 df/dt
 //! ```
 //!
-//! with j < i (E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed. (HNW II), section IV.7).
+//! with j < i (E. Hairer, G. Wanner, "Solving Ordinary Differential Equations II", 2nd ed. (HNW II), section
+//! IV.7).
 
 /// Most stages of a method.
 pub(super) const MOST_STAGES: usize = 6;
@@ -27,7 +28,7 @@ pub(super) struct Tableau {
     pub(super) c: &'static [&'static [f64]],
     /// The new solution is y + sum m_i u_i.
     pub(super) m: &'static [f64],
-    /// The new solution less the embedded one, of one order less.
+    /// The new solution minus the embedded one, whose order is one less.
     pub(super) e: &'static [f64],
     /// Dense output: y(theta) = (1 - theta) y_0 + theta y_1 + theta (1 - theta) (p + theta q), with p and q
     /// these sums of the u_i.
@@ -35,9 +36,9 @@ pub(super) struct Tableau {
     pub(super) q: &'static [f64],
 }
 
-/// RODASP2 of order 4(3): L-stable and stiffly accurate, as is the embedded method; of order 2 with any matrix in place of the
-/// Jacobian; dense output of order 3 (G. Steinebach, "Improvement of Rosenbrock-Wanner method RODASP", Progress in
-/// Differential-Algebraic Equations II, Springer 2020, 165-184).
+/// RODASP2 of order 4(3): L-stable and stiffly accurate, as is the embedded method; of order 2 with any
+/// matrix in place of the Jacobian; dense output of order 3 (G. Steinebach, "Improvement of Rosenbrock-Wanner
+/// method RODASP", Progress in Differential-Algebraic Equations II, Springer 2020, 165-184).
 pub(super) const RODASP2: Tableau = Tableau {
     name: "RODASP2",
     order: 4,
@@ -109,12 +110,12 @@ pub(super) const RODASP2: Tableau = Tableau {
     ],
 };
 
-/// ROS34PW2 of order 3(2): L-stable and stiffly accurate, and of its order with any matrix in place of the Jacobian (J. Rang, L.
-/// Angermann, "New Rosenbrock W-methods of order 3 for partial differential algebraic equations of index
-/// 1", BIT 45 (2005) 761-787).
+/// ROS34PW2 of order 3(2): L-stable and stiffly accurate, and of its order with any matrix in place of the
+/// Jacobian (J. Rang, L. Angermann, "New Rosenbrock W-methods of order 3 for partial differential algebraic
+/// equations of index 1", BIT 45 (2005) 761-787).
 ///
-/// The dense output is of order 2 with any matrix (sum d = 0, sum d alpha = -1/2 and sum d gamma = 0 for its weights d of the
-/// stages k_i), and integrates t^2 exactly in the middle of the step.
+/// The dense output is of order 2 with any matrix (sum d = 0, sum d alpha = -1/2 and sum d gamma = 0 for its
+/// weights d of the stages k_i), and integrates t^2 exactly in the middle of the step.
 pub(super) const ROS34PW2: Tableau = Tableau {
     name: "ROS34PW2",
     order: 3,
@@ -201,7 +202,8 @@ mod tests {
         a.iter().zip(b).map(|(a, b)| a * b).collect()
     }
 
-    /// Defects of the conditions for the solution at the part `theta` of a step, by order (HNW II, table IV.7.1).
+    /// Defects of the conditions for the solution at the part `theta` of a step, by order (HNW II, table
+    /// IV.7.1).
     fn defects(stages: &Stages, b: &[f64], theta: f64) -> [Vec<f64>; 4] {
         let (alpha, beta) = (sums(&stages.alpha), stages.beta());
         let rates = sums(&beta);
@@ -220,7 +222,7 @@ mod tests {
         ]
     }
 
-    /// Those that come on top with a matrix that is not the Jacobian (HNW II, section IV.7, "W-methods").
+    /// The additional ones for a matrix that is not the Jacobian (HNW II, section IV.7, "W-methods").
     fn defects_with_any_matrix(stages: &Stages, b: &[f64], theta: f64) -> [Vec<f64>; 2] {
         let (alpha, gamma) = (sums(&stages.alpha), sums(&stages.gamma));
         [
@@ -238,7 +240,7 @@ mod tests {
         defects.iter().flatten().fold(0.0, |most, defect| defect.abs().max(most))
     }
 
-    // Sums of numbers up to 30 that are written with 15 digits behind the point.
+    // Sums of numbers up to 30 that are written with 15 digits after the decimal point.
     const ROUNDING: f64 = 2e-14;
 
     #[test]
@@ -250,7 +252,7 @@ mod tests {
             let embedded: Vec<f64> = tableau.m.iter().zip(tableau.e).map(|(m, e)| m - e).collect();
             let defects = defects(&stages, &stages.weights(&embedded), 1.0);
             assert!(largest(&defects[..order - 1]) < ROUNDING, "{}", tableau.name);
-            // it is of no higher order, or there would be nothing to see
+            // it must not be of higher order, or its difference would not estimate the error
             assert!(largest(&defects[order - 1..order]) > 1e-3, "{}", tableau.name);
         }
     }

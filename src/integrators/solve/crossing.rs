@@ -15,7 +15,7 @@ use super::{
 use crate::base::input::InputError;
 use crate::integrators::common::check_finite;
 
-/// A state, and its time derivative, of a DAE.
+/// A state and, for a DAE, its time derivative.
 struct State {
     y: Vec<f64>,
     yp: Vec<f64>,
@@ -30,10 +30,11 @@ pub(super) enum Found {
 }
 
 impl<'a> Run<'a> {
-    /// Finds the events of the step that has just been made, up to `t`, and notes them. Those that stop the step are returned, the last ones noted.
-    /// `is_last` tells that the next step does not go on from there, but from a break, if at all.
+    /// Finds the events of the step that has just been made, up to `t`, and records them. Returns those that
+    /// stop the step, which are recorded last. `is_last` says that the next step, if any, does not continue
+    /// from there, but starts at a break.
     pub(super) fn look_for_events(&mut self, t: f64, is_last: bool) -> Result<Found, Reason> {
-        // as SUNDIALS has it
+        // the tolerance of SUNDIALS
         let tolerance = 100.0 * f64::EPSILON * (t.abs() + (t - self.t).abs());
         let count = self.counts.len();
         let mut roots = Vec::with_capacity(count);
@@ -58,7 +59,7 @@ impl<'a> Run<'a> {
                     met.push((i, *root));
                 }
             }
-            // all of them at the last of their times, where every one has crossed zero
+            // all of them are placed at the last of their times, where every one has crossed zero
             let at =
                 met.iter().map(|(_, root)| root.t * self.sign).fold(first, f64::max) * self.sign;
             let mut y = vec![0.0; self.y.len()];
@@ -81,7 +82,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// What the watch of event `i` sees next, up to a time in the step that has just been made.
+    /// What the tracker of event `i` finds next, up to a time in the step that has just been made.
     fn search(&mut self, i: usize, up_to: (f64, bool), tolerance: f64) -> Result<Sight, Reason> {
         let Self { engine, events, watches, scratch, parameters, .. } = self;
         let event = &mut events[i];
@@ -91,11 +92,13 @@ impl<'a> Run<'a> {
         })
     }
 
-    /// Whether the slope at the present time leads the function of event `i` back to the side that it came from, by what it does
-    /// over the shortest time in which that is no noise.
+    /// Whether the slope at the present time leads the function of event `i` back to the side that it came
+    /// from.
+    ///
+    /// That is judged over the shortest time in which the function changes by more than noise.
     fn leads_back(&mut self, i: usize, turn: Turn) -> Result<bool, Reason> {
-        // y' of a DAE is that of the step's polynomial, or good enough for a step as short as the last: from zero, the start is
-        // sought on the scale of the span
+        // the present y' of a DAE is that of the step's polynomial, or accurate only for a step as short as
+        // the last: consistent values are sought anew from zero, on the scale of the span
         let (mut y, mut slope) = (self.y.clone(), vec![0.0; self.yp.len()]);
         let start = Start { t: self.t, y: &mut y, yp: &mut slope, s: None };
         if self.engine.correct(start, self.span.1).is_err() || !self.engine.can_be_consistent() {
@@ -123,7 +126,7 @@ impl<'a> Run<'a> {
         Ok(false)
     }
 
-    /// Does what is to be done where event `i` accumulates, at the present time.
+    /// Handles the accumulation of event `i` at the present time.
     pub(super) fn accumulate(&mut self, i: usize, turn: Turn) -> Result<(), Reason> {
         let action = self.events[i].at_accumulation.as_mut();
         let Some(action) = action.filter(|_| self.carried.is_none() && !turn.at_rest) else {
@@ -141,10 +144,11 @@ impl<'a> Run<'a> {
         Ok(())
     }
 
-    /// Does what the events at the present time ask for.
+    /// Performs the actions of the events at the present time.
     pub(super) fn jump_at_events(&mut self, met: &[(usize, Root)]) -> Result<(), Reason> {
         for (i, root) in met.iter().filter(|(_, root)| root.sign != 0) {
-            // what the function went through is less than the error of the solution, whose slope leads the other way
+            // the function crossed zero by less than the error of the solution, whose slope leads the other
+            // way
             let turn = Turn::at(root);
             let hurries = self.events[*i].action.is_some() && self.watches[*i].hurries(self.t);
             if hurries && self.leads_back(*i, turn)? {
@@ -184,7 +188,8 @@ impl<'a> Run<'a> {
         State { y: self.y.clone(), yp: self.yp.clone() }
     }
 
-    /// Carries the sensitivities across the actions of these events, from the state `before` to the present one.
+    /// Carries the sensitivities across the actions of these events, from the state `before` to the present
+    /// one.
     fn carry_across_event(&mut self, before: &State, acting: &[usize]) -> Result<(), Reason> {
         let function = acting[0];
         let mut events = mem::take(&mut self.events);
@@ -201,7 +206,7 @@ impl<'a> Run<'a> {
         outcome
     }
 
-    /// Carries them across the actions of breaks, whose time depends on nothing.
+    /// Carries them across the actions of breaks, whose times depend on no parameter.
     fn carry_across_break(
         &mut self,
         before: &State,
@@ -247,7 +252,7 @@ impl<'a> Run<'a> {
         let (t, y, yp) = (self.t, &mut self.y[..], &mut self.yp[..]);
         match self.engine.correct(Start { t, y, yp, s }, t + (t - self.t_old)) {
             Err(error) if self.end.is_some() => Err(error.into()),
-            // the next start tells what else is wrong
+            // otherwise the next start reports the error
             _ => Ok(()),
         }
     }
@@ -278,7 +283,7 @@ impl<'a> Run<'a> {
         self.carry_across_break(&before, &mut actions)
     }
 
-    /// Takes over what actions have made of the state, which was `before`, and of the parameters.
+    /// Takes over the state, which was `before`, and the parameters as actions have left them.
     fn land(&mut self, before: &State, met: &[(usize, Root)]) -> Result<(), Reason> {
         self.stale = true;
         self.before.get_or_insert_with(|| before.y.clone());
@@ -306,7 +311,7 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Stops what sensitivities cannot follow.
+/// Refuses changes of parameters, which sensitivities cannot follow.
 fn check_unchanged(before: &[f64], after: &[f64]) -> Result<(), InputError> {
     match before.iter().zip(after).position(|(before, after)| before != after) {
         None => Ok(()),

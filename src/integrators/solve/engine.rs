@@ -1,4 +1,4 @@
-//! What a run asks of an integrator beyond [`Integrator`].
+//! What a run needs from an integrator in addition to [`Integrator`].
 
 use faer::{MatMut, MatRef};
 
@@ -14,7 +14,7 @@ use crate::integrators::{
 pub(super) trait Engine {
     fn t(&self) -> f64;
     fn y(&self) -> &[f64];
-    /// The time derivative of the state, of a DAE; empty otherwise.
+    /// The time derivative of the state for a DAE; empty otherwise.
     fn yp(&self) -> &[f64];
     fn step(&mut self, towards: f64) -> Result<Reached, Error>;
     fn set_stop_time(&mut self, t: f64) -> Result<(), Error>;
@@ -25,35 +25,36 @@ pub(super) trait Engine {
     fn restart(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<(), Error>;
     fn parameters(&self) -> &[f64];
     fn set_parameters(&mut self, values: &[f64]);
-    /// Writes the right-hand side of an ODE; leaves what is known of a DAE already.
+    /// Writes the right-hand side of an ODE; does nothing for a DAE, whose slope is known already.
     fn slope(&mut self, t: f64, y: &[f64], out: &mut [f64]) -> Result<(), Failure>;
     /// Writes the sensitivities at `t`, within the last step.
     fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error>;
     /// Number of integrals.
     fn quadrature_count(&self) -> usize;
-    /// Writes the integrals since the last start at `t`, within the last step.
+    /// Writes the integrals from the last start to `t`, within the last step.
     fn interpolate_quadratures(&mut self, t: f64, out: &mut [f64]) -> Result<(), Error>;
-    /// Lets the sensitivities start from `s`, after a new start.
+    /// Sets the initial sensitivities to `s`, after a new start.
     fn set_sensitivities(&mut self, s: MatRef<'_, f64>) -> Result<(), Error>;
-    /// Corrects the start, before the first step: what may be, so that it satisfies the equations. Sensitivities, too.
+    /// Corrects the start before the first step, as far as that is allowed, so that it and its sensitivities
+    /// satisfy the equations.
     fn make_consistent(&mut self, _towards: f64) -> Result<(), Error> {
         Ok(())
     }
-    /// Whether there is nothing to correct, or it is known what may be.
+    /// Whether there is nothing to correct, or it is known what may be corrected.
     fn can_be_consistent(&self) -> bool {
         true
     }
-    /// What keeps the run from getting on, if the equations themselves tell.
+    /// An error that says why the run makes no progress, if the equations themselves show it.
     fn diagnose(&mut self) -> Result<(), Error> {
         Ok(())
     }
-    /// The same correction of a state that the integrator does not start from, or not yet.
+    /// The correction of `make_consistent`, for a state that the integrator does not start from, or not yet.
     fn correct(&mut self, _: Start<'_>, _towards: f64) -> Result<(), Error> {
         Ok(())
     }
 }
 
-/// Where a solution goes on.
+/// A state from which a solution continues.
 pub(super) struct Start<'s> {
     pub(super) t: f64,
     pub(super) y: &'s mut [f64],
@@ -67,7 +68,8 @@ pub(super) struct OdeEngine<I> {
     pub(super) integrator: I,
 }
 
-/// IDA, and how it was made: a state is corrected by another solver of its equations, while this one knows the last step.
+/// IDA and its options: states are corrected by a second solver of its equations, so that this one keeps the
+/// last step.
 pub(super) struct DaeEngine<S> {
     pub(super) integrator: Ida<S>,
     pub(super) options: IdaOptions,
@@ -113,7 +115,7 @@ macro_rules! forward {
     };
 }
 
-/// Sensitivities and integrals of those that have them.
+/// Sensitivities and integrals of integrators that compute them.
 macro_rules! with_sensitivities {
     () => {
         fn interpolate_sensitivities(&mut self, t: f64, out: MatMut<'_, f64>) -> Result<(), Error> {
@@ -134,7 +136,7 @@ macro_rules! with_sensitivities {
     };
 }
 
-/// Nothing of those that have none, for which nobody asks.
+/// The same for integrators without them: nothing is written.
 macro_rules! without_sensitivities {
     () => {
         fn interpolate_sensitivities(&mut self, _: f64, _: MatMut<'_, f64>) -> Result<(), Error> {

@@ -14,10 +14,11 @@ use super::{
     solver::solve,
 };
 
-/// Solves `count` problems on all cores: `problem(k)` makes the one of number k, on the thread that solves it.
+/// Solves `count` problems on all cores: `problem(k)` makes the one of number k, on the thread that solves
+/// it.
 ///
-/// Each has a result of its own, whatever becomes of the others, in the order of their numbers. A member is computed by one thread
-/// from beginning to end, so results do not depend on the number of threads.
+/// Each has its own result, whatever happens to the others; results are in the order of the numbers. A member
+/// is computed by one thread from beginning to end, so results do not depend on the number of threads.
 ///
 /// ```
 /// use pliant::solve::{Method, Options, Output, Problem, ensemble};
@@ -38,7 +39,8 @@ use super::{
 /// ```
 ///
 /// # Panics
-/// A panic of a member passes through, after the others have ended: of several the one of the lowest number.
+/// A panic of a member passes through, after the others have ended; if several panic, that of the lowest
+/// number.
 pub fn ensemble<'a, F>(
     count: usize,
     problem: F,
@@ -58,7 +60,8 @@ where
                 loop {
                     let k = next.fetch_add(1, Relaxed);
                     let Some(place) = results.get(k) else { break };
-                    // a thread that panics loses what it said; nothing of the member is used again
+                    // caught, as a thread that panics would lose the message; nothing of the member is used
+                    // again
                     let solution =
                         catch_unwind(AssertUnwindSafe(|| solve(problem(k), method, span, options)));
                     if let Ok(mut place) = place.lock() {

@@ -40,9 +40,10 @@ pub enum Reason {
     Failed(common::Error),
     /// [`Options::max_steps`](super::Options::max_steps) steps were taken.
     Steps(u64),
-    /// [`Options::max_evaluations`](super::Options::max_evaluations) is reached, by so many.
+    /// [`Options::max_evaluations`](super::Options::max_evaluations) is reached, after this number of
+    /// evaluations.
     Evaluations(u64),
-    /// [`Options::max_wall_time`](super::Options::max_wall_time) is over.
+    /// [`Options::max_wall_time`](super::Options::max_wall_time) has passed.
     WallTime(Duration),
     /// It was cancelled by [`Problem::cancelled_by`](super::Problem::cancelled_by) or the observer.
     Cancelled,

@@ -26,16 +26,16 @@ pub(super) type Action<'a> = Box<dyn FnMut(&mut Jump<'_>) + 'a>;
 
 /// Something to look for along the solution: a root of a function g(t, y), and what to do there.
 ///
-/// By itself an event is recorded in the [`Solution`](super::Solution) and the integration goes on as if nothing had
-/// been found, with the same steps. It is located on the interpolant of the step, to rounding.
+/// Without an action an event is only recorded in the [`Solution`](super::Solution), and the integration
+/// continues with the same steps. It is located on the interpolant of the step, to rounding.
 ///
-/// * Between the ends of each step g is looked at in [`samples`](Self::samples) places, and minima of |g| are followed up, so that
-///   two roots within one step are found, too.
+/// * Between the ends of each step g is evaluated in [`samples`](Self::samples) places, and minima of |g| are
+///   searched, so that two roots within one step are found, too.
 /// * A g that starts at zero is no event. It may become one when g returns to zero after it has left it.
 /// * A g that touches zero without a change of sign is an event only with [`touching`](Self::touching).
 /// * When an action makes g jump across zero, that is no event.
-/// * An action that turns the solution back, as at a floor, may be called ever faster (Zeno's paradox): such events
-///   [accumulate](Self::at_accumulation).
+/// * An action that turns the solution back, as at a floor, may be called at ever shorter intervals (Zeno's
+///   paradox): such events [accumulate](Self::at_accumulation).
 pub struct Event<'a> {
     pub(super) function: Function<'a>,
     pub(super) direction: Direction,
@@ -75,14 +75,14 @@ impl<'a> Event<'a> {
         }
     }
 
-    /// Counts roots where g becomes positive alone.
+    /// Counts only roots where g becomes positive.
     #[must_use]
     pub fn rising(mut self) -> Self {
         self.direction = Direction::Rising;
         self
     }
 
-    /// Counts roots where g becomes negative alone.
+    /// Counts only roots where g becomes negative.
     #[must_use]
     pub fn falling(mut self) -> Self {
         self.direction = Direction::Falling;
@@ -102,22 +102,29 @@ impl<'a> Event<'a> {
         self
     }
 
-    /// What to do at the event: change the state or the parameters, or end the run. The integration starts anew from there.
+    /// What to do at the event: change the state or the parameters, or end the run.
     ///
-    /// In a DAE whose differential unknowns are known, the algebraic ones and the derivatives are made to fit again.
+    /// The integration starts anew from there.
+    ///
+    /// In a DAE whose differential unknowns are known, the algebraic ones and the derivatives are made
+    /// consistent again.
     #[must_use]
     pub fn action(mut self, action: impl FnMut(&mut Jump<'_>) + 'a) -> Self {
         self.action = Some(Box::new(action));
         self
     }
 
-    /// What to do where this event accumulates: where its action turns the solution back ever faster, as a ball bounces that
-    /// loses a part of its speed each time, until what lies between two events is less than the errors of the solution. It brings the solution to rest
-    /// and has it stay there, by a parameter of the equations, say, or [ends](Jump::end) the run. It is called at the time of the last
-    /// event, in the state behind the jump.
+    /// What to do where this event accumulates.
     ///
-    /// Without it, and with sensitivities, which no such time has, the run stops there with
-    /// [`Reason::Accumulation`](super::Reason::Accumulation); and so it does where the solution passes through zero all the same.
+    /// An event accumulates where its action turns the solution back ever faster, like a ball that bounces
+    /// and loses a part of its speed each time, until what lies between two events is less than the errors of
+    /// the solution. The action given here brings the solution to rest and keeps it there, by a parameter of
+    /// the equations, say, or [ends](Jump::end) the run. It is called at the time of the last event, in the
+    /// state after the jump.
+    ///
+    /// Without it the run stops there with [`Reason::Accumulation`](super::Reason::Accumulation). So it does
+    /// with sensitivities, which do not exist at such a time, and where the solution passes through zero
+    /// nevertheless.
     ///
     /// ```
     /// use pliant::{
@@ -151,15 +158,17 @@ impl<'a> Event<'a> {
         self
     }
 
-    /// Counts it as an event, too, where |g| has a minimum of at most `tolerance` without a change of sign.
+    /// Also counts as an event a minimum of |g| of at most `tolerance` without a change of sign.
     #[must_use]
     pub fn touching(mut self, tolerance: f64) -> Self {
         self.touching = Some(tolerance);
         self
     }
 
-    /// In how many places of a step g is looked at: more for one that changes faster than the solution, such as a
-    /// function of time that the equations do not know. Default: 4.
+    /// In how many places of a step g is evaluated. Default: 4.
+    ///
+    /// More are needed for a g that changes faster than the solution, such as a function of time that does
+    /// not occur in the equations.
     #[must_use]
     pub fn samples(mut self, samples: u32) -> Self {
         self.samples = samples;
@@ -205,11 +214,11 @@ impl Event<'_> {
 pub struct Jump<'j> {
     /// Time.
     pub t: f64,
-    /// State; what is written here, the solution goes on from.
+    /// State; the solution continues from what is written here.
     pub y: &'j mut [f64],
-    /// Its derivative, of a DAE; empty otherwise.
+    /// Its time derivative for a DAE; empty otherwise.
     pub yp: &'j mut [f64],
-    /// Parameters of the equations; what is written here, they have from now on.
+    /// Parameters of the equations; what is written here applies from now on.
     pub p: &'j mut [f64],
     pub(super) ends: bool,
 }
@@ -221,7 +230,8 @@ impl Jump<'_> {
     }
 }
 
-/// Stops derivatives at an event whose function only touches zero: its time, and whether it is there at all, depend on parameters without them.
+/// Refuses derivatives at an event whose function only touches zero: its time, and whether it exists at all,
+/// have no derivatives with respect to parameters.
 pub(super) fn check_crosses(event: usize, t: f64, crosses: bool) -> Result<(), InputError> {
     if crosses {
         return Ok(());
@@ -230,8 +240,8 @@ pub(super) fn check_crosses(event: usize, t: f64, crosses: bool) -> Result<(), I
     Err(InputError::new(format!("event {event} at t = {t:?}"), "touching", help))
 }
 
-/// Stops derivatives that are not finite behind an action: one that reads y', of a DAE, was given NaN for it, as differences
-/// along the state know nothing of how that changes.
+/// Refuses derivatives that are not finite after an action. One that reads y' of a DAE was given NaN for it,
+/// as differences along the state do not show how y' changes.
 pub(super) fn check_landed(input: &str, slopes: &[f64], of_dae: bool) -> Result<(), InputError> {
     if of_dae && slopes.iter().any(|slope| slope.is_nan()) {
         let help = "with derivatives of a DAE an action reads y, t and p alone, not yp";

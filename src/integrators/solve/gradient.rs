@@ -1,4 +1,4 @@
-//! Gradients of a functional of the solution, across events and breaks, by runs back in time.
+//! Gradients of a functional of the solution, across events and breaks, by runs backward in time.
 
 use super::{
     error::Reason,
@@ -17,22 +17,28 @@ use crate::integrators::{
     sundials::{Adjoint, AdjointOptions, DaeAdjoint, Gradient},
 };
 
-/// Value and gradient of a functional of the solution of `problem` over `span`, with respect to the parameters of its equations
-/// and to its initial state: one run forward, and for each piece between two jumps one more and one back in time, by these
-/// [options](AdjointOptions) (CVODES by [`Method::Bdf`] and [`Method::Adams`], IDAS by [`Method::Ida`]).
+/// Value and gradient of a functional of the solution of `problem` over `span`, with respect to the
+/// parameters of its equations and to its initial state.
 ///
-/// Where events act, the times of the jumps depend on the parameters, too, and so does the end of a run that an event ends; all of that is
-/// in the gradient. With the slopes f- before and f+ behind a jump y+ = a(t, y, p) at a root of e(t, y, p),
+/// It takes one forward run and, for each piece between two jumps, one more forward run and one backward run
+/// with these [options](AdjointOptions) (CVODES by [`Method::Bdf`] and [`Method::Adams`], IDAS by
+/// [`Method::Ida`]).
+///
+/// Where events act, the times of the jumps depend on the parameters, too, and so does the end of a run that
+/// an event ends; all of that is in the gradient.
+///
+/// With the slopes f- before and f+ after a jump y+ = a(t, y, p) at a root of e(t, y, p),
 ///
 /// ```text
 /// lambda- = a_y^T lambda+ - J e_y / (e_t + e_y f-),   J = lambda+^T (a_t + a_y f- - f+) + h- - h+
 /// ```
 ///
-/// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049, transposed), and so with the parameters, which actions may change.
-/// These derivatives are central differences: event functions and actions are called at states nearby, two times for each unknown and
-/// each parameter. What an action of a DAE makes of `yp` does not count, as it is corrected.
+/// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049, transposed), and likewise for the
+/// parameters, which actions may change. These derivatives are central differences: event functions and
+/// actions are called at states nearby, two times for each unknown and each parameter. What an action of a
+/// DAE writes to `yp` does not count, as `yp` is corrected afterwards.
 ///
-/// Limits of evaluations and time, and the observer, are those of the run forward.
+/// Limits of evaluations and time, and the observer, apply to the first forward run.
 ///
 /// ```
 /// use pliant::{
@@ -71,8 +77,8 @@ use crate::integrators::{
 /// ```
 ///
 /// # Errors
-/// [`Reason::Input`] for what cannot be used: other methods, systems that are neither dense, of band form nor sparse, and events that
-/// only touch zero; otherwise why a run ended early, forward or back.
+/// [`Reason::Input`] for what cannot be used: other methods, systems that are neither dense, of band form nor
+/// sparse, and events that only touch zero; otherwise why a run ended early, forward or backward.
 ///
 /// # Panics
 /// A panic of the equations, the functional, the events or the actions passes through.
@@ -103,7 +109,7 @@ pub fn gradient(
     outcome
 }
 
-/// What the way back needs.
+/// What the backward run needs.
 struct WayBack<'a, 'o, F> {
     problem: Problem<'a>,
     functional: F,
@@ -159,7 +165,7 @@ impl<F: Functional> WayBack<'_, '_, F> {
         Ok(gradient)
     }
 
-    /// Back from the time `to`.
+    /// Integrates backward from the time `to` to the place `from`.
     fn integrate(&mut self, from: &Place, to: f64, gradient: &mut Gradient) -> Result<(), Reason> {
         if from.t == to {
             return Ok(());
@@ -189,10 +195,11 @@ impl<F: Functional> WayBack<'_, '_, F> {
         Ok(())
     }
 
-    /// Back across a jump.
+    /// Goes backward across a jump.
     fn cross(&mut self, passage: &Passage, gradient: &mut Gradient) -> Result<(), Reason> {
         let at = &passage.before;
-        // what follows depends on the state behind, the parameters there, and the time, by -J / rate for each unit of e
+        // derivatives of what follows by the state and the parameters after the jump, and by e, which shifts
+        // the time of the jump: -J / rate
         let mut weights = [&gradient.initial_state[..], &gradient.parameters, &[0.0]].concat();
         if let Some(event) = passage.timed_by {
             check_crosses(event, at.t, passage.crosses)?;
@@ -221,7 +228,8 @@ impl<F: Functional> WayBack<'_, '_, F> {
         Ok(())
     }
 
-    /// What the functional gains for each unit of time that the jump comes later, but by the way that the state lands.
+    /// What the functional gains for each unit of time that the jump comes later, except through the state
+    /// and parameters that the jump leads to.
     fn gain_of_time(&mut self, passage: &Passage, gradient: &Gradient) -> Result<f64, Reason> {
         let Passage { before, after, ends, .. } = passage;
         let mut running = |at: &Place| {
@@ -256,8 +264,8 @@ impl<F: Functional> WayBack<'_, '_, F> {
         Ok(slope)
     }
 
-    /// The derivatives of state and parameters behind a jump, and of the function of its event, along a direction from
-    /// before the jump.
+    /// The derivatives of state and parameters after a jump, and of the function of its event, along a
+    /// direction before the jump.
     fn derivative(
         &mut self,
         passage: &Passage,
@@ -271,7 +279,7 @@ impl<F: Functional> WayBack<'_, '_, F> {
             let Problem { events, breaks, .. } = &mut self.problem;
             let function = passage.timed_by.map(|i| &mut events[i].function);
             let g = function.map_or(0.0, |g| g(place.t, &place.y, &place.p));
-            // what an action reads of these, the differences would miss
+            // an action that reads these gets NaN: the differences would miss how they change
             place.yp.fill(f64::NAN);
             let Place { t, mut y, mut yp, mut p } = place;
             let mut jump = Jump { t, y: &mut y, yp: &mut yp, p: &mut p, ends: false };
@@ -296,7 +304,7 @@ impl<F: Functional> WayBack<'_, '_, F> {
     }
 }
 
-/// An error of what has no value.
+/// The error for a quantity that has no value.
 fn unknown(input: &str, failure: Failure) -> InputError {
     InputError::new(input, failure.into_error(), "the gradient needs its value there")
 }

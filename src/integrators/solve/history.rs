@@ -1,4 +1,4 @@
-//! What a solution went through, for the way back: its smooth pieces, and the jumps between.
+//! The history of a solution, for the backward run: its smooth pieces, and the jumps between them.
 
 use std::cell::RefCell;
 
@@ -34,11 +34,11 @@ pub(super) enum HistoryPart {
 
 /// A jump.
 pub(super) struct Passage {
-    /// The event whose function tells its time; none at a break.
+    /// The event whose function determines its time; `None` at a break.
     pub(super) timed_by: Option<usize>,
-    /// Whether that function crosses zero, and does not only touch it.
+    /// Whether that function crosses zero, rather than only touching it.
     pub(super) crosses: bool,
-    /// What acts, in this order.
+    /// The actions, in this order.
     pub(super) acts: Vec<Act>,
     pub(super) before: Place,
     pub(super) after: Place,
@@ -66,7 +66,7 @@ impl Place {
     }
 }
 
-/// The problem lent to a run, whose actions write down where they are called.
+/// The problem lent to a run, with actions that record where they are called.
 fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Place)>>) -> Problem<'b> {
     let note = move |act: Act, jump: &Jump<'_>| {
         let (y, yp, p) = (jump.y.to_vec(), jump.yp.to_vec(), jump.p.to_vec());
@@ -83,7 +83,7 @@ fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Place)>>) -
         let function = Box::new(|t: f64, y: &[f64], p: &[f64]| function(t, y, p));
         let (direction, last) = (*direction, *last);
         let (samples, touching) = (*samples, *touching);
-        // a gradient has no way back through infinitely many jumps
+        // no backward run of a gradient can pass infinitely many jumps
         Event { function, direction, last, action, at_accumulation: None, samples, touching }
     });
     let breaks = problem.breaks.iter_mut().enumerate().map(|(i, at)| {
@@ -108,7 +108,7 @@ fn lend<'b>(problem: &'b mut Problem<'_>, log: &'b RefCell<Vec<(Act, Place)>>) -
     Problem { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities }
 }
 
-/// Solves `problem`; what it goes through, and where it ends.
+/// Solves `problem`. Returns its history, and where it ends.
 pub(super) fn follow(
     problem: &mut Problem<'_>,
     method: Method,

@@ -19,7 +19,7 @@ use crate::integrators::{
 
 // The options of each integrator are types of their own, with builders of the same names.
 
-/// What all integrators have.
+/// Options that all integrators have.
 macro_rules! common {
     ($built:expr, $options:expr, $sign:expr) => {{
         let mut built = $built;
@@ -33,7 +33,7 @@ macro_rules! common {
     }};
 }
 
-/// What those of SUNDIALS have.
+/// Options that those of SUNDIALS have.
 macro_rules! sundials {
     ($built:expr, $options:expr, $sign:expr) => {{
         let mut built = common!($built, $options, $sign);
@@ -49,7 +49,7 @@ macro_rules! sundials {
     }};
 }
 
-/// What multistep methods have.
+/// Options that multistep methods have.
 macro_rules! ordered {
     ($built:expr, $options:expr, $sign:expr) => {{
         let mut built = sundials!($built, $options, $sign);
@@ -70,21 +70,25 @@ macro_rules! ordered {
 pub enum Method {
     /// CVODE, backward differentiation formulas of order 1 to 5: for stiff ODEs.
     Bdf,
-    /// CVODE, Adams-Moulton formulas of order 1 to 12, with a Newton iteration: for smooth ODEs whose right-hand side is costly.
+    /// CVODE, Adams-Moulton formulas of order 1 to 12, with a Newton iteration: for smooth ODEs whose
+    /// right-hand side is costly.
     Adams,
-    /// ARKODE, the Runge-Kutta method of this table: diagonally implicit for stiff ODEs, above all those that vibrate; or explicit.
+    /// ARKODE, the Runge-Kutta method of this table: diagonally implicit for stiff ODEs, above all those that
+    /// vibrate; or explicit.
     RungeKutta(ButcherTable),
-    /// The internal explicit method of Dormand and Prince, order 5(4): for ODEs that are not stiff. Forward in time.
+    /// The internal explicit method of Dormand and Prince, order 5(4): for ODEs that are not stiff. Forward
+    /// in time.
     DormandPrince,
-    /// The internal Rosenbrock methods of order 4 and, by `max_order`, 3: for stiff ODEs at moderate tolerances, without an iteration that
-    /// could fail. Forward in time.
+    /// The internal Rosenbrock methods of order 4 and, by `max_order`, 3: for stiff ODEs at moderate
+    /// tolerances, without an iteration that could fail. Forward in time.
     Rosenbrock,
-    /// IDA, backward differentiation formulas of order 1 to 5: for DAEs, and for ODEs whose mass matrix may be singular.
+    /// IDA, backward differentiation formulas of order 1 to 5: for DAEs, and for ODEs whose mass matrix may
+    /// be singular.
     Ida,
 }
 
 impl Method {
-    /// What errors call it.
+    /// Its name in error messages.
     #[must_use]
     pub fn name(self) -> String {
         match self {
@@ -116,7 +120,7 @@ impl Method {
             return refused("method", format!("{self:?}"), help);
         }
         let multistep = matches!(self, Self::Bdf | Self::Adams | Self::Ida);
-        // those of Rust
+        // those written in Rust
         let internal = matches!(self, Self::DormandPrince | Self::Rosenbrock);
         if let (Some(order), false) = (options.max_order, multistep || self == Self::Rosenbrock) {
             return refused("max_order", order.to_string(), "has one order, which its table tells");
@@ -151,7 +155,7 @@ impl Method {
         Ok(())
     }
 
-    /// An integrator for `equations`, at rest at `t` in the state `y`, on its way in the direction `sign` of time.
+    /// An integrator for `equations` at the time `t` and state `y`, for the direction `sign` of time.
     pub(super) fn engine<'a>(
         self,
         equations: Equations<'a>,
@@ -214,8 +218,8 @@ impl Method {
         let built = ordered!(IdaOptions::new(rtol, atol), options, sign);
         differential.into_iter().fold(built, IdaOptions::differential)
     }
-    /// The equations as this method takes them, IDA those with a mass matrix as a DAE; refuses what it does not take, and
-    /// options that it does not have.
+    /// The equations in the form that this method takes: for IDA, those with a mass matrix as a DAE. Refuses
+    /// equations that it does not take, and options that it does not have.
     pub(super) fn take<'a>(
         self,
         equations: Equations<'a>,

@@ -1,8 +1,8 @@
-//! What does not compile, each beside what does: who holds what, and for how long.
+//! Code that does not compile, each example next to one that does: ownership and lifetimes.
 //!
-//! The two differ by the mistake alone: rustdoc compares the error codes in a nightly version only.
+//! The two differ only by the mistake, because rustdoc compares the error codes only in nightly versions.
 //!
-//! A solver owns its system. What `into_system` has taken apart is gone:
+//! A solver owns its system. After `into_system` the solver is gone:
 //!
 //! ```
 //! use pliant::sundials::{Cvode, CvodeOptions, Integrator};
@@ -21,7 +21,7 @@
 //! # Ok::<(), pliant::sundials::Error>(())
 //! ```
 //!
-//! The state is that of the solver, which cannot step while somebody looks at it:
+//! The state belongs to the solver, which cannot step while the state is borrowed:
 //!
 //! ```
 //! use pliant::sundials::{Cvode, CvodeOptions, Integrator};
@@ -61,7 +61,7 @@
 //! problem();
 //! ```
 //!
-//! A solver goes to another thread if its system can, and not otherwise:
+//! A solver can move to another thread if its system can, and not otherwise:
 //!
 //! ```
 //! use pliant::sundials::{Cvode, CvodeOptions};
@@ -80,7 +80,7 @@
 //! # Ok::<(), pliant::sundials::Error>(())
 //! ```
 //!
-//! A step of a run is looked at before the next one is made:
+//! A step of a run has to be used before the next one is made:
 //!
 //! ```
 //! use pliant::solve::{Method, Options, Problem, Run};

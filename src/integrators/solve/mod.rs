@@ -1,7 +1,8 @@
 //! Initial value problems solved by one call: any method, events, breaks, limits, interpolation.
 //!
-//! A [`Problem`] is the equations and where they start, with the [`Event`]s to look for. [`solve`] integrates it over a
-//! span by a [`Method`] and returns a [`Solution`]: times, states, what lies between them, events, and what it cost.
+//! A [`Problem`] is the equations and where they start, with the [`Event`]s to look for. [`solve`] integrates
+//! it over a span by a [`Method`] and returns a [`Solution`]: times, states, what lies between them, events,
+//! and what it cost.
 //!
 //! ```
 //! use pliant::solve::{Event, Method, Options, Problem, solve};
@@ -23,8 +24,8 @@
 //! # Ok::<(), pliant::solve::Error>(())
 //! ```
 //!
-//! [`Run`] is the same in the hands of the caller, step by step, and [`ensemble`] solves many problems on all cores.
-//! What a method cannot do is an error before the first step, never replaced by something else.
+//! [`Run`] does the same step by step, under the caller's control, and [`ensemble`] solves many problems on
+//! all cores. What a method cannot do is an error before the first step, never replaced by something else.
 
 mod crossing;
 mod engine;

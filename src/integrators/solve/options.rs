@@ -12,17 +12,18 @@ use crate::integrators::{
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Output {
-    /// The ends of all steps, and the polynomials between them: [`Solution::at`](super::Solution::at) any time. That takes a
-    /// multiple of the memory of the states, the order of the method at most.
+    /// The ends of all steps, and the polynomials between them, for [`Solution::at`](super::Solution::at) any
+    /// time. That takes the memory of the states times the order of the method at most.
     #[default]
     Steps,
     /// The states at these times, in the order of the run, and at its ends.
     Times(Vec<f64>),
-    /// The state at the end alone, and at the start.
+    /// The states at the start and the end only.
     End,
 }
 
-/// Tolerances, limits and what is kept, for any [`Method`](super::Method). An option that a method does not have is an error.
+/// Tolerances, limits and what is kept, for any [`Method`](super::Method). An option that a method does not
+/// have is an error.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
@@ -64,7 +65,8 @@ impl Options {
         }
     }
 
-    /// How Newton's linear systems are solved, by implicit methods. Default: a dense matrix of difference quotients.
+    /// How implicit methods solve the linear systems of Newton's method. Default: a dense matrix of
+    /// difference quotients.
     pub fn linear_solver(mut self, solver: LinearSolver) -> Self {
         self.linear_solver = Some(solver);
         self
@@ -88,7 +90,7 @@ impl Options {
         self
     }
 
-    /// Highest order of a multistep method.
+    /// Highest order of a multistep method, or the order of a Rosenbrock method.
     pub fn max_order(mut self, order: u32) -> Self {
         self.max_order = Some(order);
         self
@@ -100,14 +102,14 @@ impl Options {
         self
     }
 
-    /// Evaluations of the right-hand side or residual in the whole run, those of difference quotients among them; looked at
-    /// after each step. Default: no limit.
+    /// Evaluations of the right-hand side or residual in the whole run, including those of difference
+    /// quotients; checked after each step. Default: no limit.
     pub fn max_evaluations(mut self, evaluations: u64) -> Self {
         self.max_evaluations = Some(evaluations);
         self
     }
 
-    /// Time that the run may take on the clock, looked at after each step. Default: no limit.
+    /// Wall-clock time that the run may take, checked after each step. Default: no limit.
     pub fn max_wall_time(mut self, time: Duration) -> Self {
         self.max_wall_time = Some(time);
         self
@@ -119,40 +121,42 @@ impl Options {
         self
     }
 
-    /// Computes the derivatives dy/dp to some parameters of the equations, too, by CVODE and IDA:
-    /// [`Solution::sensitivities`](super::Solution::sensitivities).
+    /// Also computes the derivatives dy/dp with respect to some parameters of the equations, by CVODE and
+    /// IDA: [`Solution::sensitivities`](super::Solution::sensitivities).
     ///
-    /// They go on across actions at events and breaks, those of a DAE if its [differential unknowns](super::Problem::differential) are
-    /// known. An action is then called some more times, at states nearby, for its derivatives; it may not change the parameters.
+    /// They are continued across actions at events and breaks, those of a DAE if its [differential
+    /// unknowns](super::Problem::differential) are known. An action is then called some more times, at states
+    /// nearby, for its derivatives; it may not change the parameters.
     pub fn sensitivities(mut self, sensitivities: Sensitivities) -> Self {
         self.sensitivities = Some(sensitivities);
         self
     }
 
     /// Inequality constraints: for each unknown the sign that it keeps, at the ends of steps; see
-    /// [`CvodeOptions::sign_constraints`](crate::integrators::sundials::CvodeOptions::sign_constraints). By all methods but
-    /// those of Dormand and Prince and of Rosenbrock. Default: none.
+    /// [`CvodeOptions::sign_constraints`](crate::integrators::sundials::CvodeOptions::sign_constraints). For
+    /// all methods except those of Dormand and Prince and of Rosenbrock. Default: none.
     pub fn sign_constraints(mut self, signs: impl Into<Vec<Sign>>) -> Self {
         self.sign_constraints = signs.into();
         self
     }
 
-    /// Puts the state onto the invariants of the equations after each step, by [`Ode::project`](crate::integrators::ode::Ode::project).
-    /// By BDF alone. Default: it does not.
+    /// Projects the state onto the invariants of the equations after each step, by
+    /// [`Ode::project`](crate::integrators::ode::Ode::project). For BDF only. Default: off.
     pub fn project(mut self) -> Self {
         self.project = true;
         self
     }
 
-    /// Whether a Jacobian that the equations supply is held against differences of them, at a cost of a few evaluations; see
-    /// [`CvodeOptions::check_jacobian`](crate::integrators::sundials::CvodeOptions::check_jacobian). Switch it off for one that is meant to be an
-    /// approximation. Default: yes.
+    /// Whether a Jacobian that the equations supply is compared with differences of them, at a cost of a few
+    /// evaluations; see
+    /// [`CvodeOptions::check_jacobian`](crate::integrators::sundials::CvodeOptions::check_jacobian). Switch
+    /// it off for one that is meant to be an approximation. Default: yes.
     pub fn check_jacobian(mut self, on: bool) -> Self {
         self.check_jacobian = on;
         self
     }
 
-    /// Checks what no integrator does, for a run over `span`.
+    /// Checks what no integrator checks, for a run over `span`.
     pub(super) fn check(&self, span: (f64, f64)) -> Result<(), InputError> {
         if self.max_steps == 0 {
             return Err(InputError::new("max_steps", 0, "it is at least 1"));

@@ -67,16 +67,17 @@ pub struct Progress<'p> {
     pub y: &'p [f64],
     /// Steps taken.
     pub steps: u64,
-    /// Part of the span that lies behind, from 0 to 1.
+    /// Part of the span that is done, from 0 to 1.
     pub part: f64,
 }
 
-/// What looks on after each step, and may end the run.
+/// Called after each step; may end the run.
 pub(super) type Observer<'a> = Box<dyn FnMut(Progress<'_>) -> ControlFlow<()> + 'a>;
 
 /// Equations, the state they start from, and what happens along the way.
 ///
-/// Equations are a closure or a struct, see [`crate::integrators::ode`]. They may borrow: the problem lives no longer than what they use.
+/// Equations are a closure or a struct, see [`crate::integrators::ode`]. They may borrow: the problem lives
+/// no longer than what they use.
 #[must_use]
 pub struct Problem<'a> {
     pub(super) equations: Equations<'a>,
@@ -104,8 +105,8 @@ impl<'a> Problem<'a> {
         Self::new(Equations::Ode(Box::new(system)), y.into())
     }
 
-    /// F(t, y, y') = 0, starting from `y` and its time derivative `yp`, which have to satisfy the equations unless
-    /// [`differential`](Self::differential) tells which of them may be corrected.
+    /// F(t, y, y') = 0, starting from `y` and its time derivative `yp`, which have to satisfy the equations
+    /// unless [`differential`](Self::differential) tells which of them may be corrected.
     pub fn dae(system: impl Dae + 'a, y: impl Into<Vec<f64>>, yp: impl Into<Vec<f64>>) -> Self {
         let system = Box::new(system);
         Self::new(Equations::Dae { system, yp: yp.into(), differential: None }, y.into())
@@ -117,9 +118,10 @@ impl<'a> Problem<'a> {
         Self { equations, y, events, breaks, observer, cancel, saved, initial_sensitivities }
     }
 
-    /// For each unknown of a DAE, whether its derivative occurs in the equations (`true`) or it is algebraic (`false`).
-    /// The algebraic unknowns and the derivatives of the others are then corrected at the start and after each jump, so that
-    /// they satisfy the equations. An ODE has differential unknowns alone, and ignores it.
+    /// For each unknown of a DAE, whether its derivative occurs in the equations (`true`) or it is algebraic
+    /// (`false`). The algebraic unknowns and the derivatives of the others are then corrected at the start
+    /// and after each jump, so that they satisfy the equations. An ODE has only differential unknowns, and
+    /// ignores it.
     pub fn differential(mut self, differential_unknowns: impl Into<Vec<bool>>) -> Self {
         if let Equations::Dae { differential, .. } = &mut self.equations {
             *differential = Some(differential_unknowns.into());
@@ -128,8 +130,8 @@ impl<'a> Problem<'a> {
     }
 
     /// The sensitivities at the start, where the initial state depends on the parameters of
-    /// [`Options::sensitivities`](super::Options::sensitivities): dy/dp, one column after the other. Default: zero. Algebraic unknowns of a DAE
-    /// have theirs corrected with them.
+    /// [`Options::sensitivities`](super::Options::sensitivities): dy/dp, one column after the other. Default:
+    /// zero. For a DAE those of the algebraic unknowns are corrected along with the unknowns.
     pub fn initial_sensitivities(mut self, s: impl Into<Vec<f64>>) -> Self {
         self.initial_sensitivities = Some(s.into());
         self
@@ -141,8 +143,10 @@ impl<'a> Problem<'a> {
         self
     }
 
-    /// Times at which the right-hand side has a jump or a kink: a step ends just before, at the last number below, and the integration starts
-    /// anew there. Equations that ask for `t < break` see the side that they are on.
+    /// Times at which the right-hand side has a jump or a kink.
+    ///
+    /// A step ends just before each, at the last floating-point number before it, and the integration starts
+    /// anew there. Equations that test `t < break` see the side that they are on.
     pub fn breaks(mut self, times: impl IntoIterator<Item = f64>) -> Self {
         self.breaks.extend(times.into_iter().map(|t| Break { t, action: None }));
         self
@@ -169,8 +173,11 @@ impl<'a> Problem<'a> {
         self
     }
 
-    /// Goes on where a run of the same problem was [saved](super::Run::save), or [ended](super::Solution::saved): with the state, the
-    /// parameters and the counts of events of then. The span starts at its time; breaks before it are over.
+    /// Continues where a run of the same problem was [saved](super::Run::save), or
+    /// [ended](super::Solution::saved).
+    ///
+    /// The run has the state, the parameters and the counts of events that were saved. The span starts at the
+    /// saved time; breaks up to then are left out.
     pub fn resume(mut self, saved: Saved) -> Self {
         self.saved = Some(saved);
         self

@@ -7,23 +7,23 @@ pub(super) struct Point {
     pub(super) g: f64,
 }
 
-/// Whether `b` lies across zero from `a`, or on it, where `a` does not.
+/// Whether a function changes its sign, or becomes 0, from a value `a` that is not 0 to `b`.
 pub(super) fn crosses(a: f64, b: f64) -> bool {
     a != 0.0 && (b == 0.0 || (a < 0.0) != (b < 0.0))
 }
 
-/// The root between `near`, where g is not 0, and `far`, where it has crossed zero: the two points around it, no farther apart than
-/// `tolerance`.
+/// Encloses the root between `near`, where g is not 0, and `far`, where it has crossed zero, by two points no
+/// farther apart than `tolerance`.
 ///
 /// The Illinois algorithm, a secant method that keeps the root between its two points (M. Dowell, P. Jarratt,
-/// BIT 11 (1971) 168-174), with a bisection where three of its steps gain less than that, as at a jump.
+/// BIT 11 (1971) 168-174), with a bisection where three of its steps gain less than one, as at a jump.
 pub(super) fn bracket<E>(
     mut near: Point,
     mut far: Point,
     tolerance: f64,
     g: &mut impl FnMut(f64) -> Result<f64, E>,
 ) -> Result<(Point, Point), E> {
-    // the values that the secant goes by, halved where the other end moves for the second time
+    // the values that the secant uses; that of one end is halved where the other end moves twice in a row
     let (mut near_g, mut far_g) = (near.g, far.g);
     let mut far_moved = None;
     let (mut count, mut goal) = (0, 0.5 * (far.t - near.t).abs());
@@ -34,7 +34,7 @@ pub(super) fn bracket<E>(
         let t = if count >= 3 {
             near.t + 0.5 * width
         } else {
-            // at an end it would tell nothing new
+            // a point at an end would tell nothing new
             let (low, high) = (edge / width, 1.0 - edge / width);
             near.t + part.max(low).min(high) * width
         };
@@ -58,8 +58,10 @@ pub(super) fn bracket<E>(
     Ok((near, far))
 }
 
-/// The point between `a` and `b` where |g| is smallest, as far as it takes to tell: the search ends as soon as g crosses zero,
-/// and, unless it has to be `thorough`, where the parabola through the first points stays far from zero.
+/// The point between `a` and `b` where |g| is smallest.
+///
+/// The search ends early as soon as g crosses zero and, unless it has to be `thorough`, if the parabola
+/// through the first points stays far from zero.
 ///
 /// Golden section, for a |g| with one minimum there.
 pub(super) fn minimum<E>(
@@ -83,7 +85,7 @@ pub(super) fn minimum<E>(
             return Ok(lower(at_left, at_right));
         }
     }
-    // 0.618^36 of the interval: 3e-8, the square root of rounding, which is all that a minimum tells
+    // 0.618^36 of the interval: 3e-8, the square root of rounding, to which a minimum can be located
     for _ in 0..36 {
         for point in [at_left, at_right] {
             if crosses(a.g, point.g) {
@@ -119,7 +121,8 @@ mod tests {
         Point { t, g: g(t) }
     }
 
-    /// cos has its root at pi/2: both points of the bracket lie within the tolerance of it, in either direction of time.
+    /// cos has its root at pi/2: both points of the bracket lie within the tolerance of it, in either
+    /// direction of time.
     #[test]
     fn a_root_is_enclosed_to_the_tolerance() {
         let root = std::f64::consts::FRAC_PI_2;
@@ -140,7 +143,7 @@ mod tests {
         }
     }
 
-    /// A jump has no value 0 anywhere: bisection ends at it.
+    /// A function that jumps across 0 is 0 nowhere: bisection ends at the jump.
     #[test]
     fn a_jump_is_enclosed_too() {
         let step = |t: f64| if t < 0.3 { -1.0 } else { 1e6 };
@@ -150,8 +153,8 @@ mod tests {
         assert!(near.t < 0.3 && far.t >= 0.3 && far.t - near.t < 1e-14, "{near:?} {far:?}");
     }
 
-    /// (t - 0.4)^2 + c has its minimum at 0.4, which a search finds to the square root of rounding; it ends early below zero, and
-    /// where c is far from zero.
+    /// (t - 0.4)^2 + c has its minimum at 0.4, which a search finds to the square root of rounding; it ends
+    /// early below zero, and where c is far from zero.
     #[test]
     fn a_minimum_is_found_as_far_as_it_matters() {
         let search = |c: f64, thorough: bool| {

@@ -1,4 +1,4 @@
-//! A run in the hands of the caller, step by step.
+//! A run under the caller's control, step by step.
 
 use std::{
     fmt,
@@ -25,7 +25,7 @@ use crate::integrators::common::{
     self, SHORTEST, Statistics, Tolerances, check_start_time, check_time,
 };
 
-/// A problem on its way: [`advance`](Self::advance) by a step, look, go on.
+/// A problem that is solved step by step, by [`advance`](Self::advance).
 ///
 /// ```
 /// use pliant::solve::{Method, Options, Problem, Run};
@@ -48,7 +48,7 @@ pub struct Run<'a> {
     pub(super) events: Vec<Event<'a>>,
     pub(super) watches: Vec<EventTracker>,
     pub(super) counts: Vec<u32>,
-    /// Those ahead, the next one last.
+    /// The breaks ahead, the next one last.
     pub(super) breaks: Vec<Break<'a>>,
     pub(super) observer: Option<Observer<'a>>,
     pub(super) cancel: Option<Arc<AtomicBool>>,
@@ -71,7 +71,7 @@ pub struct Run<'a> {
     pub(super) quadratures: [Vec<f64>; 2],
     pub(super) occurred: Vec<Occurrence>,
     pub(super) scratch: Vec<f64>,
-    /// Of the starts before the last one.
+    /// Statistics before the last start of the integrator.
     pub(super) past: Statistics,
     pub(super) started: Instant,
     pub(super) end: Option<End>,
@@ -106,10 +106,12 @@ impl fmt::Debug for Run<'_> {
 }
 
 impl<'a> Run<'a> {
-    /// `problem` by `method` from the start to the end of `span`; the end may lie before the start, for methods that can go backward in time.
+    /// Starts a run of `problem` by `method` from the start to the end of `span`.
+    ///
+    /// The end may lie before the start, for methods that can go backward in time.
     ///
     /// # Errors
-    /// [`Reason::Input`] for anything that cannot be used: options that the method does not have, too;
+    /// [`Reason::Input`] for anything that cannot be used, including options that the method does not have;
     /// [`Reason::Failed`] if the start of a DAE cannot be made to satisfy its equations.
     pub fn new(
         problem: Problem<'a>,
@@ -230,7 +232,8 @@ impl<'a> Run<'a> {
         Ok(run)
     }
 
-    /// Lets the next steps end before the next break, or at the end; there may be no room for one.
+    /// Makes the next steps end just before the next break, or at the end of the span; there may be no room
+    /// for a step.
     pub(super) fn set_stop_time(&mut self) -> Result<(), common::Error> {
         let stop = self.breaks.last().map_or(self.span.1, |next| self.just_before(next.t));
         if stop == self.t { Ok(()) } else { self.engine.set_stop_time(stop) }
@@ -258,7 +261,7 @@ impl<'a> Run<'a> {
         &self.y
     }
 
-    /// Its time derivative, of a DAE; empty otherwise.
+    /// Its time derivative for a DAE; empty otherwise.
     #[must_use]
     pub fn yp(&self) -> &[f64] {
         &self.yp
@@ -270,13 +273,13 @@ impl<'a> Run<'a> {
         &self.parameters
     }
 
-    /// Why the run is at its end; none before.
+    /// Why the run has ended; `None` before.
     #[must_use]
     pub fn end(&self) -> Option<End> {
         self.end
     }
 
-    /// Where the run stands, to be taken up later or by another program: [`Problem::resume`].
+    /// Where the run stands, to be continued later or by another program: [`Problem::resume`].
     #[must_use]
     pub fn save(&self) -> Saved {
         Saved {
@@ -291,28 +294,29 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The sensitivities at the present time, after any jump: entry (i, j) is the derivative of unknown i to the j-th parameter of
-    /// [`Options::sensitivities`].
+    /// The sensitivities at the present time, after any jump: entry (i, j) is the derivative of unknown i
+    /// with respect to the j-th parameter of [`Options::sensitivities`].
     #[must_use]
     pub fn sensitivities(&self) -> MatRef<'_, f64> {
         let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
         MatRef::from_column_major_slice(s, self.y.len(), s.len() / self.y.len())
     }
 
-    /// The integrals of [`Ode::quadratures`](crate::integrators::ode::Ode::quadratures) from the start of the span to the present time; none if
-    /// the equations have none.
+    /// The integrals of [`Ode::quadratures`](crate::integrators::ode::Ode::quadratures) from the start of the
+    /// span to the present time; none if the equations have none.
     #[must_use]
     pub fn quadratures(&self) -> &[f64] {
         &self.quadratures[0]
     }
 
-    /// What there is at the present time, after any jump.
+    /// State, sensitivities and integrals at the present time, after any jump.
     pub(super) fn row(&self) -> Record<'_> {
         let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
         Record { y: &self.y, s, q: self.quadratures() }
     }
 
-    /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there was none.
+    /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there
+    /// was none.
     pub(super) fn sensitivities_before(&self) -> &[f64] {
         let Some(carried) = &self.carried else { return &[] };
         carried.before.as_ref().unwrap_or(&carried.s)
@@ -347,7 +351,7 @@ impl<'a> Run<'a> {
             let help = format!("the last step is [{low}, {high}]");
             return Err(InputError::new("t", t, help).into());
         }
-        // the number before a break is as far as the integrator went
+        // the integrator went only as far as the number before a break
         let reached = self.engine.t();
         let t = if (t - reached) * self.sign > 0.0 { reached } else { t };
         self.engine.interpolate(t, 0, out)

@@ -1,12 +1,12 @@
-//! A run that is put aside and taken up again.
+//! A run that is saved and continued later.
 
 use crate::base::input::InputError;
 use crate::integrators::common::{check_finite, check_length};
 
 /// Where a run stands, for [`Problem::resume`](super::Problem::resume): all of it is plain numbers.
 ///
-/// The run goes on from here with a new start of the integrator, which estimates its first step: to the same solution within the
-/// tolerances, not to the last bit.
+/// The run continues from here with a new start of the integrator, which estimates its first step: the
+/// solution is the same within the tolerances, not to the last bit.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Saved {
@@ -14,7 +14,7 @@ pub struct Saved {
     pub t: f64,
     /// State.
     pub y: Vec<f64>,
-    /// Its time derivative, of a DAE; empty otherwise.
+    /// Its time derivative for a DAE; empty otherwise.
     pub yp: Vec<f64>,
     /// Parameters of the equations.
     pub parameters: Vec<f64>,
@@ -24,12 +24,12 @@ pub struct Saved {
     pub sensitivities: Vec<f64>,
     /// The integrals since the start; empty if there are none.
     pub quadratures: Vec<f64>,
-    /// The event functions; 0 for one that is about to leave zero.
+    /// Values of the event functions; 0 for one that is about to leave zero.
     pub event_values: Vec<f64>,
 }
 
 impl Saved {
-    /// Checks that it fits a problem with so many unknowns, derivatives, events and integrals.
+    /// Checks that it fits a problem with these numbers of unknowns, derivatives, events and integrals.
     pub(super) fn check(
         &self,
         [n, derivatives, events, integrals]: [usize; 4],

@@ -10,13 +10,13 @@ use super::{
 use crate::base::{input::InputError, vector::size_or_one};
 use crate::integrators::sundials::Sensitivities;
 
-/// The sensitivities dy/dp of a run, to some of the parameters of its equations.
+/// The sensitivities dy/dp of a run with respect to some of the parameters of its equations.
 pub(super) struct Carried {
     /// Their places among the parameters.
     parameters: Vec<usize>,
-    /// One column for each.
+    /// The sensitivities, one column for each of these parameters.
     pub(super) s: Vec<f64>,
-    /// Before the jump at the present time, if there was one.
+    /// Those before the jump at the present time, if there was one.
     pub(super) before: Option<Vec<f64>>,
 }
 
@@ -63,7 +63,7 @@ impl Carried {
         Ok(engine.interpolate_sensitivities(t, s)?)
     }
 
-    /// The derivatives tau of the time of an event to the parameters, where `g` is its function:
+    /// The derivatives tau of the time of an event with respect to the parameters, where `g` is its function:
     /// tau = -(g_y s + g_p) / (g_t + g_y f-).
     pub(super) fn of_time(
         &self,
@@ -85,13 +85,14 @@ impl Carried {
 
     /// Carries them across a jump y+ = a(t, y, p) by `act`, at a time with the derivatives `taus`.
     ///
-    /// With the slopes f- before and f+ behind it, they are
+    /// With the slopes f- before and f+ after it, they are
     ///
     /// ```text
     /// s+ = a_y (s + f- tau) + a_t tau + a_p - f+ tau
     /// ```
     ///
-    /// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049). Derivatives are central differences along these directions.
+    /// (W. A. Rozenvasser, Automation and Remote Control 28 (1967) 1043-1049). Derivatives are central
+    /// differences along these directions.
     pub(super) fn cross(
         &mut self,
         at: &Crossing<'_>,
@@ -100,7 +101,7 @@ impl Carried {
     ) -> Result<(), Reason> {
         let n = at.before.len();
         let [left, right] = at.slopes;
-        // what an action reads of derivatives, these differences would miss: it makes them NaN
+        // an action that reads derivatives gets NaN: these differences would miss how they change
         let mut unknown = vec![f64::NAN; if at.of_dae { n } else { 0 }];
         self.before = Some(self.s.clone());
         for ((&tau, &k), s) in taus.iter().zip(&self.parameters).zip(self.s.chunks_mut(n)) {
@@ -120,7 +121,7 @@ impl Carried {
         Ok(check_landed("sensitivities after the jump", &self.s, at.of_dae)?)
     }
 
-    /// Starts from others than zero.
+    /// Starts from sensitivities other than zero.
     pub(super) fn start(&mut self, s: &[f64], engine: &mut dyn Engine) -> Result<(), Reason> {
         if s.len() != self.s.len() {
             let help = format!("there are {} of them, n for each parameter", self.s.len());
@@ -131,7 +132,7 @@ impl Carried {
         self.hand_over(engine)
     }
 
-    /// Lets the integrator, which starts anew, go on with them.
+    /// Hands them to the integrator, which starts anew.
     pub(super) fn hand_over(&self, engine: &mut dyn Engine) -> Result<(), Reason> {
         let columns = self.parameters.len();
         let s = MatRef::from_column_major_slice(&self.s, self.s.len() / columns, columns);

@@ -22,7 +22,7 @@ pub struct Occurrence {
     pub y: Vec<f64>,
 }
 
-/// Why a run is at its end.
+/// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum End {
@@ -36,10 +36,11 @@ pub enum End {
     Early,
 }
 
-/// Times, states and events of a run; with [`Output::Steps`](super::Output::Steps) also all that lies between.
+/// Times, states and events of a run; with [`Output::Steps`](super::Output::Steps) also all that lies
+/// between.
 ///
-/// States are kept one after the other: the one of time `t()[k]` is `y(k)`. Where the solution jumps, a time occurs
-/// twice, with the state before and after.
+/// States are kept one after the other: the one of time `t()[k]` is `y(k)`. Where the solution jumps, a time
+/// occurs twice, with the state before and after.
 #[derive(Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(remote = "Self"))]
@@ -81,7 +82,8 @@ pub(super) struct Record<'r> {
     pub(super) q: &'r [f64],
 }
 
-/// Inner nodes of a step for a polynomial of this degree, as parts of it: the extrema of Chebyshev's polynomial.
+/// Inner nodes of a step for a polynomial of this degree, as fractions of the step: the extrema of
+/// Chebyshev's polynomial.
 pub(super) fn nodes(degree: usize) -> impl Iterator<Item = f64> {
     (1..degree).map(move |k| node(k, degree))
 }
@@ -107,7 +109,8 @@ impl Solution {
         }
     }
 
-    /// Adds the state at `t`; `inner` writes the state at a part of the way from the last time, if that is kept.
+    /// Adds the state at `t`; `at` writes the state at a time since the last one, if what lies between is
+    /// kept.
     pub(super) fn push<E>(
         &mut self,
         t: f64,
@@ -168,8 +171,9 @@ impl Solution {
         &self.states[self.states.len() - self.n..]
     }
 
-    /// The sensitivities at time `t()[k]`: entry (i, j) is the derivative of unknown i to the j-th parameter of
-    /// [`Options::sensitivities`](super::Options::sensitivities), at that time, whatever it depends on.
+    /// The sensitivities at time `t()[k]`: entry (i, j) is the derivative of unknown i with respect to the
+    /// j-th parameter of [`Options::sensitivities`](super::Options::sensitivities), at that fixed time, even
+    /// where it is the time of an event that depends on the parameter.
     ///
     /// # Panics
     /// If there is no such time.
@@ -180,8 +184,8 @@ impl Solution {
         MatRef::from_column_major_slice(s, self.n, count / self.n)
     }
 
-    /// The integrals of [`Ode::quadratures`](crate::integrators::ode::Ode::quadratures) from the start of the span to time `t()[k]`; none if
-    /// the equations have none.
+    /// The integrals of [`Ode::quadratures`](crate::integrators::ode::Ode::quadratures) from the start of the
+    /// span to time `t()[k]`; none if the equations have none.
     ///
     /// # Panics
     /// If there is no such time.
@@ -191,7 +195,7 @@ impl Solution {
         &self.quadratures[k * count..(k + 1) * count]
     }
 
-    /// The time derivative of the last state, of a DAE; empty otherwise.
+    /// The time derivative of the last state for a DAE; empty otherwise.
     #[must_use]
     pub fn last_yp(&self) -> &[f64] {
         &self.saved.yp
@@ -214,10 +218,12 @@ impl Solution {
         MatRef::from_column_major_slice(&self.states, self.n, self.t.len())
     }
 
-    /// The state at any time of the run, by the polynomials of the integrator; after the jump where there is one.
+    /// The state at any time of the run, by the polynomials of the integrator; after the jump where there is
+    /// one.
     ///
     /// # Errors
-    /// If `t` lies outside the run, or the solution was not kept between its times ([`Output`](super::Output)).
+    /// If `t` lies outside the run, or the solution was not kept between its times
+    /// ([`Output`](super::Output)).
     pub fn at(&self, t: f64) -> Result<Vec<f64>, InputError> {
         let mut y = vec![0.0; self.n];
         self.at_into(t, &mut y)?;
@@ -240,7 +246,7 @@ impl Solution {
         if (t - start) * sign < 0.0 || (end - t) * sign < 0.0 {
             return Err(InputError::new("t", t, format!("the run goes from {start} to {end}")));
         }
-        // the last time that is not behind t: that after a jump
+        // the last time that is not after t; where there is a jump, the entry after it
         let k = self.t.partition_point(|&at| (at - t) * sign <= 0.0) - 1;
         if self.t[k] == t {
             out.copy_from_slice(self.y(k));
@@ -254,7 +260,8 @@ impl Solution {
             j if j == degree => self.y(k + 1),
             j => &nodes[(j - 1) * n..j * n],
         };
-        // the barycentric formula of Chebyshev's second kind (J.-P. Berrut, L. N. Trefethen, SIAM Review 46 (2004) 501-517)
+        // the barycentric formula of Chebyshev's second kind (J.-P. Berrut, L. N. Trefethen, SIAM Review 46
+        // (2004) 501-517)
         let part = (t - self.t[k]) / (self.t[k + 1] - self.t[k]);
         let weight = |j: usize| {
             let half = if j == 0 || j == degree { 0.5 } else { 1.0 };
@@ -280,7 +287,7 @@ impl Solution {
         &self.events
     }
 
-    /// Why the run is at its end.
+    /// Why the run ended.
     #[must_use]
     pub fn end(&self) -> End {
         self.end
@@ -327,7 +334,7 @@ impl<'de> serde::Deserialize<'de> for Solution {
 
 #[cfg(feature = "serde")]
 impl Solution {
-    /// Whether the lengths of the arrays fit together, of a solution that comes from elsewhere.
+    /// Whether the lengths of the arrays fit together, for a solution that was read.
     fn fits(&self) -> bool {
         let (n, times) = (self.n, self.t.len());
         let nodes = self.nodes.len();

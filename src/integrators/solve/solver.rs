@@ -12,8 +12,8 @@ use super::{
 /// Integrates `problem` by `method` over `span`, from its start to its end, which may lie before it.
 ///
 /// # Errors
-/// [`Error::Input`] if something cannot be used, nothing was computed then; [`Error::Stopped`] if the end was not reached, with the
-/// reason and the solution so far.
+/// [`Error::Input`] if something cannot be used: then nothing was computed; [`Error::Stopped`] if the end was
+/// not reached, with the reason and the solution so far.
 ///
 /// # Panics
 /// A panic of the equations, the events or the actions passes through.
@@ -47,7 +47,7 @@ pub fn solve(
     }
 }
 
-/// Lets `run` go to its end and keeps what `output` asks for.
+/// Takes `run` to its end and keeps what `output` requires.
 fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Result<(), Reason> {
     let mut times = match output {
         Output::Times(times) => times.as_slice(),

@@ -14,8 +14,10 @@ use super::{
 };
 
 impl Run<'_> {
-    /// Makes one step, which ends where something happens to the state: at a break, or an event with an action or that ends the run.
-    /// None at the end of the run.
+    /// Makes one step; `None` at the end of the run.
+    ///
+    /// A step ends where something happens to the state: at a break, or at an event that has an action or
+    /// ends the run.
     ///
     /// # Errors
     /// Why the run cannot go on. What was reached stays: [`t`](Self::t), [`y`](Self::y).
@@ -28,7 +30,8 @@ impl Run<'_> {
         self.occurred.clear();
         self.before = None;
         let (t_old, end) = (self.t, self.span.1);
-        // not from one number to the next, where a break follows upon another one, an event or the start
+        // no step from one number to the next, where a break directly follows another one, an event or the
+        // start
         if !self.is_before_break(t_old) {
             self.engine.step(end)?;
         }
@@ -36,7 +39,8 @@ impl Run<'_> {
         let at_break = self.is_before_break(t);
         let jumps = match self.look_for_events(t, at_break || t == end)? {
             Found::Jumps(jumps) => jumps,
-            // the step leads through what should have held: a jump takes its place
+            // the step passes through zero, where the action should have turned the solution back: a jump
+            // replaces it
             Found::Accumulation(event, turn) => {
                 self.accumulate(event, turn)?;
                 self.t_old = self.t;
@@ -136,7 +140,7 @@ impl Run<'_> {
         let goes_on = observer(Progress { t: self.t, y: &self.y, steps, part });
         self.observer = Some(observer);
         if goes_on == ControlFlow::Break(()) {
-            // the next step tells
+            // the next step reports it
             self.cancel = Some(Arc::new(true.into()));
         }
     }

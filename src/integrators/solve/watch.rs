@@ -17,14 +17,14 @@ pub(super) struct Root {
     behind: Point,
 }
 
-/// How far an event function was followed.
+/// An event function, and how far it was followed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct EventTracker {
     direction: Direction,
     samples: u32,
     touching: Option<f64>,
-    /// The sign that the function should have next, where an action has turned the solution back from zero, or brought it to
-    /// rest there.
+    /// The sign that the function should have next, where an action has turned the solution back from zero,
+    /// or brought it to rest there.
     turn: Option<Turn>,
     /// When an action was called last, and the longest time between two calls.
     acted: Option<f64>,
@@ -45,12 +45,13 @@ pub(super) struct Turn {
     pub(super) at_rest: bool,
 }
 
-/// What a watch has seen.
+/// What an event tracker has found.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Sight {
     Nothing,
     Root(Root),
-    /// Behind an action the function has left zero on the other side, without a sign of the one that it came from.
+    /// After an action the function has left zero on the other side, without having the sign of the side that
+    /// it came from.
     Passage(Turn),
 }
 
@@ -76,13 +77,14 @@ impl EventTracker {
         self.g
     }
 
-    /// Goes on at time `t`, where the function is `g` by now and values up to `noise` mean nothing.
+    /// Continues at time `t`, where the function now is `g` and values up to `noise` count as 0.
     pub(super) fn restart(&mut self, t: f64, g: f64, noise: f64) {
         (self.t, self.g) = (t, if g.abs() <= noise { 0.0 } else { g });
         self.turn = None;
     }
 
-    /// After a new start: an action was called here, at time `t`, and should have turned the solution back so, or let it pass.
+    /// After a new start: an action was called here, at time `t`, and should have turned the solution back as
+    /// `turn` says, or let it pass if that is `None`.
     pub(super) fn acted(&mut self, t: f64, turn: Option<Turn>) {
         self.turn = turn.filter(|_| self.g == 0.0);
         let interval = self.acted.map_or(0.0, |last| (t - last).abs());
@@ -97,14 +99,15 @@ impl EventTracker {
         }
     }
 
-    /// Whether an action at time `t` would come sooner than others have.
+    /// Whether an action at time `t` would follow the last one after less than half the longest interval so
+    /// far.
     pub(super) fn hurries(&self, t: f64) -> bool {
         self.acted.is_some_and(|last| (t - last).abs() < 0.5 * self.longest)
     }
 
-    /// The next root up to time `to`, to within `tolerance`. The watch moves there, or to `to`.
+    /// The next root up to time `to`, to within `tolerance`. The tracker moves there, or to `to`.
     ///
-    /// What is 0 at `to` is known by the next step, unless there `is_last`.
+    /// Whether a 0 at `to` is a root is decided in the next step, unless this one `is_last`.
     pub(super) fn next_root<E>(
         &mut self,
         (to, is_last): (f64, bool),
@@ -129,7 +132,7 @@ impl EventTracker {
         Ok(Sight::Nothing)
     }
 
-    /// The next root of either direction; without one the watch moves to `to`.
+    /// The next root of either direction; without one the tracker moves to `to`.
     fn any_root<E>(
         &mut self,
         (to, is_last): (f64, bool),
@@ -165,7 +168,8 @@ impl EventTracker {
             }
             let knows_behind = k < self.samples || !(is_last || self.touching.is_some());
             if next.g == 0.0 && knows_behind {
-                // the sign behind decides whether it crosses; behind the end of the step the next one knows it
+                // the sign after it decides whether it crosses; after the end of the step, that is left to
+                // the next step
                 let still = f64::MIN_POSITIVE.copysign(last.g);
                 let behind = if k == self.samples { still } else { at(t + 1e-3 * slice)?.g };
                 if behind != 0.0 && !crosses(last.g, behind) {
@@ -205,8 +209,10 @@ impl Turn {
         Self { near: -f64::from(root.sign), noise: root.noise, at_rest: false }
     }
 
-    /// Where the function is more than noise first, on the way from the time `from` to `to`: at distances that grow fourfold, so that
-    /// an arc above zero that begins at `from` is not missed.
+    /// The first point from the time `from` to `to` where the function is more than noise.
+    ///
+    /// It is evaluated at distances that grow fourfold, so that an arc above zero that begins at `from` is
+    /// not missed.
     fn leaves_zero<E>(
         &self,
         from: f64,
@@ -228,7 +234,8 @@ impl Turn {
         }
     }
 
-    /// Whether a change of the function by `change` is no noise, and leads back to the side that it came from.
+    /// Whether a change of the function by `change` leads back to the side that it came from; `None` if it is
+    /// noise.
     pub(super) fn leads_back(&self, change: f64) -> Option<bool> {
         (change.abs() > self.noise).then_some(change * self.near > 0.0)
     }
@@ -327,7 +334,7 @@ mod tests {
         let found = roots(event(), |t| (0.6 - t).max(0.0), 3);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!((found[0].0 - 0.6).abs() < 1e-12 && found[0].1 == -1);
-        // also where it arrives at the end of a step, or of the run; and what leaves zero is none
+        // also where it arrives at the end of a step, or of the run; and leaving zero is no event
         for steps in [1, 3] {
             let found = roots(event(), |t| (1.0 - t).max(0.0), steps);
             assert_eq!(found.len(), 1, "{steps}: {found:?}");
