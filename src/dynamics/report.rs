@@ -123,6 +123,14 @@ pub struct SlipEvent {
 }
 
 impl Report {
+    /// What all phases cost together; steps and notices are those of the last one and the first one that has any.
+    #[cfg(feature = "output")]
+    pub(crate) fn counts(&self) -> Counts {
+        let mut counts = Counts::default();
+        self.phases.iter().for_each(|phase| counts.add(phase.counts.clone()));
+        counts
+    }
+
     /// Steps of all phases.
     pub fn steps(&self) -> usize {
         self.phases.iter().map(|phase| phase.counts.steps).sum()

@@ -44,7 +44,7 @@ pub(crate) use self::figure::{
 pub use self::plot::{Plot, Table};
 pub use self::reference::reference;
 #[cfg(feature = "study")]
-pub(crate) use self::report::of_indicator;
+pub(crate) use self::report::OfIndicator;
 pub use self::report::{write_report, write_static_report};
 pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;

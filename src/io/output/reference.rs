@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::columns::{Along, COLUMNS};
-use super::report::{OF_RUN, OF_STATICS};
+use super::report::{OfRun, OfStatics};
 
 /// All columns of `trajectory.csv` and all keys of `report.json` in Markdown, with units and meanings: the end of
 /// `docs/reference.md`.
@@ -19,9 +19,10 @@ pub fn reference() -> String {
         (name, kind.unit, kind.meaning)
     });
     table(&mut page, "column", columns);
-    for (command, keys) in [("run", OF_RUN), ("static", OF_STATICS)] {
+    for (command, keys) in [("run", OfRun::keys()), ("static", OfStatics::keys())] {
         page += &format!("\n### Keys of `report.json` of `pliant {command}`\n\n");
-        let keys = keys.iter().map(|(name, unit, meaning)| (format!("`{name}`"), *unit, *meaning));
+        let keys =
+            keys.into_iter().map(|(name, unit, meaning)| (format!("`{name}`"), unit, meaning));
         table(&mut page, "key", keys);
     }
     page

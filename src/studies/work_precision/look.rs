@@ -10,7 +10,7 @@ use crate::base::input::{positive, told};
 use crate::dynamics::error::Error;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::simulate::{Progress, Sampling};
-use crate::io::output::of_indicator;
+use crate::io::output::OfIndicator;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::Scene;
 
@@ -97,7 +97,7 @@ impl Look {
             "until": until,
             "end": end,
             "cause": cause,
-            "indicators": indicators.iter().map(of_indicator).collect::<Vec<_>>(),
+            "indicators": indicators.iter().map(OfIndicator::object).collect::<Vec<_>>(),
         })
     }
 }
