@@ -33,7 +33,7 @@ const GREY: RGBColor = RGBColor(119, 119, 119);
 const GRID: RGBColor = RGBColor(222, 222, 222);
 /// Left and right end of the legend, and the distance of its lines (px).
 const LEGEND: [i32; 3] = [20, 780, 20];
-/// Labels on an axis, about.
+/// Approximate number of labels on an axis.
 const LABELS: usize = 9;
 
 /// A line chart with named series, on linear or logarithmic axes.

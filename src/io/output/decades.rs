@@ -1,9 +1,9 @@
-//! Logarithmic axes: where their lines are and what stands beside them.
+//! Logarithmic axes: where their lines are and how they are labelled.
 
 const SUPERSCRIPTS: [&str; 10] = ["⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"];
 
-/// Values within `decades` at which an axis has lines, and whether they are labelled: powers of
-/// ten, and in a short range others, too.
+/// Values between the decades `low` and `high` at which an axis has lines, and whether they are labelled:
+/// powers of ten, and in a short range others, too.
 pub(crate) fn ticks([low, high]: [f64; 2]) -> Vec<(f64, bool)> {
     let is_short = high - low < 2.5;
     let mut ticks = Vec::new();

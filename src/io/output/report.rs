@@ -11,7 +11,8 @@ use crate::dynamics::report::{Achieved, Indicator, PhaseReport, Report, SlipEven
 use crate::dynamics::trajectory::{IntegrationFailure, Quantity, Trajectory};
 use crate::integrators::sundials;
 
-/// Name, unit and meaning of a key. Those of tables follow them, after a dot; `[]` is each one of a list.
+/// Name, unit and meaning of a key. Keys in a table follow its name, after a dot; `[]` stands for each item
+/// of a list.
 pub(super) type ReportKey = (&'static str, &'static str, &'static str);
 
 /// The keys of [`write_report`].
@@ -193,8 +194,8 @@ pub(super) const OF_STATICS: &[ReportKey] = &[
     ("versions.suitesparse", "", "version of the linked SuiteSparse (KLU)"),
 ];
 
-/// Writes how a run was computed, whether it was finished, gave up or was interrupted, as JSON, with the keys of
-/// [`reference`](super::reference).
+/// Writes how a run was computed, whether it was finished, gave up or was interrupted, as JSON, with the keys
+/// of [`reference`](super::reference).
 ///
 /// # Errors
 /// [`Error::Output`] if the file cannot be written.

@@ -12,8 +12,8 @@ use crate::io::output::{COLOURS, DASHES, FONT, INK};
 /// Width of the page, and height of a panel (px).
 const WIDTH: f64 = 720.0;
 const PANEL: f64 = 170.0;
-/// Room at the right end, between panels, for a line of a legend, for the title, for names of phases, and for the axis
-/// of time (px).
+/// Room at the right end, between panels, for a line of a legend, for the title, for names of phases, and for
+/// the axis of time (px).
 const RIGHT: f64 = 18.0;
 const GAP: f64 = 18.0;
 const LEGEND: f64 = 19.0;
@@ -23,7 +23,7 @@ const TIME: f64 = 44.0;
 /// Width of the names of axes, and mean width of a character of 12 px.
 const LABEL: f64 = 26.0;
 const CHARACTER: f64 = 6.6;
-/// Lines across a panel and along the axis of time, about.
+/// Approximate number of lines across a panel and along the axis of time.
 const TICKS: [usize; 2] = [5, 8];
 /// Length of the line that a legend shows, with its room (px).
 const SWATCH: f64 = 30.0;
@@ -43,7 +43,7 @@ pub(super) struct Page<'a> {
 /// The columns of one unit.
 struct Panel<'a> {
     columns: Vec<&'a Column>,
-    /// How far they are known, if that is known.
+    /// Their differences from the run before, if these are known.
     differences: Vec<Option<&'a Column>>,
     axis: Axis,
     label: String,
@@ -275,8 +275,8 @@ fn band(upper: &Line, lower: &Line, number: usize) -> Path {
     path.set("fill", colour).set("fill-opacity", 0.25).set("stroke", "none")
 }
 
-/// A line in the colour and stroke of its number. Energies that have gone and come are dashed: what was supplied often
-/// is what is stored.
+/// A line in the colour and stroke of its number. Dissipated and supplied energies are dashed: the energy
+/// supplied often equals the energy stored.
 fn series(line: &Line, column: &Column, number: usize) -> Group {
     let colour = COLOURS[number % COLOURS.len()];
     let is_exchanged = EXCHANGED.contains(&&column.quantity.name[..]);
