@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::dynamics::error::Error;
 
-/// Has `content` written to a file beside `path`, which takes its place when it is complete and on the disk.
+/// Writes `content` to a file next to `path`, which replaces `path` when it is complete and on the disk.
 ///
 /// # Errors
 /// [`Error::Output`] with `path`.
@@ -34,7 +34,7 @@ fn replace(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) 
     // after a loss of power there is the old file or the new one, not a new one without content
     file.as_file().sync_all()?;
     file.persist(path)?;
-    // its name is kept, too, on file systems that know of that
+    // the directory is synced, too, so that the new name is on the disk, where the file system supports that
     match File::open(directory)?.sync_all() {
         Err(error) if error.kind() != io::ErrorKind::InvalidInput => Err(error),
         _ => Ok(()),

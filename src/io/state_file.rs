@@ -1,4 +1,4 @@
-//! Files of what a scene can start from, as JSON.
+//! Files with a state that a scene can start from, as JSON.
 
 use std::fs;
 use std::path::Path;
@@ -13,7 +13,7 @@ use crate::scene::timeline::BodyState;
 /// The name of the file among the results of a run.
 const NAME: &str = "state.json";
 
-/// What a file says that it is, and the format that this version writes and reads.
+/// What a file says it is, and the format that this version writes and reads.
 const WHAT: &str = "pliant state";
 const FORMAT: u32 = 1;
 
@@ -58,13 +58,13 @@ impl BodyState {
     /// Reads the state that a run has left: its file, or the directory that has it as `state.json`.
     ///
     /// # Errors
-    /// [`Error::Read`] if there is no file that can be read; a file that is none of a state, or damaged.
+    /// [`Error::Read`] if there is no file that can be read; a file that holds no state, or is damaged.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let path = if path.is_dir() { path.join(NAME) } else { path.into() };
         let refuse = |help: String| InputError::new("file of a state", path.display(), help).into();
         let unread = |source| Error::Read { path: path.clone(), source };
-        // to open a pipe may take for ever
+        // opening a pipe may block for ever
         if !fs::metadata(&path).map_err(unread)?.is_file() {
             return Err(refuse("it is no regular file: name one".into()));
         }

@@ -1,5 +1,5 @@
-//! Many runs for one answer: speed against accuracy, what to choose, unknowns fitted to measurements; and problems
-//! with trusted answers to try them on.
+//! Many runs for one answer: speed against accuracy, what to choose, unknowns fitted to measurements; and
+//! problems with trusted answers to try them on.
 
 #[cfg(feature = "fit")]
 pub mod fit;

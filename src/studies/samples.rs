@@ -1,6 +1,6 @@
 //! Test problems with trusted answers, each defined once for tests, benchmarks and examples.
 //!
-//! Errors are meant relative to the reference, componentwise: [`Reference::error`].
+//! Errors are relative to the reference, component by component: [`Reference::error`].
 
 #[cfg(feature = "bodies")]
 mod actuated;

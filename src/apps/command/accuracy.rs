@@ -21,7 +21,7 @@ pub struct AccuracyArguments {
 }
 
 impl AccuracyArguments {
-    /// Has them override what the scene file asks for.
+    /// Overrides the values of the scene file.
     pub fn apply(
         &self,
         request: &mut AccuracyRequest,

@@ -114,7 +114,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Writes the scene file with what is enough, beneath the reasons as comments.
+/// Writes the scene file with what is enough; the reasons stand above it as comments.
 fn write_scene(
     scene: &SceneArguments,
     advice: &Advice,
@@ -124,7 +124,7 @@ fn write_scene(
     let comment = |line: &str| format!("# {line}").trim_end().to_owned() + "\n";
     let reasons: String = advice.to_string().lines().map(comment).collect();
     let text = scene.text(&enough.set)?;
-    // a schema stands on the first line
+    // a schema must stay on the first line
     let (first, rest) = match text.starts_with("#:schema") {
         true => text.split_at(text.find('\n').map_or(text.len(), |end| end + 1)),
         false => ("", &text[..]),
@@ -135,7 +135,7 @@ fn write_scene(
     print(format_args!("written: {}", path.display()))
 }
 
-/// Shows what is run, and ends it if that was asked for.
+/// Shows what is being run, and ends the search after Ctrl-C.
 fn watch(bar: &ProgressBar, interrupted: &AtomicBool, what: &str) -> ControlFlow<()> {
     bar.set_message(what.to_owned());
     match interrupted.load(Ordering::Relaxed) {

@@ -102,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The scene by all settings that are asked for, then the variants.
+/// The scene with all requested settings, then the variants.
 fn problem(arguments: &Arguments, title: &str, file: &SceneFile) -> Result<Scenes, Failure> {
     let lines = lines(arguments, &file.settings);
     let mut scenes = Scenes::new(title, ended(file.scene.clone(), arguments.until)?)
@@ -152,7 +152,7 @@ fn or<'a, T>(values: &'a [T], default: &'a T) -> &'a [T] {
     if values.is_empty() { std::slice::from_ref(default) } else { values }
 }
 
-/// Each of `solvers` with each of `values`, named after the value if there are several.
+/// Each of `lines` with each of `values`, named after the value if there are several.
 fn combined<T: Copy>(
     lines: Vec<(String, Settings)>,
     values: &[T],
@@ -173,7 +173,7 @@ fn stem(path: &Path) -> String {
     path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Drawn on a terminal only, and not if `quiet`.
+/// The progress bar: drawn only on a terminal, and not if `quiet`.
 fn bar(quiet: bool) -> ProgressBar {
     let target = match quiet {
         true => ProgressDrawTarget::hidden(),

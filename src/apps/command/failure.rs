@@ -1,4 +1,4 @@
-//! What ends the command, and the words that it prints.
+//! Failures of the command, with their exit codes, and printing to the standard output.
 
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
@@ -19,7 +19,7 @@ pub const FAILED: u8 = 1;
 pub const BAD_INPUT: u8 = 2;
 
 impl Failure {
-    /// A failure by no fault of the input.
+    /// A failure that is not the fault of the input.
     pub fn failed(message: impl Display) -> Self {
         Self { code: FAILED, message: message.to_string() }
     }
@@ -51,7 +51,7 @@ impl From<InputError> for Failure {
 /// Prints a text and a line end to the standard output.
 pub fn print(text: impl Display) -> Result<(), Failure> {
     match writeln!(io::stdout().lock(), "{text}") {
-        // who closes the pipe, as `head` does, has read enough
+        // a closed pipe is no error: its reader, such as `head`, has read enough
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::failed(format!("cannot write to the standard output: {error}")))
         }

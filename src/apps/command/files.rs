@@ -40,7 +40,7 @@ fn format(name: &str) -> Result<Format, String> {
 }
 
 impl OutputArguments {
-    /// Has them override the scene file.
+    /// Overrides the values of the scene file.
     pub fn apply(&self, file: &mut SceneFile) -> Result<(), Failure> {
         if let Some(nodes) = &self.track {
             file.scene.body().mesh().select(nodes)?;
@@ -69,16 +69,16 @@ pub struct Directory {
     written: Vec<&'static str>,
     /// The directory itself, locked, once it is claimed.
     lock: Option<File>,
-    /// Whether the run goes on with the one that is there.
+    /// Whether the run continues the one whose results are there.
     pub resumes: bool,
 }
 
-/// From which a run that was ended can go on.
+/// File from which a run that was ended can be continued.
 const CHECKPOINT: &str = "checkpoint.json";
 const TABLE: &str = "trajectory.csv";
-/// From which another scene can start.
+/// File from which another scene can start.
 const STATE: &str = "state.json";
-/// Names of results, beside the frames of VTK.
+/// Names of results, in addition to the frames of VTK.
 const RESULTS: [&str; 9] = [
     TABLE,
     CHECKPOINT,
@@ -99,7 +99,7 @@ fn is_result(name: &str) -> bool {
 }
 
 impl Directory {
-    /// Makes sure that `path` can be written to, so that no result is lost, without making it yet.
+    /// Checks that `path` can be written to, so that no result is lost; does not create it yet.
     pub fn new(path: PathBuf) -> Result<Self, Failure> {
         let here = Path::new(".");
         let existing = path.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(here);
@@ -112,8 +112,8 @@ impl Directory {
         }
     }
 
-    /// Makes the directory this run's own, once: no other run writes there until it has ended, and the results of
-    /// an earlier one are taken away, so that they cannot be mixed.
+    /// Claims the directory for this run, once: no other run writes there until it has ended, and the results
+    /// of an earlier run are deleted, so that they cannot be mixed.
     pub fn claim(&mut self) -> Result<(), Failure> {
         if self.lock.is_some() {
             return Ok(());
@@ -122,7 +122,7 @@ impl Directory {
         let failed = |error| Failure::failed(format!("cannot write to {place}: {error}"));
         fs::create_dir_all(&self.path).map_err(failed)?;
         let lock = File::open(&self.path).map_err(failed)?;
-        // file systems that know no locks are left alone
+        // file systems without locks are accepted
         if let Err(TryLockError::WouldBlock) = lock.try_lock() {
             let help = "wait until it has ended, or name another directory by --out";
             return Err(Failure::bad_input(format!("another run writes to {place}: {help}")));
@@ -138,7 +138,7 @@ impl Directory {
         Ok(())
     }
 
-    /// The path of a file that is kept beside the results.
+    /// The path of a file that is kept next to the results.
     pub fn beside(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
@@ -155,7 +155,8 @@ impl Directory {
             return Ok(table);
         }
         let began = simulation.time();
-        // the last row of a run that was interrupted, where it had come to, is none of the whole run
+        // the last row of an interrupted run, at the time that it had reached, is kept only if the whole run
+        // samples that time
         let kept = match output.sampling().takes(simulation.scene(), began) {
             true => began,
             false => began.next_down(),
@@ -181,9 +182,9 @@ impl Directory {
         checkpoint.write(self.path.join(CHECKPOINT))
     }
 
-    /// Takes the checkpoint of a run away that has come to its end.
+    /// Deletes the checkpoint of a run that has come to its end.
     pub fn forget_checkpoint(&self) {
-        // without it nothing is lost
+        // a failure here loses nothing
         let _ = fs::remove_file(self.path.join(CHECKPOINT));
     }
 
@@ -201,7 +202,7 @@ impl Directory {
         self.write(STATE, |path| trajectory.state(trajectory.last()).write(path))
     }
 
-    /// Has a file written.
+    /// Writes a file, and notes its name.
     pub fn write(
         &mut self,
         name: &'static str,
@@ -214,14 +215,14 @@ impl Directory {
         Ok(())
     }
 
-    /// Has the pictures and files of a motion written that are asked for.
+    /// Writes the requested pictures and files of a motion.
     pub fn write_formats(
         &mut self,
         trajectory: &Trajectory,
         title: &str,
         output: &OutputRequest,
     ) -> Result<(), Failure> {
-        // the table has what an earlier run has left, too
+        // the table includes the rows of an earlier run that is continued
         let here = self.path.clone();
         let draw = |path: &Path| Plot::new().title(title).write_table(&Table::read(&here)?, path);
         for format in &output.formats {
@@ -245,13 +246,13 @@ impl Directory {
         Ok(())
     }
 
-    /// Tells what was written.
+    /// Prints what was written.
     pub fn tell(&self) -> Result<(), Failure> {
         print(format_args!("written to {}: {}", self.path.display(), self.written.join(", ")))
     }
 }
 
-/// Times of the snapshots (s): the ends of the phases, and some between them, ten or so in all.
+/// Times of the snapshots (s): the ends of the phases, and some between them, about ten in all.
 fn times(trajectory: &Trajectory) -> Vec<f64> {
     let phases = trajectory.scene().phases();
     let parts = (9 / phases.len()).max(1);

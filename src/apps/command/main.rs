@@ -82,7 +82,7 @@ fn main() -> ExitCode {
     match result {
         Ok(()) => ExitCode::SUCCESS,
         Err(Failure { code, message }) => {
-            // who closed the standard error wants no message
+            // if the standard error is closed, nobody wants the message
             let _ = writeln!(io::stderr(), "pliant: {message}");
             ExitCode::from(code)
         }

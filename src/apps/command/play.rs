@@ -39,10 +39,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         file.scene = file.scene.lasting(end);
     }
     let player = Player::new(&file.scene, &file.settings, &file.title, *port)?;
-    // read as often as the energies, whatever the times of a run
+    // sensors are read as often as the energies, whatever output times the file has
     let sensors = OutputRequest { step: None, times: None, ..file.output }.sampling();
     let player = player.sensors(&sensors)?.saving(text, &scene.path);
-    // nothing is kept that would have to be saved
+    // there is nothing that would have to be saved first
     ctrlc::set_handler(|| process::exit(0))
         .map_err(|error| Failure::failed(format!("cannot watch for Ctrl-C: {error}")))?;
     print(format_args!(

@@ -16,7 +16,7 @@ use crate::failure::Failure;
 pub struct RunProgress {
     bar: ProgressBar,
     interrupted: Arc<AtomicBool>,
-    /// Whether steps are being taken: before and after there is nothing to wait for.
+    /// Whether steps are being taken: before and after that, Ctrl-C has nothing to wait for.
     stepping: Arc<AtomicBool>,
     /// End of the scene (s).
     end: f64,
@@ -26,9 +26,9 @@ pub struct RunProgress {
 
 /// Parts into which the bar divides the time of the scene.
 const PARTS: f64 = 1e4;
-/// Time between two pictures of the bar.
+/// Time between two updates of the bar.
 const PERIOD: Duration = Duration::from_millis(100);
-/// Exit code after the second Ctrl-C, or one outside of steps: that of shells for programs that it ends.
+/// Exit code after the second Ctrl-C, or one outside of steps: shells report it for programs ended by Ctrl-C.
 const KILLED: i32 = 130;
 
 impl RunProgress {
@@ -79,14 +79,14 @@ impl RunProgress {
         ControlFlow::Continue(())
     }
 
-    /// Takes the bar away.
+    /// Removes the bar.
     pub fn finish(self) {
         self.stepping.store(false, Ordering::Relaxed);
         self.bar.finish_and_clear();
     }
 }
 
-/// What is being tried, on a terminal only.
+/// Shows what is being tried, on a terminal only.
 pub fn spinner(quiet: bool) -> ProgressBar {
     let target = match quiet {
         true => ProgressDrawTarget::hidden(),

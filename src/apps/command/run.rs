@@ -56,9 +56,9 @@ struct Keeper<'a> {
     refused: Option<Failure>,
 }
 
-/// Time between two looks for new rows: a kill loses what was sampled in it.
+/// Time between two checks for new rows: a kill loses what was sampled since the last one.
 const GROWTH: Duration = Duration::from_secs(1);
-/// Time between two checkpoints: a kill loses what was computed in it.
+/// Time between two checkpoints: a kill loses what was computed since the last one.
 const KEEPING: Duration = Duration::from_secs(10);
 
 impl<'a> Keeper<'a> {
@@ -73,7 +73,7 @@ impl<'a> Keeper<'a> {
             self.refused = Some(failure);
             return ControlFlow::Break(());
         }
-        // a full disk is told at the end, when all is written once more
+        // a full disk is reported at the end, when everything is written once more
         if self.grown.elapsed() > GROWTH {
             let _ = self.table.catch_up(simulation.trajectory());
             self.grown = Instant::now();
@@ -85,7 +85,7 @@ impl<'a> Keeper<'a> {
     }
 
     fn keep(&mut self, simulation: &Simulation) {
-        // rows first: those after the checkpoint are computed once more
+        // rows before the checkpoint: a resumed run computes the rows after it once more
         let _ = self.table.catch_up(simulation.trajectory());
         let _ = self.directory.keep(&simulation.checkpoint());
         self.kept = Instant::now();
@@ -168,7 +168,7 @@ fn once(
     result.map(|_| ()).map_err(Failure::from)
 }
 
-/// Writes the report, the table and the last state of a motion, or of the part of it that there is.
+/// Writes the report, the table and the last state of a motion, or of the part of it that was computed.
 fn keep(
     outcome: Result<&Trajectory, &IntegrationFailure>,
     directory: &mut Directory,
@@ -200,10 +200,10 @@ fn tell(
     directory.tell()
 }
 
-/// Samples of a motion that is to be accurate, if none were asked for.
+/// Number of samples of a motion that is to be accurate, if none were requested.
 const SAMPLES: f64 = 100.0;
 
-/// Runs until two agree. What a run has found is written as soon as it has ended.
+/// Runs the scene until two runs agree. The results of each run are written as soon as it has ended.
 fn verified(
     file: &mut SceneFile,
     within: Fraction,
@@ -260,7 +260,7 @@ fn verified(
             })?;
             trajectory
         }
-        (None, None) => return Ok(()), // there is no end without a run
+        (None, None) => return Ok(()), // cannot happen: the loop ends after a run
     };
     directory.write_formats(trajectory, title, request)?;
     tell(title, &explained(trajectory), &directory, quiet)?;

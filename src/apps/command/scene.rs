@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use pliant::{Error, SceneFile};
 
-/// The scene file, and values that take the place of its own.
+/// The scene file, and values that replace its own.
 #[derive(Args)]
 pub struct SceneArguments {
     /// Scene file
@@ -28,7 +28,7 @@ impl SceneArguments {
         SceneFile::read_with(path, &self.set)
     }
 
-    /// A title that tells what is not as in the file.
+    /// A title that names the values that differ from the file.
     pub fn title(&self, title: &str) -> String {
         match self.set[..] {
             [] => title.into(),
@@ -36,7 +36,7 @@ impl SceneArguments {
         }
     }
 
-    /// The text of the file with these values in it, and then others.
+    /// The text of the file with these values, and then `others`, in it.
     pub fn text(&self, others: &[String]) -> Result<String, Error> {
         SceneFile::text_with(&self.path, &[&self.set[..], others].concat())
     }

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 pub struct SettingsArguments(ArgMatches);
 
 impl SettingsArguments {
-    /// Has them override `settings`.
+    /// Overrides the values of `settings`.
     pub fn apply(&self, settings: &mut Settings) -> Result<(), InputError> {
         for SettingsOption { key, value, .. } in SettingsOption::ALL {
             match value {

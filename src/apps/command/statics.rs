@@ -54,7 +54,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let SceneFile { title, statics, output: request, .. } = &file;
     let mut request = request.clone();
-    // one state has nothing over time
+    // a single state has nothing to plot over time
     let asked = request.formats.len();
     request.formats.retain(|format| ![Format::Plot, Format::Png].contains(format));
     if request.formats.len() < asked && !output.quiet {
@@ -77,7 +77,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     directory.claim()?;
     directory.write("report.json", |path| write_static_report(outcome, path))?;
-    // the way from the undeformed shape to a single equilibrium is none that the body takes: pictures alone show both
+    // the states from the undeformed shape to a single equilibrium are not a motion of the body: only
+    // pictures show both
     let found = if statics.options.is_curve() { trajectory.clone() } else { trajectory.at_end() };
     directory.write_table(&found, request)?;
     if outcome.is_ok() {

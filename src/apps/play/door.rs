@@ -1,4 +1,4 @@
-//! Who is let in.
+//! Which requests are admitted.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ pub(super) struct Door {
     token: String,
 }
 
-/// What is asked for.
+/// What a request is for.
 pub(super) enum Wanted {
     /// The page.
     Page,
@@ -38,7 +38,7 @@ impl Door {
             InputError::new("random numbers", error, help)
         })?;
         let token = bytes.iter().fold(String::new(), |mut token, byte| {
-            // a text has room for everything
+            // writing to a string cannot fail
             let _ = write!(token, "{byte:02x}");
             token
         });
@@ -50,17 +50,17 @@ impl Door {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }
 
-    /// What a request asks for, if it may.
+    /// What a request is for, if it is admitted.
     ///
     /// # Errors
-    /// Why not.
+    /// Why it is not admitted.
     pub(super) fn admit(&self, head: &Head) -> Result<Wanted, Refusal> {
         let forbidden = |reason: &str| Refusal::new("403 Forbidden", reason);
-        // names of other machines that lead here are no way in
+        // other host names that resolve to this machine are refused
         let mut hosts: Vec<String> =
             ["127.0.0.1", "localhost"].map(|host| format!("{host}:{}", self.port)).into();
         if self.port == PORT_OF_HTTP {
-            // the one that goes without saying
+            // browsers leave this port out
             hosts.extend(["127.0.0.1", "localhost"].map(String::from));
         }
         if !head.header("host").is_some_and(|host| hosts.iter().any(|own| own == host)) {
@@ -82,7 +82,7 @@ impl Door {
         }
     }
 
-    /// The key of a WebSocket that a page of ours asks for.
+    /// The key of a WebSocket that a page of this server opens.
     fn socket(&self, head: &Head, hosts: &[String]) -> Result<String, Refusal> {
         let is_own = |origin: &str| hosts.iter().any(|host| origin == format!("http://{host}"));
         if !head.header("origin").is_some_and(is_own) {
@@ -106,7 +106,7 @@ impl Door {
     }
 }
 
-/// Whether two texts are the same, in a time that does not tell where they differ.
+/// Whether two texts are the same, in a time that does not reveal where they differ.
 fn same(a: &str, b: &str) -> bool {
     let differ = a.bytes().zip(b.bytes()).fold(0, |differ, (a, b)| differ | (a ^ b));
     a.len() == b.len() && differ == 0

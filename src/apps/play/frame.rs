@@ -1,4 +1,4 @@
-//! What is to be seen at one moment.
+//! What the page shows at one moment.
 
 use serde_json::{Value, json};
 
@@ -10,7 +10,7 @@ use crate::dynamics::simulate::Simulation;
 use crate::io::output::Picture;
 use crate::scene::timeline::Scene;
 
-/// What there is to be told of.
+/// What a frame is made from.
 pub(super) struct Present<'a> {
     pub(super) simulation: &'a Simulation,
     pub(super) picture: &'a Picture,
@@ -28,7 +28,7 @@ pub(super) fn of(present: &Present, colours: Option<usize>, since: Option<f64>) 
     let (view, report) = (simulation.view(), simulation.report());
     let (body, u) = (view.body(), view.displacements());
     let values = sliders.iter().map(|slider| slider.value(simulation).unwrap_or(f64::NAN));
-    // of what springs do even those without a slider are shown
+    // the forces of all springs are shown, also of those without a slider
     let actuations = simulation.scene().springs().iter();
     let actuations =
         actuations.map(|spring| simulation.view().actuation(spring.name()).unwrap_or(f64::NAN));

@@ -9,18 +9,19 @@ use crate::dynamics::simulate::Simulation;
 use crate::elements::mesh::Selection;
 use crate::scene::timeline::Scene;
 
-/// What a pull over the size of the body makes of its weight, about: its mass gets this acceleration (m/s^2).
+/// Approximate acceleration (m/s^2) of the body's mass by a pull over the size of the body.
 const ACCELERATION: f64 = 100.0;
 /// Damping of the pull, as a part of sqrt(k m).
 const DAMPING: f64 = 0.2;
-/// Parts of 1 / sqrt(k / m) after which the force is looked at anew: it lags behind by half of that on average,
-/// which the damping outweighs.
+/// Time between updates of the force, as a part of 1 / sqrt(k / m): the force lags behind by half of that on
+/// average, which the damping outweighs.
 const RENEWAL: f64 = 0.25;
-/// Changes of the force, as a part of it, that are let be: each new force costs the integrator a start.
+/// Changes of the force, as a part of it, that are ignored: each new force requires a new start of the
+/// integrator.
 const NEGLIGIBLE: f64 = 0.02;
 
-/// A spring from a node to the mouse: the force k (target - position) - c velocity, kept from one renewal to the
-/// next.
+/// A spring from a node to the mouse: the force k (target - position) - c velocity, kept from one renewal to
+/// the next.
 pub(super) struct Hand {
     place: usize,
     node: usize,
@@ -72,7 +73,7 @@ impl Hand {
         is_same
     }
 
-    /// Gives the node the force of the present moment.
+    /// Applies the present force to the node.
     ///
     /// # Errors
     /// As [`Simulation::load`].
@@ -117,7 +118,8 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
     norm(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f64>>())
 }
 
-/// The node by the place where it is, unless a load of the scene names it so, which the pull would replace.
+/// Selects the node by its position, unless a load of the scene has the same selection: the pull would
+/// replace that load.
 fn selection(scene: &Scene, node: usize) -> Result<Selection, InputError> {
     let mesh = scene.body().mesh();
     let at = mesh.position(node).to_vec();

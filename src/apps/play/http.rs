@@ -14,13 +14,13 @@ const HEADERS: usize = 64;
 pub(super) struct Head {
     pub(super) method: String,
     pub(super) path: String,
-    /// Names in small letters.
+    /// Names in lower case.
     headers: Vec<(String, String)>,
     /// What was read after it.
     pub(super) rest: Vec<u8>,
 }
 
-/// An answer that is no page.
+/// An answer that refuses a request.
 pub(super) struct Refusal {
     pub(super) status: &'static str,
     pub(super) reason: String,
@@ -36,7 +36,7 @@ impl Head {
     /// Reads the head of a request.
     ///
     /// # Errors
-    /// What does not look like one; `None` if there is nobody to be told.
+    /// A request that is not valid; `None` if the connection is gone or too slow to get an answer.
     pub(super) fn read(stream: &mut TcpStream) -> Result<Self, Option<Refusal>> {
         let deadline = Instant::now() + PATIENCE;
         let (mut bytes, mut part) = (Vec::new(), [0; 2048]);
@@ -62,7 +62,7 @@ impl Head {
         }
     }
 
-    /// The head that `bytes` begin with, if it is there as a whole.
+    /// The head that `bytes` begin with, if it is complete.
     pub(super) fn parse(bytes: &[u8]) -> Result<Option<Self>, Refusal> {
         let mut headers = [httparse::EMPTY_HEADER; HEADERS];
         let mut request = httparse::Request::new(&mut headers);
@@ -82,7 +82,7 @@ impl Head {
         }))
     }
 
-    /// The value of a header, by its name in small letters; none, too, if there are several.
+    /// The value of a header, by its name in lower case; `None` also if there are several.
     pub(super) fn header(&self, name: &str) -> Option<&str> {
         let mut found = self.headers.iter().filter(|(other, _)| other == name);
         let (_, value) = found.next()?;
@@ -101,7 +101,7 @@ pub(super) fn answer(
     body: &str,
 ) -> io::Result<()> {
     let length = body.len();
-    // nothing is kept, nothing is fetched from elsewhere, and the address, which is a secret, is told to nobody
+    // nothing is cached, no other page may embed this one, and the secret address is sent to no other site
     let head = format!(
         "HTTP/1.1 {status}\r\nContent-Type: {kind}; charset=utf-8\r\nContent-Length: {length}\r\n\
          Cache-Control: no-store\r\nReferrer-Policy: no-referrer\r\nX-Content-Type-Options: nosniff\r\n\

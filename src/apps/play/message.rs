@@ -1,11 +1,11 @@
-//! What a page asks for.
+//! Messages of the page.
 
 use serde_json::{Map, Value};
 
 /// A message of the page.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Message {
-    /// What is to be seen, with the colours of a quantity, and what has been since a time (s).
+    /// Requests the present frame, with the colours of a quantity, and the past since a time (s).
     Look {
         colours: Option<usize>,
         since: Option<f64>,
@@ -29,7 +29,7 @@ pub(super) enum Message {
     Save,
 }
 
-/// Speeds that make sense, and strengths of a pull.
+/// Allowed speeds, and strengths of a pull.
 const SPEEDS: [f64; 2] = [1e-9, 1e9];
 const STRENGTHS: [f64; 2] = [1e-3, 1e3];
 

@@ -1,8 +1,8 @@
-//! A scene in the hands of a person: a page in the web browser that plays it live.
+//! A scene played live, and controlled by a person, on a page in the web browser.
 //!
-//! The page is served on the loopback interface alone, under an address with a random token. The scene runs in
-//! one thread, as fast as the page asks for or as it can; each message of the page, JSON over a WebSocket, has
-//! one answer: what is to be seen, that it is done, or why not.
+//! The page is served on the loopback interface alone, under an address with a random token. The scene runs
+//! in one thread, as fast as the page requests or as fast as it can; each message of the page, JSON over a
+//! WebSocket, gets one answer: what is shown, that it is done, or why it failed.
 
 mod door;
 mod frame;

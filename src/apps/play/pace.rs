@@ -1,8 +1,8 @@
-//! How fast time goes on: as asked, or as the computer can.
+//! How fast simulated time advances: as requested, or as fast as the computer can.
 
 use std::time::{Duration, Instant};
 
-/// Computing between two looks at the messages (s), about.
+/// Approximate computing time between two checks for messages (s).
 const BUDGET: f64 = 0.02;
 /// The longest pause that is made up for (s).
 const LONGEST: f64 = 0.1;
@@ -13,13 +13,13 @@ const MEMORY: f64 = 0.5;
 
 /// The pace of a simulation.
 pub(super) struct Pace {
-    /// Simulated seconds per second that are asked for.
+    /// Requested simulated seconds per second.
     pub(super) speed: f64,
     /// When the last portion began.
     last: Instant,
-    /// The largest portion (s) that is computed soon enough.
+    /// The largest portion (s) that is computed within the budget.
     most: f64,
-    /// Simulated and computing time (s), lately.
+    /// Recent simulated and computing time (s).
     moved: f64,
     busy: f64,
 }
@@ -29,12 +29,12 @@ impl Pace {
         Self { speed: 1.0, last: Instant::now(), most: f64::INFINITY, moved: 0.0, busy: 0.0 }
     }
 
-    /// Time begins to pass.
+    /// Starts the clock.
     pub(super) fn start(&mut self) {
         self.last = Instant::now();
     }
 
-    /// The time (s) by which the simulation should go on now.
+    /// The time (s) by which the simulation should advance now.
     pub(super) fn portion(&mut self) -> f64 {
         let now = Instant::now();
         let passed = (now - self.last).as_secs_f64().min(LONGEST);
@@ -42,12 +42,12 @@ impl Pace {
         (self.speed * passed).min(self.most)
     }
 
-    /// Whether the last portion has taken as much computing as it may.
+    /// Whether the last portion has used up its computing time.
     pub(super) fn is_spent(&self) -> bool {
         self.last.elapsed().as_secs_f64() > BUDGET
     }
 
-    /// The last portion brought the simulation on by `moved` (s).
+    /// Notes that the last portion advanced the simulation by `moved` (s).
     pub(super) fn note(&mut self, moved: f64) {
         let cost = self.last.elapsed().as_secs_f64();
         if cost > BUDGET && moved > 0.0 {
@@ -67,7 +67,7 @@ impl Pace {
         TICK.saturating_sub(self.last.elapsed())
     }
 
-    /// Simulated seconds per second of computing, once there is something to tell.
+    /// Simulated seconds per second of computing, once it is known.
     pub(super) fn factor(&self) -> Option<f64> {
         (self.busy > 0.0 && self.moved > 0.0).then(|| self.moved / self.busy)
     }

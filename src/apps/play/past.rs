@@ -1,11 +1,11 @@
-//! What has been since the start, for the running chart of the page.
+//! The history since the start, for the running chart of the page.
 
 use serde_json::{Value, json};
 
 use crate::dynamics::simulate::Simulation;
 use crate::io::output::Picture;
 
-/// Moments at most; beyond, every other one is left out.
+/// Most moments; beyond this number every other one is dropped.
 const MOST: usize = 3000;
 
 /// The energies, and what the sensors read, since the start.
@@ -25,10 +25,10 @@ impl Past {
         past
     }
 
-    /// Takes the present down.
+    /// Records the present.
     pub(super) fn note(&mut self, simulation: &mut Simulation) {
         let sensors = simulation.trajectory().sensors().len();
-        // a sample costs constraint forces; a state that has none has no readings either
+        // a sample requires constraint forces; where they cannot be computed there are no readings either
         let sample = (sensors > 0).then(|| simulation.sample().ok()).flatten();
         let (energy, read) = match sample {
             Some(sample) => (sample.energy, sample.sensors),
@@ -44,7 +44,7 @@ impl Past {
         }
     }
 
-    /// The moments after the time `since` (s), or all of them; what is no number is none.
+    /// The moments after the time `since` (s), or all of them; values that are NaN become `null`.
     pub(super) fn after(&self, since: Option<f64>) -> Value {
         let is_known = |time: f64| since.is_some_and(|since| time <= since);
         let from = self.moments.partition_point(|&(time, ..)| is_known(time));

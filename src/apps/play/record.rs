@@ -1,4 +1,4 @@
-//! What was done by the sliders, phase by phase.
+//! What the sliders did, phase by phase.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use crate::io::scene_file::{Rewritten, SceneFile, rewritten};
 use crate::scene::forces::{Signal, TimeTable, VectorSignal};
 use crate::scene::timeline::{Load, Phase, Scene};
 
-/// Parts of the scene within which a slider brings its value about: a jump is none for a body.
+/// Part of the scene's duration over which a slider changes its value: a body should not get a jump.
 const RAMP: f64 = 0.005;
 /// The longest such time (s).
 const LONGEST_RAMP: f64 = 0.02;
@@ -29,7 +29,7 @@ pub(super) struct Original {
 }
 
 impl Original {
-    /// A name for what is made of it.
+    /// A name for the file that is made from it.
     pub(super) fn new_name(&self) -> String {
         let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
         format!("{stem}-by-hand.toml")
@@ -51,7 +51,7 @@ struct Track {
     values: Vec<f64>,
 }
 
-/// What acts in place of what the scene has: on a chamber, a spring, or some nodes.
+/// What replaces the scene's own signal or load: on a chamber, a spring, or some nodes.
 pub(super) enum Replacement {
     Pressure(String, Signal),
     Actuation(String, Signal),
@@ -59,7 +59,7 @@ pub(super) enum Replacement {
 }
 
 impl Replacement {
-    /// Puts it in force.
+    /// Applies it to the simulation.
     pub(super) fn command(self, simulation: &mut Simulation) -> Result<(), Error> {
         match self {
             Self::Pressure(chamber, signal) => simulation.pressure(&chamber, signal),
@@ -91,7 +91,7 @@ impl Record {
     /// The scene file `original` of `scene` with these moves.
     ///
     /// # Errors
-    /// No moves; a file in which there is no place for them.
+    /// No moves; a file that they cannot be written into.
     pub(super) fn saved(&self, scene: &Scene, original: &Original) -> Result<String, String> {
         if self.tracks.is_empty() {
             return Err("no slider was moved since the start: there is nothing to be saved".into());
@@ -103,11 +103,11 @@ impl Record {
         for (number, phase) in scene.phases().iter().enumerate() {
             let mut change = Rewritten { number, phase: phase.clone(), keys: BTreeSet::new() };
             for track in self.tracks.iter().filter(|track| track.phase == number) {
-                // a file has no functions of time, of which one moment would be taken
+                // a file has no functions of time, which would be evaluated at this one time
                 let key = self.course(scene, track, 0.0).write(&mut change.phase);
                 change.keys.insert(key);
             }
-            // it was played for longer
+            // it was played for longer than in the file
             if written.scene.phases().get(number).is_some_and(|own| own.end() < phase.end()) {
                 change.keys.insert("until");
             }
@@ -123,7 +123,8 @@ impl Record {
         ))
     }
 
-    /// `target` is moved to `value` at time `t` (s): what it brings about from then on, with all before.
+    /// Moves `target` to `value` at time `t` (s). Returns what acts from then on, including all earlier
+    /// moves.
     pub(super) fn moved(
         &mut self,
         scene: &Scene,
@@ -143,7 +144,8 @@ impl Record {
         self.course(scene, &self.tracks[at], t)
     }
 
-    /// What a track brings about from time `t` (s) on; for a component of a load, with the other ones.
+    /// What acts because of a track from time `t` (s) on; for a component of a load, with the other
+    /// components.
     fn course(&self, scene: &Scene, track: &Track, t: f64) -> Replacement {
         let (nodes, kind) = match &track.target {
             Target::Pressure(chamber) => {
@@ -172,7 +174,7 @@ impl Record {
 }
 
 impl Track {
-    /// What the scene itself says; of a function of time without breaks, its value at time `t` (s).
+    /// The scene's own values; for a function of time without breaks, its value at time `t` (s).
     fn of(scene: &Scene, number: usize, target: Target, t: f64) -> Self {
         let phase = scene.phases().get(number);
         let mut times = phase.map_or_else(Vec::new, |phase| target.breaks_in(phase));
@@ -184,7 +186,7 @@ impl Track {
         Self { phase: number, target, times, values }
     }
 
-    /// From its value at time `t` on it goes to `value` within a time `ramp` (s).
+    /// Moves from its value at time `t` to `value` within a time `ramp` (s).
     fn go(&mut self, t: f64, ramp: f64, value: f64) {
         let present = self.signal().at(t);
         let before = self.times.partition_point(|&time| time < t);
@@ -210,7 +212,7 @@ mod tests {
         let mut track = Track { phase: 0, target, times, values };
         track.go(0.5, 0.1, 7.0);
         assert_eq!((&track.times, &track.values), (&vec![0.0, 0.5, 0.6], &vec![0.0, 5.0, 7.0]));
-        // before it is there it is moved on
+        // moved again before it has reached its value
         track.go(0.55, 0.1, 1.0);
         assert_eq!(track.times, [0.0, 0.5, 0.55, 0.55 + 0.1]);
         assert!((track.values[2] - 6.0).abs() < 1e-12 && track.values[3] == 1.0);

@@ -36,13 +36,15 @@ const MOST: usize = 32;
 const LONGEST: usize = 64 * 1024;
 /// How long a browser may take to accept an answer.
 const PATIENCE: Duration = Duration::from_secs(20);
-/// How long a page may say nothing until it is asked whether it is there, and how long it may take to answer that.
+/// How long a page may be silent until it is pinged, and how long it may take to answer the ping.
 const QUIET: Duration = Duration::from_secs(10);
-/// Pause after a connection that failed before it was one.
+/// Pause after a connection that could not be accepted.
 const RECOVERY: Duration = Duration::from_millis(50);
 
-/// A scene that is played in a web browser on this machine: time goes on and stops as a person wants, who sets
-/// pressures, forces of actuators and loads by sliders and pulls nodes with the mouse.
+/// A scene that is played in a web browser on this machine.
+///
+/// A person starts and stops time, sets pressures, forces of actuators and loads by sliders, and pulls nodes
+/// with the mouse.
 ///
 /// ```no_run
 /// use pliant::play::Player;
@@ -71,10 +73,10 @@ struct House {
     pages: Arc<AtomicUsize>,
 }
 
-/// One of several who are counted, until it is dropped, by a panic, too.
+/// One of a counted number of guests; it counts until it is dropped, also by a panic.
 struct Guest {
     count: Arc<AtomicUsize>,
-    /// How many there are with it.
+    /// How many there are, including this one.
     number: usize,
 }
 
@@ -91,7 +93,7 @@ impl Drop for Guest {
     }
 }
 
-/// An open page; when it is dropped, the simulation is told.
+/// An open page; when it is dropped, the simulation is notified.
 struct Page<'a> {
     house: &'a House,
     guest: Option<Guest>,
@@ -101,17 +103,17 @@ impl Drop for Page<'_> {
     fn drop(&mut self) {
         drop(self.guest.take());
         let was_last = self.house.pages.load(Ordering::SeqCst) == 0;
-        // without a simulation there is nobody to be told
+        // without a simulation there is nothing to notify
         let _ = self.house.requests.send(Request::Gone { was_last });
     }
 }
 
 impl Player {
-    /// Starts `scene` and takes `port` of the loopback interface, 0 for any that is free. `title` is the heading
-    /// of the page.
+    /// Starts `scene` and takes `port` of the loopback interface, 0 for any that is free. `title` is the
+    /// heading of the page.
     ///
     /// # Errors
-    /// As [`Scene::start`]; a port that cannot be had.
+    /// As [`Scene::start`]; a port that is not available.
     pub fn new(scene: &Scene, settings: &Settings, title: &str, port: u16) -> Result<Self, Error> {
         let (session, mut data) = Session::new(scene, settings)?;
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port));
@@ -121,8 +123,8 @@ impl Player {
         Ok(Self { listener, door: Door::new(port)?, data, session })
     }
 
-    /// Shows what the sensors of `sampling` read over time, below the energies. They are read as often as the energies,
-    /// so its times need be no more than [`Sampling::phase_ends`].
+    /// Shows what the sensors of `sampling` read over time, below the energies. They are read as often as the
+    /// energies, so [`Sampling::phase_ends`] is enough for its times.
     ///
     /// # Errors
     /// Sensors for what the scene does not have; times that cannot be used.
@@ -131,8 +133,10 @@ impl Player {
         Ok(self)
     }
 
-    /// Lets what is done by the sliders be saved as a scene file: that at `path` with the text `text`, from which
-    /// the scene was read, with tables of pressures, forces and loads in place of its own.
+    /// Allows what the sliders did to be saved as a scene file.
+    ///
+    /// This is the file at `path` with the text `text`, from which the scene was read, with tables of
+    /// pressures, forces and loads in place of its own.
     pub fn saving(mut self, text: impl Into<String>, path: impl Into<PathBuf>) -> Self {
         let original = Original { text: text.into(), path: path.into() };
         self.data["saves"] = original.new_name().into();
@@ -140,7 +144,7 @@ impl Player {
         self
     }
 
-    /// The address of the page. Who knows it has the simulation in his hands.
+    /// The address of the page. Whoever knows it controls the simulation.
     pub fn address(&self) -> String {
         self.door.address()
     }
@@ -148,7 +152,7 @@ impl Player {
     /// Serves the page as long as the program runs.
     ///
     /// # Errors
-    /// A system that gives no thread.
+    /// A thread that the system cannot start.
     pub fn serve(self) -> Result<(), Error> {
         let Self { listener, door, data, session } = self;
         let page = Picture::page(PAGE, STYLE, SCRIPTS, &data);
@@ -178,7 +182,7 @@ impl Player {
                 let _guest = guest;
                 house.receive(stream);
             };
-            // without a thread there is no visit, and the guest is gone
+            // if no thread can be started, the guest is dropped
             let _ = thread::Builder::new().name("page".into()).spawn(visit);
         }
         Ok(())
@@ -191,7 +195,7 @@ fn no_port(port: u16, error: &io::Error) -> InputError {
 }
 
 impl House {
-    /// Answers a connection. Who leaves without a word needs none.
+    /// Answers a connection. One that is closed without a request gets no answer.
     fn receive(&self, mut stream: TcpStream) {
         if stream.set_write_timeout(Some(PATIENCE)).is_err() {
             return;
@@ -237,9 +241,9 @@ impl House {
                     let answer = error_answer("a message is text, this was none");
                     Some(Parcel::text(answer.to_string()))
                 }
-                // pings are answered by the next call, a farewell, too
+                // pings and closing handshakes are answered by the next call
                 Ok(_) => None,
-                // a page that does not draw says nothing, but its browser answers this
+                // a page that does not draw sends nothing, but its browser answers a ping
                 Err(tungstenite::Error::Io(error)) if is_late(&error) && !was_asked => {
                     was_asked = true;
                     if socket.send(Parcel::Ping(Default::default())).is_err() {
@@ -247,7 +251,7 @@ impl House {
                     }
                     continue;
                 }
-                // gone, or vanished without a word
+                // closed, or no longer answering
                 Err(_) => return,
             };
             was_asked = false;
@@ -257,7 +261,7 @@ impl House {
         }
     }
 
-    /// Has a message answered by the simulation.
+    /// Passes a message to the simulation, and returns its answer.
     fn pass_on(&self, text: &str) -> Value {
         let message = match Message::parse(text) {
             Ok(message) => message,
@@ -270,7 +274,7 @@ impl House {
     }
 }
 
-/// Whether nothing has come in time.
+/// Whether the read has timed out.
 fn is_late(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut)
 }
@@ -287,7 +291,7 @@ mod tests {
 
     use super::*;
 
-    /// A panic in a conversation takes none of the places for good.
+    /// A panic in a connection does not occupy a place forever.
     #[test]
     fn guests_who_panic_are_gone() {
         let count = Arc::default();

@@ -18,11 +18,11 @@ use crate::io::output::Picture;
 use crate::scene::settings::Settings;
 use crate::scene::timeline::Scene;
 
-/// Parts of the scene, and time (s), after which the past is noted at the latest.
+/// Part of the scene's duration, and time (s), after which the past is recorded at the latest.
 const FINE: f64 = 1e-3;
 const LONGEST: f64 = 5e-3;
 
-/// What reaches the simulation.
+/// What is sent to the simulation.
 pub(super) enum Request {
     /// A message, and where its answer goes.
     Message(Message, Sender<Value>),
@@ -39,7 +39,7 @@ pub(super) struct Session {
     playing: bool,
     pace: Pace,
     past: Past,
-    /// Why time does not go on.
+    /// Why time has stopped.
     trouble: Option<String>,
     start: Checkpoint,
     record: Record,
@@ -48,7 +48,7 @@ pub(super) struct Session {
 }
 
 impl Session {
-    /// A session of `scene` at its start, and what of it stays as it is, for the page.
+    /// A session of `scene` at its start, and its data that do not change, for the page.
     pub(super) fn new(scene: &Scene, settings: &Settings) -> Result<(Self, Value), Error> {
         let mut simulation = scene.start(settings)?;
         let (picture, mut fixed) = Picture::new(scene)?;
@@ -75,7 +75,7 @@ impl Session {
         Ok((session, fixed))
     }
 
-    /// Has the sensors of `sampling` read from the start on; what they are, for the page.
+    /// Reads the sensors of `sampling` from the start on. Returns their names and units, for the page.
     pub(super) fn read(&mut self, sampling: &Sampling) -> Result<Value, InputError> {
         self.simulation.record(sampling)?;
         self.start = self.simulation.checkpoint();
@@ -84,7 +84,7 @@ impl Session {
         Ok(sensors.map(|sensor| json!({ "name": sensor.name, "unit": sensor.unit })).collect())
     }
 
-    /// Plays until nobody can ask for anything any more.
+    /// Plays until all senders of requests are gone.
     pub(super) fn run(mut self, requests: &Receiver<Request>) {
         loop {
             let request = match self.playing {
@@ -109,7 +109,7 @@ impl Session {
         match request {
             Request::Message(message, answers) => {
                 let answer = self.answer(message).unwrap_or_else(|error| error_answer(&error));
-                // who is gone wants no answer
+                // a page that is gone needs no answer
                 let _ = answers.send(answer);
             }
             Request::Gone { was_last } => {
@@ -210,7 +210,7 @@ impl Session {
         held.map_or(Ok(()), |hand| hand.let_go(&mut self.simulation))
     }
 
-    /// Lets a portion of time pass.
+    /// Advances by one portion of time.
     fn advance(&mut self) {
         let (from, end) = (self.simulation.time(), self.simulation.scene().end());
         let to = (from + self.pace.portion()).min(end);
@@ -222,7 +222,7 @@ impl Session {
         }
     }
 
-    /// Lets time pass until `to` (s) or until it takes too long, with the hand where it is.
+    /// Advances to `to` (s), or until it takes too long, with the hand where it is.
     fn go_to(&mut self, to: f64) -> Result<(), Error> {
         while self.simulation.time() < to {
             let mut next = to;
@@ -237,7 +237,8 @@ impl Session {
         Ok(())
     }
 
-    /// Lets time pass until `to` (s), under forces as they are, and notes it. Whether there is time for more.
+    /// Advances to `to` (s) under the present forces, and records the past. Returns whether there is time for
+    /// more.
     fn pass(&mut self, to: f64) -> Result<bool, Error> {
         let fine = LONGEST.min(FINE * self.simulation.scene().end());
         let mut goes_on = true;
@@ -254,14 +255,14 @@ impl Session {
         Ok(goes_on)
     }
 
-    /// Time stops, for a reason that is shown; the state stays as it is.
+    /// Stops time, for a reason that is shown; the state stays as it is.
     fn stop(&mut self, error: &Error) {
         self.playing = false;
         self.trouble = Some(error.to_string());
     }
 }
 
-/// The answer to what cannot be done.
+/// The answer to a message that failed.
 pub(super) fn error_answer(error: &str) -> Value {
     json!({ "error": error })
 }

@@ -1,4 +1,4 @@
-//! What a person moves by sliders: pressures of chambers, forces of actuators, loads.
+//! What sliders set: pressures of chambers, forces of actuators, loads.
 
 use serde_json::{Value, json};
 
@@ -28,10 +28,10 @@ pub(super) struct Slider {
     what: String,
 }
 
-/// Pressure (in Young's moduli) and strain by which a slider reaches as far as is useful, where the scene says
-/// nothing itself.
+/// Pressure (in Young's moduli) and strain that give a useful range of a slider where the scene has no
+/// values.
 const USUAL: f64 = 0.05;
-/// Numbers of nodes in the name of a slider at most.
+/// Most node numbers in the name of a slider.
 const FEW: usize = 6;
 
 impl Slider {
@@ -62,10 +62,10 @@ impl Slider {
         chambers.chain(springs).chain(loads).collect()
     }
 
-    /// One slider per component of the loads on a selection: of the kind of which the scene always gives them, or else
-    /// on each of its nodes. Usual are a force and a traction.
+    /// One slider per component of the loads on a selection. The loads are of the kind that the scene always
+    /// uses there, or else act on each node. The last argument is a usual force and traction.
     fn of_load(scene: &Scene, nodes: &Selection, [force, traction]: [f64; 2]) -> Vec<Self> {
-        // loads on no nodes are no part of a scene
+        // a scene has no loads on an empty selection
         let count = scene.body().mesh().select(nodes).map_or(1, |nodes| nodes.len());
         let loads = || scene.phases().iter().flat_map(|phase| loads_in(phase, nodes));
         let always = |kind: &LoadKind| loads().all(|load| load.kind == *kind);
@@ -76,7 +76,7 @@ impl Slider {
             LoadKind::Each => ("load", ", each node", force),
             LoadKind::Total => ("load", ", in total", force),
         };
-        // a load that the scene turns another way is as strong
+        // all components have one range: a load in another direction may be as strong
         let axes = 0..scene.body().dimension();
         let targets = axes.map(|axis| Target::Load(nodes.clone(), kind, axis));
         let largest = targets.clone().map(|target| target.largest_in(scene)).fold(0.0, f64::max);
@@ -87,7 +87,7 @@ impl Slider {
         targets.zip(["x", "y", "z"]).map(slider).collect()
     }
 
-    /// A slider that goes twice as far as the scene itself, or as far as is `usual`.
+    /// A slider up to twice the largest value of the scene, or up to `usual` if the scene has none.
     fn new(target: Target, what: String, [largest, usual]: [f64; 2]) -> Self {
         let most = round_up(if largest > 0.0 { 2.0 * largest } else { usual });
         Self { target, most, what }
@@ -114,7 +114,7 @@ impl Slider {
 }
 
 impl Target {
-    /// What `phase` of `scene` itself says of it at time `t` (s).
+    /// Its own value in `phase` of `scene` at time `t` (s).
     pub(super) fn value_in(&self, scene: &Scene, phase: &Phase, t: f64) -> f64 {
         match self {
             Self::Load(nodes, kind, axis) => {
@@ -124,7 +124,7 @@ impl Target {
         }
     }
 
-    /// Times (s) at which what `phase` says of it changes its law, ascending.
+    /// Times (s) at which its signals or loads in `phase` have breaks, ascending.
     pub(super) fn breaks_in(&self, phase: &Phase) -> Vec<f64> {
         match self {
             Self::Load(nodes, ..) => ascending(loads_in(phase, nodes).flat_map(breaks)),
@@ -166,7 +166,7 @@ fn breaks(load: &Load) -> &[f64] {
     load.value.breaks()
 }
 
-/// Times (s) in their order, each of them once.
+/// Times (s) in ascending order, without duplicates.
 pub(super) fn ascending<'a>(times: impl Iterator<Item = &'a f64>) -> Vec<f64> {
     let mut times: Vec<f64> = times.copied().collect();
     times.sort_by(f64::total_cmp);
@@ -174,7 +174,7 @@ pub(super) fn ascending<'a>(times: impl Iterator<Item = &'a f64>) -> Vec<f64> {
     times
 }
 
-/// How a person calls the nodes.
+/// A readable name of the nodes.
 fn name_of(nodes: &Selection) -> String {
     match nodes {
         Selection::Set(name) => name.clone(),
@@ -188,12 +188,12 @@ fn name_of(nodes: &Selection) -> String {
     }
 }
 
-/// The next number with one digit.
+/// The next larger number with one digit.
 fn round_up(x: f64) -> f64 {
     if !x.is_normal() {
         return 1.0;
     }
     let unit = 10_f64.powf(x.abs().log10().floor());
-    // 2.0000001 of them are 2
+    // 2.0000001 of them count as 2
     (x.abs() / unit - 1e-6).ceil() * unit
 }

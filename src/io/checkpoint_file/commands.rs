@@ -1,5 +1,5 @@
-//! The phase in force, as commands have changed it: what are numbers and names as they are, and functions by
-//! where the scene has them.
+//! The phase in force, as commands have changed it: numbers and names as they are, and functions by their
+//! place in the scene.
 
 use std::fmt::Display;
 use std::sync::Arc;
@@ -27,12 +27,12 @@ pub(super) struct InForce {
     /// Names of the obstacles that act; without: all.
     #[serde(deserialize_with = "Option::deserialize")]
     contact: Option<Vec<String>>,
-    /// Obstacles that commands have set in motion: name, how far it is from where its velocity or path would have
-    /// brought it, and velocity; without: its path in the scene.
+    /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
+    /// brought it, and velocity; without one: its path in the scene.
     moving: Vec<(String, [f64; 3], Option<[f64; 3]>)>,
 }
 
-/// A [`Selection`]; corners of boxes that lie nowhere are `null`.
+/// A [`Selection`]; infinite coordinates of the corners of boxes are `null`.
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum Nodes {
@@ -68,7 +68,7 @@ enum How {
         #[serde(deserialize_with = "Option::deserialize")]
         path: Option<[Vec<f64>; 2]>,
     },
-    /// That of a constraint of the phase as the scene has it, from 0.
+    /// The motion of a constraint of the phase in the scene, by its number from 0.
     OfScene(usize),
 }
 
@@ -82,7 +82,7 @@ enum Vector {
         values: Vec<Vec<f64>>,
     },
     Formulas(Vec<String>),
-    /// A load of the phase as the scene has it, from 0.
+    /// A load of the phase in the scene, by its number from 0.
     OfScene(usize),
 }
 
@@ -96,12 +96,12 @@ enum Number {
         values: Vec<Vec<f64>>,
     },
     Formula(String),
-    /// An actuation or pressure of the phase as the scene has it, from 0.
+    /// An actuation or pressure of the phase in the scene, by its number from 0.
     OfScene(usize),
 }
 
 impl InForce {
-    /// `phase`, which is `own` of the scene, changed by commands.
+    /// `phase`, which is the phase `own` of the scene as commands have changed it.
     ///
     /// # Errors
     /// A function that `own` does not have.
@@ -150,7 +150,7 @@ impl InForce {
     /// The phase in force; `own` is what the scene has.
     ///
     /// # Errors
-    /// Axes and functions that do not exist. All else the scene [checks](Phase).
+    /// Axes and functions that do not exist. All else is [checked](Phase) by the scene.
     pub(super) fn read(self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
         let constraints = self.constraints.into_iter();
         let constraints = constraints

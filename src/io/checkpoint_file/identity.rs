@@ -1,4 +1,4 @@
-//! What a scene is known by in a file: numbers and names, and hashes of its parts.
+//! What identifies a scene in a file: numbers and names, and hashes of its parts.
 
 use std::fmt::Debug;
 use std::hash::Hasher;
@@ -8,9 +8,10 @@ use siphasher::sip::SipHasher13;
 
 use crate::scene::timeline::{Phase, Scene};
 
-/// What a scene is known by.
+/// What identifies a scene.
 ///
-/// Functions cannot be compared: of those in phases, obstacles and other forces it is known only that they are there.
+/// Functions cannot be compared: of those in phases, obstacles and other forces only their presence is
+/// recorded.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Identity {
@@ -38,7 +39,7 @@ impl Identity {
         let matrices =
             [body.inertia().values(), body.stiffness().values(), body.damping().values()];
         let cells: Vec<&[usize]> = mesh.cells().collect();
-        // a simulation has begun with them: there are no errors
+        // a simulation has started with them, so there is no error
         let start = scene.initial_velocities().unwrap_or_default();
         let parts = [
             ("positions of the nodes", of_numbers([mesh.positions()])),
@@ -65,7 +66,7 @@ impl Identity {
     }
 
     /// # Errors
-    /// The first of these that is another one in `scene`.
+    /// The first of these parts that differs in `scene`.
     pub(super) fn check(&self, scene: &Self) -> Result<(), String> {
         let counts = [
             ("nodes", self.nodes, scene.nodes),

@@ -17,15 +17,14 @@ impl Checkpoint {
     /// Writes the checkpoint to a file, as JSON, from which a simulation of the same scene can
     /// [read](Simulation::read_checkpoint) it, in another process, too.
     ///
-    /// The file takes the place of one that was there when it is complete: after a crash there is the old one or
-    /// the new one. It holds the state, the commands in force, and how the integration goes on. Of the scene it
-    /// holds what it is known by, not the scene itself; functions of time that phases of the scene were given are
-    /// found there again.
+    /// The file replaces an earlier one only when it is complete: after a crash there is the old one or the
+    /// new one. It holds the state, the commands in force, and how the integration continues. Of the scene it
+    /// holds only what identifies it; functions of time in the phases are taken from the scene that reads it.
     ///
     /// # Errors
     /// [`Error::Output`] if the file cannot be written; a command in force that is a function of time
-    /// ([`Signal::function`](crate::Signal::function), [`Simulation::load_with`]), which no file can hold: command
-    /// a constant or a table before.
+    /// ([`Signal::function`](crate::Signal::function), [`Simulation::load_with`]), which no file can hold:
+    /// command a constant or a table before.
     pub fn write(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let text = serde_json::to_vec_pretty(&Record::new(self)?).map_err(|error| {
             InputError::new("checkpoint", format!("at {} s", self.time()), error.to_string())
@@ -45,10 +44,11 @@ impl Checkpoint {
 
 impl Simulation {
     /// Reads a checkpoint that a simulation of the same scene has [written](Checkpoint::write), to be
-    /// [restored](Self::restore) here: the motion goes on bit by bit as from the checkpoint in memory.
+    /// [restored](Self::restore) here: the motion continues bit by bit as from the checkpoint in memory.
     ///
-    /// Settings are those of this simulation. With [`Method::Auto`](crate::Method::Auto) it goes on with the method
-    /// that was chosen there, if it was. The samples of the motion until then stay where they were taken.
+    /// Settings are those of this simulation. With [`Method::Auto`](crate::Method::Auto) it continues with
+    /// the method that was chosen there, if one was. Earlier samples of the motion stay with the simulation
+    /// that took them.
     ///
     /// ```
     /// use pliant::{Settings, samples};
@@ -69,8 +69,8 @@ impl Simulation {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Read`] if there is no file that can be read; a file that is no checkpoint, of a format that this
-    /// version cannot read, damaged, or of another scene: the message names what differs.
+    /// [`Error::Read`] if there is no file that can be read; a file that is no checkpoint, of a format that
+    /// this version cannot read, damaged, or of another scene: the message names what differs.
     pub fn read_checkpoint(&self, path: impl AsRef<Path>) -> Result<Checkpoint, Error> {
         let path = path.as_ref();
         let refuse = |help| InputError::new("checkpoint file", path.display(), help).into();
@@ -88,7 +88,7 @@ fn most_bytes(dofs: usize) -> u64 {
 
 /// The contents of a file of `most` bytes at most, or what is wrong with it.
 fn open(path: &Path, most: u64) -> std::io::Result<Result<Vec<u8>, String>> {
-    // to open a pipe may take for ever
+    // opening a pipe may block for ever
     if !fs::metadata(path)?.is_file() {
         return Ok(Err("it is no regular file: name one".into()));
     }

@@ -13,12 +13,12 @@ use crate::scene::timeline::Scene;
 /// Format of the files that this version writes and reads.
 const FORMAT: u32 = 4;
 
-/// What a file says that it is.
+/// What a file says it is.
 pub(super) const WHAT: &str = "pliant checkpoint";
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Whole numbers above this are none that a simulation counts to.
+/// Larger counts do not occur in a simulation.
 const MOST: u64 = 1 << 53;
 
 /// What a file begins with, whatever its format.
@@ -60,7 +60,7 @@ pub(super) struct Record {
     /// Of Maxwell branches.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     internal_strains: Vec<f64>,
-    /// Where angles that sensors read are, in turns.
+    /// The angles that sensors read, in turns, by the names of the sensors.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     angles: Vec<(String, f64)>,
 }

@@ -18,7 +18,7 @@ const SIZE: [f64; 2] = [800.0, 440.0];
 const ROOM: [f64; 3] = [84.0, 24.0, 52.0];
 /// Left and right end of the legend, and where its first line stands, below the title (px).
 const LEGEND: [f64; 3] = [20.0, 780.0, 52.0];
-/// Lines across the field, about.
+/// Approximate number of lines across the field.
 const LINES: usize = 9;
 const GREY: &str = "#777777";
 const GRID: &str = "#dedede";

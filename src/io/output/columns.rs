@@ -10,7 +10,7 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Energies that are stored.
 pub(super) const STORED: [&str; 5] = ["kinetic", "strain", "gravity", "contact", "springs"];
-/// Energies that have gone and come since t = 0.
+/// Energies that were dissipated and supplied since t = 0.
 pub(super) const EXCHANGED: [&str; 2] = ["dissipated", "supplied"];
 
 pub(super) fn stored(energy: &Energy) -> [f64; 5] {
@@ -41,8 +41,8 @@ pub(super) enum Along {
     Verified,
 }
 
-/// The column of the distance from a run with a looser tolerance, and what the name of a sensor's difference from there
-/// ends with.
+/// Name of the column with the distance from a run with a looser tolerance, and the ending of the names of
+/// the sensors' differences from that run.
 pub(crate) const DIFFERENCE: &str = "difference";
 pub(crate) const OF_SENSOR: &str = ".difference";
 
@@ -210,7 +210,7 @@ impl Columns {
         all
     }
 
-    /// What they hold of a sample.
+    /// The values of a sample in these columns.
     pub(super) fn row(&self, trajectory: &Trajectory, sample: &Sample) -> Vec<f64> {
         let dimension = trajectory.body().dimension();
         let energy = &sample.energy;
@@ -224,7 +224,7 @@ impl Columns {
         row.extend(&sample.sensors);
         row.extend([energy.dissipated, energy.supplied]);
         if !self.constrained.is_empty() {
-            // samples of this very trajectory have them
+            // samples of this trajectory have them
             let forces = trajectory.constraint_forces(sample);
             let forces = forces.unwrap_or_else(|_| vec![f64::NAN; sample.u.len()]);
             for (_, nodes) in &self.constrained {
@@ -237,7 +237,8 @@ impl Columns {
     }
 }
 
-/// A name for the nodes of a constraint: that of the set, or the numbers, of many the first and the last.
+/// A name for the nodes of a constraint: that of the set, or the numbers; if they are many, the first and the
+/// last.
 fn label(selection: &Selection) -> String {
     match selection {
         Selection::Set(name) => name.clone(),
@@ -252,7 +253,7 @@ fn label(selection: &Selection) -> String {
     }
 }
 
-/// Unit of a column that a motion has without being asked for it; `None` of others, which are sensors.
+/// Unit of a standard column; `None` of others, which are sensors.
 pub(super) fn standard_unit(name: &str) -> Option<&'static str> {
     COLUMNS.iter().find(|kind| kind.has(name)).map(|kind| kind.unit)
 }

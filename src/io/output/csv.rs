@@ -11,10 +11,10 @@ use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::{Quantity, Sample, Trajectory};
 use crate::elements::mesh::Selection;
 
-/// Writes one row per sample, after a row with the names of the columns: those of [`reference`](super::reference),
-/// with displacements of the nodes that `track` names.
+/// Writes one row per sample, after a row with the names of the columns: those of
+/// [`reference`](super::reference), with displacements of the nodes that `track` names.
 ///
-/// Numbers have 17 significant digits: read back, they are the very same.
+/// Numbers have 17 significant digits: read back, they are exactly the same.
 ///
 /// # Errors
 /// [`Error::Input`] if `track` names a node or set that does not exist, before anything is written;
@@ -43,15 +43,18 @@ pub fn write_csv(
     write(path.as_ref(), header(&columns, trajectory), rows)
 }
 
-/// The table of [`write_csv`] while a scene runs: rows are added as samples come, so that a kill loses the last
-/// of them alone. What is complete in the end `write_csv` should write once more, all at once.
+/// The table of [`write_csv`] while a scene runs: rows are added as samples come.
+///
+/// A kill thus loses only the last rows. The complete table should be written once more at the end by
+/// `write_csv`, all at once.
 pub struct GrowingTable {
     path: PathBuf,
     columns: Columns,
     /// Rows written, and the time (s) of the last.
     rows: usize,
     last: f64,
-    /// The time (s) of the state that the run has gone on from; rows until then are those of an earlier run.
+    /// The time (s) of the state that the run has continued from; rows until then are those of an earlier
+    /// run.
     began: Option<f64>,
 }
 
@@ -59,7 +62,8 @@ impl GrowingTable {
     /// A table at `path` for a run whose motion so far is `trajectory`; nothing is written yet.
     ///
     /// # Errors
-    /// [`Error::Input`] if `track` names a node or set that does not exist, or a sensor has the name of another column.
+    /// [`Error::Input`] if `track` names a node or set that does not exist, or a sensor has the name of
+    /// another column.
     pub fn new(
         trajectory: &Trajectory,
         path: impl Into<PathBuf>,
@@ -69,8 +73,8 @@ impl GrowingTable {
         Ok(Self { path: path.into(), columns, rows: 0, last: 0.0, began: None })
     }
 
-    /// For a run that goes on from a state at time `began` (s), with `trajectory` so far: the rows until then, which
-    /// an earlier run has written, will stay.
+    /// For a run that continues from a state at time `began` (s), with `trajectory` so far: the rows until
+    /// then, which an earlier run has written, are kept.
     ///
     /// # Errors
     /// [`Error::Read`] if there is no table; one with other columns.
@@ -90,7 +94,7 @@ impl GrowingTable {
             .map_err(|source| Error::Read { path: self.path.clone(), source })
     }
 
-    /// Takes the rows after time `began` (s) away.
+    /// Removes the rows after time `began` (s).
     fn cut(&self, began: f64) -> Result<(), Error> {
         let text = self.text()?;
         let mut lines = text.split_inclusive('\n');
@@ -103,7 +107,8 @@ impl GrowingTable {
         write_file(&self.path, |file| file.write_all(kept.as_bytes()))
     }
 
-    /// Adds the samples that are not yet in it. Where the run has gone back and forgotten some, all are written anew.
+    /// Adds the samples that are not yet in it. Where the run has gone back and dropped some, all its rows
+    /// are written anew.
     ///
     /// # Errors
     /// [`Error::Output`] if the file cannot be written.
@@ -139,10 +144,10 @@ fn append(path: &Path, rows: impl Iterator<Item = Vec<f64>>) -> io::Result<()> {
     table.flush()
 }
 
-/// Writes one row per sample with the energies (J) of [`Energy`](crate::Energy), after a row with the
-/// names of the columns: `t` (s), `kinetic`, `strain`, `gravity`, `contact`, `springs`, `dissipated` and
-/// `supplied` since t = 0, and `balance`: the sum of what is stored and dissipated less what was
-/// supplied, constant but for errors of the integration.
+/// Writes one row per sample with the energies (J) of [`Energy`](crate::Energy), after a row with the names
+/// of the columns: `t` (s), `kinetic`, `strain`, `gravity`, `contact`, `springs`, `dissipated` and `supplied`
+/// since t = 0, and `balance`: the sum of what is stored and dissipated less what was supplied, constant
+/// except for errors of the integration.
 ///
 /// # Errors
 /// [`Error::Output`] if the file cannot be written.

@@ -1,4 +1,4 @@
-//! What is left of a run on disk: tables, pictures and charts, and files for ParaView.
+//! Results of a run on disk: tables, pictures and charts, and files for ParaView.
 //!
 //! | file | for | written by |
 //! | --- | --- | --- |
@@ -11,8 +11,8 @@
 //! | HTML | the motion, or several side by side, to be played by a web browser | [`write_animation`], [`write_animations`], [`join_animations`] |
 //! | VTK | ParaView and other viewers of meshes: motion, forces, strain and stress | [`write_vtk`] |
 //!
-//! Directories are created as needed. A file is written under another name first and renamed when
-//! it is complete: what stands under its own name is never half a file.
+//! Directories are created as needed. A file is written under another name first and renamed when it is
+//! complete: a file under its own name is always complete.
 
 mod animation;
 mod chart;
@@ -50,7 +50,7 @@ pub use self::svg::Snapshots;
 pub use self::vtk::write_vtk;
 pub(crate) use crate::io::file::write_file;
 
-/// Font of all pictures: what a reader's machine has of these, in this order.
+/// Font of all pictures: the first of these that the reader's machine has.
 pub(crate) const FONT: &str = "Helvetica Neue, Helvetica, Arial, sans-serif";
 /// Colour of titles and labels.
 pub(crate) const INK: &str = "#222222";

@@ -6,17 +6,18 @@ use std::sync::Arc;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree, fontdb};
 
-/// Pixels of the picture to one of the drawing: sharp on fine screens.
+/// Pixels of the picture per pixel of the drawing: sharp on fine screens.
 const SCALE: f32 = 2.0;
 
 /// Renders a drawing (SVG) to a picture (PNG), with the fonts of this machine.
 ///
 /// # Errors
-/// A machine without fonts; a drawing that is none.
+/// A machine without fonts; a drawing that is not valid.
 pub(crate) fn png(svg: &str) -> Result<Vec<u8>, Box<dyn Error + Send + Sync>> {
     let mut fonts = fontdb::Database::new();
     fonts.load_system_fonts();
-    // where none of the fonts asked for is known, one that is; the first of all may be one of symbols, without letters
+    // if none of the requested fonts is installed, take one that is; the first of all may be a font of
+    // symbols, without letters
     let family = |is_right: &dyn Fn(&str) -> bool| {
         let mut families = fonts.faces().flat_map(|face| &face.families);
         families.find(|(name, _)| is_right(name)).map(|(name, _)| name.clone())

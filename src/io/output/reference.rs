@@ -5,8 +5,8 @@ use std::fmt::Write;
 use super::columns::{Along, COLUMNS};
 use super::report::{OfRun, OfStatics};
 
-/// All columns of `trajectory.csv` and all keys of `report.json` in Markdown, with units and meanings: the end of
-/// `docs/reference.md`.
+/// All columns of `trajectory.csv` and all keys of `report.json` in Markdown, with units and meanings: the
+/// end of `docs/reference.md`.
 pub fn reference() -> String {
     let mut page = String::from("### Columns of `trajectory.csv`\n\n");
     let columns = COLUMNS.iter().map(|kind| {

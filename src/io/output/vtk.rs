@@ -18,8 +18,8 @@ use crate::elements::mesh::CellKind;
 /// Writes one VTK XML file per sample, `<name>_0000.vtu`, ..., and `<name>.pvd`, the collection
 /// that has their times: open this one.
 ///
-/// The points are the undeformed positions (m). To see the body as it is, apply the filter "Warp By
-/// Vector" to `displacement`, which is the active vector field.
+/// The points are the undeformed positions (m). To see the deformed body, apply the filter "Warp By Vector"
+/// to `displacement`, which is the active vector field.
 ///
 /// | at | field | meaning |
 /// | --- | --- | --- |

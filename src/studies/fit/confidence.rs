@@ -1,4 +1,4 @@
-//! How sure fitted values are, and which cannot be told.
+//! Confidence intervals of fitted values, and which values cannot be identified.
 
 use std::f64::consts::PI;
 
@@ -7,12 +7,13 @@ use nalgebra::DMatrix;
 use super::unknown::Unknown;
 use crate::base::input::InputError;
 
-/// Half widths, in parts of the ranges, of the intervals in which the unknowns lie with a confidence of 95 %: Student's, by
-/// the covariance s^2 (J^T J)^-1, where J has a column of `slopes` for each unknown and s^2 is the variance of the `residuals`,
-/// of which `independent` ones are independent of the others.
+/// Half widths, in parts of the ranges, of the 95 % confidence intervals of the unknowns.
+///
+/// They are Student's, with the covariance s^2 (J^T J)^-1, where J has a column of `slopes` for each unknown
+/// and s^2 is the variance of the `residuals`, which count as `independent` independent ones.
 ///
 /// # Errors
-/// Slopes below the `noise`, a part of the largest of them, or alike to that part.
+/// Slopes below the `noise`, a part of the largest of them, or linearly dependent to within that part.
 pub(super) fn confidence(
     unknowns: &[Unknown],
     slopes: &[Vec<f64>],
@@ -55,11 +56,12 @@ pub(super) fn confidence(
     Ok((0..columns).map(half_width).collect())
 }
 
-/// How many independent numbers a series counts as: n / (1 + 2 sum |rho_k|), of the autocorrelations rho_k up to n/2 that are larger than three
-/// times what chance makes of independent ones, 1/sqrt(n).
+/// How many independent numbers a series counts as: n / (1 + 2 sum |rho_k|), with the autocorrelations rho_k
+/// up to n/2 that are larger than three times 1/sqrt(n), their standard deviation for independent numbers.
 ///
-/// With the slopes' own autocorrelation r_k the variance of what is fitted grows by 1 + 2 sum rho_k r_k (M. S. Bartlett, Journal of the Royal
-/// Statistical Society 98 (1935) 536-543): by this or less, whatever the slopes are.
+/// The variance of the fitted values grows by the factor 1 + 2 sum rho_k r_k, with the autocorrelations r_k
+/// of the slopes (M. S. Bartlett, Journal of the Royal Statistical Society 98 (1935) 536-543): by the factor
+/// above or less, whatever the slopes are.
 pub(super) fn independent(series: &[f64]) -> f64 {
     let count = series.len() as f64;
     let square = norm(series).powi(2);
@@ -78,13 +80,13 @@ pub(super) fn norm(values: &[f64]) -> f64 {
 
 /// The 97.5 % quantile of Student's distribution with `free` >= 1 degrees of freedom, n.
 ///
-/// With t = sqrt(n) tan(a) its density is Gamma((n + 1)/2) / (sqrt(pi) Gamma(n/2)) cos(a)^(n - 1) da, smooth up to the quantile: Simpson's rule
-/// sums it up from 0, and bisection finds where that is 0.475.
+/// With t = sqrt(n) tan(a) its density is Gamma((n + 1)/2) / (sqrt(pi) Gamma(n/2)) cos(a)^(n - 1) da, smooth
+/// up to the quantile: Simpson's rule integrates it from 0, and bisection finds where the integral is 0.475.
 fn student(free: f64) -> f64 {
     const PANELS: usize = 400;
     let density = |angle: f64| angle.cos().powf(free - 1.0);
     let asked = 0.475 * PI.sqrt() / half_step_of_gamma(0.5 * free);
-    // 12.7 with one degree, and less with more
+    // 12.7 with one degree of freedom, and less with more
     let [mut low, mut high] = [0.0, (13.0 / free.sqrt()).atan()];
     for _ in 0..f64::MANTISSA_DIGITS {
         let angle: f64 = 0.5 * (low + high);
@@ -96,7 +98,8 @@ fn student(free: f64) -> f64 {
     free.sqrt() * low.tan()
 }
 
-/// Gamma(a + 1/2) / Gamma(a): from its expansion for large a, off by 1e-13 from 30 on, downwards by Gamma(a + 1) = a Gamma(a).
+/// Gamma(a + 1/2) / Gamma(a): by its expansion for large a, off by 1e-13 from 30 on; by Gamma(a + 1) = a
+/// Gamma(a) for smaller a.
 fn half_step_of_gamma(mut a: f64) -> f64 {
     let mut factor = 1.0;
     while a < 30.0 {
@@ -125,13 +128,13 @@ mod tests {
             (30.0, 2.042),
             (1e9, 1.960),
         ] {
-            // its last digit
+            // half a unit of the last digit of the table
             assert!((student(free) - quantile).abs() <= 5.1e-4, "{free}: {}", student(free));
         }
     }
 
-    /// In closed form with 1 and 2 degrees of freedom; between whole numbers, the chance that is left beyond a quantile, by the
-    /// trapezoidal rule over ln t.
+    /// In closed form with 1 and 2 degrees of freedom; between whole numbers, the probability beyond a
+    /// quantile, by the trapezoidal rule over ln t.
     #[test]
     fn quantiles_are_those_of_closed_forms_and_sums() {
         let cauchy = (0.475 * PI).tan();
@@ -149,7 +152,7 @@ mod tests {
                 let all: f64 = times.map(|t| t * density(t)).sum();
                 1e-4 * (all - 0.5 * from * density(from))
             };
-            // from far below, where the density is 1 over the length of that
+            // the whole integral: from 1e-8 on, and below, where the density is 1, its length
             let part = sum(student(free)) / (sum(1e-8) + 1e-8);
             println!("{free}: {part}");
             // the trapezoidal rule is off by 1e-9 of the density at its end
@@ -157,11 +160,12 @@ mod tests {
         }
     }
 
-    /// Numbers of variance 1, each `alike` to the one before: an autoregression of order 1.
+    /// Numbers of variance 1 from an autoregression of order 1; `alike` is the correlation of each with the
+    /// one before.
     fn noise(count: usize, alike: f64, state: &mut u64) -> Vec<f64> {
         let mut last = 0.0;
         let mut next = || {
-            // twelve numbers between 0 and 1 are nearly normal
+            // the sum of twelve random numbers between 0 and 1 is nearly normal
             let sum = (0..12).map(|_| {
                 *state = state
                     .wrapping_mul(6_364_136_223_846_793_005)
@@ -175,7 +179,8 @@ mod tests {
         numbers[50..].to_vec()
     }
 
-    /// How often the interval of 95 % of a number, fitted to 400 errors around it that go with `slope`, holds it.
+    /// How often the 95 % interval of a number that is fitted to 400 errors with the slopes `slope` contains
+    /// it.
     fn held(alike: f64, counts: &dyn Fn(&[f64]) -> f64, slope: &dyn Fn(usize) -> f64) -> f64 {
         let slopes: Vec<f64> = (0..400).map(slope).collect();
         let (trials, mut state, mut held) = (400, 7, 0);
@@ -192,7 +197,8 @@ mod tests {
         held as f64 / trials as f64
     }
 
-    /// Errors that are alike from one time to the next make intervals wider: those that count all as independent are wrong half of the time.
+    /// Errors that are correlated from one time to the next make intervals wider: intervals that count all
+    /// errors as independent are wrong half of the time.
     #[test]
     fn intervals_hold_what_they_say() {
         let constant = |_: usize| 1.0;
@@ -207,7 +213,8 @@ mod tests {
             let [naive, found] = [&all as &dyn Fn(&[f64]) -> f64, &independent]
                 .map(|counts| held(alike, counts, slope));
             println!("{alike}: {naive} {found}");
-            // of 400 trials 95 % are 0.95 +- 0.022; an autocorrelation of so few numbers is a little too small
+            // 95 % in 400 trials is 0.95 +- 0.022; an autocorrelation estimated from so few numbers is a
+            // little too small
             assert!(found > 0.87, "{alike}: {found}");
             match alike > 0.0 {
                 true => assert!(naive < 0.6, "{naive}"),

@@ -1,4 +1,5 @@
-//! Least squares within ranges: Levenberg and Marquardt's method, by differences of runs on all cores.
+//! Least squares within ranges: the Levenberg-Marquardt method, with difference quotients from runs on all
+//! cores.
 
 use rayon::prelude::*;
 use rmpfit::{MPConfig, MPError, MPFitter, MPPar, MPResult, MPSide, MPSuccess};
@@ -8,27 +9,29 @@ use super::unknown::Unknown;
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
 
-/// What a model leaves over where it meets measurements, at values of the unknowns: a series for each thing that was measured, in order of
-/// time; as many numbers at all values.
+/// The residuals of a model against measurements, as a function of the unknowns.
+///
+/// There is a series for each quantity that was measured, in order of time; its length is the same at all
+/// values.
 pub type Residuals<'a> = dyn Fn(&[f64]) -> Result<Vec<Vec<f64>>, Error> + Sync + 'a;
 
 /// Unknowns that were fitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
-    /// The unknowns, each with its value and how sure that is.
+    /// The unknowns, each with its value and confidence interval.
     pub unknowns: Vec<Determined>,
     /// Root mean square of the residuals: in the middle of the ranges, and at the values that were found.
     pub rms: [f64; 2],
     /// How many residuals there are.
     pub residuals: usize,
-    /// How many independent ones those that were found count as: n / (1 + 2 sum |rho_k|) of a series of n, with its
-    /// autocorrelations rho_k that stand out of chance.
+    /// How many independent residuals they count as, at the values that were found: n / (1 + 2 sum |rho_k|)
+    /// for a series of n, with its significant autocorrelations rho_k.
     pub independent: f64,
     /// How often the residuals were computed.
     pub runs: usize,
     /// How many of these runs failed: they counted as bad steps.
     pub failed: usize,
-    /// Whether further runs would change next to nothing.
+    /// Whether the search has converged: further runs would change next to nothing.
     pub is_converged: bool,
 }
 
@@ -37,16 +40,16 @@ pub struct Fitted {
 pub struct Determined {
     /// The unknown.
     pub unknown: Unknown,
-    /// The value that leaves the least.
+    /// The value with the least sum of squares.
     pub value: f64,
-    /// Half of the interval in which it lies with a confidence of 95 %, if what is left over are errors of one variance, series by series
-    /// independent of each other. Within a series they need not be ([`Fitted::independent`]). Errors of the model that are alike in
-    /// several series are not covered: then it is too small.
+    /// Half width of its 95 % confidence interval, if the residuals are errors of one variance, and those of
+    /// different series are independent. Within a series they need not be ([`Fitted::independent`]). Errors
+    /// of the model that are correlated between series are not covered: then it is too small.
     pub confidence: f64,
 }
 
 impl Determined {
-    /// Whether the end of its range is what holds it.
+    /// Whether its value is at an end of its range.
     pub fn is_at_end(&self) -> bool {
         self.unknown.range.contains(&self.value)
     }
@@ -56,18 +59,22 @@ impl Determined {
 const ENOUGH: f64 = 1e-4;
 /// Most steps of the search.
 const MOST_STEPS: usize = 50;
-/// What a residual that there is not counts for, relative to the norm of those in the middle of the ranges.
+/// Value of the residuals of a run that failed, relative to the norm of those in the middle of the ranges.
 const BAD: f64 = 1e3;
 
-/// Finds the values of the `unknowns` that leave the least sum of squares of the `residuals`, within their ranges, from the
-/// middle on.
+/// Finds the values of the `unknowns` within their ranges that minimize the sum of squares of the
+/// `residuals`.
 ///
-/// `precision` is how exact residuals are, relative to their own range: the tolerance of the runs behind them. Derivatives are central
-/// differences by its root, in parts of the range of each unknown: what the tolerance leaves to chance is a part of that size
-/// of them, too. `tell` hears of each run of the search: how many there were, and the root mean square of the residuals.
+/// The search starts in the middle of the ranges.
 ///
-/// Where residuals cannot be computed, as a run fails, the step there counts as a bad one, and the next is shorter; a derivative takes the
-/// other side.
+/// `precision` is the accuracy of the residuals, relative to their own range: the tolerance of the runs
+/// behind them. Derivatives are central differences with its square root as step, in parts of the range of
+/// each unknown: the relative error of the derivatives that the tolerance causes has that size, too. `tell`
+/// is called for each run of the search, with the number of runs so far and the root mean square of the
+/// residuals.
+///
+/// Where residuals cannot be computed because a run fails, the step counts as a bad one, and the next is
+/// shorter; a derivative takes the other side.
 ///
 /// The method is that of MINPACK, as the crate `rmpfit` has it.
 ///
@@ -83,8 +90,9 @@ const BAD: f64 = 1e3;
 /// ```
 ///
 /// # Errors
-/// No unknown, or one without a range; fewer residuals than unknowns; residuals that do not change with an unknown, or
-/// alike with several; errors of `residuals` in the middle of the ranges, or on both sides of a place.
+/// No unknown, or one without a range; no more residuals than unknowns; residuals that do not change with an
+/// unknown, or change alike with several; errors of `residuals` in the middle of the ranges, or on both sides
+/// of a point.
 pub fn least_squares(
     unknowns: &[Unknown],
     precision: f64,
@@ -105,7 +113,7 @@ pub fn least_squares(
         return Err(InputError::new("number of measured values", first.len(), help).into());
     }
     search.bad = BAD * norm(&first);
-    // what cannot be found is told before it is sought
+    // unknowns that cannot be identified are reported before the search
     let slopes = search.slopes(&parts, &first)?;
     confidence(unknowns, &slopes, &first, first.len() as f64, step)?;
     search.known = Some((parts.clone(), slopes));
@@ -129,7 +137,7 @@ pub fn least_squares(
     Ok(Fitted { unknowns, rms, residuals, independent, runs, failed, is_converged })
 }
 
-/// A search that came to nothing by no error of the residuals.
+/// A search that failed without an error of the residuals.
 fn stuck(error: &MPError) -> Error {
     let help = "what is left over must be a finite number everywhere in the ranges: narrow them";
     InputError::new("residuals", error, help).into()
@@ -139,20 +147,20 @@ pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
-/// A search; places are parts of the ranges.
+/// A search; points are given in parts of the ranges.
 struct Search<'a> {
     unknowns: &'a [Unknown],
     residuals: &'a Residuals<'a>,
-    /// Of the differences.
+    /// Step of the difference quotients.
     step: f64,
     tell: &'a mut dyn FnMut(usize, f64),
     /// Number of residuals of each series.
     counts: Vec<usize>,
     runs: usize,
     failed: usize,
-    /// What residuals are where there are none.
+    /// Value of the residuals where a run fails.
     bad: f64,
-    /// Where the derivatives are known.
+    /// A point with known derivatives, and these.
     known: Option<(Vec<f64>, Vec<Vec<f64>>)>,
     /// Why a run failed.
     failure: Option<Error>,
@@ -199,7 +207,7 @@ impl<'a> Search<'a> {
         self.unknowns.iter().zip(parts).map(|(unknown, part)| unknown.at(*part)).collect()
     }
 
-    /// The residuals at a place.
+    /// The residuals at a point.
     fn run(&mut self, parts: &[f64]) -> Result<Vec<f64>, Error> {
         let series = (self.residuals)(&self.values(parts))?;
         if self.counts.is_empty() {
@@ -211,7 +219,7 @@ impl<'a> Search<'a> {
         Ok(residuals)
     }
 
-    /// One series after the other.
+    /// Joins the series, one after the other.
     ///
     /// # Errors
     /// If there are not as many residuals as at first.
@@ -235,8 +243,8 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The derivatives of the residuals by the parts, unknown by unknown, of a place with the residuals `here`: at the end of a range, or where a
-    /// run fails, from the other side.
+    /// The derivatives of the residuals with respect to the parts, unknown by unknown, at a point with the
+    /// residuals `here`: one-sided at the end of a range, or where a run fails.
     fn slopes(&mut self, parts: &[f64], here: &[f64]) -> Result<Vec<Vec<f64>>, Error> {
         let ends = |part: f64| [(part - self.step).max(0.0), (part + self.step).min(1.0)];
         let places: Vec<Vec<f64>> = (0..2 * parts.len())

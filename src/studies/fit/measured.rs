@@ -15,8 +15,8 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// Reads a table (CSV) whose first column is `t` or `time` (s); the heads of the others are the names of sensors, as in
-    /// `trajectory.csv`: `tip.y`.
+    /// Reads a table (CSV) whose first column is `t` or `time` (s); the heads of the others are the names of
+    /// sensors, as in `trajectory.csv`: `tip.y`.
     ///
     /// # Errors
     /// [`Error::Read`] for a file that cannot be read, and one that is no such table, with the line.

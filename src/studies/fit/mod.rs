@@ -1,4 +1,5 @@
-//! Unknowns of a model, fitted to what was measured: [`least_squares`] of any residuals, and [`SceneFit`] of a scene file.
+//! Unknowns of a model, fitted to what was measured: [`least_squares`] of any residuals, and [`SceneFit`] of
+//! a scene file.
 
 mod confidence;
 mod least_squares;

@@ -15,17 +15,18 @@ use crate::io::scene_file::SceneFile;
 
 /// A scene file, and what was measured of the scene.
 ///
-/// Runs have the tolerance of the file, `solver.rtol`. Measurements outside the time of the scene do not count. Where sensors have several units, each is
-/// weighed by how much what was measured in its unit varies, root mean square.
+/// Runs have the tolerance of the file, `solver.rtol`. Measurements outside the time of the scene do not
+/// count. If sensors have several units, residuals are divided by the root mean square variation of what was
+/// measured in their unit.
 #[derive(Debug, Clone)]
 pub struct SceneFit {
     path: PathBuf,
     overrides: Vec<String>,
     /// Times of the scene at which something was measured, ascending.
     times: Vec<f64>,
-    /// Each sensor that was, with what it read then.
+    /// Each sensor that was measured, with its readings at these times.
     columns: Vec<(Quantity, Vec<f64>)>,
-    /// What residuals in the unit of each column are divided by.
+    /// What the residuals of each column are divided by.
     scales: Vec<f64>,
     precision: f64,
 }
@@ -33,26 +34,27 @@ pub struct SceneFit {
 /// A scene whose unknowns were fitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFitted {
-    /// The unknowns. The root mean squares are those of all columns, each weighed.
+    /// The unknowns. The root mean squares are over all columns, each weighted.
     pub fitted: Fitted,
     /// Sensors, one by one.
     pub columns: Vec<FittedColumn>,
     times: Vec<f64>,
 }
 
-/// What is left over of a sensor.
+/// The residuals of a sensor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FittedColumn {
     /// The sensor.
     pub quantity: Quantity,
-    /// Root mean square of the residuals, in its unit: in the middle of the ranges, and at the values that were found.
+    /// Root mean square of the residuals, in its unit: in the middle of the ranges, and at the values that
+    /// were found.
     pub rms: [f64; 2],
     /// The model less what was measured, in its unit, over time.
     pub residuals: Vec<f64>,
 }
 
 impl SceneFit {
-    /// Of the scene file at `path`, with other values as [`SceneFile::read_with`] takes them.
+    /// A fit of the scene file at `path`, with other values as [`SceneFile::read_with`] takes them.
     ///
     /// # Errors
     /// As [`SceneFile::read_with`]; a column that no sensor has; no measurement within the time of the scene.
@@ -183,7 +185,8 @@ fn sensors(file: &SceneFile) -> Result<Vec<Quantity>, Error> {
     Ok(sampling.columns(&file.scene)?)
 }
 
-/// How much all columns of a unit vary, root mean square; 1 if they have one unit or do not vary.
+/// Root mean square variation of all columns of a unit; 1 if all columns have this unit, or these do not
+/// vary.
 fn scale(columns: &[(Quantity, Vec<f64>)], unit: &str) -> f64 {
     if columns.iter().all(|(quantity, _)| quantity.unit == unit) {
         return 1.0;
@@ -207,12 +210,12 @@ fn set(key: &str, value: f64) -> String {
 }
 
 impl SceneFitted {
-    /// What was found as values for keys of the scene file: see [`SceneFile::read_with`].
+    /// The values that were found, for keys of the scene file: see [`SceneFile::read_with`].
     pub fn overrides(&self) -> Vec<String> {
         self.fitted.unknowns.iter().map(|found| set(&found.unknown.name, found.value)).collect()
     }
 
-    /// Draws what is left over of each sensor over time.
+    /// Draws the residuals of each sensor over time.
     ///
     /// # Errors
     /// [`Error::Output`] if the file cannot be written.

@@ -1,10 +1,10 @@
-//! What is sought, and between which ends.
+//! What is sought, and in which range.
 
 use crate::base::input::{InputError, finite};
 
 /// A number that is sought: its name, and the range in which it lies.
 ///
-/// In a range above 0 steps are ratios, so that one over several decades is as good as a narrow one.
+/// In a range above 0 steps are ratios, so that a range over several decades works as well as a narrow one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unknown {
     /// Its name; of scene files a key, as `body.material.young`.
@@ -20,7 +20,7 @@ impl Unknown {
     }
 
     /// # Errors
-    /// A range that is none.
+    /// A range that is not valid.
     pub(super) fn validate(&self) -> Result<(), InputError> {
         let Self { name, range } = self;
         let input = || format!("range of {name}");
@@ -41,7 +41,7 @@ impl Unknown {
         }
     }
 
-    /// The derivative of the value by the part.
+    /// The derivative of the value with respect to the part.
     pub(super) fn slope(&self, part: f64) -> f64 {
         let [least, most] = self.range;
         match least > 0.0 {

@@ -15,7 +15,7 @@ pub const MEMBRANE_MATERIAL: Material = Material { viscosity: 40.0, ..BENT_BEAM_
 /// from below by 2 kPa until 1.5 s and left alone until 3 s.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn membrane() -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([0.10, 0.01], [11, 2], Cells::Triangles)?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL).strain(Strain::Cauchy).thickness(0.01).build()?;
@@ -31,7 +31,7 @@ pub fn membrane() -> Result<Scene, InputError> {
 /// chamber, inflated by 2 kPa until 1.5 s and left alone until 3 s; Green strain.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn membrane_arch() -> Result<Scene, InputError> {
     let mesh = Mesh::half_ring(0.04, 0.05, [21, 3], Cells::Triangles)?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).strain(Strain::Green).build()?;
@@ -50,7 +50,7 @@ pub fn membrane_arch() -> Result<Scene, InputError> {
 /// Hirai's viscosity is natural, and brakes every rotation.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn spring_ring(viscosity: Viscosity) -> Result<Scene, InputError> {
     let mesh = Mesh::ring(0.04, 0.05, [32, 3], Cells::Triangles)?.translated(&[0.0, 0.05])?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL)
@@ -75,7 +75,7 @@ pub fn spring_ring(viscosity: Viscosity) -> Result<Scene, InputError> {
 /// With 1 N the ring walks to the right. Hirai's 5 N pull springs to length zero.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn ring_springs(force: f64) -> Result<Scene, InputError> {
     Ok(spring_ring(Viscosity::Natural)?
         .phase(Phase::until(0.2).named("settle"))
@@ -90,7 +90,7 @@ pub fn ring_springs(force: f64) -> Result<Scene, InputError> {
 /// then everything is let go until 1 s.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn ring_jump() -> Result<Scene, InputError> {
     let crouch = Phase::until(0.1).named("crouch");
     Ok(spring_ring(Viscosity::Natural)?
@@ -103,7 +103,7 @@ pub fn ring_jump() -> Result<Scene, InputError> {
 /// two thirds of its height and from the right at one third; then it is left alone until 1 s.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn report_8() -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([0.06, 0.09], [7, 10], Cells::Triangles)?;
     let body = Body::new(mesh, MEMBRANE_MATERIAL).thickness(0.01).strain(Strain::Green).build()?;
@@ -118,7 +118,7 @@ pub fn report_8() -> Result<Scene, InputError> {
 /// has the regions, nodes and walls of `scenes/meshes/bending-actuator.geo`.
 ///
 /// # Errors
-/// Another mesh.
+/// A mesh without these regions, nodes or walls.
 pub fn bending_actuator(mesh: Mesh) -> Result<Scene, InputError> {
     let rubber = Material { density: 1100.0, young: 5e5, poisson: 0.45, viscosity: 1e4 };
     let layer = Material { young: 1e7, viscosity: 2e5, ..rubber };

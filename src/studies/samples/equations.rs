@@ -99,7 +99,7 @@ macro_rules! jacobians_from_entries {
     };
 }
 
-/// Implements what problems of a fixed number of unknowns have alike.
+/// Implements what problems of a fixed number of unknowns have in common.
 macro_rules! of_unknowns {
     ($problem:ty, $n:literal) => {
         impl $problem {

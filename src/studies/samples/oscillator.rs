@@ -1,4 +1,4 @@
-//! An oscillation that dies out slowly: lightly damped, it is what BDF of higher order is unstable for.
+//! A lightly damped oscillation, for which BDF of higher order is unstable.
 
 use faer::MatMut;
 

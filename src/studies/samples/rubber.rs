@@ -8,13 +8,17 @@ use crate::elements::material::{Law, Material};
 use crate::elements::mesh::{Mesh, Selection, SolidCells};
 use crate::scene::timeline::{Phase, Scene};
 
-/// A cantilever under a sudden load: a block of 0.2 x 0.2 x 2 m (E = 15.293 MPa, nu = 0.3, 1000 kg/m^3, neo-Hookean),
-/// clamped at its `bottom`, on whose `top` a traction of (50, 50, 0) kPa of constant direction acts at once, along the diagonal of the cross
-/// section; undamped. It bends until the end has moved by more than its length, and swings back. (Ž. Tuković, H. Jasak, Transactions of FAMENA 31 (2007) 55-70.)
+/// A cantilever under a sudden load.
 ///
-/// The displacement of the loaded end has a first peak, which is published as 2.80 m at 0.318 s, and is at its least again at 0.646 s.
-/// That of the middle of the end here: 2.795 m at 0.3177 s, and 0.644 s, of which methods agree on all digits and meshes on three
-/// (`docs/benchmarks.md` has all numbers).
+/// It is a block of 0.2 x 0.2 x 2 m (E = 15.293 MPa, nu = 0.3, 1000 kg/m^3, neo-Hookean), clamped at its
+/// `bottom`, on whose `top` a traction of (50, 50, 0) kPa of constant direction acts at once, along the
+/// diagonal of the cross section; undamped. It bends until the end has moved by more than its length, and
+/// swings back. (Ž. Tuković, H. Jasak, Transactions of FAMENA 31 (2007) 55-70.)
+///
+/// The displacement of the loaded end has a first peak, which is published as 2.80 m at 0.318 s, and is at
+/// its least again at 0.646 s. Here the middle of the end has its peak of 2.795 m at 0.3177 s, and its least
+/// at 0.644 s; methods agree on all of these digits, and meshes on three (`docs/benchmarks.md` has all
+/// numbers).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoadedCantilever {
     /// Corner nodes along the axes. Default: 3 x 3 x 21.
@@ -54,12 +58,16 @@ impl LoadedCantilever {
     }
 }
 
-/// A column that twists: 6 x 1 x 1 m around the x axis (E = 17 MPa, 1100 kg/m^3, neo-Hookean), clamped at x = 0, whose cross
-/// sections turn at first about the axis, with the angular velocity 105 rad/s sin(pi x / 12); undamped. (A. J. Gil, C. H. Lee, J. Bonet, M.
-/// Aguirre, Computer Methods in Applied Mechanics and Engineering 276 (2014) 659-690.) Cells lock and break down here if they can.
+/// A column that twists.
 ///
-/// An edge of the free end has turned by 4.39 rad after 0.05 s (nu = 0.45; 4.43 with 0.495), within 0.02; at most by 5.9 rad (6.0), two
-/// digits, after 0.09 s. Methods agree on five digits on each mesh, so the meshes are what is left.
+/// It measures 6 x 1 x 1 m, around the x axis (E = 17 MPa, 1100 kg/m^3, neo-Hookean), clamped at x = 0, whose
+/// cross sections turn at first about the axis, with the angular velocity 105 rad/s sin(pi x / 12); undamped.
+/// (A. J. Gil, C. H. Lee, J. Bonet, M. Aguirre, Computer Methods in Applied Mechanics and Engineering 276
+/// (2014) 659-690.) Cells that can lock or break down do so here.
+///
+/// An edge of the free end has turned by 4.39 rad after 0.05 s (nu = 0.45; 4.43 with 0.495), within 0.02; at
+/// most by 5.9 rad (6.0), two digits, after 0.09 s. Methods agree on five digits on each mesh, so the
+/// remaining error is that of the meshes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TwistingColumn {
     /// Poisson's ratio. Default: 0.45; 0.495 is published, too.
@@ -90,7 +98,8 @@ impl TwistingColumn {
     /// The scene.
     ///
     /// # Errors
-    /// Poisson's ratio or an end out of range; fewer than 2 nodes along a side; a mean dilatation of cells that cannot have one.
+    /// Poisson's ratio or an end out of range; fewer than 2 nodes along a side; a mean dilatation of cells
+    /// that cannot have one.
     pub fn scene(&self) -> Result<Scene, InputError> {
         let &Self { poisson, nodes, cells, dilatation, until } = self;
         let rubber = Material { density: 1100.0, young: 17e6, poisson, viscosity: 0.0 };
@@ -107,14 +116,18 @@ impl TwistingColumn {
     }
 }
 
-/// The L-shaped block of Simo and Tarnow in free flight: legs of 6 and 10 m, 3 m wide and 3 m deep (neo-Hookean, shear modulus
-/// 997.5 Pa, bulk modulus 5209 Pa, 100 kg/m^3; undamped). Dead loads of (256, 512, 768) N / 9 m^2 times p(t) on the end of its upright leg,
-/// `top`, and the opposite ones on the end of the other leg, `right`, set it in motion, p(t) growing to 2.5 at 2.5 s and falling to 0 at 5 s. Then it
-/// tumbles and swings, and keeps its momenta, angular momentum and energy. (J. C. Simo, N. Tarnow, Zeitschrift für angewandte Mathematik und Physik 43 (1992)
-/// 757-792; programs differ in the moduli and the density.)
+/// The L-shaped block of Simo and Tarnow in free flight.
 ///
-/// After the loads the angular momentum about the centre of mass is (355.3, 203.4, -254.0) 10^2 N m s and the energy 141.1 10^2 J, three digits trusted of each; the
-/// edge at (0, 10, 0) m has moved by (1.29, 0.29, 4.95) m, within 0.01 m.
+/// Its legs are 6 and 10 m long, 3 m wide and 3 m deep (neo-Hookean, shear modulus 997.5 Pa, bulk modulus
+/// 5209 Pa, 100 kg/m^3; undamped). Dead loads of (256, 512, 768) N / 9 m^2 times p(t) on the end of its
+/// upright leg, `top`, and the opposite ones on the end of the other leg, `right`, set it in motion, p(t)
+/// growing to 2.5 at 2.5 s and falling to 0 at 5 s. Then it tumbles and swings, and keeps its momenta,
+/// angular momentum and energy. (J. C. Simo, N. Tarnow, Zeitschrift für angewandte Mathematik und Physik 43
+/// (1992) 757-792; programs differ in the moduli and the density.)
+///
+/// After the loads the angular momentum about the centre of mass is (355.3, 203.4, -254.0) 10^2 N m s and the
+/// energy 141.1 10^2 J, each trusted to three digits; the edge at (0, 10, 0) m has moved by (1.29, 0.29,
+/// 4.95) m, within 0.01 m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TumblingBlock {
     /// Cells along a metre. Default: 1, which is 117 cells of a grid.
@@ -154,7 +167,7 @@ impl TumblingBlock {
     }
 }
 
-/// What is left of a cuboid of 6 x 10 x 3 m without its cells where x and y are above 3 m.
+/// A cuboid of 6 x 10 x 3 m without its cells where x and y are above 3 m.
 fn l_of(cuboid: Mesh) -> Result<Mesh, InputError> {
     let is_left = |cell: &&[usize]| {
         cell.iter().all(|&node| cuboid.position(node)[0] < 3.001)

@@ -49,8 +49,8 @@ pub struct SquareJump {
     pub cells: Cells,
     /// Default: consistent.
     pub inertia: Inertia,
-    /// Stiffness of the floor under all nodes of the bottom together (N/m). Default: 400, the
-    /// Hirai's 100 N/m per node on 4 nodes and 40 on 10.
+    /// Stiffness of the floor under all nodes of the bottom together (N/m). Default: 400, Hirai's 100 N/m per
+    /// node on 4 nodes and 40 on 10.
     pub floor: f64,
     /// Acceleration of gravity downward (m/s^2). Default: 0, as in Hirai.
     pub gravity: f64,
@@ -92,7 +92,7 @@ impl SquareJump {
 /// gravity. [`BeamJump`] has variants.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn beam_jump() -> Result<Scene, InputError> {
     BeamJump::default().scene()
 }
@@ -116,7 +116,7 @@ impl BeamJump {
     /// The scene.
     ///
     /// # Errors
-    /// None; the signature is that of its kind.
+    /// None: it returns a `Result` as the other scenes do.
     pub fn scene(&self) -> Result<Scene, InputError> {
         let body = Body::new(Mesh::bar(0.10, 6)?, BEAM_MATERIAL)
             .strain(Strain::Cauchy)
@@ -139,7 +139,7 @@ impl BeamJump {
 /// held too if `holds_tip`; then it is released until 6 s. Viscosity is natural, as in Hirai.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn beam_bend(strain: Strain, holds_tip: bool) -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([0.10, 0.02], [11, 3], Cells::Triangles)?;
     let body = Body::new(mesh, BENT_BEAM_MATERIAL)
@@ -209,9 +209,9 @@ pub const FLAG_MATERIAL: Material =
 /// once: the elastic flag of Turek and Hron ("Proposal for numerical benchmarking of fluid-structure
 /// interaction", 2006, test CSM3), clamped along a straight edge. Green strain, plane strain.
 ///
-/// It swings about the static deflection of its tip, 65.6 mm on converged meshes; linear triangles
-/// of 35 x 2 grid cells lock and give 29 mm. Undamped, its motion stands for all that BDF of order
-/// 3 and above is bad at.
+/// It swings about the static deflection of its tip, 65.6 mm on converged meshes; linear triangles of 35 x 2
+/// grid cells lock and give 29 mm. Undamped, it is an example of motions that BDF of order 3 and above
+/// handles badly.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClampedBeam {
     /// Corner nodes along and across. Default: 36 x 3.

@@ -11,7 +11,7 @@ use crate::scene::timeline::{Phase, Scene};
 /// nodes 14 and 15 pressed down by 0.3 within a second.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn static_square(strain: Strain) -> Result<Scene, InputError> {
     let mesh = Mesh::rectangle([3.0, 3.0], [4, 4], Cells::Triangles)?;
     let rubber = Material { density: 1000.0, young: 1e6, poisson: 0.48, viscosity: 0.0 };
@@ -24,7 +24,7 @@ pub fn static_square(strain: Strain) -> Result<Scene, InputError> {
 /// end fixed, under a force on the middle of the other one, node 22, that bends it down by 5.000 cm.
 ///
 /// # Errors
-/// None; the signature is that of its kind.
+/// None: it returns a `Result` as the other scenes do.
 pub fn beam_static(strain: Strain) -> Result<Scene, InputError> {
     let force = match strain {
         Strain::Cauchy => 0.63754,

@@ -16,7 +16,8 @@ use crate::io::output::{COLOURS, DASHES, INK, Point, page, rectangle, round, tex
 const FIELD: [f64; 4] = [84.0, 64.0, 684.0, 500.0];
 /// Width and height of the page (px).
 const PAGE: [f64; 2] = [980.0, 560.0];
-/// Families that have the colour of the same place in all charts; others take those that are left.
+/// Families that have the same colour in all charts, by their place here; others take the colours that are
+/// left.
 const FAMILIES: [&str; 8] =
     ["cvode-bdf", "cvode-adams", "rk", "ida", "arkode", "central-difference", "auto", "rosenbrock"];
 const GRID: &str = "#dddddd";
@@ -199,7 +200,7 @@ fn colours<'a>(families: impl Iterator<Item = &'a str> + Clone) -> BTreeMap<&'a 
     colours
 }
 
-/// Name of a line, with its stroke, beside the field.
+/// Name of a line, with its stroke, next to the field.
 fn key(line: &LineFindings, style: &Style, y: f64) -> Group {
     let left = FIELD[2] + 20.0;
     let group = Group::new()
@@ -224,7 +225,8 @@ mod tests {
     use super::*;
     use crate::scene::settings::Method;
 
-    /// As long as there are colours, no two families share one, whichever comes first, and methods keep theirs.
+    /// As long as there are colours, no two families share one, whichever comes first, and methods keep
+    /// theirs.
     #[test]
     fn families_have_colours_of_their_own() {
         let is_family = |method: &Method| !matches!(method, Method::IdaKlu | Method::IdaIndexTwo);

@@ -14,7 +14,7 @@ impl Findings {
         Fastest::of(self)
     }
 
-    /// Writes who is the fastest, and the notes, to a Markdown file.
+    /// Writes which lines are the fastest, and the notes, to a Markdown file.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.
@@ -26,15 +26,15 @@ impl Findings {
     }
 }
 
-/// For each decade of error from 1e-1 to 1e-7 the line that reaches it in the least time, and how
-/// much longer the others take. Its text is a table; [`markdown`](Self::markdown) another.
+/// For each decade of error from 1e-1 to 1e-7 the line that reaches it in the least time, and how much longer
+/// the others take. Its `Display` is a plain table, [`markdown`](Self::markdown) one in Markdown.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fastest {
     /// From rough to fine.
     pub accuracies: Vec<Accuracy>,
 }
 
-/// Who reaches an accuracy.
+/// The lines that reach an accuracy, and those that do not.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Accuracy {
     /// Relative error.

@@ -56,8 +56,8 @@ impl Findings {
         self.is_processor_time
     }
 
-    /// These findings and the lines of others, in one table and chart: of the same problem against a
-    /// reference of its own, say.
+    /// These findings and the lines of others, in one table and chart: for example of the same problem
+    /// against a reference of its own.
     #[must_use]
     pub fn and(mut self, others: Self) -> Self {
         self.lines.extend(others.lines);

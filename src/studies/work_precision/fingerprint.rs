@@ -19,7 +19,7 @@ pub(super) fn of_scene(scene: &Scene) -> u64 {
     hasher.finish()
 }
 
-/// A hash of `text` upon others.
+/// A hash of `text` and of other hashes.
 pub(super) fn of_text(text: fmt::Arguments<'_>, others: &[u64]) -> u64 {
     let mut hasher = DefaultHasher::new();
     add_text(&mut hasher, text);

@@ -1,4 +1,4 @@
-//! Systems of equations as problems, by the general integrators.
+//! Systems of equations as problems of a study, solved by the general integrators.
 
 use std::time::{Duration, Instant};
 
@@ -16,7 +16,8 @@ use crate::integrators::sundials::{
 /// A system of equations with a trusted end state, solved by the integrators of
 /// [`sundials`](crate::integrators::sundials) and [`rk`], or by those of others, tolerance by tolerance.
 ///
-/// The error is relative, component by component; so absolute tolerances are the relative one times the end state.
+/// The error is relative, component by component; so absolute tolerances are the relative one times the end
+/// state.
 ///
 /// ```
 /// use pliant::study::{General, Study};
@@ -89,8 +90,8 @@ pub struct EndState {
 }
 
 impl General {
-    /// A problem from t = 0 to `end`, where its state is `y`, up to a relative error of `resolution`. No lines yet;
-    /// tolerances of 1e-2 to 1e-10.
+    /// A problem from t = 0 to `end`, where its state is `y`, up to a relative error of `resolution`. No
+    /// lines yet; tolerances of 1e-2 to 1e-10.
     pub fn new(
         title: impl Into<String>,
         end: f64,
@@ -100,8 +101,8 @@ impl General {
         Self::of(title.into(), end, Truth::Known(y.into(), resolution))
     }
 
-    /// A problem whose end state is that of two of its lines, at a tolerance of 1e-12; the difference between them
-    /// counts as its error. `scale` tells about how large its components are.
+    /// A problem whose end state is that of two of its lines, at a tolerance of 1e-12; the difference between
+    /// them counts as its error. `scale` gives the approximate size of its components.
     pub fn agreed(
         title: impl Into<String>,
         end: f64,
@@ -124,7 +125,7 @@ impl General {
         self
     }
 
-    /// Adds a line, which `way` solves: by an integrator of this crate, [`Goal::reach`], or whatever else.
+    /// Adds a line, which `way` solves: by an integrator of this crate, [`Goal::reach`], or in any other way.
     #[must_use]
     pub fn line(
         mut self,
@@ -138,8 +139,8 @@ impl General {
         self
     }
 
-    /// Adds the lines of all methods for an ODE that starts from `y0`, with this solver of their linear systems: dense
-    /// or of band form.
+    /// Adds the lines of all methods for an ODE that starts from `y0`, with this solver of their linear
+    /// systems: dense or of band form.
     #[must_use]
     pub fn methods<S: Ode + Clone + 'static>(
         self,
@@ -271,7 +272,7 @@ impl Goal<'_> {
     /// Integrates to the end.
     ///
     /// # Errors
-    /// Those of the integrator; that the time is spent.
+    /// Those of the integrator; a run that has spent its time.
     pub fn reach(&self, mut integrator: impl Integrator) -> Result<EndState, Failed> {
         let (mut budget, end) = (Budget::new(self.limit), self.t);
         integrator.set_stop_time(Some(end))?;
@@ -329,7 +330,7 @@ impl Problem for General {
             Ok::<_, Error>(reached.y)
         };
         let (truth, other) = (end(&names[0])?, end(&names[1])?);
-        // differences of less are round-off by chance
+        // smaller differences are round-off
         let resolution = errors(&other, &truth).fold(REFERENCE, f64::max);
         self.truth = Truth::Known(truth, resolution);
         Ok(resolution)

@@ -1,4 +1,4 @@
-//! A first look at a scene: a coarse run, and what it tells of the model.
+//! A first look at a scene: a coarse run, and what it shows about the model.
 
 use std::fmt;
 use std::ops::ControlFlow;
@@ -14,7 +14,7 @@ use crate::io::output::OfIndicator;
 use crate::scene::settings::{Method, Settings};
 use crate::scene::timeline::Scene;
 
-/// What a coarse run of a scene tells: whether its motion can be trusted, and whether less would do.
+/// What a coarse run of a scene shows: whether its motion can be trusted, and whether less would do.
 ///
 /// ```
 /// use pliant::study::Look;
@@ -42,12 +42,13 @@ impl Look {
     /// Wall-clock time (s) that is enough for most scenes.
     pub const SECONDS: f64 = 2.0;
 
-    /// Runs the scene as it is written, by [`Method::Auto`] and a relative tolerance of 1e-2, for `seconds` of wall-clock
-    /// time at most (and until the step is done that is taken then), and measures all that
-    /// [`Trajectory::indicators`](crate::Trajectory::indicators) measure. A run that ends early counts as far as it came.
+    /// Runs the scene as it is written, by [`Method::Auto`] and a relative tolerance of 1e-2, for `seconds`
+    /// of wall-clock time at most (and until the step then in progress is done), and measures all that
+    /// [`Trajectory::indicators`](crate::Trajectory::indicators) measure. A run that ends early counts as far
+    /// as it came.
     ///
     /// # Errors
-    /// Bad input; whatever else than a run that ends early.
+    /// Bad input; all failures except a run that ends early.
     pub fn of(scene: &Scene, settings: &Settings, seconds: f64) -> Result<Self, Error> {
         positive("seconds", seconds, "s")?;
         settings.validate()?;

@@ -14,34 +14,43 @@ use crate::integrators::ode::Failure;
 use crate::scene::timeline::Scene;
 
 impl MeshEstimate {
-    /// Estimates by how much a `quantity` of an equilibrium is off because its mesh is not finer, by the method of dual-weighted residuals
-    /// (R. Becker, R. Rannacher, *An optimal control approach to a posteriori error estimation in finite element methods*, Acta Numerica 10,
-    /// 2001), at the price of one linear problem on a richer mesh.
+    /// Estimates by how much a `quantity` of an equilibrium is off because its mesh is not finer.
     ///
-    /// The displacements u are moved to [quadratic cells](Scene::quadratic), or to the [halved mesh](Scene::halved) if they are
-    /// quadratic or there are none, by their shape functions. There forces f(u) are left unbalanced, and what they do to the quantity J
-    /// is told by the dual solution z, its derivative with respect to forces:
+    /// The method is that of dual-weighted residuals (R. Becker, R. Rannacher, *An optimal control approach
+    /// to a posteriori error estimation in finite element methods*, Acta Numerica 10, 2001); it costs one
+    /// linear problem on a richer mesh.
+    ///
+    /// The displacements u are interpolated by their shape functions to [quadratic cells](Scene::quadratic),
+    /// or to the [halved mesh](Scene::halved) if the cells are quadratic already or have no quadratic kind.
+    /// There forces f(u) are left unbalanced; their effect on the quantity J is given by the dual solution z,
+    /// the derivative of J with respect to forces:
     ///
     /// ```text
     /// K^T z = dJ/du,   J(richer) - J = z . f(u) + O(|u(richer) - u|^2)
     /// ```
     ///
-    /// with the tangent K at u; constraints and quantities that are constraint forces take their part. Where meshes are nested and
-    /// integrated exactly (Cauchy strain, but for distorted quadrilaterals and hexahedra) the part of z that the first mesh has meets
-    /// no unbalanced force (Galerkin orthogonality), and `cells` add up to the correction.
+    /// with the tangent K at u; constraints, and quantities that are constraint forces, add their terms.
+    /// Where meshes are nested and integrated exactly (Cauchy strain, but for distorted quadrilaterals and
+    /// hexahedra) the part of z that the first mesh can represent is orthogonal to the unbalanced forces
+    /// (Galerkin orthogonality), and `cells` add up to the correction.
     ///
-    /// In all, z . f is what the first step of Newton's method on the richer mesh makes of J, by one factorization: in a linear
-    /// problem all there is, under Green's strain in place of some 15. What is missing is the error of the richer mesh: of clamped beams
-    /// of linear triangles and tetrahedra the correction was 0.92 to 1 of the true error, of halved quadratic
-    /// triangles 0.7 (the clamped corners are singular), of hexahedra 0.89 to 0.97. Forces
-    /// on single nodes have no limit on finer meshes, and their own place is no quantity.
+    /// In all, z . f is the change of J by the first step of Newton's method on the richer mesh, by one
+    /// factorization: in a linear problem this is the whole change, under Green's strain it takes the place
+    /// of some 15 factorizations. What is missing is the error of the richer mesh: for clamped beams of
+    /// linear triangles and tetrahedra the correction was 0.92 to 1 times the true error, for halved
+    /// quadratic triangles 0.7 (the clamped corners are singular), for hexahedra 0.89 to 0.97. Displacements
+    /// under forces on single nodes have no limit on finer meshes: the position of such a node is not a
+    /// suitable quantity.
     ///
-    /// Under Green's strain the remainder is large if a body bends far on a mesh that is much too stiff. Its leading part is
-    /// `remainder`, and the estimate [reliable](Self::is_reliable) if that is no larger than the correction: then it was 0.96 to 1.09 of
-    /// the difference to the equilibrium on the richer mesh. Where it was not, on beams too stiff by 10 to 60 %, it was 1.07 to 1.42 of
-    /// that; less than a tenth on one bent by half its length whose triangles lock, too.
+    /// Under Green's strain the remainder is large if a body bends far on a mesh that is much too stiff. Its
+    /// leading part is `remainder`, and the estimate is [reliable](Self::is_reliable) if that is no larger
+    /// than the correction: then the correction was 0.96 to 1.09 times the difference to the equilibrium on
+    /// the richer mesh. Where the estimate was not reliable, on beams too stiff by 10 to 60 %, the correction
+    /// was 1.07 to 1.42 times that difference; it was less than a tenth on a beam bent by half its length
+    /// whose triangles also lock.
     ///
-    /// All smooth forces are covered. Contact stays with the nodes that touch at u: what comes into contact on the richer mesh is not seen.
+    /// All smooth forces are covered. Contact stays with the nodes that touch at u: what comes into contact
+    /// on the richer mesh is not seen.
     ///
     /// | quantity | on the richer mesh |
     /// | --- | --- |
@@ -65,7 +74,8 @@ impl MeshEstimate {
     /// ```
     ///
     /// # Errors
-    /// As [`check`](Self::check); a body that nothing holds; an equilibrium on the verge of stability, the tangent of which cannot be inverted.
+    /// As [`check`](Self::check); a body that nothing holds; an equilibrium on the verge of stability, the
+    /// tangent of which cannot be inverted.
     pub fn of(equilibrium: &Equilibrium, quantity: &Quantity) -> Result<Self, Error> {
         let clock = Instant::now();
         let trajectory = equilibrium.trajectory();
@@ -115,7 +125,7 @@ impl MeshEstimate {
         rest.lacking(1.0, &u, &mut lacking);
         let weighted = |f: &[f64], lacking: &[f64]| dot(&z, f) - dot(&nu, lacking);
         let value = reading.at(scene, sample)?;
-        // constraint forces come out whole, and not as a change
+        // for constraint forces this is the whole force, not a change
         let is_force = by_multipliers.iter().any(|derivative| *derivative != 0.0);
         let correction =
             weighted(&balance.total, &lacking) - if is_force { value } else { value - there };
@@ -147,15 +157,16 @@ impl MeshEstimate {
     /// Checks that the error of a `quantity` can be estimated on equilibria of `scene`, before there is one.
     ///
     /// # Errors
-    /// A quantity that is no single number, or none of the table above; a scene that cannot be on a finer mesh.
+    /// A quantity that is no single number, or none of the table above; a scene that cannot be on a finer
+    /// mesh.
     pub fn check(scene: &Scene, quantity: &Quantity) -> Result<(), InputError> {
         quantity.of_equilibrium(scene)?;
         scene.enriched().map(|_| ())
     }
 }
 
-/// What the new nodes contribute to z . f, cell by cell of the first mesh: that of their forces `f` for the part of `z` that
-/// the first mesh does not have, in equal parts for the cells around a node.
+/// What the new nodes contribute to z . f, cell by cell of the first mesh: their forces `f` times the part of
+/// `z` that the first mesh does not have, in equal parts for the cells around a node.
 fn contributions(richer: &Scene, finer: &Finer, z: &[f64], f: &[f64]) -> Vec<f64> {
     let d = richer.body().dimension();
     let old = finer.new_nodes().start;

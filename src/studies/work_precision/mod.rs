@@ -20,28 +20,27 @@
 //! ```
 //!
 //! **Error.** That of a scene is the distance of its nodes from where the reference has them, root mean
-//! square over nodes and over 101 times from start to end, relative to the motion: the root mean
-//! square displacement of the same nodes at the same times in the reference. One number thus counts
-//! all of the motion and not one instant, and means the same for large and small bodies. Motion
-//! below a millionth of the body's size counts as that large. Where meshes differ, the nodes are
-//! those that all of them share. The error of a general problem is relative, component by component,
-//! at its end. Beside the mean the table has the largest value.
+//! square over nodes and over 101 times from start to end, relative to the motion: the root mean square
+//! displacement of the same nodes at the same times in the reference. One number thus covers the whole motion
+//! and not one instant, and means the same for large and small bodies. Motion below a millionth of the body's
+//! size counts as that large. Where meshes differ, the nodes are those that all of them share. The error of a
+//! general problem is relative, component by component, at its end. In addition to the mean, the table has
+//! the largest value.
 //!
-//! **Reference.** It is computed by the two fastest of four methods (Adams, BDF, implicit
-//! and explicit Runge-Kutta), at tolerances that are tightened until both agree to a thirtieth of the least error
-//! to be measured, or agree no better. The distance between them is the *resolution* of the
-//! reference: errors below ten times that are marked as not sure, and lines are not
-//! ranked at accuracies below it.
+//! **Reference.** It is computed by the two fastest of four methods (Adams, BDF, implicit and explicit
+//! Runge-Kutta), at tolerances that are tightened until both agree to a thirtieth of the least error to be
+//! measured, or agree no better. The distance between them is the *resolution* of the reference: errors below
+//! ten times that are marked as not sure, and lines are not ranked at accuracies below it.
 //!
-//! **Time.** Wall-clock time of the whole solution, from the call to the end of the last
-//! phase, without samples: the median of some repetitions (a run of more than half a second is
-//! run once). Runs never overlap. Before and after each of them a fixed piece of arithmetic is timed,
-//! the yardstick: where it takes longer than it did at its best, the machine was busy with other
-//! things, and the row says by how much. Rows have processor times, too, which suffer less.
+//! **Time.** Wall-clock time of the whole solution, from the call to the end of the last phase, without
+//! samples: the median of some repetitions (a run of more than half a second is run once). Runs never
+//! overlap. Before and after each of them a fixed piece of arithmetic is timed, the yardstick: where it takes
+//! longer than it did at its best, the machine was busy with other things, and the row says by how much. Rows
+//! have processor times, too, which are disturbed less.
 //!
-//! **Failures** are results. A run that gives up, or that is given up because it takes more than
-//! twenty times as long as the fastest at the same tolerance, is a row with its reason. Each row has the error of the energy
-//! balance, which shows most answers that are wrong and do not say so.
+//! **Failures** are results. A run that gives up, or that is given up because it takes more than twenty times
+//! as long as the fastest at the same tolerance, is a row with its reason. Each row has the error of the
+//! energy balance, which shows most answers that are wrong and do not say so.
 
 mod advise;
 mod chart;
@@ -139,7 +138,7 @@ pub struct Measured {
     pub error: f64,
     /// Relative error, largest.
     pub largest_error: f64,
-    /// Time of this run (s), which may count more than [`Problem::time`].
+    /// Time of this run (s), which may include more than [`Problem::time`].
     pub seconds: f64,
     /// Unknowns.
     pub states: usize,

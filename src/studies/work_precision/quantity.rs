@@ -1,4 +1,4 @@
-//! What is asked of a motion, and what an error in it is relative to.
+//! Quantities of interest of a motion, and what their errors are relative to.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -11,7 +11,7 @@ use crate::dynamics::simulate::{Component, Reading, Sampling};
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::scene::timeline::Scene;
 
-/// What is asked of a motion: the whole of it, or a number that follows from it.
+/// A quantity of interest: the whole motion, or a number that follows from it.
 ///
 /// | quantity | an error of 1 % is |
 /// | --- | --- |
@@ -29,7 +29,7 @@ pub struct Quantity {
     part: Part,
 }
 
-/// What counts of a reading over time.
+/// Which part of a reading over time counts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Part {
@@ -49,7 +49,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// All but the first, with the words behind a colon that name them.
+    /// All but the first, with the words after a colon that name them.
     const WORDS: [(&'static str, Self); 5] = [
         ("end", Self::End),
         ("max", Self::Largest),
@@ -70,22 +70,22 @@ impl Quantity {
         Self::default()
     }
 
-    /// What `reading` reads over time, by a name for messages.
+    /// What `reading` reads over time, with a name for messages.
     pub fn reading(name: impl Into<String>, reading: Reading) -> Self {
         Self { name: name.into(), reading: Some(reading), part: Part::OverTime }
     }
 
-    /// A part of it alone.
+    /// Only this part of it.
     #[must_use]
     pub fn part(mut self, part: Part) -> Self {
         self.part = part;
         self
     }
 
-    /// The quantity that a text names: `motion`; the name of one of the `sensors`, or of one of its components
-    /// (`tip.y`); a set of nodes and an axis, `tip.y`, which is their position; `com` or `com.y`, the centre of mass;
-    /// `rotation`, the angle by which a body in the plane has turned. After a colon the part that counts: `tip.y:end`, `max`,
-    /// `min`, `frequency`, `damping`; without, all times count.
+    /// The quantity that a text names: `motion`; the name of one of the `sensors`, or of one of its
+    /// components (`tip.y`); a set of nodes and an axis, `tip.y`, which is their position; `com` or `com.y`,
+    /// the centre of mass; `rotation`, the angle by which a body in the plane has turned. After a colon the
+    /// part that counts: `tip.y:end`, `max`, `min`, `frequency`, `damping`; without, all times count.
     ///
     /// # Errors
     /// A text that names nothing in `scene`.
@@ -118,7 +118,7 @@ impl Quantity {
     }
 
     /// # Errors
-    /// A reading that `scene` does not have, or one of which a part is asked though it has several components.
+    /// A reading that `scene` does not have, or a part of one that has several components.
     pub(super) fn check(&self, scene: &Scene) -> Result<(), InputError> {
         if self.columns(scene)? > 1 && !self.is_over_time() {
             let help = "it has several components: choose one, as in tip.y:end";
@@ -127,10 +127,11 @@ impl Quantity {
         Ok(())
     }
 
-    /// The reading of which the error of the mesh can be estimated.
+    /// The reading, if the error of the mesh can be estimated for it.
     ///
     /// # Errors
-    /// Anything else: a motion, a part that equilibria do not have, several components, a reading without a known derivative.
+    /// Anything else: a motion, a part that equilibria do not have, several components, a reading without a
+    /// known derivative.
     pub(super) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
         let refused =
             |help: &str| InputError::new("quantity of an equilibrium", format!("\"{self}\""), help);
@@ -153,7 +154,7 @@ impl Quantity {
         Ok(reading)
     }
 
-    /// What it is in an equilibrium, beside what it is [seen](Self::seen) at the end of a motion.
+    /// Its value in an equilibrium, to be compared with what is [seen](Self::seen) at the end of a motion.
     ///
     /// # Errors
     /// As [`of_equilibrium`](Self::of_equilibrium).
@@ -165,12 +166,12 @@ impl Quantity {
         Ok(Seen { dimension: 1, values: vec![vec![value]], scale: change.abs() })
     }
 
-    /// Whether it is what an equilibrium may give: a number at the end.
+    /// Whether an equilibrium may give it: whether it is a number at the end.
     pub(super) fn is_at_end(&self) -> bool {
         self.part == Part::End
     }
 
-    /// Has it read beside what `sampling` reads.
+    /// Reads it in addition to what `sampling` reads.
     pub(super) fn read_by(&self, sampling: Sampling) -> Sampling {
         match &self.reading {
             Some(reading) if self.is_peak() => {
@@ -181,7 +182,7 @@ impl Quantity {
         }
     }
 
-    /// How many numbers a sample has of it that stand behind those of other sensors; none of the whole motion.
+    /// How many numbers a sample has of it, after those of other sensors; 0 for the whole motion.
     pub(super) fn columns(&self, scene: &Scene) -> Result<usize, InputError> {
         match &self.reading {
             Some(_) => self.read_by(Sampling::phase_ends()).columns(scene).map(|own| own.len()),
@@ -189,8 +190,8 @@ impl Quantity {
         }
     }
 
-    /// What it is in a trajectory that was sampled [by it](Self::read_by), at the samples that `is_asked` passes. Of
-    /// the whole motion the `nodes` (from 0) count.
+    /// Its values in a trajectory that was sampled [for it](Self::read_by), at the `samples`. For the whole
+    /// motion the `nodes` (from 0) count.
     pub(super) fn seen<'a>(
         &self,
         trajectory: &'a Trajectory,
@@ -327,7 +328,7 @@ fn reading(name: &str, scene: &Scene, sensors: &[(String, Reading)]) -> Option<R
     Some(of(stem)?.component(component))
 }
 
-/// What may be named.
+/// The names that are known, for messages.
 fn help(scene: &Scene, sensors: &[(String, Reading)]) -> String {
     let mut known: Vec<&str> = sensors.iter().map(|(name, _)| &name[..]).collect();
     known.extend(scene.body().mesh().sets().keys().map(String::as_str));
@@ -338,8 +339,9 @@ fn help(scene: &Scene, sensors: &[(String, Reading)]) -> String {
     )
 }
 
-/// Frequency (Hz) and damping ratio of a free vibration, from its turning points: their distances are half periods, and
-/// from one to the next the swing falls by exp(-pi zeta/sqrt(1 - zeta^2)). None with less than three of them.
+/// Frequency (Hz) and damping ratio of a free vibration, from its turning points: their distances are half
+/// periods, and from one to the next the swing falls by exp(-pi zeta/sqrt(1 - zeta^2)). None with fewer than
+/// three of them.
 fn swings(times: &[f64], values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let values: Vec<f64> = values.collect();
     let mut turns: Vec<[f64; 2]> = Vec::new();
@@ -411,7 +413,7 @@ impl Seen {
                 let parts = x.iter().enumerate();
                 let square: f64 = parts.map(|(i, x)| component(time, first + i, *x).powi(2)).sum();
                 sum += square;
-                // a number that is none is told
+                // NaN is kept: `max` would drop it
                 largest = if square.is_nan() { square } else { largest.max(square) };
                 count += 1;
             }
@@ -448,7 +450,7 @@ mod tests {
             let times: Vec<f64> = (0..=2000).map(|k| 1e-3 * f64::from(k)).collect();
             let decay = |t: &f64| 2.0 + (-zeta * omega * t).exp() * (6.0 * PI * t).cos();
             let (frequency, damping) = swings(&times, times.iter().map(decay)).unwrap();
-            // parabolas through three points in 330 of a period
+            // parabolas through three of about 330 points in a period
             assert!((frequency / 3.0 - 1.0).abs() < 1e-6, "{frequency}");
             assert!((damping - zeta).abs() < 1e-5, "{damping} {zeta}");
         }

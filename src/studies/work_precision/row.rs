@@ -23,13 +23,13 @@ pub struct Row {
     pub point: String,
     /// Relative tolerance.
     pub rtol: f64,
-    /// Relative error, root mean square. None for a run that failed, as for what follows from it.
+    /// Relative error, root mean square. None for a run that failed, as for the fields that depend on it.
     pub error: Option<f64>,
     /// Relative error, largest.
     pub largest_error: Option<f64>,
     /// Relative error that the reference may have itself.
     pub resolution: f64,
-    /// Time of the solution (s), median; of a run that failed the time until then.
+    /// Time of the solution (s), median; for a run that failed, the time until it failed.
     pub seconds: f64,
     /// Processor time of the solution (s), median.
     pub processor_seconds: Option<f64>,
@@ -69,7 +69,7 @@ impl Row {
         self.spread > NOISE || self.slowdown > 1.0 + NOISE
     }
 
-    /// Whether the error is well above what the reference may be wrong itself.
+    /// Whether the error is well above the error that the reference may have itself.
     #[must_use]
     pub fn is_resolved(&self) -> bool {
         self.error.is_some_and(|error| error >= RESOLVED * self.resolution)

@@ -23,7 +23,7 @@ pub struct Study<'a> {
 const LEAST_LIMIT: f64 = 1.0;
 /// More would be beyond the range of durations.
 const LONGEST_LIMIT: f64 = 1e9;
-/// Relative error from which on a run counts as wrong: its time is nothing to compare with.
+/// Relative error from which on a run counts as wrong: no other times are compared with its time.
 const WRONG: f64 = 1.0;
 
 /// How far a study has come.
@@ -77,10 +77,10 @@ impl<'a> Study<'a> {
         self
     }
 
-    /// A CSV file that keeps all rows. What it holds already is not run again, so that a study that
-    /// was stopped can be resumed; rows of other problems stay in it. It knows the version of this
-    /// library: after changes of the code within a version, or on another machine, begin a
-    /// new file.
+    /// A CSV file that keeps all rows. What it holds already is not run again, so that a study that was
+    /// stopped can be resumed; rows of other problems stay in it. Rows of scenes that another version of this
+    /// library has run are not used; after changes of the code within a version, or on another machine, begin
+    /// a new file.
     #[must_use]
     pub fn keep(mut self, file: impl Into<PathBuf>) -> Self {
         self.file = Some(file.into());

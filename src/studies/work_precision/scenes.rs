@@ -75,8 +75,8 @@ impl Scenes {
     }
 
     /// Rate of the constraint stabilization (1/s) in the reference, and in the lines that
-    /// [`all_methods`](Self::all_methods) adds from now on. It is a part of the model: lines with
-    /// another one move differently. Default: 1e3.
+    /// [`all_methods`](Self::all_methods) adds from now on. It is a part of the model: lines with another
+    /// alpha move differently. Default: 1e3.
     #[must_use]
     pub fn alpha(mut self, alpha: f64) -> Self {
         self.alpha = alpha;
@@ -146,8 +146,8 @@ impl Scenes {
         self
     }
 
-    /// Has the reference checked by another scene that should move alike, the same on a mesh half
-    /// as fine, say: its distance from the reference counts as resolution.
+    /// Checks the reference by another scene that should move alike, for example the same on a mesh half as
+    /// fine: its distance from the reference counts as resolution.
     #[must_use]
     pub fn checked_by(mut self, scene: Scene) -> Self {
         self.check = Some(self.add(scene));
@@ -218,10 +218,10 @@ impl Scenes {
     }
 }
 
-/// Name and settings of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up
-/// to 2 only, which suits motion that is hardly damped, and one that detects the stability limits
-/// of higher orders; for ARKODE one for each of the
-/// orders 3 and 5 beside 4, for Rosenbrock methods one for order 3.
+/// Name and settings of all methods: each of [`Method::ALL`]; for CVODE's BDF one more with orders up to 2
+/// only, which suits motion that is hardly damped, and one that detects the stability limits of higher
+/// orders; for ARKODE one for each of the orders 3 and 5 in addition to 4, for Rosenbrock methods one for
+/// order 3.
 #[must_use]
 pub fn all_methods() -> Vec<(String, Settings)> {
     let mut lines = Vec::new();

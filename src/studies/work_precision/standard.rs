@@ -14,7 +14,7 @@ const DENSE: LinearSolver = LinearSolver::Dense(Jacobian::Supplied);
 
 /// Standard problems.
 impl General {
-    /// HIRES: eight reactions, stiff but just so.
+    /// HIRES: eight reactions, mildly stiff.
     #[must_use]
     pub fn hires() -> Self {
         small("HIRES", &Hires::new(), &Hires::Y0, Hires::REFERENCE)

@@ -30,7 +30,7 @@ impl Yardstick {
     }
 }
 
-/// Time (s) of a million multiplications that wait for each other, some milliseconds.
+/// Time (s) of a million multiplications that depend on each other, some milliseconds.
 fn arithmetic() -> f64 {
     let clock = Instant::now();
     let mut x = 0.3;
@@ -46,7 +46,7 @@ fn arithmetic() -> f64 {
 pub(super) struct Time {
     /// Wall-clock time.
     pub(super) wall: f64,
-    /// Of the processor, which other programs do not count in.
+    /// Processor time, in which other programs do not count.
     pub(super) processor: f64,
 }
 
@@ -69,7 +69,7 @@ fn processor_time() -> f64 {
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
 
-/// The processor time that a run may take: others that use the machine do not use it up.
+/// The processor time that a run may take: other programs on the machine do not use it up.
 #[derive(Debug)]
 pub(super) struct Budget {
     start: f64,
@@ -87,8 +87,8 @@ impl Budget {
         processor_time() - self.start
     }
 
-    /// Whether too much was spent. To be asked after each step; looks at the clock now and then
-    /// only, as steps may be shorter than a look.
+    /// Whether too much was spent. To be asked after each step; reads the clock only now and then, as steps
+    /// may be shorter than a reading.
     pub(super) fn is_spent(&mut self) -> bool {
         self.asked += 1;
         self.asked.is_multiple_of(16) && self.spent() > self.limit

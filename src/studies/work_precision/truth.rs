@@ -20,14 +20,14 @@ const METHODS: [(Method, Option<u32>); 4] = [
     (Method::Arkode, Some(5)),
     (Method::Rk, None),
 ];
-/// No tolerance below: rounding errors rule there.
+/// No tolerance is below this: rounding errors dominate there.
 const LEAST_RTOL: f64 = 1e-13;
 
-/// What is looked at, and when.
+/// What is observed, and when.
 #[derive(Debug, Clone)]
 pub(super) struct Probe {
     quantity: Quantity,
-    /// Those that count of the whole motion, from 0.
+    /// The nodes that count for the whole motion, from 0.
     nodes: Vec<usize>,
     times: Vec<f64>,
 }
@@ -65,9 +65,9 @@ impl Probe {
         self.quantity.seen(trajectory, &self.nodes, self.samples(trajectory))
     }
 
-    /// The samples at the times of the probe: those of ends of phases are more.
+    /// The samples at the times of the probe, without further ones at ends of phases.
     fn samples<'a>(&self, trajectory: &'a Trajectory) -> impl Iterator<Item = &'a Sample> {
-        // phase ends within round-off of a time stand for it
+        // a phase end within round-off of a time replaces it
         let apart = 2e-9 * trajectory.last().time;
         let mut samples = trajectory.samples().iter().peekable();
         self.times.iter().filter_map(move |time| {
@@ -86,8 +86,8 @@ pub(super) struct Truth {
 }
 
 impl Truth {
-    /// Solves `scene` in two ways, more and more precisely until they agree to `target`. A
-    /// `check` is the same scene on a mesh half as fine, say: the distance to it counts, too.
+    /// Solves `scene` in two ways, more and more precisely until they agree to `target`. A `check` is, for
+    /// example, the same scene on a mesh half as fine: the distance to it counts, too.
     pub(super) fn find(
         scene: &Scene,
         probe: &Probe,
@@ -122,7 +122,7 @@ impl Truth {
                 true => Self::of(&first, &second),
                 false => Self::of(&second, &first),
             };
-            // Where rounding errors rule, the methods agree no better.
+            // Where rounding errors dominate, the methods agree no better.
             let gains = better.resolution < 0.5 * truth.resolution;
             if better.resolution < truth.resolution {
                 truth = better;
@@ -199,7 +199,7 @@ fn fastest_two(
 ) -> Result<[Way; 2], Error> {
     let (mut found, mut failures) = (Vec::<Way>::new(), Vec::new());
     for (method, max_order) in METHODS {
-        // nobody waits for the third
+        // a method that is slower than the second is not waited for
         let limit = found.get(1).map_or(limit, |second| second.time);
         let settings = Settings { method, max_order, ..settings.clone() };
         match Way::find(scene, probe, settings, limit, tell) {

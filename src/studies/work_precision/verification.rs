@@ -13,8 +13,9 @@ use crate::io::output::{DIFFERENCE, OF_SENSOR};
 use crate::scene::settings::{ContactEvents, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
-/// Runs a scene with tighter and tighter tolerances, until two runs agree in a [`Quantity`] to an accuracy: what a
-/// tolerance promises holds for each step alone, and small errors may grow in between.
+/// Runs a scene with tighter and tighter tolerances, until two runs agree in a [`Quantity`] to an accuracy.
+///
+/// A tolerance bounds the error of each step alone, and small errors may grow from step to step.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -46,27 +47,27 @@ pub struct Verification<'a> {
 #[derive(Debug)]
 struct TightenedRun {
     settings: Settings,
-    /// The samples that were asked for.
+    /// The samples that were requested.
     trajectory: Trajectory,
-    /// The times (s) at which it was looked at, and whether a sample of them was asked for.
+    /// The times (s) at which it is compared, and whether a sample was requested there.
     looks: Vec<(f64, bool)>,
-    /// The quantity that counts, and the displacements of all nodes, at each of them.
+    /// The quantity that counts, and the displacements of all nodes, at each of these times.
     asked: Seen,
     motion: Seen,
-    /// Columns of the sensors that were asked for.
+    /// Number of columns of the sensors that were requested.
     sensors: usize,
-    /// Whether another tolerance than the one before has not changed its steps.
+    /// Whether its steps hardly changed although its tolerance is tighter than the one before.
     is_bounded: bool,
 }
 
-/// A tolerance that has a run take less than so many times the steps of the one before is not what bounds them:
-/// stability is. Then the steps are bounded themselves, by half of what they were in the mean.
+/// If a tighter tolerance does not multiply the number of steps by this factor at least, stability bounds the
+/// steps, not the tolerance. Then the step size itself is bounded, by half of the mean step.
 const FINER: f64 = 1.3;
-/// Runs are compared at so many times at least, evenly spread: at few, they may agree by chance.
+/// Runs are compared at this many times at least, evenly spread: at few, they may agree by chance.
 const LOOKS: usize = 100;
 
 impl<'a> Verification<'a> {
-    /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
+    /// A verification of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
     pub fn new(scene: &'a Scene, accuracy: f64) -> Self {
         Self {
             scene,
@@ -79,15 +80,16 @@ impl<'a> Verification<'a> {
         }
     }
 
-    /// How the scene is integrated; `rtol` does not count. Contact events are located, unless they are asked to be stepped
-    /// over. Default: [`Settings::default`].
+    /// How the scene is integrated; `rtol` does not count. Contact events are located, unless `settings` have
+    /// them stepped over. Default: [`Settings::default`].
     #[must_use]
     pub fn settings(mut self, settings: Settings) -> Self {
         self.settings = settings;
         self
     }
 
-    /// When the motion is sampled. Runs are compared there, and at a hundred times in any case. Default: at those.
+    /// When the motion is sampled. Runs are compared there, and at a hundred times in any case. Default: at
+    /// those.
     #[must_use]
     pub fn sampling(mut self, sampling: Sampling) -> Self {
         self.sampling = sampling;
@@ -101,9 +103,10 @@ impl<'a> Verification<'a> {
         self
     }
 
-    /// Runs the scene once more, by a tolerance a tenth of the last one. Returns whether a further run may help: two
-    /// did not agree yet, and the tolerance can be tighter. `observer` looks on after each step, and stops the run by
-    /// [`ControlFlow::Break`].
+    /// Runs the scene once more, with a tenth of the last tolerance.
+    ///
+    /// Returns whether a further run may help: two did not agree yet, and the tolerance can be tighter.
+    /// `observer` is called after each step, and stops the run by [`ControlFlow::Break`].
     ///
     /// # Errors
     /// Bad input; [`Error::Integration`] if the run ends early. What earlier runs have found stays.
@@ -139,14 +142,14 @@ impl<'a> Verification<'a> {
         Ok(difference.is_none_or(|difference| difference > self.accuracy) && !is_tightest)
     }
 
-    /// The motion of the tightest run, if there was one. Behind its sensors it has the column `difference` (m), the root
-    /// mean square distance of its nodes from the run before at each sample, and for each sensor `<sensor>.difference`;
-    /// its report says what was [achieved](crate::Report::achieved).
+    /// The motion of the tightest run, if there was one. After its sensors it has the column `difference`
+    /// (m), the root mean square distance of its nodes from the run before at each sample, and for each
+    /// sensor `<sensor>.difference`; its report says what was [achieved](crate::Report::achieved).
     pub fn into_trajectory(self) -> Option<Trajectory> {
         self.last.map(|run| run.trajectory)
     }
 
-    /// As [`into_trajectory`](Self::into_trajectory), as far as it has come.
+    /// As [`into_trajectory`](Self::into_trajectory), of the runs so far.
     pub fn trajectory(&self) -> Option<&Trajectory> {
         self.last.as_ref().map(|run| &run.trajectory)
     }
@@ -187,7 +190,7 @@ impl<'a> Verification<'a> {
         settings
     }
 
-    /// Puts what a run differs by from the one before into its trajectory. Gives the relative difference.
+    /// Adds the differences of a run from the one before to its trajectory. Returns the relative difference.
     fn compare(&self, before: &TightenedRun, run: &mut TightenedRun) -> f64 {
         let scale = run.asked.scale;
         let difference = run.asked.error(&before.asked).mean;

@@ -12,13 +12,13 @@ const PERCENTILE: f64 = 0.99;
 pub(super) struct Quantity {
     name: &'static str,
     unit: &'static str,
-    /// Whether its scale of colours goes from the largest value with the other sign to the largest one, and not from 0.
+    /// Whether its scale of colours is symmetric about 0, instead of beginning at 0.
     signed: bool,
-    /// How it is found, strains being measured as the body's are.
+    /// How it is computed, with the body's measure of strain.
     pub(super) value: fn(&CellField, Strain) -> f64,
 }
 
-/// Those of which Cauchy's strain knows nothing, the stretches, come last.
+/// The stretches, which are not shown with Cauchy's strain, come last.
 static QUANTITIES: [Quantity; 5] = [
     Quantity {
         name: "Von Mises stress",
@@ -56,12 +56,12 @@ impl Quantity {
         }
     }
 
-    /// What a page has to know of it beside its values.
+    /// What a page has to know of it in addition to its values.
     pub(super) fn to_json(&self) -> Value {
         json!({ "name": self.name, "unit": self.unit, "signed": self.signed })
     }
 
-    /// `values` for a page, the end of their scale, and the largest size of them.
+    /// `values` for a page, the end of their scale, and the largest absolute value.
     pub(super) fn packed(&self, values: &[f32]) -> (Value, f64, f64) {
         let (scale, peak) = scale(values);
         let from = if self.signed { -scale } else { 0.0 };
@@ -69,7 +69,7 @@ impl Quantity {
     }
 }
 
-/// The end of the scale for the sizes of `values`, a round number, and the largest of them.
+/// The end of the scale for the absolute values of `values`, a round number, and the largest of them.
 fn scale(values: &[f32]) -> (f64, f64) {
     let mut values: Vec<f32> = values.iter().map(|value| value.abs()).collect();
     let peak: f64 = values.iter().copied().fold(0.0, f32::max).into();
@@ -81,7 +81,7 @@ fn scale(values: &[f32]) -> (f64, f64) {
     (round_up(if robust > 0.0 { robust } else { peak }), peak)
 }
 
-/// The next number with one digit, or two where one is too coarse.
+/// The next larger number with one digit, or two where one is too coarse.
 fn round_up(x: f64) -> f64 {
     if x <= 0.0 {
         return 0.0;

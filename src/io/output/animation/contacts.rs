@@ -9,8 +9,8 @@ use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::io::output::svg::displaced;
 
-/// Of each obstacle that touches the body in one of `frames`, sample by sample: the resultant of its forces (N), and its
-/// centre of pressure (m), the mean position of the nodes weighted by the sizes of their forces.
+/// Of each obstacle that touches the body in one of `frames`, sample by sample: the resultant of its forces
+/// (N), and its centre of pressure (m), the mean position of the nodes weighted by the sizes of their forces.
 pub(super) fn resultants(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Error> {
     let scene = trajectory.scene();
     let d = scene.body().dimension();

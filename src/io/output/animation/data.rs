@@ -19,12 +19,12 @@ use crate::io::output::svg::{View, displaced, positions};
 use crate::scene::forces::{Joint, Obstacle, Shape, ShapeKind};
 use crate::scene::timeline::{Phase, Scene};
 
-/// Samples that a page holds at most, and the bytes that they may take together before encoding;
-/// but so many are always kept.
+/// Most samples that a page holds, the bytes that they may take together before encoding, and the number of
+/// samples that is always kept.
 const MOST_FRAMES: usize = 800;
 const MOST_BYTES: usize = 1_400_000;
 const FEW_FRAMES: usize = 60;
-/// How near the drawn path of an obstacle is to its formula, in sizes of the body.
+/// How far the drawn path of an obstacle may be from its formula, in sizes of the body.
 const FOLLOWED: f64 = 1e-3;
 
 /// Everything that the page shows of a motion.
@@ -56,7 +56,7 @@ pub(super) fn gather(trajectory: &Trajectory, name: &str) -> Result<Value, Error
     }))
 }
 
-/// As many of the samples as a page can hold, evenly spread over their order.
+/// As many of the samples as a page can hold, evenly spaced by their numbers.
 fn thinned(samples: &[Sample], bytes_per_frame: usize) -> Vec<&Sample> {
     let most = (MOST_BYTES / bytes_per_frame).clamp(FEW_FRAMES, MOST_FRAMES);
     let frames = most.min(samples.len());
@@ -117,8 +117,8 @@ pub(super) fn phases(scene: &Scene, geometry: &Geometry) -> Result<Value, Error>
     phases.map(|phase| self::phase(scene, phase, phase.end(), geometry)).collect()
 }
 
-/// As [`phases`], where commands have changed them cut into stretches that hold and move the same nodes; likewise where
-/// frames begin in a later phase, as those of its equilibrium do.
+/// As [`phases`], but cut into stretches that hold and move the same nodes where commands have changed the
+/// phases, or where frames begin in a later phase, as those of its equilibrium do.
 fn phases_in_force(
     trajectory: &Trajectory,
     frames: &[&Sample],
@@ -181,7 +181,7 @@ fn energies(frames: &[&Sample]) -> Value {
     packed.collect()
 }
 
-/// What the sensors have read; what is no number stays none.
+/// What the sensors have read; NaN stays NaN.
 fn sensors(trajectory: &Trajectory, frames: &[&Sample]) -> Value {
     let sensors = trajectory.sensors().iter().enumerate();
     let packed = sensors.map(|(number, sensor)| {
@@ -225,8 +225,8 @@ fn obstacles_in(trajectory: &Trajectory, frames: &[&Sample]) -> Result<Value, Er
     Ok(shapes.into())
 }
 
-/// How an obstacle moves from time `since` (s) on: where it would have been at t = 0, from where it was said to
-/// be, and its velocity; or its path, on top of `start`: cubics between the points that have these velocities.
+/// How an obstacle moves from time `since` (s) on: `start`, its offset at t = 0 from its place in the scene,
+/// and its velocity; or its path, on top of `start`: cubics between points with given velocities.
 fn course(scene: &Scene, obstacle: &Obstacle, since: f64) -> Value {
     let dimension = scene.body().dimension();
     let [start, velocity] =
@@ -270,7 +270,7 @@ fn add_shape(shape: &Shape, courses: &Value, shapes: &mut Vec<Value>) {
         ShapeKind::Union(parts) => {
             parts.iter().for_each(|part| add_shape(part, courses, shapes));
         }
-        // a function of one's own has no outline
+        // a user's own function has no outline
         ShapeKind::Custom(_) => {}
     }
 }
@@ -309,7 +309,7 @@ pub(super) fn point_masses(mesh: &Mesh) -> Vec<usize> {
     (0..mesh.node_count()).filter(|&node| !in_cell[node]).collect()
 }
 
-/// What the computation was.
+/// How the motion was computed.
 fn run(trajectory: &Trajectory) -> Value {
     let (report, mesh) = (trajectory.report(), trajectory.body().mesh());
     json!({

@@ -28,8 +28,8 @@ pub(super) struct Geometry {
 }
 
 impl Geometry {
-    /// What is drawn of `mesh`: of a solid its surface, of other bodies all cells, and besides what springs are
-    /// joined to and the nodes `points`.
+    /// What is drawn of `mesh`: of a solid its surface, of other bodies all cells, and in addition what
+    /// springs are joined to and the nodes `points`.
     pub(super) fn new(
         mesh: &Mesh,
         joints: impl Iterator<Item = Joint> + Clone,

@@ -1,4 +1,4 @@
-//! A motion as it happens, for pages that show it with the means of the animation.
+//! A motion while it is computed, for pages that draw it with the scripts of the animation.
 
 use serde_json::{Value, json};
 
@@ -32,7 +32,7 @@ pub(crate) struct Picture {
 }
 
 impl Picture {
-    /// What is drawn of `scene`, and all that stays as it is.
+    /// What is drawn of `scene`, and all data that do not change.
     ///
     /// # Errors
     /// Springs or constraints on nodes that do not exist.
@@ -92,8 +92,8 @@ impl Picture {
         pack::singles(numbers)
     }
 
-    /// The values of a quantity in the cell of each face, and the end of their scale; none for a number that no
-    /// quantity has.
+    /// The values of a quantity in the cell of each face, and the end of their scale; `None` for a number
+    /// that no quantity has.
     pub(crate) fn colours(&self, body: &Body, u: &[f64], quantity: usize) -> Option<Value> {
         let shown = Quantity::all(body.strain()).get(quantity)?;
         let fields = body.cell_fields(u);
@@ -109,7 +109,7 @@ impl Picture {
     }
 }
 
-/// The energies that a scene has not, by name.
+/// The energies that a scene does not have, by name.
 fn absent(scene: &Scene) -> Vec<&'static str> {
     let has = [
         ("gravity", scene.phases().iter().any(|phase| scene.gravity_in(phase).is_some())),

@@ -55,21 +55,22 @@ const OF_EACH: &str = concat!(
 /// What stands before and after the data of a page.
 const DATA: [&str; 2] = ["<script type=\"application/json\" id=\"data\">", "</script>"];
 
-/// Writes the motion as one HTML file that a web browser plays, without a network: the body
-/// coloured by stress or strain energy density, obstacles, springs (coloured while an actuator
-/// pulls or pushes), point masses, held and moved nodes, forces of obstacles as arrows; below it the energies and what
-/// sensors have read over time, and how the motion was computed, with the warnings of the report. The shown frame can
-/// be saved as PNG or SVG. `title` is its heading. Obstacles that are given by a function are not drawn.
+/// Writes the motion as one HTML file that a web browser plays, without a network.
 ///
-/// Between samples the page interpolates linearly. Of long runs it holds a part of the samples,
-/// evenly spread over their order: a few hundred at most, for a file of about 2 MB at most unless
-/// the mesh is very fine. It says so. Positions are kept to 1/65535 of the extent of the motion,
-/// values of cells to 1/255 of their scale; the scale ends at the 99th percentile of all cells and
-/// times.
+/// It shows the body coloured by stress or strain energy density, obstacles, springs (coloured while an
+/// actuator pulls or pushes), point masses, held and moved nodes, forces of obstacles as arrows; below it the
+/// energies and what sensors have read over time, and how the motion was computed, with the warnings of the
+/// report. The shown frame can be saved as PNG or SVG. `title` is its heading. Obstacles that are given by a
+/// function are not drawn.
+///
+/// Between samples the page interpolates linearly. Of long runs it holds a part of the samples, evenly spread
+/// over their order: a few hundred at most, for a file of about 2 MB at most unless the mesh is very fine.
+/// The page says so. Positions are kept to 1/65535 of the extent of the motion, values of cells to 1/255 of
+/// their scale; the scale ends at the 99th percentile of all cells and times.
 ///
 /// # Errors
-/// [`Error::Output`] if the file cannot be written; [`Error::Input`] if a distance function of one's own has no meaning
-/// any more where the body was, so that the forces of its obstacle are not known.
+/// [`Error::Output`] if the file cannot be written; [`Error::Input`] if a user's own distance function is not
+/// defined where the body was, so that the forces of its obstacle are not known.
 ///
 /// ```
 /// use pliant::output::write_animation;
@@ -92,9 +93,11 @@ pub fn write_animation(
     write_animations(&[("", trajectory)], path, title)
 }
 
-/// As [`write_animation`], with several motions side by side, each with its name: one clock plays them, in the same part
-/// of space, as large, and with the same colours for the same values. Charts have the lines of all of them. Scenes,
-/// meshes, methods and times may be different; a motion that has ended stays as it is then.
+/// As [`write_animation`], with several motions side by side, each with its name.
+///
+/// One clock plays them, in the same part of space, on one scale, and with the same colours for the same
+/// values. Charts have the lines of all of them. Scenes, meshes, methods and times may be different; a motion
+/// that has ended keeps its last state.
 ///
 /// # Errors
 /// Those of [`write_animation`]; [`Error::Input`] without any motion.
@@ -121,12 +124,12 @@ pub fn write_animations(
     write_page(motions.collect::<Result<_, _>>()?, path.as_ref(), title)
 }
 
-/// As [`write_animations`], with the motions of pages that have been written before, by name and file: nothing is
-/// computed again.
+/// As [`write_animations`], with the motions of pages that have been written before, by name and file:
+/// nothing is computed again.
 ///
 /// # Errors
-/// [`Error::Read`] for a file that cannot be read; [`Error::Input`] without any file, and for one that holds no motion,
-/// several, or one of another version of pliant; [`Error::Output`] if the page cannot be written.
+/// [`Error::Read`] for a file that cannot be read; [`Error::Input`] without any file, and for one that holds
+/// no motion, several, or one of another version of pliant; [`Error::Output`] if the page cannot be written.
 ///
 /// ```
 /// use pliant::output::{join_animations, write_animation};
@@ -167,7 +170,7 @@ pub(crate) struct Above<'a> {
     pub(crate) style: &'a str,
 }
 
-/// As [`write_animations`], beneath something else; without motions that alone.
+/// As [`write_animations`], below other content; without motions only that content.
 ///
 /// # Errors
 /// Those of [`write_animation`].
@@ -189,11 +192,11 @@ fn page(above: &Above, motions: Vec<Value>, title: &str) -> String {
     let script = SCRIPT.replace("/*picture*/", OF_EACH);
     let style = [STYLE, above.style].concat();
     let page = filled(&PAGE.replace("<!--motions-->", parts), &style, &script, &data);
-    // last what may say anything: no marker begins in escaped text, nor in data
+    // free text is inserted last: no marker begins in escaped text, nor in data
     page.replace("<!--title-->", &escaped(title)).replace("<!--above-->", above.html)
 }
 
-/// Text as it stands in HTML, within elements and attributes.
+/// Text escaped for HTML, within elements and attributes.
 pub(crate) fn escaped(text: &str) -> String {
     let named = [('&', "&amp;"), ('<', "&lt;"), ('>', "&gt;"), ('"', "&quot;"), ('\'', "&#39;")];
     named.iter().fold(text.to_owned(), |text, (sign, name)| text.replace(*sign, name))
@@ -228,7 +231,7 @@ fn read_motion(path: &Path) -> Result<Value, Error> {
 
 /// A page with its style, its script and its data.
 fn filled(page: &str, style: &str, script: &str, data: &Value) -> String {
-    // within a string of JSON this is the same character, and no tag of HTML can begin
+    // within a string of JSON this is the same character, but it cannot begin a tag of HTML
     let data = data.to_string().replace('<', "\\u003c");
     let page = page
         .replace("<!--picture-->", PICTURE)

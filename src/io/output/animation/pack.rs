@@ -21,7 +21,7 @@ pub(super) fn points(points: &[f64], axes: usize) -> Value {
     json!({ "ranges": ranges, "numbers": STANDARD.encode(bytes) })
 }
 
-/// `values` between two others as 8-bit numbers; what is beyond counts as the nearer one.
+/// `values` between two others as 8-bit numbers; values outside count as the nearer one.
 pub(super) fn values(values: &[f32], [least, largest]: [f64; 2]) -> Value {
     let byte =
         |&value: &f32| share(f64::from(value) - least, largest - least, u8::MAX.into()) as u8;

@@ -16,9 +16,9 @@ const PREFIXES: [(f64, &str); 8] = [
 ];
 /// Sizes between which numbers read well without a power of ten beside the unit.
 const PLAIN: [f64; 2] = [1e-3, 1e4];
-/// Beyond this numbers have no room between them and the largest there is.
+/// Larger numbers are cut off here, so that their differences do not overflow.
 const LARGEST: f64 = 1e300;
-/// What is smaller is 0.
+/// Smaller numbers count as 0.
 const LEAST: f64 = 1e-290;
 
 /// A range of numbers with the lines across it.
@@ -35,8 +35,8 @@ pub(crate) struct Axis {
 }
 
 impl Axis {
-    /// From the least to the largest of the finite `values` and `margin` of that more at both ends, with about `count`
-    /// lines.
+    /// From the least to the largest of the finite `values`, extended by `margin` times that range at both
+    /// ends, with about `count` lines.
     pub(crate) fn linear(
         values: impl Iterator<Item = f64>,
         margin: f64,
@@ -133,8 +133,8 @@ fn ticks(low: f64, high: f64, count: usize) -> Vec<(f64, String)> {
     (0..=number).map(|k| (first + k as f64) * step).map(|value| (value, label(value))).collect()
 }
 
-/// Values within `decades` at which an axis has lines, and whether they are labelled: powers of
-/// ten, and in a short range others, too.
+/// Values between the decades `low` and `high` at which an axis has lines, and whether they are labelled:
+/// powers of ten, and in a short range others, too.
 fn decades([low, high]: [f64; 2]) -> Vec<(f64, bool)> {
     let is_short = high - low < 2.5;
     let mut ticks = Vec::new();

@@ -1,9 +1,11 @@
-//! A line through many points, of which a picture shows few.
+//! A line through many points, reduced to the few that a picture needs.
 
 use std::fmt::Write;
 
-/// Points of a page (px), stretch by stretch between gaps: of those in one column of pixels the first, the lowest, the
-/// highest and the last, which look the same.
+/// Points of a page (px), stretch by stretch between gaps.
+///
+/// Of the points in one column of pixels only the first, the lowest, the highest and the last are kept: the
+/// picture looks the same.
 #[derive(Debug, Default)]
 pub(crate) struct Line {
     stretches: Vec<Vec<[f64; 2]>>,

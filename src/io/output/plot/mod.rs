@@ -1,4 +1,4 @@
-//! Plots: what a motion was in numbers, over time.
+//! Plots of sensors and energies of a motion over time.
 
 mod page;
 mod table;
@@ -12,7 +12,8 @@ use super::figure::write_figure;
 use crate::dynamics::error::Error;
 use crate::dynamics::trajectory::Trajectory;
 
-/// Sensors and energies over time: a panel for each unit, with a legend; thin lines at the ends of the phases.
+/// Sensors and energies over time: a panel for each unit, with a legend; thin lines at the ends of the
+/// phases.
 ///
 /// ```
 /// use pliant::output::Plot;
@@ -38,7 +39,7 @@ impl Plot {
         Self::default()
     }
 
-    /// What stands above. Default: the title of the scene, if its file has one.
+    /// The title above the plot. Default: the title of the scene, if its file has one.
     pub fn title(mut self, title: impl Into<String>) -> Self {
         self.title = title.into();
         self
@@ -53,8 +54,8 @@ impl Plot {
     /// Draws a motion to an SVG file, or, with the feature `png`, a PNG file.
     ///
     /// # Errors
-    /// [`Error::Input`] for a name that no column has, and another ending of `path`; [`Error::Output`] if the file
-    /// cannot be written, or this machine has no fonts for a PNG file.
+    /// [`Error::Input`] for a name that no column has, and another ending of `path`; [`Error::Output`] if the
+    /// file cannot be written, or this machine has no fonts for a PNG file.
     pub fn write(&self, trajectory: &Trajectory, path: impl AsRef<Path>) -> Result<(), Error> {
         self.write_table(&Table::of(trajectory, None)?, path)
     }

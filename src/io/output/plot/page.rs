@@ -21,7 +21,7 @@ const PHASES: f64 = 18.0;
 const TIME: f64 = 44.0;
 /// Width of the names of axes (px).
 const LABEL: f64 = 26.0;
-/// Lines across a panel and along the axis of time, about.
+/// Approximate number of lines across a panel and along the axis of time.
 const TICKS: [usize; 2] = [5, 8];
 const GRID: &str = "#e4e4e4";
 const GREY: &str = "#777777";
@@ -38,7 +38,7 @@ pub(super) struct Page<'a> {
 /// The columns of one unit.
 struct Panel<'a> {
     columns: Vec<&'a Column>,
-    /// How far they are known, if that is known.
+    /// Their differences from the run before, if these are known.
     differences: Vec<Option<&'a Column>>,
     field: Field,
     label: String,
@@ -210,8 +210,8 @@ fn band(upper: &Line, lower: &Line, number: usize) -> Path {
     path.set("fill", colour).set("fill-opacity", 0.25).set("stroke", "none")
 }
 
-/// A line in the colour and stroke of its number. Energies that have gone and come are dashed: what was supplied often
-/// is what is stored.
+/// A line in the colour and stroke of its number. Dissipated and supplied energies are dashed: the energy
+/// supplied often equals the energy stored.
 fn series(line: &Line, column: &Column, number: usize) -> Group {
     let colour = COLOURS[number % COLOURS.len()];
     let is_exchanged = EXCHANGED.contains(&&column.quantity.name[..]);

@@ -50,8 +50,8 @@ impl Table {
         Ok(table)
     }
 
-    /// What a run has left in a directory: `trajectory.csv`, with the units of sensors and the ends of phases from
-    /// `report.json`, if that is there. A row that was not written to its end is left out.
+    /// What a run has left in a directory: `trajectory.csv`, with the units of sensors and the ends of phases
+    /// from `report.json`, if that is there. A row that was not written to its end is left out.
     ///
     /// # Errors
     /// [`Error::Read`] if there is no table, or one that no run has written.
@@ -142,13 +142,13 @@ impl Table {
         names.iter().map(find).collect()
     }
 
-    /// How far a column was from where the run before had it, if that is known.
+    /// The difference of a column from the run before, if it is known.
     pub(super) fn difference(&self, column: &Column) -> Option<&Column> {
         let name = Some(&column.quantity.name[..]);
         self.columns.iter().find(|other| other.quantity.name.strip_suffix(OF_SENSOR) == name)
     }
 
-    /// The energies, but for those that are 0 throughout.
+    /// The energies, except those that are 0 throughout.
     fn energies(&self) -> impl Iterator<Item = &Column> {
         let names = STORED.into_iter().chain(EXCHANGED);
         let energies = names

@@ -24,7 +24,7 @@ pub(in crate::io::output) const BAR_WIDTH: f64 = 0.12;
 pub(in crate::io::output) struct View {
     low: Point,
     high: Point,
-    /// Upper edge of each panel by itself, which a row of panels that stays low ends at.
+    /// Upper edge of what each panel shows by itself; a row of panels is only as high as its highest panel.
     tops: Vec<f64>,
     /// The obstacles of each panel.
     pub(super) obstacles: Vec<Vec<Outline>>,
@@ -173,7 +173,7 @@ impl Layout {
             });
             Self { columns, width, rows: rows.collect(), scale, left: view.low[0] }
         };
-        // a page rather wider than high; rows as full as can be
+        // prefer a page wider than high, and rows as full as possible
         let penalty = |layout: &Self| {
             let [width, height] = layout.size().map(f64::from);
             let places = layout.columns * layout.rows.len();

@@ -125,7 +125,8 @@ impl Snapshots {
         }
     }
 
-    /// The nodes to be marked in one panel. One that is held and moved by axes counts as moved.
+    /// The nodes to be marked in one panel. A node that is held along one axis and moved along another counts
+    /// as moved.
     fn marks(
         &self,
         trajectory: &Trajectory,

@@ -118,7 +118,7 @@ impl Panel<'_> {
         path.set("stroke", "#8a5a2b").set("stroke-width", 1.2)
     }
 
-    /// A one-dimensional body, with a width for the eye, its nodes as lines across.
+    /// A one-dimensional body, drawn with a visible width, its nodes as lines across.
     fn bar(&self, mesh: &Mesh, points: &[Point]) -> Group {
         let half = self.layout.pixels(BAR_WIDTH * mesh.size()) / 2.0;
         let mut data = Data::default();
@@ -157,8 +157,8 @@ fn cells(mesh: &Mesh, points: &[Point]) -> Group {
         .add(body("outline", outline, 1.5).set("fill", "none").set("stroke-linecap", "round"))
 }
 
-/// A body in space: its surface, what is far away first. A solid shows the faces that look at the
-/// viewer only.
+/// A body in space: its surface, drawn from far to near. Of a solid only the faces that look at the viewer
+/// are drawn.
 fn surface(mesh: &Mesh, points: &[Point], depths: &[f64]) -> Group {
     let solid = mesh.kind().dimension() == 3;
     let mut faces: Vec<(f64, Vec<Point>)> = Vec::new();

@@ -3,15 +3,16 @@
 use super::{QUADRUPLE, Reference};
 use crate::integrators::ode::{Dae, Failure};
 
-/// A car axis (CARAXIS) on a bumpy road: two points with mass, (xl, yl) and (xr, yr), on stiff springs from the wheels; they
-/// keep their distance, and the left one keeps at right angles to the road. The unknowns are the four coordinates, their
-/// velocities and the two multipliers.
+/// A car axis (CARAXIS) on a bumpy road: two points with mass, (xl, yl) and (xr, yr), on stiff springs from
+/// the wheels; they keep their distance, and the left one keeps at right angles to the road. The unknowns are
+/// the four coordinates, their velocities and the two multipliers.
 ///
-/// The constraints g(t, p) = 0 make it a DAE of index 3; here of index 1, by g'' + 2 alpha g' + alpha^2 g = 0. The exact solution
-/// is the same for each alpha. Without it (0) the errors of g grow.
+/// The constraints g(t, p) = 0 make it a DAE of index 3; here of index 1, by g'' + 2 alpha g' + alpha^2 g
+/// = 0. The exact solution is the same for each alpha. Without it (0) the errors of g grow.
 ///
-/// S. Schneider, "Intégration de systèmes d'équations différentielles raides et différentielles-algébriques par des méthodes de
-/// collocations et méthodes générales linéaires", thesis, Geneva (1994); in the test set of Bari for IVP solvers.
+/// S. Schneider, "Intégration de systèmes d'équations différentielles raides et différentielles-algébriques
+/// par des méthodes de collocations et méthodes générales linéaires", thesis, Geneva (1994); in the test set
+/// of Bari for IVP solvers.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct CarAxis {
     /// Rate at which errors of the constraints decay.
@@ -24,7 +25,7 @@ const SPRING_LENGTH: f64 = 0.5;
 /// M eps^2 / 2 with M = 10 and eps = 0.01, which multiplies the accelerations.
 const MASS: f64 = 5e-4;
 const GRAVITY: f64 = 1.0;
-/// Height of the bumps, and the rate at which they are met.
+/// Height of the bumps, and the angular frequency at which they are met.
 const BUMP: f64 = 0.1;
 const OMEGA: f64 = 10.0;
 
@@ -55,7 +56,7 @@ fn difference(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// What a spring between two places pulls with on the end that is `away` from the other.
+/// Force of a spring on one of its ends, which is `away` from the other.
 fn pull(away: [f64; 2]) -> [f64; 2] {
     let length = away[0].hypot(away[1]);
     away.map(|a| (SPRING_LENGTH - length) * a / length)
@@ -91,7 +92,7 @@ impl CarAxis {
         source: QUADRUPLE,
     };
 
-    /// By how much the constraints g(t, p) = 0 are missed at time t.
+    /// The errors g(t, p) of the constraints at time t.
     #[must_use]
     pub fn constraints(t: f64, y: &[f64]) -> [f64; 2] {
         let (left, axis) = ([y[0], y[1]], [y[0] - y[2], y[1] - y[3]]);

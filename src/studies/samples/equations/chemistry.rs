@@ -162,7 +162,7 @@ impl Ode for Pollution {
 }
 
 impl Entries for Pollution {
-    /// Several reactions may share a place.
+    /// Several reactions may contribute to one entry.
     fn entries(y: &[f64], mut put: impl FnMut(usize, usize, f64)) {
         let mut jacobian = [[(0.0, false); 20]; 20];
         for Reaction { constant, rate, change } in &REACTIONS {

@@ -1,4 +1,4 @@
-//! Semi-discrete partial differential equations: as large as one likes.
+//! Semi-discrete partial differential equations of any size.
 
 use faer::MatMut;
 
@@ -92,7 +92,7 @@ impl Brusselator {
         &self.pattern
     }
 
-    /// Diffusion over the square of the distance of points.
+    /// Diffusion coefficient over the square of the distance of points.
     fn exchange(points: usize) -> f64 {
         let intervals = (points + 1) as f64;
         intervals * intervals / 50.0
@@ -158,8 +158,8 @@ impl HeatedSquare {
         Self { pattern: Self::pattern_of(side * side), source, side }
     }
 
-    /// The state at time t: phi = sin(pi x) sin(pi y), from phi at t = 0 to phi / lambda, where -lambda is the eigenvalue of
-    /// the discrete Laplacian.
+    /// The state at time t: phi = sin(pi x) sin(pi y), from phi at t = 0 to phi / lambda, where -lambda is
+    /// the eigenvalue of the discrete Laplacian.
     #[must_use]
     pub fn exact(&self, t: f64) -> Vec<f64> {
         let intervals = (self.side + 1) as f64;

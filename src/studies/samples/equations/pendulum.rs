@@ -39,7 +39,7 @@ impl Ode for Pendulum {
         Ok(())
     }
 
-    /// Onto the circle, with a velocity along it.
+    /// Projects onto the circle, with a velocity along it.
     fn project(
         &mut self,
         _t: f64,

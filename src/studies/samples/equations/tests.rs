@@ -36,7 +36,7 @@ fn check_columns(
         let (back, _) = shifted(j, -1e-4);
         let (forth, back) = (function(&forth), function(&back));
         for i in 0..n {
-            // All right-hand sides are at most cubic: 1e-8 is left of the truncation.
+            // All right-hand sides are at most cubic: the truncation error is about 1e-8.
             let quotient = (forth[i] - back[i]) / distance;
             let error = (dense[(i, j)] - quotient).abs();
             assert!(error <= 1e-6 * (1.0 + quotient.abs()), "({i}, {j}): {quotient}");
@@ -71,7 +71,7 @@ fn jacobian_of_the_dae_is_a_derivative() {
     let (mut dense, mut values) = (Mat::zeros(n, n), vec![0.0; pattern.entry_count()]);
     Dae::dense_jacobian(&mut system, 0.0, cj, &y, &[], dense.as_mut()).unwrap();
     Dae::sparse_jacobian(&mut system, 0.0, cj, &y, &[], &mut values).unwrap();
-    // A move of y by d goes with a move of y' by cj d.
+    // A move of y by d moves y' by cj d.
     let residual = |moved: &[f64]| {
         let yp: Vec<f64> = (0..n).map(|i| cj * (moved[i] - y[i])).collect();
         let mut residual = vec![0.0; n];
@@ -94,7 +94,8 @@ fn references_satisfy_what_is_conserved() {
     }
 }
 
-/// The start of the amplifier, y + t y' near t = 0, satisfies M y' = f, and the sums of rows without derivatives to first order.
+/// The start of the amplifier, y + t y' near t = 0, satisfies M y' = f, and the sums of rows without
+/// derivatives to first order.
 #[test]
 fn the_amplifier_starts_consistently() {
     let (y0, slope) = (TransistorAmplifier::Y0, TransistorAmplifier::YP0);
@@ -120,7 +121,8 @@ fn the_amplifier_starts_consistently() {
     }
 }
 
-/// The start of the car axis, y + t y' near t = 0, satisfies its equations, and those without derivatives to first order.
+/// The start of the car axis, y + t y' near t = 0, satisfies its equations, and those without derivatives to
+/// first order.
 #[test]
 fn the_car_axis_starts_consistently() {
     let slope = CarAxis::YP0;

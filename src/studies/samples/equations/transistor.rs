@@ -5,7 +5,7 @@ use faer::MatMut;
 use super::{QUADRUPLE, Reference};
 use crate::integrators::ode::{Failure, MassKind, Ode};
 
-/// The transistor amplifier (TRANSAMP): M y' = f(t, y) with a singular matrix M of capacities; eight
+/// The transistor amplifier (TRANSAMP): M y' = f(t, y) with a singular matrix M of capacitances; eight
 /// voltages, index 1. [`MassForm`](crate::integrators::sundials::MassForm) hands it to IDA.
 ///
 /// P. Rentrop, M. Roche, G. Steinebach, "The application of Rosenbrock-Wanner type methods with
@@ -25,8 +25,9 @@ impl TransistorAmplifier {
     /// Initial state at t = 0, at which the algebraic equations hold.
     pub const Y0: [f64; 8] = [0.0, 3.0, 3.0, 6.0, 3.0, 3.0, 6.0, 0.0];
 
-    /// Its time derivative. M y' = f leaves the sum of two voltages across each of three capacitors open; the algebraic
-    /// equations, which are sums of two rows each, give it when differentiated with respect to time.
+    /// Its time derivative. M y' = f leaves the sum of the rates of the two voltages at each of three
+    /// capacitors open; the algebraic equations, which are sums of two rows each, give it when differentiated
+    /// with respect to time.
     pub const YP0: [f64; 8] = [
         51.339_276_517_180_72,
         51.339_276_517_180_72,
@@ -96,7 +97,7 @@ impl Ode for TransistorAmplifier {
         MassKind::Constant
     }
 
-    /// Capacities between two nodes, and of one to ground.
+    /// Capacitances between two nodes, and from one node to ground.
     fn dense_mass(&mut self, _t: f64, mut mass: MatMut<'_, f64>) -> Result<(), Failure> {
         for (i, capacity) in [(0, 1e-6), (3, 3e-6), (6, 5e-6)] {
             mass[(i, i)] = capacity;

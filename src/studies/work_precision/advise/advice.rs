@@ -1,4 +1,4 @@
-//! What was found out.
+//! The result of the adviser.
 
 use super::choice::Choice;
 use super::parts::Parts;
@@ -6,12 +6,13 @@ use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 use crate::studies::work_precision::look::Look;
 
-/// What is enough for a scene, and what that was found from.
+/// What is enough for a scene, and what this was found from.
 #[derive(Debug, Clone)]
 pub struct Advice {
     /// What has to be right.
     pub quantity: String,
-    /// The relative accuracy that was asked for, and what it is relative to: how much the quantity changes, in `unit`.
+    /// The relative accuracy that was asked for, and what it is relative to: how much the quantity changes,
+    /// in `unit`.
     pub accuracy: f64,
     /// See `accuracy`.
     pub scale: f64,
@@ -19,17 +20,17 @@ pub struct Advice {
     pub unit: String,
     /// The scene as it was written.
     pub written: Candidate,
-    /// The cheapest that is right, if there is one: its error and the [`resolution`](Self::resolution) are below the accuracy
-    /// together.
+    /// The cheapest candidate that is right, if there is one: the sum of its error and the
+    /// [`resolution`](Self::resolution) is below the accuracy.
     pub enough: Option<Candidate>,
     /// What all were compared with, and the relative error that it may have itself (NaN: not known).
     pub truth: Option<Candidate>,
     /// See `truth`.
     pub resolution: f64,
-    /// Where no finer mesh is fine enough to compare with, so that the mesh is taken as it was written: by how much the finest
-    /// that was tried differs from it (relative).
+    /// If no finer mesh is fine enough to compare with, so that the mesh is taken as it was written: by how
+    /// much the finest mesh that was tried differs from it (relative).
     pub mesh: Option<f64>,
-    /// Values of alpha (1/s), each with what ten times as much changes (relative).
+    /// Values of alpha (1/s), each with the change that ten times as much makes (relative).
     pub alphas: Vec<(f64, f64)>,
     /// What the other measure of strain changes.
     pub law: Option<f64>,
@@ -41,12 +42,14 @@ pub struct Advice {
     pub candidates: Vec<Candidate>,
     /// Time (s) until which the motion can be known, if small errors grow too large before its end.
     pub known_until: Option<f64>,
-    /// Time (s) at which the motion ends that all else is about: the end of the scene, or some time before `known_until`.
+    /// Time (s) at which the motion ends that all other fields are about: the end of the scene, or some time
+    /// before `known_until`.
     pub end: f64,
-    /// By how much a number that an equilibrium gives is off because of the mesh as it was written, as adjoint-weighted residuals
-    /// tell; only where an equilibrium is enough. `errors` of meshes are what paired runs tell.
+    /// The error of a number of an equilibrium because of the mesh as it was written, estimated by
+    /// adjoint-weighted residuals; only where an equilibrium is enough. The errors of candidates come from
+    /// comparing runs.
     pub mesh_estimate: Option<MeshEstimate>,
-    /// What a coarse run told before all others.
+    /// What a coarse run has shown before all others.
     pub look: Option<Look>,
     /// What was not tried, and why.
     pub not_tried: Vec<String>,
@@ -69,7 +72,7 @@ pub struct Candidate {
     pub set: Vec<String>,
     /// Its relative error; none without a motion, or without anything to compare with.
     pub error: Option<f64>,
-    /// What that is made of, where the runs between it and the truth were made, too.
+    /// The parts of this error, if the runs between it and the truth were made, too.
     pub parts: Option<Parts>,
     /// Wall-clock time (s) of one run.
     pub seconds: f64,

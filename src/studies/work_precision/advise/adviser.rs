@@ -1,4 +1,4 @@
-//! The adviser as it is asked.
+//! The adviser: its settings, and its search.
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -14,11 +14,13 @@ use crate::scene::timeline::Scene;
 use crate::studies::work_precision::look::Look;
 use crate::studies::work_precision::quantity::Quantity;
 
-/// Finds out what of a scene has to be modelled for a [`Quantity`] to be right to an accuracy: it runs the scene by a
-/// richer model, on finer meshes, by tighter tolerances, and with things left out, one at a time, and compares.
+/// Finds out what of a scene has to be modelled for a [`Quantity`] to be right to an accuracy.
 ///
-/// Errors are those that [`Quantity`] describes, against the richest model on the finest mesh that the budget allows; how
-/// far that one can be trusted is told by the mesh before it.
+/// It runs the scene with a richer model, on finer meshes, with tighter tolerances, and with things left out,
+/// one at a time, and compares.
+///
+/// Errors are those that [`Quantity`] describes, against the richest model on the finest mesh that the budget
+/// allows; how far that one can be trusted is estimated from the mesh before it.
 ///
 /// ```
 /// use std::ops::ControlFlow;
@@ -38,22 +40,23 @@ pub struct Adviser<'a> {
     file: Option<PathBuf>,
 }
 
-/// Of the time until which a motion is known, this part is advised for.
+/// The advice is for this part of the time until which a motion is known.
 const KNOWN: f64 = 0.9;
-/// The first look takes so many seconds at most, and this part of the budget.
+/// The first look takes at most this many seconds, and this part of the budget.
 const LOOK: f64 = Look::SECONDS;
 const LOOK_SHARE: f64 = 0.05;
-/// Less of a scene is not worth advice.
+/// If a smaller part of a scene is known, no advice is given for it.
 const LEAST_KNOWN: f64 = 0.01;
 
 impl<'a> Adviser<'a> {
-    /// Of the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
+    /// An adviser for the whole motion of `scene`, to a relative `accuracy` (0.01 is 1 %).
     pub fn new(scene: &'a Scene, accuracy: f64) -> Self {
         let (settings, quantity) = (Settings::default(), Quantity::motion());
         Self { scene, request: Request { accuracy, settings, quantity, budget: 60.0 }, file: None }
     }
 
-    /// How the scene is integrated as it was written; other candidates have its alpha. Default: [`Settings::default`].
+    /// How the scene as it was written is integrated; other candidates have its alpha. Default:
+    /// [`Settings::default`].
     #[must_use]
     pub fn settings(mut self, settings: Settings) -> Self {
         self.request.settings = settings;
@@ -74,20 +77,23 @@ impl<'a> Adviser<'a> {
         self
     }
 
-    /// A file that keeps all runs. What it holds already is not run again, so that a search that was cut short can go
-    /// on, within a new budget; runs of other scenes stay in it. It knows the version of this library: after changes of
-    /// the code within a version, or on another machine, begin a new file.
+    /// A file that keeps all runs. What it holds already is not run again, so that a search that was cut
+    /// short can continue, within a new budget; runs of other scenes stay in it. Runs of other versions of
+    /// this library are not used; after changes of the code within a version, or on another machine, begin a
+    /// new file.
     #[must_use]
     pub fn keep(mut self, file: impl Into<PathBuf>) -> Self {
         self.file = Some(file.into());
         self
     }
 
-    /// Runs candidates until it is known what is enough, or the budget is spent. `observer` is told what is run, after
-    /// each step, and ends the search by [`ControlFlow::Break`]; the advice is what is known by then.
+    /// Runs candidates until it is known what is enough, or the budget is spent. `observer` is called after
+    /// each step with what is being run, and ends the search by [`ControlFlow::Break`]; the advice is what is
+    /// known by then.
     ///
     /// # Errors
-    /// Bad input; a scene that gives no motion at all; [`Error::Output`] if the file of the runs cannot be read or written.
+    /// Bad input; a scene that gives no motion at all; [`Error::Output`] if the file of the runs cannot be
+    /// read or written.
     pub fn run(&self, observer: &mut dyn FnMut(&str) -> ControlFlow<()>) -> Result<Advice, Error> {
         let Request { accuracy, settings, quantity, budget } = &self.request;
         Fraction::check("accuracy", *accuracy)?;
@@ -110,7 +116,7 @@ impl<'a> Adviser<'a> {
         climb(&mut search, &mut found)?;
         let long_enough = |until: &f64| *until > LEAST_KNOWN * self.scene.end();
         if let Some(until) = found.known_until.filter(long_enough) {
-            // what can be known, once more
+            // once more, for the part that can be known
             search.scene = self.scene.clone().ended_at(KNOWN * until);
             let known_until = found.known_until;
             found = Found::default();

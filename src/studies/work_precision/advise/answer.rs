@@ -84,7 +84,8 @@ impl Advice {
         reasons
     }
 
-    /// A relative change in words: not a number where the quantity is none, as a frequency without swings.
+    /// A relative change in words; it is NaN where the quantity does not exist, as a frequency without
+    /// swings.
     fn change(&self, change: f64) -> String {
         match change.is_nan() {
             true => format!("leaves no {} to compare", self.quantity),

@@ -31,7 +31,7 @@ impl Candidate {
 }
 
 impl Advice {
-    /// What a candidate is, beside one of many.
+    /// The special roles of a candidate, if it has any.
     pub(super) fn roles_of(&self, candidate: &Candidate) -> Vec<&'static str> {
         let parts = [
             (Some(&self.written), "as written"),
@@ -46,8 +46,8 @@ impl Advice {
         self.truth.as_ref().is_some_and(|truth| truth.is(candidate))
     }
 
-    /// Candidates with their errors, from fast to slow, that are better than all faster ones. What all are compared with
-    /// has no error of its own, and is none of them.
+    /// The Pareto front: candidates with their errors, from fast to slow, that are better than all faster
+    /// ones. The run that all are compared with has no error of its own, and is left out.
     pub(super) fn front(&self) -> Vec<(f64, &Candidate)> {
         let known = self.candidates.iter().filter(|candidate| !self.is_truth(candidate));
         let mut known: Vec<_> = known.filter_map(|one| Some((one.measured()?, one))).collect();
@@ -66,8 +66,9 @@ impl Advice {
         self.front().iter().any(|(_, one)| one.is(candidate))
     }
 
-    /// Draws error over time, both logarithmic: a point for each candidate with its name, those on the front joined by a line,
-    /// the accuracy, and what errors of the comparison itself may hide. `None` without errors.
+    /// Draws error over time, both logarithmic: a point for each candidate with its name, those on the front
+    /// joined by a line, the accuracy, and the errors that the comparison itself may have. `None` without
+    /// errors.
     pub(super) fn chart(&self) -> Option<Document> {
         let known: Vec<(f64, &Candidate)> =
             self.candidates.iter().filter_map(|one| Some((one.measured()?, one))).collect();
@@ -180,7 +181,7 @@ impl Advice {
             Some(enough) if enough.is(&self.written) => "as written: enough",
             _ => "as written",
         };
-        // the lower of two is named below
+        // the lower of two points has its name below it
         let is_below = matches!((written, enough), (Some(a), Some(b)) if a[1] > b[1]);
         [(written, name, is_below), (enough, "enough", !is_below)].into_iter().fold(
             Group::new(),

@@ -17,11 +17,12 @@ pub struct Choice {
     pub quadratic: bool,
     /// How often each cell is divided: see [`Scene::halved`].
     pub halved: usize,
-    /// How inertia is shared out.
+    /// How inertia is distributed to the nodes.
     pub inertia: Inertia,
     /// What is left out.
     pub without: Vec<Term>,
-    /// Whether the equilibrium of the last phase stands for the end of the motion, as `pliant static` finds it.
+    /// Whether the equilibrium of the last phase, as `pliant static` finds it, replaces the end of the
+    /// motion.
     pub is_static: bool,
     /// How it is integrated.
     pub settings: Settings,
@@ -42,7 +43,7 @@ impl Choice {
         }
     }
 
-    /// The scene as it is modelled by this choice; `written` is what it was made of.
+    /// The scene as it is modelled by this choice; `written` is the scene as it was written.
     ///
     /// # Errors
     /// A scene that cannot be on another mesh: see [`Scene::halved`].
@@ -78,7 +79,8 @@ impl Choice {
         (self.quadratic, self.halved) == (other.quadratic, other.halved)
     }
 
-    /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written` with `settings`.
+    /// What has to be set in a scene file for it, as `--set` takes it; the file makes the scene `written`
+    /// with `settings`.
     pub(super) fn overrides(&self, written: &Scene, settings: &Settings) -> Vec<String> {
         let mut sets = Vec::new();
         let body = written.body();
@@ -213,7 +215,7 @@ impl fmt::Display for Choice {
     }
 }
 
-/// How often.
+/// A number of times in words.
 pub(super) fn times(count: usize) -> String {
     match count {
         1 => "once".into(),

@@ -1,11 +1,11 @@
-//! What was found on the way.
+//! What the search has found so far.
 
 use super::parts::Parts;
 use super::search::Solved;
 use crate::dynamics::equilibrium::MeshEstimate;
 use crate::scene::timeline::Term;
 
-/// Runs, by what they were made for, and what they tell.
+/// Runs, by their purpose, and what they show.
 #[derive(Debug, Default)]
 pub(super) struct Found {
     /// The scene as it was written, by its own settings.
@@ -16,9 +16,10 @@ pub(super) struct Found {
     pub(super) models: Vec<Solved>,
     /// The richest model on meshes from coarse to fine; the last one is what all is compared with.
     pub(super) meshes: Vec<Solved>,
-    /// Finer ones that are not fine enough either: then the mesh is taken as it was written, and stands alone above.
+    /// Finer meshes that are not fine enough either: then the mesh is taken as it was written, and `meshes`
+    /// has it alone.
     pub(super) finer: Vec<Solved>,
-    /// Values of alpha (1/s), each with what ten times as much changes (relative).
+    /// Values of alpha (1/s), each with the change that ten times as much makes (relative).
     pub(super) alphas: Vec<(f64, f64)>,
     /// What the other measure of strain changes, and the other inertia.
     pub(super) law: Option<f64>,
@@ -36,9 +37,11 @@ pub(super) struct Found {
     pub(super) not_tried: Vec<String>,
 }
 
-/// What the error of the finer of two meshes is of their distance, if halving the cells leaves a quarter of it; ...
+/// Ratio of the error of the finer of two meshes to their distance, if halving the cells leaves a quarter of
+/// the error; ...
 const ORDER_2: f64 = 1.0 / 3.0;
-/// ... and the most that it counts as if halving leaves nearly all of it, as under loads on single nodes.
+/// ... and the most that is assumed, if halving leaves nearly all of the error, as under loads on single
+/// nodes.
 const LEAST_ORDER: f64 = 10.0;
 
 impl Found {
@@ -47,9 +50,9 @@ impl Found {
         self.meshes.last()
     }
 
-    /// The error that the finest mesh may have itself, as those before tell: two by their distance and order 2, three by what
-    /// the last step has left of the distance; all of the distance where the cells are not of one kind. Not a number where
-    /// there is but one.
+    /// The error that the finest mesh may have itself, estimated from the meshes before: from two by their
+    /// distance and order 2, from three by the ratio of their last two distances; the whole distance where
+    /// the cells are not of one kind. NaN if there is only one mesh.
     pub(super) fn resolution(&self) -> f64 {
         let (Some(truth), [.., before, _]) = (self.truth(), &self.meshes[..]) else {
             return f64::NAN;
@@ -71,8 +74,8 @@ impl Found {
         left * apart(before, truth)
     }
 
-    /// The error that a candidate may have for an `accuracy`: that less what its measure may be off by. A mesh that was compared with
-    /// none is taken as it is.
+    /// The error that a candidate may have for an `accuracy`: the accuracy less the resolution. A mesh that
+    /// was compared with no other is taken as it is.
     pub(super) fn allowed(&self, accuracy: f64) -> f64 {
         let resolution = self.resolution();
         accuracy - if resolution.is_nan() { 0.0 } else { resolution }
@@ -92,7 +95,7 @@ impl Found {
         }
     }
 
-    /// By how much the finest mesh differs from the one as it was written, if that is taken as it is.
+    /// By how much the finest mesh differs from the mesh as it was written, if the latter is taken.
     pub(super) fn mesh(&self) -> Option<f64> {
         Some(self.finer.last()?.error(self.truth()?))
     }
@@ -104,8 +107,8 @@ impl Found {
         self.all().filter(is_right).min_by(|a, b| a.seconds.total_cmp(&b.seconds))
     }
 
-    /// What the error of a run is made of, if what stands between it and the truth was run, too: its own model with hardly any
-    /// error of the integration, and the richest model on its own mesh.
+    /// The parts of the error of a run, if the runs between it and the truth were made, too: its own model
+    /// with hardly any error of the integration, and the richest model on its own mesh.
     pub(super) fn parts(&self, of: &Solved) -> Option<Parts> {
         let truth = self.truth()?;
         let tight = &self.tight.as_ref()?.choice.settings;
@@ -115,7 +118,7 @@ impl Found {
         let mesh = self.meshes.iter().find(|mesh| mesh.choice.is_mesh_of(&of.choice))?;
         let apart = |a: &Solved, b: &Solved| a.seen.distance(&b.seen).mean / truth.seen.scale;
         let parts @ [time, model, mesh] = [apart(of, own), apart(own, mesh), apart(mesh, truth)];
-        // where one run has no such quantity, nothing is known of them
+        // where a run does not have the quantity, the parts are not known
         parts.iter().all(|part| part.is_finite()).then_some(Parts { time, model, mesh })
     }
 }

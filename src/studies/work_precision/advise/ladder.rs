@@ -1,4 +1,4 @@
-//! The ladder, one rung at a time: tolerance, alpha, law, mesh, what may be left out, method.
+//! The stages of the search, one after the other: tolerance, alpha, law, mesh, what may be left out, method.
 
 use std::iter;
 
@@ -11,8 +11,8 @@ use crate::elements::mesh::CellKind;
 use crate::scene::settings::{ContactEvents, Method, Settings};
 use crate::studies::work_precision::tightening;
 
-/// Parts of the accuracy that errors of a kind may take: of the integration of those runs that models are compared
-/// by, of alpha, of the law, of each term that is left out, and of the mesh.
+/// Parts of the accuracy that errors of each kind may take: of the integration in the runs by which models
+/// are compared, of alpha, of the law, of each term that is left out, and of the mesh.
 const OF_TIGHT: f64 = 0.05;
 const OF_ALPHA: f64 = 0.05;
 const OF_LAW: f64 = 0.3;
@@ -20,22 +20,22 @@ const OF_TERM: f64 = 0.05;
 const OF_MESH: f64 = 0.6;
 /// The finest mesh is fine enough if it may be off by this part of the accuracy itself.
 const OF_TRUTH: f64 = 0.3;
-/// Runs that locate contact events may take so many times as long as the scene as it was written, or so long (s) more; then they are
-/// left out.
+/// Runs that locate contact events may take this many times as long as the scene as it was written, plus this
+/// time (s); if they take longer, contact events are treated automatically.
 const LOCATING: f64 = 10.0;
 const LOCATING_SHORT: f64 = 0.5;
-/// Cells are halved less often than that.
+/// Cells are halved fewer times than this.
 const FINEST: usize = 6;
 /// What alpha is multiplied by, and the largest (1/s) that is tried.
 const FIRMER: f64 = 10.0;
 const FIRMEST: f64 = 1e6;
 /// Tolerances that are swept.
 const TOLERANCES: [f64; 10] = [1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5, 1e-6, 1e-7, 1e-8];
-/// A sweep ends where runs take so many times as long as the fastest that is right.
+/// A sweep ends where runs take this many times as long as the fastest that is right.
 const PATIENCE: f64 = 2.0;
 
 impl Search<'_> {
-    /// Climbs until all is known, or there is no more time.
+    /// Runs all stages, until everything is known or there is no more time.
     pub(super) fn climb(&mut self, found: &mut Found) -> Result<(), Stop> {
         let written = Choice::written(&self.scene, &self.request.settings);
         found.written = self.run(&written)?;
@@ -88,7 +88,7 @@ impl Search<'_> {
                     let limit = accuracy * solved.seen.scale;
                     let distances = solved.seen.distances(&before.seen);
                     let parted = distances.iter().position(|distance| *distance > limit);
-                    // of a number that follows from the motion it is not known since when
+                    // for a single number of the motion the time of parting is not known
                     let parted = parted.filter(|_| self.request.quantity.is_over_time());
                     let part = parted.map_or(0.0, |at| at as f64 / distances.len() as f64);
                     found.known_until = Some(part * self.scene.end());
@@ -100,7 +100,7 @@ impl Search<'_> {
         }
     }
 
-    /// An alpha of which ten times as much changes nothing that counts.
+    /// Finds an alpha of which ten times as much makes no significant change.
     fn alpha(&mut self, tight: Solved, found: &mut Found) -> Result<Solved, Stop> {
         let has_rows = self.scene.phases().iter().any(|phase| !phase.constraints.is_empty());
         let mut firm = tight;
@@ -121,7 +121,8 @@ impl Search<'_> {
         Ok(firm)
     }
 
-    /// The measure of strain that is right however far cells turn, and what the other one changes.
+    /// Finds the run with the measure of strain that is right however far cells turn, and what the other one
+    /// changes.
     fn law(&mut self, firm: Solved, found: &mut Found) -> Result<Solved, Stop> {
         let strain = match firm.choice.strain {
             Strain::Cauchy => Strain::Green,
@@ -139,7 +140,7 @@ impl Search<'_> {
         Ok(rich)
     }
 
-    /// Finer meshes, until the finest tell that they are fine enough, or take too long.
+    /// Runs finer meshes, until the finest show that they are fine enough, or take too long.
     fn refine(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
         let kind = self.scene.body().mesh().kind();
         let has_quadratic = kind != CellKind::Segment && !kind.is_quadratic();
@@ -195,7 +196,7 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// The cheapest model on the cheapest mesh that is right, but for the integration.
+    /// The cheapest model on the cheapest mesh that is right, apart from errors of the integration.
     fn enough(&self, rich: &Solved, found: &Found) -> Option<Choice> {
         let accuracy = self.request.accuracy;
         let truth = found.truth()?;
@@ -211,9 +212,9 @@ impl Search<'_> {
         Some(Choice { strain, without, ..mesh.choice.clone() })
     }
 
-    /// The equilibrium in place of the motion, and by how much that is off on the mesh as it was written.
+    /// Tries the equilibrium in place of the motion, and estimates its error on the mesh as it was written.
     fn rest(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
-        // what damps a motion has nothing to do at rest
+        // what damps a motion has no effect at rest
         let choice = Choice { is_static: true, ..enough.clone() };
         let Some(solved) = self.run(&choice)? else { return Ok(()) };
         let allowed = found.allowed(self.request.accuracy);
@@ -230,7 +231,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// Methods and tolerances for a model that is enough, and how contact events are met by the fastest of them.
+    /// Tries methods and tolerances for a model that is enough, and with the fastest of them the ways to
+    /// treat contact events.
     fn sweep(&mut self, enough: &Choice, found: &mut Found) -> Result<(), Stop> {
         let Some(truth) = found.truth().cloned() else { return Ok(()) };
         let accuracy = self.request.accuracy;
@@ -288,7 +290,8 @@ impl Search<'_> {
         Ok(())
     }
 
-    /// The model that is enough with hardly any error of the integration: what of its error is the model's, and what the mesh's.
+    /// Runs the model that is enough with hardly any error of the integration, to separate the errors of the
+    /// model and of the mesh.
     fn by_itself(&mut self, rich: &Solved, found: &mut Found) -> Result<(), Stop> {
         let Some(best) = found.best(self.request.accuracy) else { return Ok(()) };
         let choice = Choice { settings: rich.choice.settings.clone(), ..best.choice.clone() };

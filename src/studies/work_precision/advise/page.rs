@@ -16,23 +16,27 @@ use crate::studies::work_precision::timing::Budget;
 use crate::studies::work_precision::truth::reason;
 
 const STYLE: &str = include_str!("page/page.css");
-/// What each sign of the chart is.
+/// The key to the symbols of the chart.
 const KEY: &str = include_str!("page/key.html");
 /// Processor time that each of the motions may take.
 const LONGEST: Duration = Duration::from_secs(20);
-/// What begins a line that tells of one candidate, in the words of the advice.
+/// How lines about one candidate begin in the text of the advice.
 const NAMES: [&str; 2] = ["Enough", "As written"];
 
 impl Advice {
-    /// Writes the advice as one HTML file for a web browser, without a network: what it says, the errors of all candidates over
-    /// their times, a table of them, and the motions of the scene as it was `written` and of what is enough, side by side, which are
-    /// run once more, with `sampling`. `title` is its heading.
+    /// Writes the advice as one HTML file for a web browser, without a network.
     ///
-    /// `observer` is told what is run, after each step, and ends it by [`ControlFlow::Break`]: then the page is without
-    /// that motion, as it is if a run fails or takes more than 20 s of processor time, and says so.
+    /// It has the text of the advice, the errors of all candidates over their times, a table of them, and the
+    /// motions of the scene as it was `written` and of what is enough, side by side, which are run once more,
+    /// with `sampling`. `title` is its heading.
+    ///
+    /// `observer` is called after each step with what is being run, and ends the run by
+    /// [`ControlFlow::Break`]: then the page is without that motion, as it is if a run fails or takes more
+    /// than 20 s of processor time, and says so.
     ///
     /// # Errors
-    /// [`Error::Output`] if it cannot be written; others of [`write_animation`](crate::io::output::write_animation).
+    /// [`Error::Output`] if it cannot be written; others of
+    /// [`write_animation`](crate::io::output::write_animation).
     pub fn write_page(
         &self,
         written: &Scene,
@@ -140,7 +144,7 @@ impl Advice {
     }
 }
 
-/// Runs a candidate once more, or tells why there is nothing to be shown.
+/// Runs a candidate once more, or returns why there is nothing to be shown.
 fn motion(
     candidate: &Candidate,
     written: &Scene,
@@ -163,8 +167,8 @@ fn motion(
     run.map_err(|error| reason(error).to_string())
 }
 
-/// The words of the advice as HTML: empty lines part paragraphs, lines that begin with "- " are points of a list, those that
-/// tell of one candidate stand out, and those of failures are folded.
+/// The words of the advice as HTML: empty lines part paragraphs, lines that begin with "- " are points of a
+/// list, those about one candidate stand out, and those of failures are folded.
 fn paragraphs(text: &str) -> String {
     let mut html = String::new();
     let mut open = Block::Text;

@@ -3,8 +3,8 @@
 use crate::base::input::percent;
 use std::fmt;
 
-/// What the error of a run is made of (relative): the distances between runs that differ in one thing each. What the error
-/// lacks is the largest of them: nothing is gained by making another one smaller.
+/// What the error of a run is made of (relative): the distances between runs that differ in one thing each.
+/// The largest of them dominates: nothing is gained by making another one smaller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parts {
     /// Of the model: measure of strain, inertia, alpha, what is left out.

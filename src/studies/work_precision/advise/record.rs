@@ -11,10 +11,12 @@ use crate::io::output::write_file;
 use crate::studies::work_precision::look::Look;
 
 impl Advice {
-    /// Writes all that was found as JSON: `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`, `mesh`, `alphas`,
-    /// `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `mesh_estimate`,
-    /// `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` is
-    /// not known. A candidate has `model` and `set`, what has to be set for it in the file of the scene.
+    /// Writes all that was found as JSON.
+    ///
+    /// The keys are `quantity`, `accuracy`, `scale`, `unit`, `written`, `enough`, `truth`, `resolution`,
+    /// `mesh`, `alphas`, `law`, `inertia`, `terms`, `candidates`, `known_until`, `end`, `mesh_estimate`,
+    /// `look`, `not_tried`, `is_cut_short`, `runs`, `seconds`, `known`, as the fields are; `null` means not
+    /// known. A candidate has `model` and `set`, what has to be set for it in the file of the scene.
     ///
     /// # Errors
     /// [`Error::Output`] if it cannot be written.

@@ -1,4 +1,4 @@
-//! Runs that are kept in a file, so that a search can go on where another one ended.
+//! Runs that are kept in a file, so that a search can continue where another one ended.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
@@ -13,12 +13,12 @@ use crate::scene::timeline::Scene;
 use crate::studies::work_precision::fingerprint;
 use crate::studies::work_precision::quantity::{Quantity, Seen};
 
-/// What came of a run: a line of the file.
+/// The result of a run: a line of the file.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub(super) struct Outcome {
     /// Which run it is: a hash of the scene, the quantity, the choice and the version of this library.
     run: String,
-    /// What was seen; not without a motion.
+    /// What was seen; `None` without a motion.
     pub(super) seen: Option<Seen>,
     pub(super) seconds: f64,
     pub(super) unknowns: usize,
@@ -66,7 +66,7 @@ impl Runs {
         Ok(Self { known, file: Some((file, path.into())) })
     }
 
-    /// What a run is known by.
+    /// What identifies a run.
     pub(super) fn name(&self, scene: &Scene, quantity: &Quantity, choice: &Choice) -> String {
         match &self.file {
             Some(_) => {
@@ -80,12 +80,12 @@ impl Runs {
         }
     }
 
-    /// What came of it, if it was made.
+    /// The result of a run, if it was made.
     pub(super) fn get(&self, name: &str) -> Option<&Outcome> {
         self.known.get(name)
     }
 
-    /// Keeps what came of a run.
+    /// Keeps the result of a run.
     pub(super) fn keep(&mut self, outcome: &Outcome) -> Result<(), Error> {
         let Some((file, path)) = &mut self.file else { return Ok(()) };
         let line = serde_json::to_string(outcome).map_err(io::Error::from);

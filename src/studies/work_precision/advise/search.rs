@@ -1,4 +1,4 @@
-//! The ladder: one rung at a time.
+//! The search: runs of candidates, within a budget.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -15,7 +15,7 @@ use crate::scene::timeline::{Phase, Scene};
 use crate::studies::work_precision::quantity::{Quantity, Seen};
 use crate::studies::work_precision::truth::{Probe, reason};
 
-/// What is asked.
+/// What the adviser is asked.
 #[derive(Debug)]
 pub(super) struct Request {
     pub(super) accuracy: f64,
@@ -26,7 +26,7 @@ pub(super) struct Request {
 }
 
 impl Request {
-    /// Those of the request, by another method and tolerance.
+    /// The settings of the request, with another method and tolerance.
     pub(super) fn settings(
         &self,
         method: Method,
@@ -94,18 +94,18 @@ pub(super) enum Cut {
     Late,
 }
 
-/// A run this short (s) is timed again, so many times in all.
+/// A run this short (s) is timed again, this many times in all.
 const SHORT: f64 = 0.1;
 const REPETITIONS: usize = 3;
-/// A run may take this part of the time that is left: there are others.
+/// A run may take this part of the time that is left: others follow.
 const SHARE: f64 = 0.4;
-/// Below this part of the budget it is spent.
+/// If less than this part of the budget is left, it counts as spent.
 const LEAST: f64 = 0.02;
-/// How run time grows with the unknowns: between the plane and space.
+/// Exponent by which run time grows with the unknowns: between those of the plane and of space.
 const GROWTH: f64 = 1.5;
 
 impl<'a> Search<'a> {
-    /// Of `scene`, within the budget from now on.
+    /// A search for `scene`, whose budget begins now.
     pub(super) fn new(
         request: &'a Request,
         scene: &Scene,
@@ -137,8 +137,8 @@ impl<'a> Search<'a> {
         self.left() < LEAST * self.request.budget
     }
 
-    /// Runs the scene by a choice, if it was not run before. `None` if that gives no motion, which is noted, or if it takes
-    /// longer than there is patience for.
+    /// Runs the scene by a choice, if it was not run before. `None` if that gives no motion, which is noted,
+    /// or if it takes longer than there is patience for.
     pub(super) fn run(&mut self, choice: &Choice) -> Result<Option<Solved>, Stop> {
         self.cut = None;
         let name = self.kept.name(&self.scene, &self.request.quantity, choice);
@@ -171,7 +171,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// What comes of a run: to be kept, or not as it was cut short.
+    /// The result of a run: `Ok` if it is to be kept, `Err` if it was cut short.
     fn attempt(&mut self, choice: &Choice, name: String) -> Result<Outcome, Outcome> {
         match self.solve(choice) {
             Ok((seen, seconds, unknowns)) => Ok(Outcome::new(name, Some(seen), seconds, unknowns)),
@@ -209,7 +209,7 @@ impl<'a> Search<'a> {
         Ok((probe.seen(&first), seconds, first.report().states))
     }
 
-    /// What a scene comes to rest in, if it ever does.
+    /// The equilibrium in which a scene comes to rest, if it ever does.
     pub(super) fn at_rest(&self, scene: &Scene) -> Result<Equilibrium, Error> {
         let last = scene.phases().last().map_or("", Phase::name);
         scene.equilibrium_of(last, &Statics::default())
@@ -225,7 +225,7 @@ impl<'a> Search<'a> {
         self.runs += 1;
         let share = SHARE * self.left();
         let clock = Instant::now();
-        // a look at the clock costs nothing beside a step
+        // a look at the clock costs nothing compared with a step
         scene.simulate_with(settings, &probe.sampling(), |_| {
             let seconds = clock.elapsed().as_secs_f64();
             self.cut = match (self.observer)(what) {
@@ -238,7 +238,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Whether there is time for a run with as many unknowns, as the time of another tells.
+    /// Whether there is time for a run with as many unknowns, judged by the time of another.
     pub(super) fn affords(&self, unknowns: usize, known: &Solved) -> bool {
         let ratio = unknowns as f64 / known.unknowns as f64;
         known.seconds * ratio.powf(GROWTH) < SHARE * self.left()
