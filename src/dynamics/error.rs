@@ -8,7 +8,7 @@ use crate::dynamics::equilibrium::NoEquilibrium;
 use crate::dynamics::trajectory::IntegrationFailure;
 use crate::integrators::common;
 
-/// What went wrong, with which input, and how to mend it.
+/// What went wrong, with which input, and how to correct it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -39,7 +39,7 @@ pub enum Error {
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// The key, what is wrong with it and how to mend it.
+        /// The key, what is wrong with it and how to correct it.
         message: String,
     },
 

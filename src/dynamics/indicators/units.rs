@@ -60,7 +60,7 @@ fn extent(body: &Body) -> Vec<Indicator> {
         || mass_told.clone(),
         mass_beyond,
     );
-    // one mend for both
+    // one remedy for both
     let mass = Some(mass).filter(|_| !size.is_beyond());
     [size].into_iter().chain(mass).collect()
 }

@@ -275,7 +275,7 @@ impl Cause {
                 "check a supplied Jacobian against difference quotients; look for a discontinuity"
             }
             Self::WrongJacobian { .. } => {
-                "mend this derivative (ode::check looks at all of them), or let difference quotients take its place; \
+                "correct this derivative (ode::check looks at all of them), or let difference quotients take its place; \
                  if it is meant to be an approximation, switch this check off by check_jacobian(false)"
             }
             Self::LinearSolver => {

@@ -102,15 +102,15 @@ pub fn gradient(
     let (start, n) = (span.0, problem.y.len());
     problem.equations = method.take(problem.equations, start, n, options)?;
     let original = problem.equations.parameters().to_vec();
-    let (stages, end) = follow(&mut problem, method, span, options)?;
-    let mut back = WayBack { problem, functional, method, span, options, back };
-    let outcome = back.gradient(&stages, &end);
+    let (parts, end) = follow(&mut problem, method, span, options)?;
+    let mut back = BackwardRun { problem, functional, method, span, options, back };
+    let outcome = back.gradient(&parts, &end);
     back.problem.equations.set_parameters(&original);
     outcome
 }
 
 /// What the backward run needs.
-struct WayBack<'a, 'o, F> {
+struct BackwardRun<'a, 'o, F> {
     problem: Problem<'a>,
     functional: F,
     method: Method,
@@ -150,14 +150,14 @@ impl<F: Functional> Functional for Piece<'_, F> {
     }
 }
 
-impl<F: Functional> WayBack<'_, '_, F> {
+impl<F: Functional> BackwardRun<'_, '_, F> {
     /// From the end to the start.
-    fn gradient(&mut self, stages: &[HistoryPart], end: &Place) -> Result<Gradient, Reason> {
+    fn gradient(&mut self, parts: &[HistoryPart], end: &Place) -> Result<Gradient, Reason> {
         let start = Gradient::at_end(&mut self.functional, end.t, &end.y, &end.p);
         let start = start.map_err(|failure| unknown("terminal functional", failure))?;
         let mut gradient = start.check()?;
-        for stage in stages.iter().rev() {
-            match stage {
+        for part in parts.iter().rev() {
+            match part {
                 HistoryPart::Smooth { from, to } => self.integrate(from, *to, &mut gradient)?,
                 HistoryPart::Jump(passage) => self.cross(passage, &mut gradient)?,
             }

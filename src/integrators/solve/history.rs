@@ -117,7 +117,7 @@ pub(super) fn follow(
 ) -> Result<(Vec<HistoryPart>, Place), Reason> {
     let log = RefCell::new(Vec::new());
     let mut run = Run::new(lend(problem, &log), method, span, options)?;
-    let mut stages = Vec::new();
+    let mut parts = Vec::new();
     let mut from = Place::of(&run);
     while let Some(step) = run.advance()? {
         let touched: Vec<_> =
@@ -126,7 +126,7 @@ pub(super) fn follow(
         let Some((act, first)) = noted.first() else { continue };
         let to = if act.is_of_event() { first.t } else { run.just_before(first.t) };
         let here = Place::of(&run);
-        stages.push(HistoryPart::Smooth { from, to });
+        parts.push(HistoryPart::Smooth { from, to });
         let mut groups =
             noted.chunk_by(|(a, _), (b, _)| a.is_of_event() == b.is_of_event()).peekable();
         while let Some(group) = groups.next() {
@@ -139,7 +139,7 @@ pub(super) fn follow(
             let crosses = timed_by.is_none_or(|i| !touched.contains(&i));
             let before = group[0].1.clone();
             let ends = false;
-            stages.push(HistoryPart::Jump(Passage {
+            parts.push(HistoryPart::Jump(Passage {
                 timed_by,
                 crosses,
                 acts,
@@ -155,13 +155,13 @@ pub(super) fn follow(
         Some(End::Event(i)) => Some(i),
         _ => None,
     };
-    match (stages.last_mut(), ending) {
+    match (parts.last_mut(), ending) {
         (Some(HistoryPart::Jump(last)), Some(_)) if from.t == here.t => {
             last.ends = last.timed_by.is_some();
         }
         _ => {
             if from.t != here.t {
-                stages.push(HistoryPart::Smooth { from, to: here.t });
+                parts.push(HistoryPart::Smooth { from, to: here.t });
             }
             if let Some(i) = ending {
                 let crosses = run.occurred.iter().all(|at| at.event != i || at.sign != 0);
@@ -169,9 +169,9 @@ pub(super) fn follow(
                 let acts = Vec::new();
                 let timed_by = Some(i);
                 let last = Passage { timed_by, crosses, acts, before, after, ends: true };
-                stages.push(HistoryPart::Jump(last));
+                parts.push(HistoryPart::Jump(last));
             }
         }
     }
-    Ok((stages, here))
+    Ok((parts, here))
 }

@@ -31,7 +31,7 @@ struct PhaseIdentity {
     hash: String,
 }
 
-const MEND: &str = "read it by a simulation of the scene that it was written for";
+const HELP: &str = "read it by a simulation of the scene that it was written for";
 
 impl Identity {
     pub(super) fn of(scene: &Scene) -> Self {
@@ -77,25 +77,25 @@ impl Identity {
         ];
         if let Some((what, ours, theirs)) = counts.iter().find(|(_, ours, theirs)| ours != theirs) {
             return Err(format!(
-                "{what}: it is of a scene with {ours}, this one has {theirs}; {MEND}"
+                "{what}: it is of a scene with {ours}, this one has {theirs}; {HELP}"
             ));
         }
         let mut parts = self.parts.iter().zip(&scene.parts);
         if let Some((_, (part, _))) = parts.find(|(ours, theirs)| ours != theirs) {
-            return Err(format!("{part}: they differ from those of the scene in the file; {MEND}"));
+            return Err(format!("{part}: they differ from those of the scene in the file; {HELP}"));
         }
         for (number, (ours, theirs)) in (1..).zip(self.phases.iter().zip(&scene.phases)) {
             if (&ours.name, ours.until) != (&theirs.name, theirs.until) {
                 let [file, here] = [ours, theirs].map(PhaseIdentity::label);
                 return Err(format!(
-                    "phases: number {number} is {file}, here it is {here}; {MEND}"
+                    "phases: number {number} is {file}, here it is {here}; {HELP}"
                 ));
             }
             if ours.hash != theirs.hash {
                 let name = &ours.name;
                 return Err(format!(
                     "phases: what \"{name}\" holds, moves, loads or touches differs from the scene in \
-                     the file; {MEND}"
+                     the file; {HELP}"
                 ));
             }
         }

@@ -59,16 +59,16 @@ macro_rules! table {
     };
     (@keys $keys:ident;) => {};
     (@keys $keys:ident; $key:literal, $unit:literal, $meaning:literal => $value:expr; $($rest:tt)*) => {
-        $keys.push(($key.into(), $unit, $meaning));
+        $keys.extend([($key.into(), $unit, $meaning)]);
         table!(@keys $keys; $($rest)*);
     };
     (@keys $keys:ident; $key:literal ($inner:ident), $unit:literal, $meaning:literal => $value:expr; $($rest:tt)*) => {
-        $keys.push(($key.into(), $unit, $meaning));
+        $keys.extend([($key.into(), $unit, $meaning)]);
         $keys.extend(within(concat!($key, "."), $inner::keys()));
         table!(@keys $keys; $($rest)*);
     };
     (@keys $keys:ident; $key:literal [$inner:ident], $unit:literal, $meaning:literal => $value:expr; $($rest:tt)*) => {
-        $keys.push(($key.into(), $unit, $meaning));
+        $keys.extend([($key.into(), $unit, $meaning)]);
         $keys.extend(within(concat!($key, "[]."), $inner::keys()));
         table!(@keys $keys; $($rest)*);
     };

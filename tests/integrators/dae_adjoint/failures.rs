@@ -46,7 +46,7 @@ fn troubles_on_the_way_back_are_told() {
     };
     let error = stopped(run(|| Err(Failure::Fatal("no".into()))));
     assert_eq!(error.cause, Cause::Fatal(Callback::Adjoint));
-    assert!(error.integrator.contains("IDA on the way back") && error.t < 0.7);
+    assert!(error.integrator.contains("IDA in the backward run") && error.t < 0.7);
     let error = stopped(run(|| Err(Failure::Recoverable("not here".into()))));
     assert!(matches!(error.cause, Cause::Rejected { callback: Callback::Adjoint, .. }));
     let panic = run(|| panic!("sabotage")).unwrap_err();

@@ -43,7 +43,7 @@ static FUNCTIONS: Functions = TABLE;
 
 /// The functions for an adjoint problem.
 pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
-    integrator: "CVODE on the way back",
+    integrator: "CVODE in the backward run",
     forward: &WITH_CHECKPOINTS,
     init_checkpoints: named!(CVodeAdjInit),
     create: ("CVodeCreateB", |memory, which| {

@@ -29,7 +29,7 @@ static FUNCTIONS: Functions = TABLE;
 
 /// The functions for an adjoint problem.
 pub(in crate::integrators::sundials) static BACKWARD: BackwardFunctions = BackwardFunctions {
-    integrator: "IDA on the way back",
+    integrator: "IDA in the backward run",
     forward: &WITH_CHECKPOINTS,
     init_checkpoints: named!(IDAAdjInit),
     create: ("IDACreateB", |memory, which| {

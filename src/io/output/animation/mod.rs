@@ -209,7 +209,7 @@ fn read_motion(path: &Path) -> Result<Value, Error> {
     let [before, after] = DATA;
     let data = text.split_once(before).and_then(|(_, rest)| rest.split_once(after));
     let data = data.and_then(|(data, _)| serde_json::from_str::<Value>(data).ok());
-    let refuse = |mend| Err(InputError::new("animation", path.display(), mend).into());
+    let refuse = |help| Err(InputError::new("animation", path.display(), help).into());
     let Some(mut data) = data else {
         return refuse("it is no animation of pliant: format html of a run writes one".to_string());
     };
