@@ -8,7 +8,7 @@ use crate::dynamics::equilibrium::NoEquilibrium;
 use crate::dynamics::trajectory::IntegrationFailure;
 use crate::integrators::common;
 
-/// What went wrong, with which input, and how to mend it.
+/// What went wrong, with which input, and how to correct it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -24,7 +24,7 @@ pub enum Error {
     #[error(transparent)]
     Integrator(common::Error),
 
-    /// No equilibrium was found; the last one on the way to it is kept inside.
+    /// No equilibrium was found; the last one found for part of the load is kept inside.
     #[error(transparent)]
     Statics(#[from] Box<NoEquilibrium>),
 
@@ -39,7 +39,7 @@ pub enum Error {
         path: PathBuf,
         /// Number of the line, from 1.
         line: usize,
-        /// The key, what is wrong with it and how to mend it.
+        /// The key, what is wrong with it and how to correct it.
         message: String,
     },
 
@@ -79,11 +79,11 @@ pub enum Error {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("a function that was given to the simulation panicked: {message}")]
 pub struct Panicked {
-    /// What it said.
+    /// The message of the panic.
     pub message: String,
 }
 
-/// What a function of the caller gives, or that it has panicked.
+/// What a function of the caller returns, or an error if it panics.
 pub(crate) fn guarded<T>(call: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
