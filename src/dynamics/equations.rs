@@ -1,4 +1,4 @@
-//! The equations of motion of a phase by themselves, for integrators that are not of this crate.
+//! The equations of motion of one phase, for integrators outside this crate.
 //!
 //! ```
 //! use pliant::samples::beam_jump;
@@ -25,16 +25,16 @@ use crate::scene::timeline::Scene;
 
 /// The equations of one phase of a scene, discrete in space and continuous in time.
 ///
-/// M v' = f(t, u, v) and u' = v hold for all displacement components but those that
-/// [`prescribed`](Self::prescribed) names, which follow b(t). Vectors have dimension components for
-/// each node.
+/// M v' = f(t, u, v) and u' = v hold for all displacement components except the
+/// [`prescribed`](Self::prescribed) ones, which follow b(t). Vectors have `dimension` components per node.
 pub struct Equations {
     system: System,
 }
 
 impl Scene {
-    /// The equations of phase number `phase`, counted from 0, which begins with the displacements `u`
-    /// (m): nodes that it holds stay there, nodes that it moves start there.
+    /// The equations of phase number `phase`, counted from 0, which begins with the displacements `u` (m).
+    ///
+    /// Nodes that the phase holds stay there, nodes that it moves start there.
     ///
     /// # Errors
     /// As [`validate`](Self::validate); a phase that the scene does not have; displacements of
@@ -97,11 +97,11 @@ impl Equations {
         self.system.rows().iter().filter_map(row)
     }
 
-    /// Writes f(t, u, v): all forces (N) at the displacements `u` (m) and velocities `v` (m/s), those
-    /// that keep up the constraints left out.
+    /// Writes f(t, u, v): all forces (N) at the displacements `u` (m) and velocities `v` (m/s), without those
+    /// of the constraints.
     ///
     /// # Errors
-    /// A state in which a force has no meaning, as one with an inverted cell.
+    /// A state in which a force is undefined, such as one with an inverted cell.
     pub fn forces(&mut self, t: f64, u: &[f64], v: &[f64], f: &mut [f64]) -> Result<(), Failure> {
         self.system.forces(t, u, v, f)
     }
@@ -112,8 +112,8 @@ impl Equations {
         self.system.tangents().into()
     }
 
-    /// Factorizes the Newton matrix M + gamma D + gamma^2 Kt of an implicit method of step parameter
-    /// `gamma` (s), with the [`tangents`](Self::tangents) last asked for.
+    /// Factorizes the Newton matrix M + gamma D + gamma^2 Kt of an implicit method of step parameter `gamma`
+    /// (s), with the [`tangents`](Self::tangents) computed last.
     ///
     /// # Errors
     /// A singular matrix.
@@ -121,7 +121,8 @@ impl Equations {
         self.system.factorize_newton(gamma)
     }
 
-    /// Solves (I - gamma J) x = r, with J the Jacobian of (u', v') = (v, M^-1 f) and the factor last made:
+    /// Solves (I - gamma J) x = r with the last factorization; J is the Jacobian of (u', v') = (v, M^-1 f).
+    ///
     /// `ru` and `rv` hold r and become x. Prescribed components get xv = rv and xu = ru + gamma xv.
     pub fn solve(&mut self, ru: &mut [f64], rv: &mut [f64]) {
         self.system.solve_newton_ode(0.0, ru, rv, &[]);

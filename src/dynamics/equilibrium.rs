@@ -1,4 +1,4 @@
-//! A scene in equilibrium: what statics finds, and what is left if it finds none.
+//! A scene in equilibrium, and what a search for one returns that fails.
 
 use std::fmt;
 
@@ -8,17 +8,17 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 /// What a small push does to a body in equilibrium.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Stability {
-    /// The tangent is positive definite on the motions that the constraints allow: it swings back.
+    /// The tangent is positive definite on the motions that the constraints allow: the body swings back.
     Stable {
         /// Lowest natural frequency of small undamped vibrations about the equilibrium (Hz);
         /// infinite if nothing can move.
         frequency: f64,
     },
-    /// It can move on without force, to the precision of the arithmetic.
+    /// The body can move on without force, to the precision of the arithmetic.
     Neutral,
-    /// The equilibrium is no minimum of the energy: a small push grows.
+    /// The equilibrium is not a minimum of the energy: a small push grows.
     Unstable {
-        /// Rate at which the push grows most, without damping (1/s).
+        /// Largest growth rate of a push, without damping (1/s).
         growth: f64,
     },
 }
@@ -41,10 +41,12 @@ pub struct Equilibrium {
     pub(crate) trajectory: Trajectory,
     /// What a small push does to it.
     pub stability: Stability,
-    /// Rigid motions, in words, that nothing holds in a body whose loads balance each other, and that were taken out of
-    /// the displacements u: R^T M u = 0 for each motion R, so that the body has neither moved nor turned in the mean over its mass.
-    /// With Green's strain a body turns to where loads of constant direction balance each other, which then hold it: a turn
-    /// is removed only if no force minds it.
+    /// Rigid motions, in words, that nothing restrains and that were removed from the displacements u.
+    ///
+    /// Nothing restrains them in a body whose loads balance each other. R^T M u = 0 for each such motion R,
+    /// so that the mean translation and rotation, weighted by mass, are 0. With Green's strain a body turns
+    /// to where loads of constant direction balance each other, and these then restrain it: a rotation is
+    /// removed only if no force resists it.
     pub removed: Vec<String>,
     /// Largest nodal force that is not balanced (N).
     pub residual: f64,
@@ -54,36 +56,35 @@ pub struct Equilibrium {
     pub iterations: usize,
     /// Factorizations of the tangent.
     pub factorizations: usize,
-    /// Evaluations of forces for their tangents by finite differences: of those that leave out
+    /// Evaluations of forces for tangents by finite differences, of forces without
     /// [`Force::add_tangents`](crate::elements::force::Force::add_tangents).
     pub difference_evaluations: usize,
     /// Load steps that converged.
     pub load_steps: usize,
-    /// Load steps that did not, and were made smaller.
+    /// Load steps that did not converge and were made smaller.
     pub failed_steps: usize,
-    /// By how much a quantity is off by the mesh, if that was [estimated](MeshEstimate).
+    /// Discretization error of a quantity, if it was [estimated](MeshEstimate).
     pub mesh_estimate: Option<MeshEstimate>,
 }
 
-/// By how much a quantity of an equilibrium is off because the mesh is not finer: made by
-/// [`MeshEstimate::of`].
+/// Estimate of the discretization error of a quantity of an equilibrium, made by [`MeshEstimate::of`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeshEstimate {
-    /// What was asked for.
+    /// The quantity.
     pub quantity: String,
     /// Its unit.
     pub unit: String,
-    /// What it is on this mesh.
+    /// Its value on this mesh.
     pub value: f64,
-    /// How much it has changed from the undeformed shape, without load, to the equilibrium.
+    /// Its change from the undeformed shape, without load, to the equilibrium.
     pub change: f64,
-    /// What the quantity would be on the richer mesh, less the value: the error is minus that.
+    /// Estimated value on the richer mesh minus `value`: the error is minus that.
     pub correction: f64,
-    /// What the forces that the step to the corrected displacements leaves unbalanced would add to the correction: its leading
-    /// remainder, 0 in linear problems, infinite if forces have no meaning there.
+    /// What the forces that are unbalanced at the corrected displacements would add to the correction: its
+    /// leading remainder, 0 in linear problems, infinite if forces are undefined there.
     pub remainder: f64,
-    /// What the nodes that the richer mesh has more contribute to the correction, by the cells of this mesh that they lie in: where it
-    /// is large, smaller cells help.
+    /// Contributions of the additional nodes of the richer mesh to the correction, for each cell of this mesh
+    /// that they lie in: where they are large, smaller cells help.
     pub cells: Vec<f64>,
     /// Displacement components on the richer mesh.
     pub unknowns: usize,
@@ -97,13 +98,15 @@ impl MeshEstimate {
         self.value + self.correction
     }
 
-    /// Whether the remainder is no larger than the correction, but for round-off: if it is, the correction may be far off.
+    /// Whether the remainder is no larger than the correction, apart from round-off.
+    ///
+    /// If it is larger, the correction may be far off.
     pub fn is_reliable(&self) -> bool {
         let round_off = 1e-9 * self.value.abs().max(self.change.abs());
         self.remainder.abs() <= self.correction.abs().max(round_off)
     }
 
-    /// The size of the correction as a part of the change; infinite if the quantity has not changed.
+    /// The size of the correction relative to the change; infinite if the quantity has not changed.
     pub fn relative(&self) -> f64 {
         (self.correction / self.change).abs()
     }
@@ -135,8 +138,8 @@ impl fmt::Display for MeshEstimate {
 }
 
 impl Equilibrium {
-    /// The state: displacements, constraint forces lambda (on the body) and potential energies;
-    /// what is stored beyond the undeformed shape counts as supplied.
+    /// The state: displacements, constraint forces lambda (on the body) and potential energies; the energy
+    /// stored beyond that of the undeformed shape counts as supplied.
     pub fn sample(&self) -> &Sample {
         self.trajectory.last()
     }
@@ -146,9 +149,10 @@ impl Equilibrium {
         &self.sample().u
     }
 
-    /// The same as a trajectory, for [`output`](crate::io::output): the undeformed shape at t = 0, and
-    /// the equilibrium at the end of the phase; between them those for parts of the load, if
-    /// [`Statics`](crate::Statics) asks for several steps.
+    /// The same as a trajectory, for [`output`](crate::io::output).
+    ///
+    /// It has the undeformed shape at t = 0 and the equilibrium at the end of the phase; between them the
+    /// equilibria for parts of the load, if [`Statics`](crate::Statics) requires several steps.
     pub fn trajectory(&self) -> &Trajectory {
         &self.trajectory
     }
@@ -184,14 +188,14 @@ impl fmt::Display for Equilibrium {
     }
 }
 
-/// The search for an equilibrium gave up: how far it came and why.
+/// The search for an equilibrium gave up: how far it got and why.
 #[derive(Debug)]
 pub struct NoEquilibrium {
     /// Name of the phase.
     pub phase: String,
-    /// Part of constraints and loads for which an equilibrium was found.
+    /// Fraction of constraints and loads for which an equilibrium was found.
     pub fraction: f64,
-    /// Part for which none was found.
+    /// Fraction for which none was found.
     pub tried: f64,
     /// Largest nodal force left unbalanced in the last attempt (N).
     pub residual: f64,
@@ -199,8 +203,8 @@ pub struct NoEquilibrium {
     pub iterations: usize,
     /// The likely cause, and what to try.
     pub cause: String,
-    /// The undeformed shape and, at that part of the end of the phase, the last equilibrium found, if any; those
-    /// before it as in [`Equilibrium::trajectory`].
+    /// The undeformed shape and, at `fraction` times the end of the phase, the last equilibrium found, if
+    /// any; earlier ones as in [`Equilibrium::trajectory`].
     pub trajectory: Trajectory,
 }
 

@@ -24,7 +24,7 @@ pub enum Error {
     #[error(transparent)]
     Integrator(common::Error),
 
-    /// No equilibrium was found; the last one on the way to it is kept inside.
+    /// No equilibrium was found; the last one found for part of the load is kept inside.
     #[error(transparent)]
     Statics(#[from] Box<NoEquilibrium>),
 
@@ -79,11 +79,11 @@ pub enum Error {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("a function that was given to the simulation panicked: {message}")]
 pub struct Panicked {
-    /// What it said.
+    /// The message of the panic.
     pub message: String,
 }
 
-/// What a function of the caller gives, or that it has panicked.
+/// What a function of the caller returns, or an error if it panics.
 pub(crate) fn guarded<T>(call: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(call)).map_err(|payload| {
         let text = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());

@@ -1,8 +1,8 @@
-//! The motion of a scene: its equations, phase by phase, and what an integrator makes of them.
+//! The motion of a scene: its equations, phase by phase, and their solution by an integrator.
 //!
 //! `matrices` has what is constant, `system` the equations of a phase as ODE, DAE and system of second order,
-//! [`simulate`] the run, [`statics`] the equilibrium, [`trajectory`] what a run gives, `report` what it cost and
-//! `indicators` what makes it doubtful.
+//! [`simulate`] the run, [`statics`] the equilibrium, [`trajectory`] what a run returns, `report` what it
+//! cost and `indicators` what makes it doubtful.
 
 pub mod equations;
 pub(crate) mod equilibrium;

@@ -13,7 +13,7 @@ use crate::scene::settings::Method;
 /// How a trajectory was computed.
 #[derive(Debug, Clone, Default)]
 pub struct Report {
-    /// Title of the scene, of a file that has one; empty otherwise.
+    /// Title of the scene, if its file has one; empty otherwise.
     pub title: String,
     /// Integration method.
     pub method: Method,
@@ -35,23 +35,26 @@ pub struct Report {
     pub energy_scale: f64,
     /// Wall-clock time of the whole run (s).
     pub wall_seconds: f64,
-    /// What was measured on the scene and on the motion once the run had ended; what is beyond its limit is among the
-    /// [`warnings`](Self::warnings). [`Trajectory::indicators`](crate::Trajectory::indicators) measures more.
+    /// What was measured on the scene and on the motion once the run had ended; indicators beyond their
+    /// limits are among the [`warnings`](Self::warnings).
+    /// [`Trajectory::indicators`](crate::Trajectory::indicators) measures more.
     pub indicators: Vec<Indicator>,
     /// What was chosen where a scene file says `auto`, and why.
     pub chosen: Vec<String>,
-    /// To what the motion is known, if it was [verified](crate::studies::work_precision::Verification).
+    /// How accurately the motion is known, if it was
+    /// [verified](crate::studies::work_precision::Verification).
     pub achieved: Option<Achieved>,
     /// Phase by phase.
     pub phases: Vec<PhaseReport>,
 }
 
-/// To what a motion is known: the difference of two runs, the second by a tenth of the tolerance of the first.
+/// How accurately a motion is known: the difference of two runs, the second with a tenth of the tolerance of
+/// the first.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Achieved {
     /// What was compared.
     pub quantity: String,
-    /// The relative difference that was asked for at most.
+    /// The largest relative difference that was requested.
     pub asked: f64,
     /// The relative difference that was found.
     pub difference: f64,
@@ -59,18 +62,18 @@ pub struct Achieved {
     pub scale: f64,
     /// Unit of the quantity.
     pub unit: String,
-    /// Time (s) until which the runs agree as was asked; the end of the scene if they do in all.
+    /// Time (s) until which the runs agree as requested; the end of the scene if they always do.
     pub known_until: f64,
     /// End of the scene (s).
     pub end: f64,
-    /// Runs in all.
+    /// Total number of runs.
     pub runs: usize,
-    /// Relative tolerances of the two.
+    /// Relative tolerances of the two runs that were compared.
     pub rtol: [f64; 2],
 }
 
 impl Achieved {
-    /// Whether the runs agree as was asked.
+    /// Whether the runs agree as requested.
     pub fn is_enough(&self) -> bool {
         self.difference <= self.asked
     }
@@ -100,13 +103,13 @@ pub struct PhaseReport {
     pub states: usize,
     /// Wall-clock time (s).
     pub wall_seconds: f64,
-    /// Method at the end of the phase: the one asked for, or the choice of [`Method::Auto`].
+    /// Method at the end of the phase: the requested one, or the choice of [`Method::Auto`].
     pub method: Method,
     /// Why that method, if it was chosen.
     pub reason: Option<String>,
     /// Steps, evaluations, factorizations.
     pub counts: Counts,
-    /// When bodies began to slide, or to stick, under friction, where contact events are located.
+    /// When bodies began to slide, or to stick, under friction, if contact events are located.
     pub slips: Vec<SlipEvent>,
 }
 
@@ -117,8 +120,8 @@ pub struct SlipEvent {
     pub time: f64,
     /// Name of the obstacle.
     pub obstacle: String,
-    /// Whether all points that press are now faster than the
-    /// [sticking speed](crate::Obstacle::sticking_speed), or all slower.
+    /// Whether all points in contact now exceed the [sticking speed](crate::Obstacle::sticking_speed), or are
+    /// all slower.
     pub slides: bool,
 }
 
@@ -171,15 +174,16 @@ impl Report {
         self.phases.iter().map(|phase| phase.counts.convergence_failures).sum()
     }
 
-    /// What [`indicators`](Self::indicators) are in doubt about, each with what to change.
+    /// The warnings of the [`indicators`](Self::indicators), each with what to change.
     pub fn doubts(&self) -> Vec<String> {
         warnings(&self.indicators)
     }
 
-    /// What makes the result doubtful or the run needlessly long: what the integrators noticed, an
-    /// energy balance that is off by more than a hundredth of the largest energy and, once the run has ended, what
-    /// indicators measured beyond their limits on the scene ([`Scene::warnings`](crate::Scene::warnings)), the
-    /// strain of its cells and its contacts.
+    /// What makes the result doubtful or the run needlessly long.
+    ///
+    /// This is what the integrators noticed, an energy balance that is off by more than a hundredth of the
+    /// largest energy and, once the run has ended, indicators beyond their limits: of the scene
+    /// ([`Scene::warnings`](crate::Scene::warnings)), of the strain of its cells and of its contacts.
     pub fn warnings(&self) -> Vec<String> {
         let notice = |phase: &PhaseReport| {
             let notice = phase.counts.notice.as_ref()?;
@@ -216,8 +220,8 @@ impl Report {
 /// Error of the energy balance, as part of the largest energy, from which a result is doubtful.
 const DOUBTFUL: f64 = 0.01;
 
-/// What the integrator has created, if a rise of the energy balance by `created` (J) is more than a
-/// hundredth of `scale`, the largest energy (J).
+/// The energy that the integrator has created, in words, if a rise of the energy balance by `created` (J) is
+/// more than a hundredth of `scale`, the largest energy (J).
 pub(crate) fn creation(created: f64, scale: f64) -> Option<String> {
     let part = created / scale;
     (part > DOUBTFUL).then(|| {
@@ -229,7 +233,8 @@ pub(crate) fn creation(created: f64, scale: f64) -> Option<String> {
 }
 
 impl fmt::Display for Report {
-    /// A table of the phases and the sums over them, then what is conserved and what is not.
+    /// A table of the phases and the sums over them, then errors of constraints and energy, remarks and
+    /// warnings.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { method, rtol, alpha, states, .. } = self;
         writeln!(f, "{method}, rtol {rtol:.0e}, alpha {alpha:.0e} 1/s, {states} unknowns")?;
@@ -241,7 +246,7 @@ impl fmt::Display for Report {
         let rejected = |c: &Counts| c.error_test_failures + c.convergence_failures;
         for PhaseReport { name, end, wall_seconds, counts, .. } in &self.phases {
             let Counts { steps, evaluations, factorizations, .. } = counts;
-            // of a run that ended early it has all digits
+            // the end of a run that stopped early may have all digits
             let mut end_text = end.to_string();
             if end_text.len() > 8 {
                 end_text = format!("{end:.3e}");
@@ -319,7 +324,7 @@ pub struct Counts {
     /// Evaluations of the tangents of the forces, of which the Newton matrix is made; none where
     /// they are constant.
     pub jacobian_evaluations: usize,
-    /// Evaluations of forces for their tangents by finite differences: of those that leave out
+    /// Evaluations of forces for tangents by finite differences, of forces without
     /// [`Force::add_tangents`](crate::elements::force::Force::add_tangents).
     pub difference_evaluations: usize,
     /// Factorizations of the Newton matrix.
@@ -342,7 +347,7 @@ pub struct Counts {
 }
 
 impl Counts {
-    /// Adds what a further part of the phase cost.
+    /// Adds the counts of a further part of the phase.
     pub(crate) fn add(&mut self, further: Counts) {
         self.steps += further.steps;
         self.evaluations += further.evaluations;

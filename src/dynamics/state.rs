@@ -4,7 +4,7 @@
 /// Number of energies among the unknowns: dissipated and supplied.
 pub(crate) const ENERGIES: usize = 2;
 
-/// The parts of a state. Of a derivative y' or a residual it holds the same parts.
+/// The parts of a state, or the same parts of a derivative y' or a residual.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct State<'a> {
     /// Displacements (m), dimension components per node.
@@ -29,7 +29,7 @@ pub(crate) struct StateMut<'a> {
     pub(crate) others: &'a mut [f64],
 }
 
-/// Position of the first of the others, of a body with `dofs` displacement components: the length of the
+/// Position of the first of the `others`, for a body with `dofs` displacement components: the length of the
 /// state of an ODE without them.
 pub(crate) fn length(dofs: usize) -> usize {
     2 * dofs + ENERGIES

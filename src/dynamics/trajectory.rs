@@ -1,4 +1,4 @@
-//! What a run leaves behind: sampled states, how they were obtained, and why it ended early.
+//! The result of a run: sampled states, how they were obtained, and why it ended early.
 
 mod forces;
 
@@ -24,9 +24,9 @@ pub struct Sample {
     pub u: Vec<f64>,
     /// Velocities (m/s), likewise.
     pub v: Vec<f64>,
-    /// Constraint forces lambda (N) on the body, one per row of the phase's constraints: in the
-    /// order in which the phase names them, node by node, axis by axis.
-    /// [`Trajectory::constraint_force`] gives them by nodes.
+    /// Constraint forces lambda (N) on the body, one per row of the phase's constraints: in the order in
+    /// which the phase names them, node by node, axis by axis. [`Trajectory::constraint_force`] returns them
+    /// by nodes.
     pub multipliers: Vec<f64>,
     /// Energies (J).
     pub energy: Energy,
@@ -48,7 +48,7 @@ impl PartialEq for Commanded {
     }
 }
 
-/// A number that is read with each sample.
+/// A number that is read at each sample.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Quantity {
     /// Its name.
@@ -57,11 +57,12 @@ pub struct Quantity {
     pub unit: String,
 }
 
-/// The unit of angles in degrees, the one that is none of SI.
+/// The unit of angles in degrees, the only one outside SI.
 pub(crate) const DEGREES: &str = "deg";
 
 impl Quantity {
-    /// What stands above its column in a table: its name, with degrees behind it, as all else is in SI units.
+    /// Heading of its column in a table: its name, followed by the unit if that is degrees, as all else is in
+    /// SI units.
     #[cfg(any(feature = "output", feature = "fit"))]
     pub(crate) fn heading(&self) -> String {
         match self.unit == DEGREES {
@@ -70,7 +71,7 @@ impl Quantity {
         }
     }
 
-    /// The name that stands above a column, and whether degrees stand behind it.
+    /// The name in the heading of a column, and whether degrees follow it.
     #[cfg(feature = "output")]
     pub(crate) fn of_heading(heading: &str) -> (&str, bool) {
         let name = heading.strip_suffix(')').and_then(|heading| heading.strip_suffix(DEGREES));
@@ -85,7 +86,7 @@ pub struct Trajectory {
     scene: Scene,
     samples: Vec<Sample>,
     pub(crate) sensors: Vec<Quantity>,
-    /// The least and the largest that each sensor has read, between samples, too; empty unless that was asked for.
+    /// The least and the largest reading of each sensor, also between samples; empty unless requested.
     pub(crate) peaks: Vec<[f64; 2]>,
     pub(crate) report: Report,
 }
@@ -135,7 +136,7 @@ impl Trajectory {
         Ok(())
     }
 
-    /// From now on has these sensors, which have not read anything so far.
+    /// Replaces the sensors by others, which have no readings so far.
     pub(crate) fn unread(&mut self, sensors: Vec<Quantity>) {
         for sample in &mut self.samples {
             sample.sensors = vec![f64::NAN; sensors.len()];
@@ -143,7 +144,7 @@ impl Trajectory {
         self.sensors = sensors;
     }
 
-    /// Keeps the samples that `is_kept` passes, of which there has to be one.
+    /// Keeps the samples that `is_kept` accepts, of which there must be at least one.
     #[cfg(feature = "study")]
     pub(crate) fn keep_samples(&mut self, is_kept: impl FnMut(&Sample) -> bool) {
         self.samples.retain(is_kept);
@@ -163,13 +164,13 @@ impl Trajectory {
         self.samples.iter_mut().zip(values).for_each(|(sample, x)| sample.sensors.push(*x));
     }
 
-    /// Puts a sample in the place of the last one.
+    /// Replaces the last sample.
     pub(crate) fn replace_last(&mut self, sample: Sample) {
         self.samples.pop();
         self.samples.push(sample);
     }
 
-    /// Takes note of what the sensors read at any time.
+    /// Records what the sensors read at any time.
     pub(crate) fn note_peaks(&mut self, read: &[f64]) {
         self.peaks.resize(read.len(), [f64::INFINITY, f64::NEG_INFINITY]);
         for ([least, largest], x) in self.peaks.iter_mut().zip(read) {
@@ -177,7 +178,7 @@ impl Trajectory {
         }
     }
 
-    /// Takes note of the energies of a state.
+    /// Records the energies of a state.
     pub(crate) fn note_energy(&mut self, energy: &Energy) {
         let start = self.samples.first().map_or(energy.balance(), |s| s.energy.balance());
         let (report, change) = (&mut self.report, energy.balance() - start);
@@ -186,21 +187,21 @@ impl Trajectory {
         report.energy_scale = report.energy_scale.max(energy.size());
     }
 
-    /// Error, rise and scale of the energy balance (J) that were noted so far.
+    /// Error, rise and scale of the energy balance (J) that were recorded so far.
     pub(crate) fn noted(&self) -> [f64; 3] {
         let Report { energy_error, energy_created, energy_scale, .. } = self.report;
         [energy_error, energy_created, energy_scale]
     }
 
-    /// Forgets the samples after the first `count`, which is 1 at least, and the energies seen since: what was noted
-    /// until then is in `report`.
+    /// Discards the samples after the first `count`, which is 1 at least, and the energies seen since: the
+    /// error, rise and scale given are those recorded until then.
     pub(crate) fn go_back(&mut self, count: usize, [error, created, scale]: [f64; 3]) {
         self.samples.truncate(count);
         let report = &mut self.report;
         (report.energy_error, report.energy_created, report.energy_scale) = (error, created, scale);
     }
 
-    /// What another scene can [start from](Scene::starting_from), of one of the samples.
+    /// The state at a sample, which another scene can [start from](Scene::starting_from).
     pub fn state(&self, sample: &Sample) -> BodyState {
         BodyState {
             positions: self.body().mesh().positions().to_vec(),
@@ -296,10 +297,12 @@ impl Trajectory {
         planes.iter().map(moment).collect()
     }
 
-    /// Angle (rad, counter-clockwise, between -pi and pi) by which a two-dimensional body has turned as a whole: that
-    /// of the rotation which, in the mean over its mass, brings the undeformed shape nearest to the
-    /// present one. `None` in other dimensions. The sensor
-    /// [`Reading::rotation`](crate::dynamics::simulate::Reading::rotation) goes on over whole turns.
+    /// Angle (rad, counter-clockwise, between -pi and pi) by which a two-dimensional body has turned as a
+    /// whole.
+    ///
+    /// It is that of the rotation that brings the undeformed shape nearest to the present one, weighted by
+    /// mass. `None` in other dimensions. The sensor
+    /// [`Reading::rotation`](crate::dynamics::simulate::Reading::rotation) is continuous over whole turns.
     pub fn rotation(&self, sample: &Sample) -> Option<f64> {
         self.body().rotation(&sample.u)
     }
@@ -319,11 +322,11 @@ pub struct IntegrationFailure {
     /// The error of the integrator, with the likely cause and what to try; [`Interrupted`] if it was
     /// stopped from outside.
     pub source: Box<dyn Error + Send + Sync>,
-    /// The motion until then, down to the last step.
+    /// The motion until then, up to the last step.
     pub trajectory: Trajectory,
 }
 
-/// The cause of an [`IntegrationFailure`] that is none: the observer of
+/// The cause of an [`IntegrationFailure`] that is not a failure: the observer of
 /// [`Scene::simulate_with`](crate::Scene::simulate_with) stopped the run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("interrupted")]

@@ -10,7 +10,7 @@ use crate::scene::timeline::Scene;
 pub(super) fn volumes(scene: &Scene, samples: &[Sample]) -> Vec<Indicator> {
     let mut indicators = Vec::new();
     for chamber in scene.chambers() {
-        // a chamber of a scene that was run has walls that enclose something
+        // in a scene that was run, the walls of each chamber enclose a volume
         let Ok(force) = chamber.force(scene.body(), Vec::new()) else { continue };
         let volumes = samples.iter().map(|sample| (force.volume(&sample.u), sample.time));
         let least = volumes.reduce(|least, volume| if volume.0 < least.0 { volume } else { least });

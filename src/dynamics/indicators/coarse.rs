@@ -5,17 +5,17 @@ use crate::base::input::told;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 
-/// How many times too stiff a body may be for its cells.
+/// Largest factor by which its cells may make a body too stiff.
 const MOST_STIFF: f64 = 1.25;
-/// Samples count that have this part of the largest strain energy among all of them at least, ...
+/// Samples count if they have at least this part of the largest strain energy of all samples, ...
 const LARGE: f64 = 0.5;
-/// ... and this part of the largest energy of any kind, and this strain in the mean: below, strains may be errors of the
-/// integration and round-off.
+/// ... and this part of the largest energy of any kind, and this mean strain: smaller strains may be
+/// integration error and round-off.
 const SEEN: f64 = 1e-3;
 const LEAST_STRAIN: f64 = 1e-8;
 
-/// Linear cells of which too few stand where the strain changes, as through the thickness of a beam that bends. The
-/// strain energy of what jumps between cells is stored in the mesh and not in the body, which is that much too stiff.
+/// Too few linear cells where the strain varies, as through the thickness of a beam in bending. The strain
+/// energy of the jumps between cells is an effect of the mesh, which makes the body that much too stiff.
 pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let body = trajectory.body();
     let help = quadratic_cells(body.mesh().kind())?;
@@ -29,7 +29,7 @@ pub(super) fn coarse(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Ind
     let counts = samples.iter().filter(|sample| energy(sample) >= LARGE * largest);
     let jumps = counts.filter_map(|sample| Some((body.strain_jumps(&sample.u)?, sample.time)));
     let (jumps, time) = jumps.max_by(|(a, _), (b, _)| a.total_cmp(b))?;
-    // the same displacements, without jumps, would take the rest of the energy
+    // without jumps, the same displacements would need only the rest of the energy
     let stiff = 1.0 / (1.0 - jumps.min(0.99));
     let within = || {
         format!(

@@ -1,4 +1,4 @@
-//! How much cells are strained and turned, and what that says of the law.
+//! How much cells are strained and rotated, and what that means for the material law.
 
 use nalgebra::Matrix3;
 
@@ -10,16 +10,17 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::elements::body::{Body, Strain};
 use crate::elements::material::Law;
 
-/// How far the stress of a law may be from that of rubber (incompressible and neo-Hookean, in one direction).
+/// How far the stress of a law may be from that of rubber (incompressible and neo-Hookean, uniaxial).
 const MOST_WRONG: f64 = 0.25;
-/// By how many times the strain the stress differs from rubber's: of St. Venant and Kirchhoff's law, and of Hooke's. Laws of rubber follow it up to
-/// about twice the length, where it begins to stiffen as chains of molecules are stretched out.
+/// Relative difference of the stress from that of rubber, in multiples of the strain: of the laws of St.
+/// Venant and Kirchhoff and of Hooke, and of laws of rubber. The last follow rubber up to about twice the
+/// length, where it begins to stiffen as its chains of molecules are stretched out.
 const GREEN_LAW: f64 = 2.5;
 const CAUCHY_LAW: f64 = 1.0;
 const NEO_HOOKEAN: f64 = 0.25;
 /// What to take in place of such a law.
 const OF_RUBBER: &str = "take a law of rubber (law = { kind = \"neo-hookean\" })";
-/// How far strains may be wrong under Cauchy strain for that to do.
+/// Largest error of the strains with which Cauchy strain is still good enough.
 const MOST_NONLINEAR: f64 = 0.01;
 /// Strains below this are round-off.
 const LEAST_STRAIN: f64 = 1e-9;
@@ -31,7 +32,7 @@ pub(super) struct Deformed {
     pub(super) strain: f64,
     /// When (s), and the number of the cell, counted from 0.
     at: (f64, usize),
-    /// Angles (rad): in all, and beside the turn of the body as a whole.
+    /// Angles (rad) of rotation: total, and relative to the body as a whole.
     turn: f64,
     pub(super) own_turn: f64,
 }
@@ -67,7 +68,7 @@ impl Deformed {
         let slenderness = extent.map(Extent::slenderness);
         let nonlinear =
             slenderness.filter(|_| strain == Strain::Green && self.strain > LEAST_STRAIN);
-        // fibres there are with Green's alone
+        // only bodies with Green's strain have fibres
         let has_fibres = trajectory.body().substances().any(|of| !of.fibres.is_empty());
         let nonlinear = nonlinear.filter(|_| !has_fibres);
         let nonlinear =
@@ -101,7 +102,7 @@ impl Deformed {
             {
                 (CAUCHY_LAW, "Hooke's law of the stretches is off by about as much", OF_RUBBER)
             }
-            // constants of others are fitted to what they are for
+            // constants of the other laws are fitted to the strains that they are used for
             Strain::Green => (
                 NEO_HOOKEAN,
                 "rubber stiffens at such strains as only constants that are fitted to it tell",
@@ -126,8 +127,9 @@ impl Deformed {
         Indicator::trusted("strain", (strain, "1"), [0.0, limit], || said.clone(), beyond)
     }
 
-    /// What Cauchy strain would get wrong, relative to the strain: rotations count as strains, terms of second order are
-    /// lost, and so are forces that strains along a slender body exert across it, as its buckling.
+    /// The error that Cauchy strain would cause, relative to the strain: rotations count as strains, and
+    /// terms of second order are lost, as are the transverse forces of axial strains in a slender body
+    /// (buckling).
     fn nonlinearity(&self, body: &Body, slenderness: f64) -> Indicator {
         let Self { strain, turn, .. } = *self;
         let wrong =
@@ -145,7 +147,7 @@ impl Deformed {
     }
 }
 
-/// Change of length over length of a principal strain of the body's measure.
+/// Relative change of length for a principal strain in the body's strain measure.
 fn stretch(body: &Body, strain: f64) -> f64 {
     match body.strain() {
         Strain::Cauchy => strain,

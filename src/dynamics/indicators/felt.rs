@@ -1,4 +1,4 @@
-//! How much contact and friction do to a motion.
+//! How much contact and friction affect a motion.
 
 use super::rigid::travel;
 use super::touch::Meeting;
@@ -8,12 +8,13 @@ use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::scene::forces::Contact;
 
-/// Impulse of friction over that of what presses, below which friction does not matter.
+/// Impulse of friction over that of the normal forces, below which friction does not matter.
 const FELT: f64 = 0.01;
-/// Depth in an obstacle over the way that nodes go.
+/// Largest depth in an obstacle relative to the distance that nodes travel.
 const MOST_DEPTH: f64 = 0.1;
 
-/// What friction and tangential damping exert, over what presses: the sums over time of the forces on nodes.
+/// Forces of friction and tangential damping over the normal forces: each is the sum over all samples and
+/// nodes.
 pub(super) fn friction(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let scene = trajectory.scene();
     if !scene
@@ -60,7 +61,7 @@ fn forces(trajectory: &Trajectory, sample: &Sample) -> Result<[Vec<f64>; 2], Inp
     Ok([trajectory.contact_forces(sample)?, trajectory.forces_of(&smooth, sample)?])
 }
 
-/// How deep nodes are in obstacles, over the way that nodes go.
+/// How deep nodes are in obstacles, relative to the distance that nodes travel.
 pub(super) fn depth(
     trajectory: &Trajectory,
     samples: &[&Sample],

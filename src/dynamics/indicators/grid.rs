@@ -1,6 +1,6 @@
 //! Which of many points lie in a box.
 
-/// Points, sorted into equal boxes, about as many as there are points.
+/// Points, sorted into boxes of equal size, about as many boxes as points.
 pub(super) struct Grid<'a> {
     points: &'a [[f64; 3]],
     least: [f64; 3],
@@ -17,7 +17,7 @@ impl<'a> Grid<'a> {
         let least = [0, 1, 2].map(|axis| along(axis).fold(f64::INFINITY, f64::min));
         let most = [0, 1, 2].map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max));
         let extent: [f64; 3] = std::array::from_fn(|axis| most[axis] - least[axis]);
-        // what is thinner than a box is not divided
+        // an extent smaller than a box is not divided
         let mut axes = vec![0, 1, 2];
         let step = loop {
             let volume: f64 = axes.iter().map(|&axis| extent[axis]).product();
@@ -58,7 +58,7 @@ impl<'a> Grid<'a> {
         (k * self.counts[1] + j) * self.counts[0] + i
     }
 
-    /// Shows `see` the points between the corners `low` and `high`.
+    /// Calls `see` with each point between the corners `low` and `high`.
     pub(super) fn each_within(&self, [low, high]: &[[f64; 3]; 2], mut see: impl FnMut(usize)) {
         let ([i, j, k], [to_i, to_j, to_k]) = (self.numbers(low), self.numbers(high));
         for k in k..=to_k {
@@ -80,7 +80,7 @@ mod tests {
     use super::*;
     use crate::base::vector::noise;
 
-    /// Against all of them, one by one: points in a cube, a plate, on a line, and in one place.
+    /// Compared with a check of every point: points in a cube, in a plate, on a line and in one place.
     #[test]
     fn points_in_a_box_are_all_of_them() {
         for thin in [[1.0, 1.0, 1.0], [1.0, 1.0, 1e-9], [1.0, 0.0, 0.0], [0.0; 3]] {
@@ -103,7 +103,7 @@ mod tests {
                 count += seen.len();
                 assert_eq!(seen, all);
             }
-            // found: 99 at least
+            // at least 99 are found
             assert!(count > 90, "{count}");
         }
     }

@@ -1,4 +1,4 @@
-//! What a body tells before it moves: its cells, its pieces.
+//! What can be checked on a body before it moves: its cells and its pieces.
 
 use crate::dynamics::report::Indicator;
 use crate::elements::body::{Body, Dilatation};
@@ -8,7 +8,7 @@ use crate::elements::mesh::CellKind;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::Scene;
 
-/// Largest Poisson's ratio of cells that lock.
+/// Largest Poisson's ratio for cells that can lock.
 const MOST_POISSON: f64 = 0.45;
 
 /// Nearly incompressible material in linear cells: they cannot bend without changing their volume, and get
@@ -61,9 +61,9 @@ pub(super) fn quadratic_cells(kind: CellKind) -> Option<&'static str> {
     }
 }
 
-/// Whether each triangle has a corner at which just four meet (on the boundary, two or one), as those within a
-/// quadrilateral do that both its diagonals divide. One of their constraints on the volume follows there from the
-/// others.
+/// Whether each triangle has a corner at which exactly four triangles meet (on the boundary, two or one), as
+/// in a quadrilateral divided by both its diagonals. There one of the volume constraints of the four follows
+/// from the others.
 fn is_crossed(body: &Body) -> bool {
     let mesh = body.mesh();
     let mut cells_at = vec![0; mesh.node_count()];
@@ -84,7 +84,7 @@ pub(super) fn pieces(scene: &Scene) -> Option<Indicator> {
     let count = pieces.iter().max().map_or(1, |last| last + 1);
     let mut sizes = vec![0; count];
     pieces.iter().for_each(|&piece| sizes[piece] += 1);
-    // a point mass comes after all others, so that the smallest piece is told by its first node
+    // point masses come after all other nodes, so that the smallest piece is identified by its first node
     let (smallest, nodes) = sizes.iter().enumerate().min_by_key(|(_, nodes)| **nodes)?;
     let first = pieces.iter().position(|&piece| piece == smallest)?;
     let beyond = || {

@@ -1,5 +1,5 @@
 //! Indicators: numbers measured on a scene and on its motion, each with the limit beyond which the result is
-//! doubtful, and what to do then. They are looked at before a run or after it, never within.
+//! doubtful, and what to do then. They are evaluated before a run or after it, never during it.
 //!
 //! | indicator | limit |
 //! | --- | --- |
@@ -8,32 +8,33 @@
 //! | [`units`]: thickness over size; strain of a column under its own weight | 20; 100 % |
 //! | [`mesh`]: Poisson's ratio of linear cells | 0.45 |
 //! | [`mesh`]: pieces that nothing joins | one piece |
-//! | [`overlap`]: how deep the body is within itself, as it is drawn and as it moves | a twentieth of a cell |
+//! | [`overlap`]: how deep the body overlaps itself, as drawn and as it moves | a twentieth of a cell |
 //! | [`strain`]: how far cells turn under Cauchy strain | 10 degrees |
 //! | [`strain`]: cells turned inside out under Cauchy strain | none |
-//! | [`coarse`]: how much stiffer linear cells are than the strains that they show | 1.25 times |
+//! | [`coarse`]: how much too stiff linear cells are for the strains that they show | 1.25 times |
 //! | [`touch`]: how deep nodes are inside obstacles, at the start and later | half a cell, 2 % of the body |
-//! | [`touch`]: obstacles with friction that are met in statics, where it does not act | none |
-//! | [`touch`]: obstacles that act and are never met | none |
+//! | [`touch`]: obstacles with friction that are touched in statics, where it does not act | none |
+//! | [`touch`]: obstacles that act and are never touched | none |
 //! | [`chamber`]: the least volume of a chamber | 0 |
-//! | [`pace`]: absolute tolerance of displacements | 1 % of the way that nodes go, or 10 `rtol` |
+//! | [`pace`]: absolute tolerance of displacements | 1 % of the distance that nodes travel, or 10 `rtol` |
 //!
-//! Those are measured at the end of each run, and before it as far as they need none. Others take longer, or are no cause
-//! for a warning by themselves: [`Trajectory::indicators`], `pliant check --look`. (+) means that less would do below the limit.
+//! These are measured at the end of each run, and before it if they need no motion. Others take longer, or do
+//! not cause a warning by themselves: [`Trajectory::indicators`], `pliant check --look`. (+) means that a
+//! simpler model would do below the limit.
 //!
 //! | indicator | limit |
 //! | --- | --- |
 //! | [`deformed`]: largest strain, by which the stress of a law differs from rubber's | 10 % (Green), 25 % (Cauchy) |
 //! | [`deformed`]: what Cauchy strain would get wrong in a body with Green's (+) | 1 % of the strains |
-//! | [`deformed`]: turn of cells beside that of the body; [`shape`]: slenderness | |
-//! | [`shape`]: layers of cells through a slender body that bends | 4 of simplices, 2 of others, 1 quadratic |
+//! | [`deformed`]: turn of cells relative to the body; [`shape`]: slenderness | |
+//! | [`shape`]: layers of cells across a slender body that bends | 4 of simplices, 2 of others, 1 quadratic |
 //! | [`waves`]: cells in a wavelength of the motion | 6 linear, 3 quadratic |
 //! | [`points`]: single nodes that are loaded or held so much that the mesh matters | none |
-//! | [`felt`]: depth in obstacles | 10 % of the way that nodes go |
-//! | [`felt`]: forces of friction (+) | 1 % of what presses |
-//! | [`pace`]: drift of constraints | 0.1 % of the way that nodes go |
+//! | [`felt`]: depth in obstacles | 10 % of the distance that nodes travel |
+//! | [`felt`]: forces of friction (+) | 1 % of the normal forces |
+//! | [`pace`]: drift of constraints | 0.1 % of the distance that nodes travel |
 //! | [`pace`]: kinetic energy (+) | 1 % of the stored energy |
-//! | [`pace`]: damping of the lowest vibration, and how much faster the mesh can move | |
+//! | [`pace`]: damping of the lowest vibration, and how much faster the fastest motion of the mesh is | |
 //! | [`symmetry`]: how far the motion is from one in a plane (+) | 1 % |
 //! | [`symmetry`]: how far the motion is from its mirror images (+) | 0.1 % |
 
@@ -64,9 +65,11 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::scene::timeline::Scene;
 
 impl Scene {
-    /// What makes any motion of this scene doubtful, as far as it can be known before a run: a body too large,
-    /// too heavy or too fast to be soft (its mesh may be in millimetres), cells that lock, pieces that nothing
-    /// joins, a mesh that overlaps itself, obstacles that it begins inside. Each warning names what was measured, its limit, and what to change.
+    /// What makes any motion of this scene doubtful, as far as it can be known before a run.
+    ///
+    /// This may be a body too large, too heavy or too fast to be soft (its mesh may be in millimetres), cells
+    /// that lock, pieces that nothing joins, a mesh that overlaps itself, or obstacles that the body begins
+    /// inside. Each warning names what was measured, its limit, and what to change.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Scene};
@@ -81,8 +84,10 @@ impl Scene {
         warnings(&self.indicators())
     }
 
-    /// What can be measured before a run, with limits: the size, mass and speed of waves of the body, its cells, its
-    /// pieces, the obstacles that it begins inside. Those beyond their limits are the [`warnings`](Self::warnings).
+    /// What can be measured before a run, with limits.
+    ///
+    /// This is the size, mass and speed of waves of the body, its cells, its pieces and the obstacles that it
+    /// begins inside. Indicators beyond their limits are the [`warnings`](Self::warnings).
     pub fn indicators(&self) -> Vec<Indicator> {
         let body = self.body();
         units::units(self)
@@ -96,9 +101,11 @@ impl Scene {
 }
 
 impl Trajectory {
-    /// What tells how far the motion can be trusted, and what of the model it needs: what the end of the run
-    /// [measured](crate::Report::indicators), and what takes longer to measure, on the same samples. Of what has a limit
-    /// the value is kept on either side of it.
+    /// Indicators of how far the motion can be trusted, and of how simple a model would do.
+    ///
+    /// They are those [measured](crate::Report::indicators) at the end of the run, and others that take
+    /// longer to measure, on the same samples. An indicator with a limit is listed whether or not its value
+    /// is beyond the limit.
     ///
     /// ```
     /// use pliant::{Sampling, Settings, samples};
@@ -135,7 +142,7 @@ impl Trajectory {
     }
 }
 
-/// What tells how far a motion can be trusted, or the part of it that there is.
+/// Indicators of how far a motion, or the part of it that was computed, can be trusted.
 pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     let samples = looked_at(trajectory);
     let scene = trajectory.scene();
@@ -150,7 +157,7 @@ pub(crate) fn of_motion(trajectory: &Trajectory) -> Vec<Indicator> {
     measured.chain(is_whole.then(missed).into_iter().flatten()).collect()
 }
 
-/// What tells how far an equilibrium can be trusted, or the last one on the way to it.
+/// Indicators of how far an equilibrium can be trusted, or the last one on the way to it.
 pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Indicator> {
     let samples = [trajectory.last()];
     let meetings = touch::meetings(trajectory, &samples);
@@ -165,7 +172,8 @@ pub(crate) fn of_equilibrium(trajectory: &Trajectory, is_found: bool) -> Vec<Ind
         .collect()
 }
 
-/// What of a scene ends its run early, whatever the integrator says: an obstacle that the body begins inside of.
+/// What in a scene ends its run early, whatever the integrator reports: an obstacle that the body begins
+/// inside.
 pub(crate) fn doom(indicators: &[Indicator]) -> Option<&str> {
     let is_doom = |told: &&Indicator| told.name == touch::START_DEPTH && told.is_doubtful();
     indicators.iter().find(is_doom).map(|told| told.text.as_str())
@@ -183,7 +191,7 @@ fn overlaps(trajectory: &Trajectory) -> Option<Indicator> {
     overlap::overlap(trajectory.body(), &samples)
 }
 
-/// What cells cannot follow.
+/// Deformations that cells cannot represent.
 fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item = Indicator> {
     let measured = [
         strain::turning(trajectory, samples),
@@ -193,21 +201,21 @@ fn of_cells(trajectory: &Trajectory, samples: &[&Sample]) -> impl Iterator<Item 
     measured.into_iter().flatten()
 }
 
-/// Most samples that are looked at, and most cells in all of them; but so many samples always are.
+/// Largest numbers of samples, and of cells in all of them, that are evaluated; few samples always are.
 const MOST_SAMPLES: usize = 200;
 const MOST_CELLS: usize = 50_000;
 const FEW_SAMPLES: usize = 10;
-/// Overlaps come and go, and are found at less cost.
+/// The same for overlaps, which come and go and cost less to find.
 const MOST_SAMPLES_FOR_OVERLAPS: usize = 1000;
 const MOST_CELLS_FOR_OVERLAPS: usize = 2_000_000;
 
-/// Samples of a motion that most indicators look at.
+/// Samples of a motion that most indicators use.
 fn looked_at(trajectory: &Trajectory) -> Vec<&Sample> {
     spread(trajectory, MOST_SAMPLES, MOST_CELLS)
 }
 
-/// So many samples of a motion at most, and so many cells in all of them: evenly spread over their order, the first and the last
-/// among them.
+/// At most so many samples of a motion, with so many cells in all of them: evenly spread, including the first
+/// and the last.
 fn spread(trajectory: &Trajectory, most_samples: usize, most_cells: usize) -> Vec<&Sample> {
     let samples = trajectory.samples();
     let most = most_cells / trajectory.body().mesh().cell_count();

@@ -1,4 +1,4 @@
-//! Whether a body passes through itself, or pieces of it through each other: nothing feels that.
+//! Whether a body passes through itself, or pieces of it through each other: no force resists that.
 
 use std::borrow::Cow;
 
@@ -12,8 +12,9 @@ use crate::elements::basis::shares_in;
 use crate::elements::body::Body;
 use crate::scene::forces::SurfacePoint;
 
-/// How deep a point of the boundary may be within a cell of another place, over the size of the cell: faces that slide along each
-/// other, as those of a slit do, are no smoother than that where cells turn by 20 degrees.
+/// How deep a point of the boundary may be within a cell of another part of the body, relative to the size of
+/// the cell: faces that slide along each other, as those of a slit do, are no smoother than that where cells
+/// turn by 20 degrees.
 const MOST_OF_CELL: f64 = 0.05;
 
 /// A point of the boundary within a cell that is not its own.
@@ -36,18 +37,18 @@ impl Entry {
     }
 }
 
-/// What is needed to look at one shape of a body after the other.
+/// What is needed to check one shape of a body after the other.
 struct Overlaps<'a> {
     body: &'a Body,
     skin: Skin<'a>,
     points: Vec<SurfacePoint>,
     cells: Vec<&'a [usize]>,
-    /// The most that a point may be within each cell (m).
+    /// Largest depth allowed for a point within each cell (m).
     limits: Vec<f64>,
 }
 
 impl<'a> Overlaps<'a> {
-    /// Of a body that fills its space; others have no inside.
+    /// Only for a body that fills its space; others have no inside.
     fn new(body: &'a Body) -> Option<Self> {
         let mesh = body.mesh();
         (mesh.kind().dimension() == mesh.dimension()).then(|| Self {
@@ -89,7 +90,7 @@ impl<'a> Overlaps<'a> {
         if met.is_empty() {
             return Vec::new();
         }
-        // what is turned inside out overlaps its neighbours, and is told as that
+        // cells turned inside out overlap their neighbours, and are reported as inverted
         let inverted = self.body.inverted_cells(u);
         let mut is_redirected = vec![false; mesh.node_count()];
         inverted
@@ -107,14 +108,14 @@ impl<'a> Overlaps<'a> {
         met.into_iter().map(entry).collect()
     }
 
-    /// Whether a cell has a node of a point, or shares one with a cell that has.
+    /// Whether a cell has a node of a point, or shares a node with a cell that has one.
     fn is_near(&self, point: usize, cell: &[usize]) -> bool {
         let pattern = self.body.inertia().pattern();
         let mut nodes = self.points[point].nodes().map(|(node, _)| node);
         nodes.any(|node| cell.iter().any(|&other| pattern.find(node, other).is_some()))
     }
 
-    /// The node that a point is nearest to, and the cell that it is in, counted from 1.
+    /// The depth of a point, the cell that it is in, counted from 1, and the limit.
     fn names(&self, entry: &Entry) -> String {
         let cell: Vec<usize> = self.cells[entry.cell].iter().map(|node| node + 1).collect();
         let limit = told(entry.limit);
@@ -130,12 +131,12 @@ impl<'a> Overlaps<'a> {
         shares.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(node, _)| node)
     }
 
-    /// The deepest of the entries for its limit.
+    /// The entry that is deepest relative to its limit.
     fn deepest(entries: &[Entry]) -> Option<Entry> {
         entries.iter().max_by(|a, b| a.part().total_cmp(&b.part())).copied()
     }
 
-    /// Depth and limit of the deepest, or of none.
+    /// Depth and limit of the deepest entry; 0 and the least limit if there is none.
     fn numbers(&self, deepest: Option<&Entry>) -> [f64; 2] {
         let least = || self.limits.iter().copied().fold(f64::INFINITY, f64::min);
         deepest.map_or_else(|| [0.0, least()], |entry| [entry.depth, entry.limit])

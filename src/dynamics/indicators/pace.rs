@@ -1,5 +1,5 @@
-//! How fast and how large a motion is: whether statics would do, what its vibrations say for a method, and whether
-//! tolerances see it.
+//! How fast and how large a motion is: whether statics would do, what its vibrations mean for the choice of a
+//! method, and whether tolerances are fine enough for it.
 
 use super::rigid::travel;
 use crate::base::input::{percent, short, told};
@@ -9,14 +9,15 @@ use crate::scene::timeline::Scene;
 
 /// Kinetic over stored energy below which a motion is a sequence of equilibria.
 const STATIC: f64 = 0.01;
-/// Errors of constraints, over the way that nodes go.
+/// Largest error of constraints relative to the distance that nodes travel.
 const MOST_DRIFT: f64 = 1e-3;
-/// Absolute tolerance of displacements over the way that nodes go, and how many times `rtol` that may be in any case.
+/// Largest absolute tolerance of displacements relative to the distance that nodes travel, and the multiple
+/// of `rtol` that it may be in any case.
 const MOST_TOLERANCE: f64 = 0.01;
 const TIMES_ASKED: f64 = 10.0;
-/// What moves less than this part of the body's size is at rest, but for rounding.
+/// A body that moves by less than this part of its size is at rest, apart from rounding.
 const REST: f64 = 1e-9;
-/// Damping ratios below which vibrations go on and on, and from which on there are none.
+/// Damping ratios below which vibrations last for many periods, and from which on there are none.
 const LASTING: f64 = 0.006;
 const CREEPING: f64 = 1.0;
 
@@ -97,7 +98,7 @@ pub(super) fn drift(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indi
     Some(Indicator::trusted("drift", (part, "1"), [0.0, MOST_DRIFT], || said.clone(), beyond))
 }
 
-/// Whether the tolerance of displacements is small beside them.
+/// Whether the tolerance of displacements is small compared with them.
 pub(super) fn tolerance(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let (tolerance, body) = (trajectory.report().atol_position, trajectory.body());
     let way = travel(body, samples);

@@ -10,12 +10,13 @@ use crate::base::vector::norm;
 use crate::dynamics::report::Indicator;
 use crate::dynamics::trajectory::{Sample, Trajectory};
 
-/// How much of the motion the displacement under a force may be that comes with each halving of the cells.
+/// Largest growth of the displacement under a force with each halving of the cells, relative to the motion.
 const MOST_GROWTH: f64 = 0.01;
 
-/// Nodes that are loaded or held while no other node of their cells is. In the plane the displacement under a force F on one
-/// node grows with each halving of the cells by 2 F ln 2 / (pi E h) (Flamant), h the thickness; in space by some F / (E a), a
-/// the size of a cell (Boussinesq). Nodes where that is little beside the motion do not count.
+/// Nodes that are loaded or held while no other node of their cells is. In the plane the displacement under a
+/// force F on one node grows with each halving of the cells by 2 F ln 2 / (pi E h) (Flamant), h the
+/// thickness; in space by some F / (E a), a the size of a cell (Boussinesq). Nodes where that is small
+/// compared with the motion do not count.
 pub(super) fn single(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Indicator> {
     let body = trajectory.body();
     let (mesh, way) = (body.mesh(), travel(body, samples));
@@ -30,7 +31,7 @@ pub(super) fn single(trajectory: &Trajectory, samples: &[&Sample]) -> Option<Ind
         2 => 2.0 * force * LN_2 / (PI * young * body.section()),
         _ => force / (young * sizes[node]),
     };
-    // nodes of common cells
+    // nodes that share a cell
     let pattern = body.inertia().pattern();
     let mut found = BTreeSet::new();
     let mut most: f64 = 0.0;

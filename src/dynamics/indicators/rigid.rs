@@ -6,7 +6,8 @@ use crate::base::vector::norm;
 use crate::dynamics::trajectory::Sample;
 use crate::elements::body::Body;
 
-/// Displacements (m) without those of the body as a whole: as one sees them who moves and turns with it.
+/// Displacements (m) without the motion of the body as a whole: relative to a frame that moves and turns with
+/// it.
 pub(super) fn without_turn(body: &Body, u: &[f64]) -> Vec<f64> {
     let (d, positions) = (body.dimension(), body.mesh().positions());
     let now: Vec<f64> = positions.iter().zip(u).map(|(x, u)| x + u).collect();
@@ -33,13 +34,13 @@ pub(super) fn without_spin(body: &Body, u: &[f64], v: &[f64]) -> Vec<f64> {
     let spin: Vector3<f64> = now.iter().zip(&v).map(|(x, v)| x.cross(v)).sum();
     let inertia: Matrix3<f64> =
         now.iter().map(|x| Matrix3::identity() * x.norm_squared() - x * x.transpose()).sum();
-    // a straight string has no spin along itself
+    // a straight string has no spin about its own axis
     let spin = inertia.try_inverse().map_or(Vector3::zeros(), |inverse| inverse * spin);
     let left = now.iter().zip(&v).map(|(x, v)| v - spin.cross(x));
     left.flat_map(|v| v.as_slice()[..d].to_vec()).collect()
 }
 
-/// Vectors of nodes from their mean, with components beyond the dimension 0.
+/// Vectors of nodes relative to their mean; components beyond the dimension are 0.
 fn arms(x: &[f64], dimension: usize) -> Vec<Vector3<f64>> {
     let vector = |x: &[f64]| Vector3::from_fn(|i, _| x.get(i).copied().unwrap_or(0.0));
     let x: Vec<Vector3<f64>> = x.chunks_exact(dimension).map(vector).collect();
@@ -47,7 +48,7 @@ fn arms(x: &[f64], dimension: usize) -> Vec<Vector3<f64>> {
     x.into_iter().map(|x| x - mean).collect()
 }
 
-/// How far (m) nodes come at most from where they are at first.
+/// Largest distance (m) of a node from its place in the first sample.
 pub(super) fn travel(body: &Body, samples: &[&Sample]) -> f64 {
     let way = |sample: &&Sample| {
         let way: Vec<f64> =

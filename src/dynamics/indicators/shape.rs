@@ -1,4 +1,4 @@
-//! How slender a body is, and how many cells lie through it.
+//! How slender a body is, and how many cells lie across its thickness.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -8,9 +8,9 @@ use crate::dynamics::report::Indicator;
 use crate::elements::body::Body;
 use crate::elements::mesh::{CellKind, Mesh};
 
-/// Bodies are slender from this on: beams and plates.
+/// Ratio from which a body counts as slender: beams and plates.
 const SLENDER: f64 = 3.0;
-/// A body bends if cells turn by more than so many times their strain.
+/// A body bends if cells turn by more than this many times their strain.
 const BENDS: f64 = 2.0;
 
 /// The box with the volume and the surface of a body: exact for boxes, and nearly the length and thickness of thin
@@ -52,7 +52,8 @@ impl Extent {
         self.length / self.thickness
     }
 
-    /// The indicators, of a body whose cells turn by `turn` (rad) beside it and are strained by `strain`.
+    /// The indicators, of a body whose cells turn by `turn` (rad) relative to it and are strained by
+    /// `strain`.
     pub(super) fn indicators(&self, body: &Body, turn: f64, strain: f64) -> [Indicator; 2] {
         let Self { length, thickness } = self;
         let slenderness = self.slenderness();
@@ -98,7 +99,7 @@ fn longest(mesh: &Mesh) -> f64 {
     along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
 }
 
-/// Area of a face (m^2), or length of an edge (m): of its corners, as if it were flat.
+/// Area of a face (m^2), or length of an edge (m), computed from its corners as if it were flat.
 fn area(mesh: &Mesh, face: &[usize]) -> f64 {
     let at = |k: usize| mesh.position(face[k]);
     let along = |a: usize, b: usize| {
@@ -114,8 +115,8 @@ fn area(mesh: &Mesh, face: &[usize]) -> f64 {
     }
 }
 
-/// How many cells lie through the thickest place: nodes have a depth, in edges from the boundary, and a cell within whose
-/// corners are the deepest lies between the two sides.
+/// How many cells lie across the thickest place. The depth of a node is its distance from the boundary in
+/// edges; a cell whose corners all have the largest depth lies in the middle between the two sides.
 fn layers(mesh: &Mesh) -> usize {
     let kind = mesh.kind();
     let mut depths = vec![usize::MAX; mesh.node_count()];

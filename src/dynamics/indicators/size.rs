@@ -12,13 +12,13 @@ pub(super) fn cell_sizes(body: &Body) -> Vec<f64> {
 /// For each cell the volume (m^3) of the block that it is cut from, or is itself.
 pub(super) fn block_volumes(body: &Body) -> impl Iterator<Item = f64> {
     let kind = body.mesh().kind();
-    // a simplex fills the parallelepiped of its edges to this part
+    // the parallelepiped of the edges of a simplex has this many times its volume
     let is_simplex = kind.faces().len() == kind.dimension() + 1;
     let parts = if is_simplex { [1.0, 1.0, 2.0, 6.0][kind.dimension()] } else { 1.0 };
     body.cell_volumes().into_iter().map(move |volume| parts * volume)
 }
 
-/// For each node the size (m) of the smallest of its cells. Infinite of a node without cells.
+/// For each node the size (m) of the smallest of its cells. Infinite for a node without cells.
 pub(super) fn least_cell_sizes(body: &Body) -> Vec<f64> {
     let mut sizes = vec![f64::INFINITY; body.mesh().node_count()];
     for (cell, size) in body.mesh().cells().zip(cell_sizes(body)) {

@@ -1,4 +1,4 @@
-//! The boundary of a body that fills its space: points on it, and how deep below it others lie.
+//! The boundary of a body that fills its space: points on it, and how deep other points lie below it.
 
 use std::collections::BTreeMap;
 
@@ -8,7 +8,7 @@ use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 use crate::scene::forces::{SurfacePoint, boundary_nodes, edge_points, face_centre, pieces};
 
-/// An edge is divided into so many parts at most.
+/// An edge is divided into at most this many parts.
 const MOST_PARTS: usize = 20;
 
 /// The boundary, cut into points, segments or triangles.
@@ -20,7 +20,7 @@ pub(super) struct Skin<'a> {
     at_nodes: Vec<Vec<usize>>,
     /// The longest edge of a cell (m).
     longest: f64,
-    /// For each node the last search that has come to it, counted from 1.
+    /// For each node the last search that has reached it, counted from 1.
     seen: Vec<usize>,
     searches: usize,
 }
@@ -46,8 +46,9 @@ impl<'a> Skin<'a> {
         Self { body, parts, at_nodes, longest, seen: vec![0; mesh.node_count()], searches: 0 }
     }
 
-    /// Where and how deep below the boundary (m) the material point with these `shares` of the nodes of a cell lies: its distance,
-    /// with nodes at `now`, from the point of the boundary that is nearest to it in the undeformed shape, within the same piece of the body.
+    /// How deep below the boundary (m) the material point with these `shares` of the nodes of a cell lies:
+    /// its distance, with nodes at `now`, from the point of the boundary that is nearest to it in the
+    /// undeformed shape, within the same piece of the body.
     pub(super) fn depth(&mut self, shares: &[(usize, f64)], now: &[f64]) -> f64 {
         let (mesh, pattern) = (self.body.mesh(), self.body.inertia().pattern());
         let x = mean(mesh.positions(), mesh.dimension(), shares.iter().copied());
@@ -55,7 +56,8 @@ impl<'a> Skin<'a> {
         let mut open: Vec<usize> = shares.iter().map(|(node, _)| *node).collect();
         open.iter().for_each(|&node| self.seen[node] = self.searches);
         let (mut least, mut nearest) = (f64::INFINITY, Vec::new());
-        // node by node away from the point: the straight way to the boundary leads through cells of which each is as near
+        // node by node away from the point: the straight line to the nearest point of the boundary passes
+        // through cells that are all at least as near
         let mut next = 0;
         while let Some(&node) = open.get(next) {
             next += 1;
@@ -83,9 +85,9 @@ impl<'a> Skin<'a> {
     }
 }
 
-/// The nodes of the boundary, and points on its edges between them wherever these are longer than their cell is thick, so that nothing
-/// as thick as that slips through between two of them. In space also the middles of faces: nodes of a body one cell thick are all
-/// in the planes of its sides, where those of another place of it are, too.
+/// The nodes of the boundary, and points between them on edges that are longer than their cell is thick, so
+/// that nothing as thick as that slips through between two points. In space also the centres of faces: the
+/// nodes of a body one cell thick all lie in the planes of its sides, and so do those of other parts of it.
 pub(super) fn points(body: &Body) -> Vec<SurfacePoint> {
     let mesh = body.mesh();
     let mut points = boundary_nodes(body);
@@ -93,7 +95,7 @@ pub(super) fn points(body: &Body) -> Vec<SurfacePoint> {
         return points;
     }
     let blocks: Vec<f64> = block_volumes(body).map(|volume| volume / body.section()).collect();
-    // an edge of two cells is as fine as the thinner one wants it
+    // an edge of two cells is divided as the thinner one requires
     let mut edges: BTreeMap<[usize; 2], (Vec<usize>, usize)> = BTreeMap::new();
     let cells: Vec<&[usize]> = mesh.cells().collect();
     for (cell, face) in mesh.boundary_faces_of_cells() {
@@ -148,7 +150,8 @@ fn mean(
     x
 }
 
-/// The shares of the `corners` of a point, segment or triangle in its point that is nearest to `x`.
+/// Barycentric coordinates, by the `corners` of a point, segment or triangle, of its point that is nearest to
+/// `x`.
 fn closest(corners: &[[f64; 3]], x: &[f64; 3]) -> [f64; 3] {
     match corners {
         [_] => [1.0, 0.0, 0.0],
@@ -167,7 +170,7 @@ fn closest(corners: &[[f64; 3]], x: &[f64; 3]) -> [f64; 3] {
             if of_b >= 0.0 && of_c >= 0.0 && of_b + of_c <= 1.0 {
                 return [1.0 - of_b - of_c, of_b, of_c];
             }
-            // beside the triangle, the nearest is on one of its edges
+            // outside the triangle: the nearest point is on one of its edges
             let on = [[0, 1], [1, 2], [2, 0]].map(|[from, to]| {
                 let part = closest(&[corners[from], corners[to]], x);
                 let mut shares = [0.0; 3];

@@ -1,4 +1,4 @@
-//! Whether the strain of the body fits its motion.
+//! Whether the strain measure of the body fits its motion.
 
 use crate::base::input::told;
 use crate::dynamics::report::Indicator;

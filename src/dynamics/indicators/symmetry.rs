@@ -1,4 +1,5 @@
-//! Whether a motion is one in a plane, or its own mirror image: half of the body, or a plane, would do.
+//! Whether a motion is plane or its own mirror image, so that a body in the plane or half of the body would
+//! do.
 
 use std::collections::HashMap;
 
@@ -8,18 +9,19 @@ use crate::dynamics::trajectory::Sample;
 use crate::elements::body::Body;
 use crate::elements::mesh::Mesh;
 
-/// How far a motion may be from one in a plane, and from its mirror image, for these to do.
+/// How far a motion may be from one in a plane, and from its mirror image, for the simpler body to do.
 const PLANE: f64 = 0.01;
 const MIRRORED: f64 = 1e-3;
 /// Nodes this near to each other, over the size of the mesh, are in the same place.
 const SAME: f64 = 1e-6;
-/// Motions smaller than this, over the size of the mesh, are those of a body as a whole.
+/// Motions relative to the mean that are smaller than this, over the size of the mesh, count as none.
 const SEEN: f64 = 1e-9;
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// How far the motion of a body in space is from one in the plane that it is nearest to: displacements across the plane, and
-/// how those along it change across, over the deformation and turn of the body.
+/// How far the motion of a body in space is from the nearest motion in a plane: displacements normal to the
+/// plane, and the change of those along it in the normal direction, relative to the deformation and rotation
+/// of the body.
 pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     let mesh = body.mesh();
     if mesh.kind().dimension() != 3 {
@@ -38,7 +40,8 @@ pub(super) fn plane(body: &Body, samples: &[&Sample]) -> Option<Indicator> {
     Some(Indicator::needed("plane", (part, "1"), PLANE, || said.clone(), enough))
 }
 
-/// How far the motion is from its mirror images about the middle planes of the body that mirror its mesh.
+/// How far the motion is from its mirror images about those middle planes of the body that are planes of
+/// symmetry of its mesh.
 pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     let d = body.dimension();
     let Some(scale) = motion(body, samples).filter(|_| d > 1) else { return Vec::new() };
@@ -68,7 +71,7 @@ pub(super) fn mirrors(body: &Body, samples: &[&Sample]) -> Vec<Indicator> {
     parts.map(indicator).collect()
 }
 
-/// A distance from a motion, over the motion.
+/// The text for a relative distance from a motion.
 fn off(part: f64) -> String {
     if part < 0.5 { percent(part) } else { "far".into() }
 }
@@ -86,8 +89,8 @@ fn motion(body: &Body, samples: &[&Sample]) -> Option<f64> {
     (sum > least).then_some(sum)
 }
 
-/// Root of the sum of squares (m) of what is not a motion in the plane across an axis. Of a mesh whose nodes do not lie one behind
-/// the other along the axis it is not known.
+/// Root of the sum of squares (m) of the part that is not a motion in the plane normal to an axis; unknown if
+/// the nodes of the mesh do not lie one behind the other along the axis.
 fn across(body: &Body, samples: &[&Sample], axis: usize) -> Option<f64> {
     let mesh = body.mesh();
     let mut rows: HashMap<Place, Vec<usize>> = HashMap::new();
@@ -113,7 +116,7 @@ fn across(body: &Body, samples: &[&Sample], axis: usize) -> Option<f64> {
     Some(samples.iter().map(square).sum::<f64>().sqrt())
 }
 
-/// For each node the one in the place of its mirror image about the middle plane across an axis, if all have one.
+/// For each node the one at its mirror image about the middle plane normal to an axis, if all have one.
 fn partners(mesh: &Mesh, axis: usize) -> Option<Vec<usize>> {
     let (nodes, d) = (0..mesh.node_count(), mesh.dimension());
     let along = || mesh.positions().iter().skip(axis).step_by(d).copied();
@@ -131,10 +134,10 @@ fn partners(mesh: &Mesh, axis: usize) -> Option<Vec<usize>> {
 
 type Place = [i64; 3];
 
-/// A place in steps of what is the same.
+/// A place, rounded to steps within which places count as the same.
 fn rounded(mesh: &Mesh, x: &[f64]) -> Place {
     let step = SAME * mesh.size();
-    // off the middle of two steps, where round numbers lie
+    // with an offset, as round numbers may lie in the middle between two steps
     let number = |i: usize| x.get(i).map_or(0, |x| (x / step + 0.123).round() as i64);
     std::array::from_fn(number)
 }

@@ -16,16 +16,16 @@ const MOST_OF_BODY: f64 = 0.02;
 /// The name of the indicator of how deep a body begins inside an obstacle.
 pub(super) const START_DEPTH: &str = "start-depth";
 
-/// How near the body came to an obstacle while that acted.
+/// How near the body came to an obstacle while it acted.
 pub(super) struct Meeting {
     obstacle: String,
     /// A bound on its speed (m/s) at and between samples.
     speed: f64,
     /// Least distance (m), below 0 inside the obstacle.
     nearest: f64,
-    /// The largest depth (m) for its limit (m), and the node there, counted from 0.
+    /// The largest depth (m) relative to its limit (m), and the node there, counted from 0.
     deepest: Deepest,
-    /// Whether nodes were deeper than that at t = 0, which is told [by itself](begun_inside).
+    /// Whether nodes were deeper than the limit at t = 0, which is [reported separately](begun_inside).
     is_begun_inside: bool,
 }
 
@@ -66,14 +66,14 @@ impl Deepest {
     }
 }
 
-/// How the obstacles that act at `samples` were met there.
+/// How near the body came, at `samples`, to the obstacles that act there.
 pub(super) fn meetings(trajectory: &Trajectory, samples: &[&Sample]) -> Vec<Meeting> {
     let scene = trajectory.scene();
     if scene.obstacles().is_empty() {
         return Vec::new();
     }
     let limits = depth_limits(scene.body());
-    // of speeds, for paths by formulas
+    // precision of speeds of paths given by formulas
     let precision = 1e-3 * scene.body().mesh().size();
     let mut meetings: Vec<Meeting> = Vec::new();
     let mut acting: Option<(&Phase, Vec<Contact>)> = None;
@@ -165,7 +165,7 @@ pub(super) fn begun_inside(scene: &Scene) -> Vec<Indicator> {
     contacts.iter().filter_map(of_contact).collect()
 }
 
-/// Obstacles that touch and would hold the body by friction, in an equilibrium that knows none.
+/// Obstacles that touch and would hold the body by friction, in an equilibrium, where friction does not act.
 pub(super) fn slippery(
     trajectory: &Trajectory,
     meetings: &[Meeting],
@@ -187,7 +187,7 @@ pub(super) fn slippery(
     })
 }
 
-/// Obstacles that acted and were further from the body at all times than it may come nearer unseen.
+/// Obstacles that acted, and from which the body was always farther away than it may move between samples.
 pub(super) fn missed(meetings: &[Meeting], reach: Reach) -> impl Iterator<Item = Indicator> {
     meetings.iter().map(move |Meeting { obstacle, speed, nearest, .. }| {
         let within = || match *nearest <= 0.0 {

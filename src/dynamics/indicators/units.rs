@@ -1,4 +1,4 @@
-//! A scene in other units than metres, kilograms, seconds and pascals.
+//! Whether a scene is in units other than metres, kilograms, seconds and pascals.
 
 use crate::base::input::{percent, told};
 use crate::base::vector::{dot, norm};
@@ -12,19 +12,20 @@ const LARGEST: f64 = 10.0;
 const HEAVIEST: f64 = 1e4;
 /// Densities (kg/m^3): foams have some 10 and more, osmium has 22,600.
 const DENSITIES: [f64; 2] = [5.0, 25_000.0];
-/// Largest moduli (Pa): of what laws of rubber are made for, and of anything (diamond has 1e12).
+/// Largest moduli (Pa): of materials that laws of rubber are made for, and of any material (diamond has
+/// 1e12).
 const STIFFEST_RUBBER: f64 = 1e8;
 const STIFFEST: f64 = 2e12;
 /// Slowest and fastest waves sqrt(E/rho) in soft bodies (m/s): jelly has some 1 m/s, steel 5,000.
 const SPEEDS: [f64; 2] = [0.1, 1e4];
-/// How thick a body in the plane may be over its size there.
+/// Largest thickness of a body in the plane relative to its size there.
 const THICKEST: f64 = 20.0;
 /// Results in plane strain are given per metre.
 const PER_METRE: f64 = 1.0;
 /// Strain of a column as high as the body under its own weight.
 const HEAVIEST_STRAIN: f64 = 1.0;
 
-/// The indicators, those that the scene takes for [meant](Scene::unusual) all within their limits.
+/// The indicators; those that the scene declares as [meant](Scene::unusual) count as within their limits.
 pub(super) fn units(scene: &Scene) -> Vec<Indicator> {
     let body = scene.body();
     let mut all = extent(body);
@@ -67,7 +68,7 @@ fn extent(body: &Body) -> Vec<Indicator> {
 
 fn materials(body: &Body) -> Vec<Indicator> {
     let mut all = Vec::new();
-    // what no cell is made of does not count
+    // materials that no cell is made of do not count
     let used = body.substances().filter(|used| body.materials().contains(&used.material));
     for substance in used {
         let material = &substance.material;
@@ -105,7 +106,7 @@ fn materials(body: &Body) -> Vec<Indicator> {
         let beyond = || format!("{said}: young is in Pa, density in kg/m^3");
         let waves =
             Indicator::trusted("wave-speed", (speed, "m/s"), SPEEDS, || said.clone(), beyond);
-        // what is wrong with one of its factors makes the speed wrong, too
+        // a wrong density or modulus makes the speed wrong, too
         let is_known = density.is_beyond() || stiff.is_beyond();
         all.extend([density, stiff]);
         all.extend((!is_known).then_some(waves));
@@ -131,7 +132,8 @@ fn thickness(body: &Body) -> Option<Indicator> {
     Some(Indicator::trusted("thickness", (part, "1"), [0.0, THICKEST], || said.clone(), beyond))
 }
 
-/// How far a column of the softest material, as high as the body, is pressed together by its own weight: rho g H / E.
+/// How far a column of the softest material, as high as the body, is compressed by its own weight: rho g H /
+/// E.
 fn weight(scene: &Scene) -> Option<Indicator> {
     let body = scene.body();
     let gravities = scene.phases().iter().filter_map(|phase| scene.gravity_in(phase));

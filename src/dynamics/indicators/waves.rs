@@ -12,12 +12,14 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 /// Fewest cells in a wavelength: linear cells are some 5 % too stiff or too slow there, quadratic ones 1 %.
 const LINEAR: f64 = 6.0;
 const QUADRATIC: f64 = 3.0;
-/// Squares of velocities below this part of all are a rigid motion's round-off and integration error.
+/// Squares of velocities relative to a rigid motion that are below this part of the total are round-off and
+/// integration error.
 const SEEN: f64 = 1e-4;
 
-/// Cells in a wavelength of the motion: 2 pi over the root of the mean square of its velocity and of how much that changes
-/// along the edges of a cell. That of a single wave is its own; of several, one between theirs, nearer to the short ones.
-/// Where inertia hardly acts, `is_static`, nothing follows from it.
+/// Cells in a wavelength of the motion: 2 pi times the root mean square of its velocity over that of the
+/// change of velocity along the edges of a cell. For a single wave this is exact; for several it lies between
+/// their numbers, nearer to those of the short ones. Where inertia hardly acts (`is_static`), the number is
+/// for information only.
 pub(super) fn resolution(
     trajectory: &Trajectory,
     samples: &[&Sample],
@@ -28,7 +30,7 @@ pub(super) fn resolution(
     let (kind, volumes) = (mesh.kind(), body.cell_volumes());
     let [mut all, mut squares, mut changes] = [0.0; 3];
     for sample in samples {
-        // of a body that is held its motion as a whole is none
+        // a body that is held has no motion as a whole
         let own = match sample.multipliers.is_empty() {
             true => without_spin(body, &sample.u, &sample.v),
             false => sample.v.clone(),

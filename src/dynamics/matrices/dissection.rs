@@ -3,7 +3,7 @@
 
 use crate::base::sparse::NodePattern;
 
-/// Nodes that are not divided any more: few enough to be one dense block.
+/// Number of nodes that are not divided further: few enough to be one dense block.
 const LEAF: usize = 40;
 
 /// The nodes in the order in which they should be eliminated: those of one half, those of the other,
@@ -32,7 +32,7 @@ struct Dissection<'a> {
     pattern: &'a NodePattern,
     positions: &'a [f64],
     dimension: usize,
-    /// Number of the lower half in which each node was last.
+    /// For each node the number of the last lower half that it was in.
     half: Vec<usize>,
     halves: usize,
     order: Vec<usize>,
@@ -92,7 +92,7 @@ mod tests {
             let mut sorted = order.clone();
             sorted.sort_unstable();
             assert!(sorted.into_iter().eq(0..mesh.node_count()));
-            // the last nodes eliminated part the others into two that are not coupled
+            // the nodes eliminated last separate the others into two parts that are not coupled
             let cut = match mesh.dimension() {
                 1 => 1,
                 2 => 2 * 17,

@@ -1,4 +1,4 @@
-//! The constant numbers of a scene: its matrices on one pattern that fits all forces.
+//! The constant matrices of a scene, on one pattern that fits all forces.
 
 mod dissection;
 
@@ -10,7 +10,7 @@ use crate::base::sparse::{BlockMatrix, NodeMatrix, NodePattern};
 use crate::elements::body::{Body, Branches, LinearByCells};
 use crate::elements::force::Force;
 
-/// Inertia and the constant parts of the tangents. What is `None` is nowhere needed.
+/// Inertia and the constant parts of the tangents. What is `None` is not needed.
 pub(crate) struct Matrices {
     pub(crate) dimension: usize,
     /// Undeformed positions of the nodes (m), and the size of the body (m).
@@ -22,26 +22,26 @@ pub(crate) struct Matrices {
     pub(crate) stiffness: Option<Arc<BlockMatrix>>,
     /// Constant part of -df/dv: B, for natural viscosity; a M, for mass damping.
     pub(crate) damping: Option<Arc<BlockMatrix>>,
-    /// What K and B exert, if element by element is less work.
+    /// The forces of K and B element by element, if that is less work.
     pub(crate) linear_by_cells: Option<LinearByCells>,
-    /// a M, the part of `damping` that mass damping is.
+    /// a M, the part of `damping` that is due to mass damping.
     pub(crate) mass_damping: Option<Arc<NodeMatrix>>,
-    /// Whether what damps is least work with `damping`, and not by cells and by mass.
+    /// Whether damping forces are least work by the matrix `damping`, and not by cells and by mass damping.
     pub(crate) damps_by_matrix: bool,
     /// The Maxwell branches.
     pub(crate) branches: Option<Branches>,
-    /// What displacements (m) and velocities (m/s) of small strains, a hundredth, are like.
+    /// Typical displacements (m) and velocities (m/s) at small strains of 0.01.
     pub(crate) scales: [f64; 2],
     /// The nodes in an order of elimination that may leave less fill than minimum degree, on meshes
     /// that are large enough for that to matter.
     pub(crate) dissection: Option<Vec<usize>>,
 }
 
-/// Nodes from which a second order of elimination is worth the search.
+/// Number of nodes from which a second order of elimination is worth computing.
 const LARGE: usize = 2000;
 
 impl Matrices {
-    /// The model of `body` under `forces`.
+    /// The matrices of `body` under `forces`.
     pub(crate) fn new<'a>(body: &Body, forces: impl Iterator<Item = &'a dyn Force>) -> Self {
         let pattern = body.inertia().pattern();
         let strangers: Vec<[usize; 2]> = forces

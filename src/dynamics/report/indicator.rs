@@ -1,17 +1,17 @@
-//! Numbers that tell how far a result can be trusted, each with its limits.
+//! Numbers that show how far a result can be trusted, each with its limits.
 
 use std::fmt;
 
-/// A number measured on a scene or on its motion, with the limits within which it should be, and what to change if it is not.
+/// A number measured on a scene or on its motion, with its limits and what to change if it is beyond them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Indicator {
     /// What is measured: one word, or several joined by hyphens.
     pub name: &'static str,
     /// What was measured, in [`unit`](Self::unit).
     pub value: f64,
-    /// Least and most that are in order; infinite where there is no limit.
+    /// Least and largest value that are in order; infinite where there is no limit.
     pub limits: [f64; 2],
-    /// Unit of the value and of its limits; empty of counts, `"1"` of ratios.
+    /// Unit of the value and of its limits; empty for counts, `"1"` for ratios.
     pub unit: &'static str,
     /// What the value means.
     pub verdict: Verdict,
@@ -26,7 +26,7 @@ pub enum Verdict {
     Fine,
     /// The result is doubtful: a warning.
     Doubtful,
-    /// The result would be the same with less: with a simpler model, or with half of the body.
+    /// The result would be the same with a simpler model, or with half of the body.
     MoreThanNeeded,
 }
 
@@ -48,7 +48,7 @@ impl fmt::Display for Verdict {
 }
 
 impl Indicator {
-    /// A number of which nothing follows.
+    /// A number that is for information only.
     pub(crate) fn told(name: &'static str, value: f64, unit: &'static str, text: String) -> Self {
         let limits = [f64::NEG_INFINITY, f64::INFINITY];
         Self { name, value, limits, unit, verdict: Verdict::Fine, text }
@@ -65,7 +65,8 @@ impl Indicator {
         Self::judged(name, (value, unit), limits, within, (Verdict::Doubtful, beyond))
     }
 
-    /// A number below whose limit `least` less would do: the text is `below` then, else `within`.
+    /// A number that shows, below the limit `least`, that a simpler model would do: the text is `below` then,
+    /// else `within`.
     pub(crate) fn needed(
         name: &'static str,
         (value, unit): (f64, &'static str),

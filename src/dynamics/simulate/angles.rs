@@ -1,15 +1,15 @@
-//! Angles that go on over whole turns.
+//! Angles that are continuous over whole turns.
 
-/// Where the angles that sensors read have come to, in turns, by the names of the sensors.
+/// The last angles that sensors read, in turns including whole ones, by the names of the sensors.
 ///
-/// They are brought up to date after each step of the integrator, so that they do not depend on when samples are
-/// taken; what turns by less than half a turn in a step is followed.
+/// They are updated after each step of the integrator, so that they do not depend on when samples are taken;
+/// changes by less than half a turn in a step are followed.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Angles(pub(crate) Vec<(String, f64)>);
 
 impl Angles {
-    /// How many whole turns an angle of this many `turns`, which is known but for whole ones, is behind the one that was noted.
-    /// None if nothing was noted.
+    /// How many whole turns must be added to an angle of `turns`, known up to whole ones, to be nearest to
+    /// the one that was noted. 0 if none was noted.
     pub(super) fn behind(&self, name: &str, turns: f64) -> f64 {
         self.0
             .iter()
@@ -17,12 +17,12 @@ impl Angles {
             .map_or(0.0, |(_, last)| (last - turns).round())
     }
 
-    /// Forgets those of other sensors than these.
+    /// Removes the angles of sensors that are not kept.
     pub(super) fn keep(&mut self, is_kept: impl Fn(&str) -> bool) {
         self.0.retain(|(name, _)| is_kept(name));
     }
 
-    /// Notes that the sensor `name` reads this many `turns`; an angle that has no meaning is not noted.
+    /// Notes that the sensor `name` reads this many `turns`; an angle that is not finite is not noted.
     pub(super) fn note(&mut self, name: &str, turns: f64) {
         if !turns.is_finite() {
             return;
@@ -47,7 +47,7 @@ mod tests {
         for (turns, expected) in read.into_iter().zip(expected) {
             let now = turns + angles.behind("ring", turns);
             angles.note("ring", now);
-            // sums of a few numbers of the size of 1
+            // sums of a few numbers of order 1
             assert!((now - expected).abs() < 1e-15 || expected.is_nan() && now.is_nan(), "{now}");
         }
         assert_eq!(angles.behind("another", -0.4), 0.0);

@@ -1,4 +1,4 @@
-//! What sensors read of equilibria.
+//! Sensor readings of equilibria.
 
 use super::angles::Angles;
 use super::sampling::Sampling;
@@ -10,8 +10,10 @@ use crate::dynamics::state::State;
 use crate::dynamics::trajectory::Trajectory;
 
 impl Equilibrium {
-    /// Has the sensors of `sampling` read with each sample of the [trajectory](Self::trajectory): columns of tables behind those that
-    /// it has. Nothing moves: velocities are 0, and dampers, viscosity and friction do not act.
+    /// Reads the sensors of `sampling` at each sample of the [trajectory](Self::trajectory).
+    ///
+    /// They become further columns of its tables, after those that it has. Nothing moves: velocities are 0,
+    /// and dampers, viscosity and friction do not act.
     ///
     /// ```
     /// use pliant::simulate::Reading;
@@ -31,7 +33,7 @@ impl Equilibrium {
 }
 
 impl NoEquilibrium {
-    /// As [`Equilibrium::read`], of the equilibria on the way.
+    /// As [`Equilibrium::read`], for the equilibria that were found.
     ///
     /// # Errors
     /// As there.

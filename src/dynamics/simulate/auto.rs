@@ -1,10 +1,10 @@
 //! Which method integrates a phase, and why.
 //!
-//! The rules come from charts of speed against accuracy over Hirai's scenes: diagonally
-//! implicit Runge-Kutta methods lead where vibrations are lightly damped, for they are L-stable and
-//! may step over them; BDF leads where damping is strong, for a step costs it one stage; explicit
-//! Runge-Kutta leads where accuracy asks for steps not much longer than those of its stability. With
-//! lumped inertia a step of central differences costs so little that they lead well before that.
+//! The rules come from charts of speed against accuracy over Hirai's scenes: diagonally implicit Runge-Kutta
+//! methods lead where vibrations are lightly damped, as they are L-stable and may step over them; BDF leads
+//! where damping is strong, as its steps cost one stage; explicit Runge-Kutta leads where accuracy requires
+//! steps not much longer than its stability limit. With lumped inertia a step of central differences costs so
+//! little that they lead even with steps well above theirs.
 
 use crate::dynamics::system::{Spectrum, System};
 use crate::integrators::central_difference;
@@ -14,9 +14,9 @@ use crate::scene::settings::{ContactEvents, Method, Settings};
 /// How a phase is integrated from now on.
 #[derive(Clone)]
 pub(super) struct Plan {
-    /// As asked for, with a method of its own in place of [`Method::Auto`].
+    /// As requested, with the chosen method in place of [`Method::Auto`].
     pub(super) settings: Settings,
-    /// As asked for, with all tolerances.
+    /// As requested, with the full tolerances.
     pub(super) asked: Settings,
     /// Part of these tolerances that the method is given.
     pub(super) part: f64,
@@ -31,41 +31,43 @@ pub(super) struct Plan {
     pub(super) implicit_step: f64,
 }
 
-/// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well
-/// to both sides: squares and bent beams below 0.004, membranes and rings above 0.01.
+/// Damping ratio of the lowest vibration from which BDF is chosen. Hirai's bodies lie well on both sides:
+/// squares and bent beams below 0.004, membranes and rings above 0.01.
 const STRONG_DAMPING: f64 = 0.006;
 
-/// Relative tolerance above which the vibrations that are damped least bound the steps of BDF. The bent beam, whose slowest
-/// motion is damped by 0.1 and the others by a hundredth of that, takes 0.8 of the time with ARKODE at 1e-3, 1.2 times
-/// the time at 1e-6.
+/// Relative tolerance above which the vibrations that are damped least bound the steps of BDF. The bent beam,
+/// whose slowest motion is damped by 0.1 and the others by a hundredth of that, takes with ARKODE 0.8 times
+/// the time of BDF at 1e-3, and 1.2 times at 1e-6.
 const ROUGH: f64 = 1e-6;
 
-/// Relative tolerance from which on ARKODE follows a body that creeps on a floor by order 3, with all of the tolerances:
-/// contacts that come and go leave little of order 4, and errors die out. On walking rings they are 0.3 to 0.9 times `rtol`
-/// then (of order 4 up to 5 times), at 1e-5 they are 0.2 times and cost a quarter more than those of order 4.
+/// Relative tolerance from which on ARKODE integrates a body that creeps on a floor with order 3 and the full
+/// tolerances: contacts that come and go take away most of the gain of order 4, and errors die out. On
+/// walking rings errors are then 0.3 to 0.9 times `rtol` (with order 4 up to 5 times); at 1e-5 they are 0.2
+/// times `rtol`, at a quarter more cost than with order 4.
 const COARSE: f64 = 1e-4;
 
-/// Steps of the implicit method, in longest stable ones of the explicit method, below which the
-/// explicit one is faster: 7 stages with a solve each and a bit, against 6 without.
+/// Step of the implicit method, in multiples of the longest stable one of the explicit method, below which
+/// the explicit one is faster: 7 stages with a little more than one solve each, against 6 without.
 const WORTH_EXPLICIT: f64 = 2.2;
 
-/// The same for central differences: what a step of the implicit method costs, in theirs. On the clamped beam with
-/// lumped inertia that is 79 us beside 1.08 us at rtol 1e-5 and 79 beside 1.06 at 1e-7 (105 beside 1.10 at 1e-3, with
-/// more iterations).
+/// The same for central differences: the cost of a step of the implicit method in steps of theirs. On the
+/// clamped beam with lumped inertia these cost 79 us and 1.08 us at rtol 1e-5, 79 and 1.06 at 1e-7 (105 and
+/// 1.10 at 1e-3, with more iterations).
 const WORTH_CENTRAL: f64 = 70.0;
 
-/// Part of these limits below which half the trials tell enough.
+/// Part of these limits below which half of the trials are enough.
 const CLEARLY: f64 = 0.7;
 
 /// Part of their longest stable step below which it is accuracy that bounds steps of central differences,
 /// and a method of higher order is better.
 const SHORT: f64 = 0.1;
 
-/// Part of the way of the implicit method below which an explicit one, for the same cost, does not pay. (Where one pays it is
-/// above 0.8; it may fall as the motion, and not what bounds the steps, becomes faster.)
+/// An explicit method does not pay if, for the same cost, it advances by less than this part of what the
+/// implicit one does. (Where one pays the part is above 0.8; it may fall because the motion becomes faster,
+/// while what bounds the steps stays the same.)
 const LOSING: f64 = 0.25;
 
-/// Steps on the real axis and on the imaginary one that Dormand-Prince 5(4) takes, times the rate.
+/// Stability limits of Dormand-Prince 5(4) on the real and on the imaginary axis: step times rate.
 const EXPLICIT_REACH: f64 = 3.3;
 const EXPLICIT_REACH_UNDAMPED: f64 = 1.0;
 
@@ -73,17 +75,18 @@ const EXPLICIT_REACH_UNDAMPED: f64 = 1.0;
 /// takes a quarter less time there, and at 1e-5 a quarter more.
 const FINE: f64 = 1e-6;
 
-/// Part of the tolerances with which BDF goes on where it has created energy.
+/// Part of the tolerances with which BDF continues where it has created energy.
 const FINER: f64 = 0.1;
 
-/// Relative tolerance that methods are given at least, unless less was asked for: round-off rules below.
+/// Smallest relative tolerance that methods are given, unless a smaller one was requested: below it round-off
+/// dominates.
 const TIGHTEST: f64 = 1e-13;
 
-/// Steps after which a choice is looked at again, and how many of such trials are remembered.
+/// Steps after which a choice is reviewed, and how many such trials are remembered.
 pub(super) const TRIAL: usize = 32;
 pub(super) const TRIALS: usize = 4;
 
-/// Steps of a plan after which it is asked how far they have led, whatever intervals they lie in.
+/// Steps of a plan after which their mean size is checked, whatever intervals they lie in.
 pub(super) const LONG: usize = TRIAL * TRIALS;
 
 impl Plan {
@@ -126,7 +129,7 @@ impl Plan {
     /// Whether contact events are located.
     pub(super) fn locates(&self) -> bool {
         let pays = || match self.settings.method {
-            // one step after another: a new start costs nothing, and errors become much smaller
+            // a one-step method: a new start costs nothing, and errors become much smaller
             Method::Rk => true,
             Method::CentralDifference => false,
             _ => self.asked.rtol < FINE,
@@ -138,13 +141,13 @@ impl Plan {
         }
     }
 
-    /// Whether there is another method to go on with if this one creates energy.
+    /// Whether there is another method to continue with if this one creates energy.
     pub(super) fn is_on_trial(&self) -> bool {
         self.reason.is_some() && !self.is_last_resort()
     }
 
-    /// What to go on with when this plan has gone wrong by `trouble`: nothing if the method was
-    /// asked for, or is the last resort already.
+    /// The plan to continue with when this one has failed by `trouble`: none if the method was requested, or
+    /// is already the last resort.
     pub(super) fn instead(&self, trouble: &str) -> Option<Self> {
         if !self.is_on_trial() {
             return None;
@@ -152,7 +155,7 @@ impl Plan {
         let asked = self.asked.max_order;
         Some(match self.settings.method {
             Method::Arkode => self.followed_by(Method::CvodeBdf, Some(2), trouble),
-            // its orders above 2 create energy where steps are long for what vibrates
+            // its orders above 2 create energy where steps are long compared with the periods of vibrations
             Method::CvodeBdf if self.part == part(Method::CvodeBdf, self.asked.rtol) => {
                 let reason = format!("{trouble}: at a tenth of its tolerances");
                 self.followed_by(Method::CvodeBdf, asked, &reason).with_part(FINER * self.part)
@@ -161,9 +164,10 @@ impl Plan {
         })
     }
 
-    /// What to go on with when the last times [`TRIAL`] of the `steps` taken with this plan have
-    /// shown, by their mean sizes `means` (s), the last one first, what the motion asks for. (Two in a row at least, and
-    /// four where it is not clear: motion begins with small steps.)
+    /// The plan to continue with, if the mean step sizes `means` (s) of the last trials of [`TRIAL`] steps
+    /// each, the last one first, show that another method is better; `steps` were taken with this plan in
+    /// all. (At least two trials in a row must show it, and four where it is not clear: motion begins with
+    /// small steps.)
     pub(super) fn reconsidered(&self, means: [f64; TRIALS], steps: usize) -> Option<Self> {
         self.reason.as_ref()?;
         let (bound, central, [step, ..]) = (self.explicit_step, self.central_step, means);
@@ -189,7 +193,7 @@ impl Plan {
             }
             Method::Arkode if below(WORTH_CENTRAL * central) => explicit(Method::CentralDifference),
             Method::Arkode if below(WORTH_EXPLICIT * bound) => explicit(Method::Rk),
-            // does stability bound the steps, or accuracy? Only the implicit method can tell
+            // does stability bound the steps, or accuracy? Only the implicit method can show it
             Method::Rk if steps >= self.patience && step > 0.3 * bound => implicit(central),
             Method::CentralDifference if lasts_below(SHORT * central) => implicit(step),
             Method::CentralDifference if steps >= WORTH_CENTRAL as usize * self.patience => {
@@ -199,9 +203,10 @@ impl Plan {
         }
     }
 
-    /// What to go on with when steps of an explicit method that took over turn out to lead but `step` (s) in the mean:
-    /// the implicit one again, if that led farther for what its steps cost. (What bounds explicit steps may have come
-    /// since: a body that sticks to a floor, or events one after the other.) From then on explicit steps count as that long.
+    /// The plan to continue with when the steps of an explicit method that took over turn out to be only
+    /// `step` (s) in the mean: the implicit method again, if it advanced farther for the same cost. (What
+    /// bounds explicit steps may have begun since: a body that sticks to a floor, or events one after the
+    /// other.) From then on explicit steps count as that long.
     pub(super) fn turned_back(&self, step: f64) -> Option<Self> {
         let (worth, [explicit_step, central_step]) = match self.settings.method {
             Method::Rk => (WORTH_EXPLICIT, [step, self.central_step]),
@@ -215,7 +220,8 @@ impl Plan {
         })
     }
 
-    /// What to go on with where commands change the forces again and again, each of which would make BDF start anew.
+    /// The plan to continue with where commands change the forces again and again, as each change would
+    /// restart BDF.
     pub(super) fn under_commands(&self) -> Option<Self> {
         let starts_anew = self.is_on_trial() && self.settings.method == Method::CvodeBdf;
         starts_anew.then(|| {
@@ -234,29 +240,31 @@ impl Plan {
         }
     }
 
-    /// This plan with `part` of the tolerances that were asked for.
+    /// This plan with `part` of the requested tolerances.
     fn with_part(self, part: f64) -> Self {
         let Settings { method, max_order, .. } = self.settings;
         Self { settings: given(&self.asked, method, max_order, part), part, ..self }
     }
 
-    /// Whether this is what other plans end in: order 2 of BDF, which damps all vibrations.
+    /// Whether this is the plan that all others end in: order 2 of BDF, which damps all vibrations.
     fn is_last_resort(&self) -> bool {
         self.settings.method == Method::CvodeBdf && self.settings.max_order == Some(2)
     }
 }
 
-/// The settings of a method, with its `part` of the tolerances asked for.
+/// The settings of a method, with its `part` of the requested tolerances.
 fn given(asked: &Settings, method: Method, max_order: Option<u32>, part: f64) -> Settings {
     Settings { method, max_order: cap(method, max_order), ..asked.tightened(part) }
 }
 
-/// Part of the tolerances asked for that a method is given, so that the error of the motion is about as large as `rtol`.
+/// Part of the requested tolerances that a method is given, so that the error of the motion is about as large
+/// as `rtol`.
 ///
-/// On Hirai's scenes and clamped beams errors were 1 to 9 times the tolerance of ARKODE, 4 to 20 times that of BDF
-/// where accuracy bounds its steps. Methods that go on with the value whose error they estimate have one more order per
-/// step than in all, so that errors shrink by rtol^(p/(p+1)) (E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary
-/// Differential Equations I*, section II.4); the others go on with a better one.
+/// On Hirai's scenes and clamped beams errors were 1 to 9 times the tolerance of ARKODE, 4 to 20 times that
+/// of BDF where accuracy bounds its steps. Methods that continue with the value whose error they estimate
+/// have a local error of one order more than the global one, so that errors shrink as rtol^(p/(p+1)) (E.
+/// Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, section II.4); the others
+/// continue with a more accurate value.
 fn part(method: Method, rtol: f64) -> f64 {
     let part = match method {
         Method::CvodeBdf => 0.1 * (rtol / 1e-3).powf(1.0 / 5.0).min(1.0),
@@ -266,7 +274,7 @@ fn part(method: Method, rtol: f64) -> f64 {
     part.max((TIGHTEST / rtol).min(1.0))
 }
 
-/// The highest order that was asked for, as far as the method has a choice of orders.
+/// The highest order that was requested, if the method has a choice of orders.
 fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
     match method {
         Method::Arkode => max_order.map(|order| order.clamp(2, 5)),
@@ -277,20 +285,20 @@ fn cap(method: Method, max_order: Option<u32>) -> Option<u32> {
 
 /// The method, whether it follows a body that creeps, and why it was chosen.
 fn choose(spectrum: &Spectrum, rtol: f64) -> (Method, bool, String) {
-    // fast vibrations, which BDF dislikes, have next to nothing of mass damping
+    // mass damping hardly affects fast vibrations, which are difficult for BDF
     let (by_mass, besides) = match spectrum.mass_damping_ratio {
         0.0 => (0.0, ""),
         by_mass => (by_mass, " besides that of its mass"),
     };
     let ratio = (spectrum.lowest_damping_ratio - by_mass).max(0.0);
-    // the ratio that the fastest motions would give it, were the damping that of the material
+    // the damping ratio that follows from the fastest motions if all damping is that of the material
     let of_material = 0.5 * spectrum.damping_rate * spectrum.lowest_frequency.unwrap_or(0.0)
         / spectrum.highest_frequency.powi(2);
-    // a body that creeps on a floor that damps tells nothing of what vibrates in it
+    // the creeping of a body on a floor that damps says nothing about the vibrations within the body
     let creeps = ratio >= 1.0 && of_material < 1.0;
     let (method, limit) = match ratio {
         _ if creeps => (Method::Arkode, "overdamped from outside".into()),
-        // nor does a bent one whose parts turn in its slowest motion, which natural viscosity brakes
+        // nor does the slowest motion of a bent body if parts of it turn, which natural viscosity damps
         STRONG_DAMPING.. if of_material < STRONG_DAMPING && rtol > ROUGH => {
             (Method::Arkode, format!("by the fastest motions {of_material:.1e}"))
         }
@@ -309,10 +317,12 @@ fn central_step(spectrum: &Spectrum) -> f64 {
     central_difference::longest_step(&Rates { frequency: highest_frequency, decay: damping_rate })
 }
 
-/// Longest step (s) with which explicit Runge-Kutta is stable, `decay` (1/s) being the fastest besides those of the spectrum.
+/// Longest step (s) with which explicit Runge-Kutta is stable, where `decay` (1/s) is the fastest rate
+/// outside the spectrum.
 fn explicit_step(spectrum: &Spectrum, decay: f64) -> f64 {
     let Spectrum { highest_frequency, damping_rate, .. } = *spectrum;
-    // an undamped vibration is on the edge of the region of stability, which leaves the axis at 1
+    // undamped vibrations lie on the imaginary axis, at the edge of the stability region, which leaves it at
+    // 1
     let reach = match damping_rate > 0.1 * highest_frequency {
         true => EXPLICIT_REACH,
         false => EXPLICIT_REACH_UNDAMPED,
@@ -324,7 +334,8 @@ fn explicit_step(spectrum: &Spectrum, decay: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Trials of `means` (s), the last one first, of ARKODE where stable steps are 1 s, or 0.1 s of central differences.
+    /// What follows trials of ARKODE with mean steps `means` (s), the last one first, where explicit steps
+    /// are stable up to 1 s, or up to `central_step` (s) for central differences.
     fn goes_on_with(means: [f64; TRIALS], central_step: f64) -> Option<Method> {
         let asked = Settings { method: Method::Auto, ..Settings::default() };
         let plan = Plan {
@@ -340,7 +351,8 @@ mod tests {
         plan.reconsidered(means, TRIAL).map(|plan| plan.settings.method)
     }
 
-    /// Two trials with steps far below what an implicit method is worth, four with steps near to it; never by one.
+    /// Two trials are needed if steps are far below the limit, four if they are near to it; one is never
+    /// enough.
     #[test]
     fn explicit_methods_take_over_the_sooner_the_clearer_it_is() {
         let never = f64::INFINITY;
@@ -357,8 +369,8 @@ mod tests {
         assert_eq!(goes_on_with([8.0; 4], 0.1), None);
     }
 
-    /// What methods are given is less than what was asked for, the less the finer it is for methods whose errors shrink more
-    /// slowly, and never beyond round-off.
+    /// Methods are given smaller tolerances than requested, a part that decreases with the tolerance for
+    /// methods whose errors shrink more slowly, but never below round-off.
     #[test]
     fn parts_of_tolerances() {
         assert_eq!(part(Method::Arkode, 1e-2), 0.2);

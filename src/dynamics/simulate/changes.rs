@@ -1,4 +1,4 @@
-//! What changes a run between two steps: other forces or constraints, another state, an earlier one.
+//! Changes of a run between two steps: other forces or constraints, another state, or an earlier one.
 
 use std::mem::take;
 use std::sync::Arc;
@@ -31,7 +31,7 @@ pub(super) enum Change {
     Constraints,
 }
 
-/// Commands in a phase that a multistep method follows by new starts.
+/// Number of commands in a phase after each of which a multistep method is restarted.
 const NEW_STARTS: usize = 3;
 
 impl Run {
@@ -166,7 +166,7 @@ impl Run {
         Ok(())
     }
 
-    /// Leaves a multistep method that was chosen automatically once commands keep coming.
+    /// Leaves a multistep method that was chosen automatically, if commands keep coming.
     fn expect_commands(&mut self) -> Result<(), Error> {
         self.phase_run.commands += 1;
         if self.phase_run.commands > NEW_STARTS
@@ -179,7 +179,7 @@ impl Run {
         Ok(())
     }
 
-    /// Changes the forces of an integrator at work, if it can go on with others; gives them back if not.
+    /// Changes the forces of a running integrator, if it can continue with others; returns them if not.
     fn change_loads(&mut self, forces: Forces) -> Result<Option<Forces>, Error> {
         let (Integration::Running(work), None) = (&mut self.integration, &self.phase_run.ended)
         else {
@@ -203,7 +203,7 @@ impl Run {
         Ok(())
     }
 
-    /// Lets the integrator at work, if there is one that can, go on under forces that have jumped.
+    /// Lets the integrator continue after a jump of the forces, if one is running and can do so.
     fn keep_on(&mut self) -> Result<bool, Error> {
         let (Integration::Running(work), None) = (&mut self.integration, &self.phase_run.ended)
         else {
@@ -223,7 +223,7 @@ impl Run {
         }
     }
 
-    /// A state to come back to.
+    /// A state to return to.
     pub(super) fn checkpoint(&self, time: f64, state: &[f64]) -> Checkpoint {
         let rows = self.system().map_or(&[][..], System::rows);
         Checkpoint {
@@ -247,7 +247,7 @@ impl Run {
         }
     }
 
-    /// Comes back to a state.
+    /// Returns to a state.
     pub(super) fn restore(&mut self, checkpoint: &Checkpoint) -> Result<(), Error> {
         let Checkpoint { scene, constraints, plan, kept } = checkpoint;
         let Kept { time, ref state, ref phase, number, balance, steps, .. } = *kept;
@@ -285,7 +285,7 @@ impl Run {
         Ok(())
     }
 
-    /// A run of its own from `state` = (u, v, energies) at time `t` (s) on.
+    /// An independent run from `state` = (u, v, energies) at time `t` (s) on.
     pub(super) fn fork(&self, t: f64, state: &[f64]) -> Result<Self, Error> {
         let rows = match self.system() {
             Some(system) => system.rows().to_vec(),
@@ -305,7 +305,7 @@ impl Run {
         Ok(run)
     }
 
-    /// Size of the next step (s), as far as it is known.
+    /// Size of the next step (s), if it is known.
     fn next_step(&self) -> Option<f64> {
         match &self.integration {
             Integration::Running(work) => {
@@ -315,7 +315,7 @@ impl Run {
         }
     }
 
-    /// Ends the integrator, and gives its equations back; the next one knows its step size.
+    /// Ends the integrator and returns its equations; its step size is kept for the next one.
     fn rest(&mut self) -> Result<System, Error> {
         self.phase_run.first_step = self.next_step();
         if let Some(Ending::Doubtful { instead: plan } | Ending::Better(plan)) =
@@ -330,7 +330,7 @@ impl Run {
         }
     }
 
-    /// Goes on from the present state by the equations `system` of the phase in force.
+    /// Continues from the present state with the equations `system` of the phase in force.
     fn resume(&mut self, system: System) {
         self.find_stops();
         (self.phase_run.ended, self.phase_run.mean_steps) =
@@ -341,13 +341,13 @@ impl Run {
         self.remember();
     }
 
-    /// Finds where the interval that the present time lies in ends, and those after it.
+    /// Finds the end of the interval that the present time lies in, and of those after it.
     pub(super) fn find_interval(&mut self) {
         self.find_stops();
         self.phase_run.interval.stop = self.phase_run.stops.pop().unwrap_or(self.phase.until);
     }
 
-    /// Finds where the intervals of the phase in force end from now on.
+    /// Finds the ends of the intervals that are left of the phase in force.
     fn find_stops(&mut self) {
         let mut stops = self.phase.breaks(self.scene.obstacles());
         stops.retain(|&stop| self.time < stop && stop < self.phase.until);
@@ -356,7 +356,7 @@ impl Run {
         (self.phase_run.stops, self.phase_run.interval.inside) = (stops, None);
     }
 
-    /// Counts a sudden change of what is stored (J) as supplied from outside.
+    /// Counts a sudden change of the stored energy (J) as supplied from outside.
     pub(super) fn supply(&mut self, energy: f64) {
         let supplied = 2 * self.scene.body().dofs() + 1;
         self.state[supplied] += energy;
@@ -381,7 +381,7 @@ impl Run {
         }
         self.follow_angles();
         self.sample_from(self.time);
-        // what was sampled at other times is not gone back behind
+        // a rollback does not reach behind this time, as samples before it were taken at other times
         self.remember();
     }
 

@@ -1,4 +1,4 @@
-//! States of a simulation to come back to.
+//! States of a simulation to return to.
 
 use std::fmt;
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use crate::dynamics::system::System;
 use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::{Phase, Scene};
 
-/// A state of a [`Simulation`](super::Simulation) to come back to: see
+/// A state of a [`Simulation`](super::Simulation) to return to: see
 /// [`checkpoint`](super::Simulation::checkpoint).
 #[derive(Clone)]
 pub struct Checkpoint {
@@ -22,7 +22,7 @@ pub struct Checkpoint {
     pub(super) kept: Kept,
 }
 
-/// What another simulation of the same scene can go on with, too.
+/// The part from which another simulation of the same scene can continue, too.
 #[derive(Clone)]
 pub(crate) struct Kept {
     pub(crate) time: f64,
@@ -33,23 +33,24 @@ pub(crate) struct Kept {
     pub(crate) number: usize,
     /// Whether commands have changed it.
     pub(crate) is_commanded: bool,
-    /// Where each row of the constraints [starts](crate::scene::constraint::Row::origin); none if that is not known.
+    /// Where each row of the constraints [starts](crate::scene::constraint::ConstraintRow::origin); none if
+    /// that is not known.
     pub(crate) origins: Vec<[f64; 4]>,
     /// Size of the next step (s), if it is known.
     pub(crate) first_step: Option<f64>,
-    /// Steps since t = 0: every so many of them, the energy balance is looked at.
+    /// Steps since t = 0, which determine when the energy balance is checked.
     pub(crate) steps: usize,
     /// Changes of the forces by commands, in the phase in force.
     pub(crate) commands: usize,
-    /// Energy balance (J) that methods are judged by.
+    /// Reference value (J) of the energy balance by which methods are judged.
     pub(crate) balance: f64,
     /// Error, rise and scale of the energy balance (J).
     pub(crate) energies: [f64; 3],
-    /// Where the angles of sensors are, at or after the time.
+    /// The angles of sensors, at or after the time.
     pub(crate) angles: Angles,
 }
 
-/// Short: where it was made.
+/// Short: its time and phase.
 impl fmt::Debug for Checkpoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Checkpoint")
@@ -67,7 +68,7 @@ impl Checkpoint {
 }
 
 impl Kept {
-    /// The equations in force: what is held or moved goes on as it did.
+    /// The equations in force: nodes that are held or moved continue as before.
     pub(super) fn equations(&self, run: &Run) -> Result<System, InputError> {
         let start = PhaseStart { time: self.time, u: &self.state[..run.scene.body().dofs()] };
         let mut rows = run.scene.rows(&self.phase, &start)?;

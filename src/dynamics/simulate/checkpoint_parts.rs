@@ -15,7 +15,7 @@ use crate::scene::timeline::Scene;
 pub(crate) struct Choice {
     pub(crate) method: Method,
     pub(crate) max_order: Option<u32>,
-    /// Part of the tolerances asked for that the method is given.
+    /// Part of the requested tolerances that the method is given.
     pub(crate) part: f64,
     pub(crate) reason: String,
     /// Longest stable steps of explicit Runge-Kutta and of central differences (s), steps after which the
@@ -61,7 +61,7 @@ impl Checkpoint {
 }
 
 impl Choice {
-    /// The plan that this was, under the settings `asked`.
+    /// The plan of this choice, under the settings `asked`.
     fn plan(self, asked: &Settings) -> Result<Plan, InputError> {
         let Self {
             method,
@@ -78,7 +78,7 @@ impl Choice {
         }
         positive("part of the tolerances", part, "")?;
         let settings = Settings { method, max_order, ..asked.tightened(part) };
-        // a flag for BDF alone, which may have been chosen before
+        // this flag is for BDF alone, which may have been chosen before
         Settings { stability_limit_detection: false, ..settings.clone() }.validate()?;
         for step in [explicit_step, central_step].into_iter().filter(|step| step.is_finite()) {
             not_negative("longest stable step", step, "s")?;
@@ -100,11 +100,12 @@ impl Choice {
 }
 
 impl Simulation {
-    /// A checkpoint of this simulation from what one of another simulation of the same scene holds: the state
-    /// `kept`, and the `choice` of method, which counts if this simulation leaves the method open, too.
+    /// A checkpoint of this simulation from the data of one of another simulation of the same scene: the
+    /// state `kept`, and the `choice` of method, which is used if this simulation leaves the method open,
+    /// too.
     ///
     /// # Errors
-    /// Commands and states that the scene cannot take.
+    /// Commands and states that do not fit the scene.
     pub(crate) fn adopt(&self, kept: Kept, choice: Option<Choice>) -> Result<Checkpoint, Error> {
         let run = &self.run;
         let Kept { number, time, ref state, .. } = kept;

@@ -10,15 +10,16 @@ use crate::scene::forces::{Live, Signal, TimeTable, VectorSignal};
 use crate::scene::timeline::{Load, Phase, Scene};
 
 /// Commands. Each takes effect at the present time and stays in force until another one replaces it or the
-/// phase ends: the next phase of the scene begins as the scene has it. At the end of the scene, where nothing is left for
-/// them to act on, all of them are errors.
+/// phase ends: the next phase begins as the scene defines it. At the end of the scene, where nothing is left
+/// for them to act on, all of them return errors.
 ///
-/// Commands that change forces alone keep matrices and orderings. `rk` and `arkode` go on with the step size they
-/// had; `cvode-bdf`, `cvode-adams` and the IDA methods begin anew with small steps of order 1. So
-/// [`Method::Auto`](crate::Method::Auto) goes on with `arkode` from the fourth such command of a phase on. (With
-/// the history of BDF kept over 400 commands, a beam was fifty times less accurate at rtol 1e-6.)
+/// Commands that change forces alone keep matrices and orderings. `rk` and `arkode` continue with the step
+/// size they had; `cvode-bdf`, `cvode-adams` and the IDA methods restart with small steps of order 1.
+/// Therefore [`Method::Auto`](crate::Method::Auto) continues with `arkode` from the fourth such command of a
+/// phase on. (With the history of BDF kept over 400 commands, a beam was fifty times less accurate at rtol
+/// 1e-6.)
 impl Simulation {
-    /// Pressure (Pa) in a chamber, in place of the present one.
+    /// Sets the pressure (Pa) in a chamber, in place of the present one.
     ///
     /// # Errors
     /// A name that no chamber has; numbers that are not finite.
@@ -35,7 +36,8 @@ impl Simulation {
         })
     }
 
-    /// Force (N) of the actuator of a spring, in place of the present one; a positive one extends it.
+    /// Sets the force (N) of the actuator of a spring, in place of the present one; a positive one extends
+    /// the spring.
     ///
     /// # Errors
     /// A name that no spring has; numbers that are not finite.
@@ -52,8 +54,8 @@ impl Simulation {
         })
     }
 
-    /// A force (N) on each of the nodes, one component per dimension, in place of the load that was given for
-    /// the same selection.
+    /// Sets a force (N) on each of the nodes, one component per dimension, in place of the load given for the
+    /// same selection.
     ///
     /// # Errors
     /// Nodes that do not exist, a wrong number of components, numbers that are not finite.
@@ -159,7 +161,7 @@ impl Simulation {
 
     /// Lets an obstacle move on from where it is with a constant `velocity` (m/s), one component per dimension.
     ///
-    /// When the phase ends, it goes on from where it is, too, with the velocity that the scene has given it.
+    /// In the next phase it also moves on from where it is, with the velocity that the scene gives it.
     ///
     /// # Errors
     /// A name that no obstacle has, a velocity of the wrong length, numbers that are not finite.
@@ -186,7 +188,7 @@ impl Simulation {
     }
 
     /// Sets the numbers that `find` finds in the phase in force; `false` if there are none that a command can
-    /// set. (The forces read them: nothing is built anew.)
+    /// set. (The forces read them: nothing is rebuilt.)
     fn set_live(
         &mut self,
         find: impl Fn(&Phase) -> Option<Live>,

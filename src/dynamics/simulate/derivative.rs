@@ -1,4 +1,4 @@
-//! How readings of an equilibrium change with displacements and constraint forces, on a richer mesh.
+//! Derivatives of readings of an equilibrium by displacements and constraint forces, on a richer mesh.
 
 use std::f64::consts::TAU;
 
@@ -16,7 +16,7 @@ use crate::scene::timeline::Scene;
 
 /// A reading on a richer mesh, at the displacements of this one, to first order.
 pub(crate) struct Linearized {
-    /// What it reads there.
+    /// Its value there.
     pub(crate) value: f64,
     /// Its derivative by the displacements.
     pub(crate) by_displacements: Vec<f64>,
@@ -28,7 +28,7 @@ pub(crate) struct Linearized {
 pub(crate) struct Moved<'a> {
     /// The scene there.
     pub(crate) scene: &'a Scene,
-    /// What became of the nodes.
+    /// The numbers of the nodes there.
     pub(crate) finer: &'a Finer,
     /// The rows of its constraints.
     pub(crate) rows: &'a [ConstraintRow],
@@ -37,7 +37,7 @@ pub(crate) struct Moved<'a> {
 }
 
 impl Reading {
-    /// What it reads at a `sample` of `scene`: of several components the first.
+    /// Its value at a `sample` of `scene`: the first component if it has several.
     ///
     /// # Errors
     /// A quantity that the scene does not have.
@@ -60,7 +60,7 @@ impl Reading {
         Ok(gauge(&View { scene, phase, gauges: &gauges, time: sample.time, state }, sample))
     }
 
-    /// Whether [`linearized`](Self::linearized) knows its derivative.
+    /// Whether [`linearized`](Self::linearized) can compute its derivative.
     pub(crate) fn has_derivative(&self) -> bool {
         match self.what {
             What::Position(_) | What::Displacement(_) | What::CentreOfMass => true,
@@ -76,10 +76,11 @@ impl Reading {
         }
     }
 
-    /// This reading of `sample`, an equilibrium of `scene`, on a richer mesh. It means the same there: nodes are those that there
-    /// were; a centre of mass, a volume and the force on what is held are of the body, whatever its nodes.
+    /// This reading of `sample`, an equilibrium of `scene`, on a richer mesh. Its meaning is the same: nodes
+    /// are the original ones; a centre of mass, a volume and the force on what is held are those of the body,
+    /// whatever its nodes.
     ///
-    /// Where it has no derivative (a length of 0), that is no number.
+    /// Where it has no derivative (a length of 0), the derivative is NaN.
     ///
     /// # Errors
     /// As [`at`](Self::at).

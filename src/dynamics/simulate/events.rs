@@ -6,7 +6,7 @@ use crate::dynamics::state::State;
 use crate::dynamics::system::System;
 use crate::elements::force::Step;
 
-/// What a step has met.
+/// What happened in a step.
 pub(super) enum Met {
     Nothing,
     /// The first contact event, at this time (s).
@@ -18,8 +18,8 @@ pub(super) enum Met {
 /// The switches of the forces (see [`crate::elements::force::Force::switches`]) in a phase, as they are held
 /// from one event to the next, if events are located.
 ///
-/// Held, the force is smooth within a step: a node that leaves an obstacle is still pulled by it, as
-/// if glued, until the event is found and the step cut off there.
+/// While they are held, the force is smooth within a step: a node that leaves an obstacle is still pulled by
+/// it, as if glued, until the event is found and the step is cut off there.
 #[derive(Default)]
 pub(super) struct Events {
     on: Vec<bool>,
@@ -27,24 +27,24 @@ pub(super) struct Events {
     /// How far the body can move before a switch can change (see
     /// [`crate::elements::force::Force::passage`]).
     clearances: Vec<f64>,
-    /// Events found, and those in a row that did not move time ahead.
+    /// Events found, and those in a row that did not advance time.
     pub(super) count: usize,
     standing: usize,
-    /// Whether the body slides, force by force, as it was last known.
+    /// For each force whether the body slides, as it was last known.
     slides: Vec<Option<bool>>,
     /// When that changed.
     pub(super) slips: Vec<SlipEvent>,
 }
 
-/// Events in a row at one time, after which the switches are left to themselves.
+/// Events in a row at one time, after which the switches are no longer held.
 const STANDING: usize = 20;
 
-/// Part of a step to which an event is located.
+/// Precision to which an event is located, relative to the step.
 const PRECISION: f64 = 1e-12;
 
 impl Events {
-    /// From now on holds the switches of `system`, as they are at `t` and `state` = (u, v, ...), if
-    /// they are `located`.
+    /// From now on holds the switches of `system` as they are at `t` and `state` = (u, v, ...), if events are
+    /// `located`.
     pub(super) fn begin(&mut self, system: &System, t: f64, state: &[f64], located: bool) {
         refill(&mut self.clearances, system.switches(), 0.0);
         let count = if located { self.clearances.len() } else { 0 };
@@ -62,8 +62,8 @@ impl Events {
         slides.extend(system.slides().map(|now| now.map(known)));
     }
 
-    /// What the last step has met, from the state `before` at time `start` (s) to time `end` (s).
-    /// Depths within obstacles below `tolerance` (m) do not matter. `work` has room for a state.
+    /// What happened in the last step, from the state `before` at time `start` (s) to time `end` (s). Depths
+    /// within obstacles below `tolerance` (m) do not matter. `work` has room for a state.
     pub(super) fn met(
         &mut self,
         stepper: &mut dyn Stepper,
@@ -96,8 +96,8 @@ impl Events {
         }
     }
 
-    /// The first event between `start` (s), where no switch has changed, and `end` (s), where one at
-    /// least has: by bisection.
+    /// The first event between `start` (s), where no switch has changed, and `end` (s), where at least one
+    /// has, by bisection.
     fn locate(
         &mut self,
         stepper: &mut dyn Stepper,
@@ -120,7 +120,7 @@ impl Events {
         Ok(after)
     }
 
-    /// Goes on after an event at time `t` in `state`, a `step` (s) after the one before.
+    /// Continues after an event at time `t` in `state`, at the end of a step of size `step` (s).
     pub(super) fn pass(&mut self, system: &System, t: f64, state: &[f64], step: f64) {
         self.count += 1;
         self.standing = if step > 0.0 { 0 } else { self.standing + 1 };
@@ -128,15 +128,15 @@ impl Events {
         self.set(system, t, state);
         self.note_slips(system, t);
         if self.standing == STANDING {
-            // a node that trembles at the edge
+            // a node that chatters at the surface
             system.hold_switches(None);
             self.on.clear();
             self.values.clear();
         }
     }
 
-    /// Notes where all of the body has begun to slide, or to stick. What lifts off does neither, nor does what
-    /// is taken back at once.
+    /// Records where all of the body has begun to slide, or to stick. A body that lifts off does neither, and
+    /// a change that is reversed at once does not count.
     fn note_slips(&mut self, system: &System, time: f64) {
         let Self { slides, slips, .. } = self;
         for (known, now) in slides.iter_mut().zip(system.slides()) {

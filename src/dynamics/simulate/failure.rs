@@ -5,10 +5,10 @@ use crate::dynamics::report::Counts;
 use crate::dynamics::trajectory::Interrupted;
 use crate::integrators::common::{self, Cause};
 
-/// Steps in a row that may be too small to move time ahead in double precision.
+/// Number of steps in a row that may be too small to advance time in double precision.
 pub(super) const STANDING: usize = 100;
 
-/// Mean step, in units of round-off of the time, below which a run does not get on.
+/// Mean step, in units of round-off of the time, below which a run makes no progress.
 const CRAWLING: f64 = 16.0;
 
 pub(super) fn standing_still(refusal: &str) -> Failed {
@@ -17,7 +17,8 @@ pub(super) fn standing_still(refusal: &str) -> Failed {
         .into()
 }
 
-/// The error of `count` steps up to `time` (s) whose mean size is `step` (s), if that is nothing.
+/// The error of `count` steps up to `time` (s) whose mean size is `step` (s), if that is too small for any
+/// progress.
 pub(super) fn crawling(count: usize, step: f64, time: f64, refusal: &str) -> Option<Failed> {
     let reason = change_in_no_time(refusal);
     (step < CRAWLING * f64::EPSILON * time.abs()).then(|| {
@@ -42,8 +43,8 @@ pub(super) fn too_many_steps(steps: usize, counts: &Counts) -> Failed {
     format!("{steps} steps taken, as many as max_steps allows: {reason}").into()
 }
 
-/// The error of an integrator in words of mechanics, with the likely cause and what to try, which is the `doom` of the
-/// scene if it has one; other errors as they are.
+/// The error of an integrator in terms of mechanics, with the likely cause, which is the `doom` of the scene
+/// if it has one, and what to try. Other errors remain as they are, with the `doom` added.
 pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
     let Some(common::Error::Integration(error)) = source.downcast_ref() else {
         return match doom.filter(|_| !source.is::<Interrupted>()) {
@@ -52,7 +53,7 @@ pub(super) fn in_mechanics(source: Failed, doom: Option<&str>) -> Failed {
         };
     };
     let (what, help) = match &error.cause {
-        // the words of a force, or of a function of the scene
+        // the message of a force, or of a function of the scene
         Cause::Fatal(_) => match &error.source {
             Some(source) => return source.to_string().into(),
             None => return source,

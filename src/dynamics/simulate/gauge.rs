@@ -14,17 +14,17 @@ use crate::scene::constraint::{ConstraintRow, PhaseStart};
 use crate::scene::forces::Contact;
 use crate::scene::timeline::{Phase, Scene};
 
-/// What a quantity is at one time; components beyond the dimension are 0.
+/// The value of a quantity at one time; components beyond the dimension are 0.
 pub(super) enum Value {
     Number(f64),
     Vector([f64; 3]),
     Tensor([[f64; 3]; 3]),
 }
 
-/// Reads a quantity, or NaN where it has no meaning.
+/// Reads a quantity, or NaN where it is undefined.
 pub(super) type Gauge = Box<dyn Fn(&View, &Sample) -> Value + Send + Sync>;
 
-/// Reads an angle, without whole turns in the plane.
+/// Reads an angle; in the plane without whole turns.
 pub(super) type AngleGauge = Arc<dyn Fn(&View) -> f64 + Send + Sync>;
 
 impl Value {
@@ -48,7 +48,7 @@ impl Value {
 }
 
 impl Reading {
-    /// What reads it in `scene`.
+    /// The function that reads it in `scene`.
     ///
     /// # Errors
     /// Nodes, obstacles, springs or chambers that the scene does not have; a point outside the body; lines without
@@ -112,7 +112,7 @@ impl Reading {
         })
     }
 
-    /// What reads an angle in `scene`, in its unit.
+    /// The function that reads an angle in `scene`, in its unit.
     ///
     /// # Errors
     /// As [`gauge`](Self::gauge).
@@ -137,7 +137,7 @@ impl Reading {
     }
 }
 
-/// A number of the spring or chamber with a `name`.
+/// The gauge of a number of the spring or chamber `name`.
 fn number(name: &str, read: fn(&View, &str) -> Result<f64, InputError>) -> Gauge {
     let name = name.to_owned();
     Box::new(move |view, _| Value::Number(read(view, &name).unwrap_or(f64::NAN)))
@@ -190,7 +190,8 @@ fn field(
     }))
 }
 
-/// Force of an obstacle, on all nodes or some, whose contact is that of the scene unless commands have changed the phase.
+/// Force of an obstacle on all nodes or some. The contact is that of the scene unless commands have changed
+/// the phase.
 fn contact_force(
     scene: &Scene,
     obstacle: String,
@@ -295,7 +296,7 @@ fn constraint_sum(
         };
         rows.iter().enumerate().flat_map(of_row).collect()
     };
-    // where rows start from tells what they prescribe, not which components they tie
+    // where rows start from affects what they prescribe, not which components they couple
     let rest = vec![0.0; scene.body().dofs()];
     let mut time = 0.0;
     let mut of_phases = Vec::new();

@@ -15,13 +15,13 @@ pub(super) struct RollbackPoint {
     pub(super) samples: usize,
     /// Error, rise and scale of the energy balance (J).
     pub(super) energies: [f64; 3],
-    /// Where the angles of sensors were.
+    /// The angles of sensors then.
     pub(super) angles: Angles,
-    /// The least and the largest that each sensor had read.
+    /// The least and the largest reading of each sensor until then.
     pub(super) peaks: Vec<[f64; 2]>,
 }
 
-/// How a interval ended.
+/// How an interval ended.
 pub(super) enum Ending {
     /// At its end.
     Reached,
@@ -35,7 +35,7 @@ pub(super) enum Ending {
     Better(Plan),
 }
 
-/// What became of a step.
+/// The result of a step.
 pub(super) enum Outcome {
     /// Its size (s).
     Taken(f64),
@@ -45,14 +45,15 @@ pub(super) enum Outcome {
     Refused(f64),
 }
 
-/// A phase on its way.
+/// The interval of a phase that is being integrated.
 pub(super) struct Interval {
     /// Sampling times of the phase, and the number of those that have been taken.
     pub(super) times: Schedule,
     pub(super) taken: usize,
-    /// End of the interval (s): of the phase, or where a force breaks off.
+    /// End of the interval (s): of the phase, or where a force has a break.
     pub(super) stop: f64,
-    /// When a step that was not taken would have been within an obstacle (s): the interval pauses there.
+    /// Time (s) at which a step that was not taken would have been inside an obstacle: the interval pauses
+    /// there.
     pub(super) inside: Option<f64>,
     /// Steps that the phase may still take.
     pub(super) steps: usize,

@@ -1,4 +1,4 @@
-//! A phase at work: its intervals, the method that integrates them, and what that has cost so far.
+//! A phase that is being run: its intervals, the method that integrates them, and its cost so far.
 
 use std::time::Instant;
 
@@ -11,7 +11,7 @@ use crate::dynamics::report::{Counts, PhaseReport};
 use crate::dynamics::system::System;
 use crate::scene::settings::Method;
 
-/// A phase at work.
+/// A phase that is being run.
 pub(super) struct PhaseRun {
     clock: Instant,
     pub(super) plan: Plan,
@@ -25,13 +25,13 @@ pub(super) struct PhaseRun {
     /// First step of the next integrator (s), if it is known.
     pub(super) first_step: Option<f64>,
     pub(super) mean_steps: MeanSteps,
-    /// What the integrators have cost that are done.
+    /// Cost of the integrators that have ended.
     counts: Counts,
     /// Unknowns of the last one.
     states: usize,
 }
 
-/// The equations in force, and what integrates them. There is one: its size does not matter.
+/// The equations in force, and what integrates them. There is only one per run, so its size does not matter.
 #[derive(Default)]
 #[expect(clippy::large_enum_variant)]
 pub(super) enum Integration {
@@ -43,29 +43,30 @@ pub(super) enum Integration {
     Running(Running),
 }
 
-/// An integrator at work on a interval.
+/// An integrator at work on an interval.
 pub(super) struct Running {
     pub(super) stepper: Box<dyn Stepper>,
     /// Where it stops (s).
     pub(super) stop: f64,
     /// Room for a state of the integrator.
     pub(super) sample: Vec<f64>,
-    /// Steps, when the last trial began (s), and mean step sizes (s) of the last ones, the last one first.
+    /// Steps, the time (s) when the present trial began, and mean step sizes (s) of the last trials, the last
+    /// one first.
     pub(super) steps: usize,
     pub(super) trial_began: f64,
     pub(super) means: [f64; TRIALS],
 }
 
-/// How far the last steps of a plan have led, whatever intervals they lay in.
+/// The mean size of the last steps of a plan, whatever intervals they lie in.
 #[derive(Default)]
 pub(super) struct MeanSteps {
     steps: usize,
-    /// Where the first one began (s).
+    /// When the first one began (s).
     began: f64,
 }
 
 impl MeanSteps {
-    /// Adds a step; after each [`LONG`] of them gives their mean size (s).
+    /// Adds a step; after each [`LONG`] of them returns their mean size (s).
     pub(super) fn add(&mut self, [start, end]: [f64; 2]) -> Option<f64> {
         if self.steps == 0 {
             self.began = start;
@@ -100,20 +101,20 @@ impl PhaseRun {
         }
     }
 
-    /// Goes on with another plan.
+    /// Continues with another plan.
     pub(super) fn follow(&mut self, plan: Plan) {
         (self.plan, self.mean_steps) = (plan, MeanSteps::default());
         self.counts.notice = None;
     }
 
-    /// Ends an integrator, and gives its equations back.
+    /// Ends an integrator and returns its equations.
     pub(super) fn rest(&mut self, work: Running) -> System {
         self.counts.add(work.stepper.counts());
         self.states = work.stepper.state().len();
         work.stepper.into_system()
     }
 
-    /// What has become of the phase named `name` up to time `end` (s), with the integrator `at` work.
+    /// The report on the phase `name` up to time `end` (s), with the present integration `at`.
     pub(super) fn report(&self, name: &str, end: f64, at: &Integration) -> PhaseReport {
         let (mut counts, mut states) = (self.counts.clone(), self.states);
         if let Integration::Running(work) = at {
@@ -123,7 +124,7 @@ impl PhaseRun {
         counts.contact_events = self.interval.events.count;
         let Plan { settings, reason, .. } = &self.plan;
         if reason.is_some() && settings.method == Method::Rk {
-            // what it notices of stability, the choice of methods looks after
+            // the automatic choice of methods already takes care of what it notices about stability
             counts.notice = None;
         }
         PhaseReport {

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::dynamics::trajectory::Trajectory;
 
-/// How far a run has come: what the observer gets after each step, see
+/// How far a run has come, as reported to the observer after each step: see
 /// [`Scene::simulate_with`](crate::Scene::simulate_with).
 #[derive(Debug, Clone, Copy)]
 pub struct Progress<'a> {
@@ -20,7 +20,8 @@ pub struct Progress<'a> {
     pub step: f64,
     /// Order of the last step.
     pub order: u32,
-    /// The samples so far. A method that could not be trusted is gone back from, and its samples are forgotten.
+    /// The samples so far. Where a method could not be trusted, the run goes back and its samples are
+    /// discarded.
     pub trajectory: &'a Trajectory,
 }
 

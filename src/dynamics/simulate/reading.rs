@@ -39,12 +39,12 @@ pub(super) enum What {
     Rotation,
 }
 
-/// What a moment turns about.
+/// The point and axis of a moment.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Lever {
     /// A point (m).
     pub(super) about: Vec<f64>,
-    /// The direction through it along which the moment counts; all of them if there is none.
+    /// The direction along which the moment is read; the whole vector if there is none.
     pub(super) axis: Option<Vec<f64>>,
 }
 
@@ -72,13 +72,13 @@ pub enum Component {
     YY,
     /// Third diagonal entry: across the plane, of a body in two dimensions.
     ZZ,
-    /// Entry of the first and second axis; of strain the tensor's, half the change of the right angle.
+    /// Entry of the first and second axis; for strain that of the tensor, half the change of the right angle.
     XY,
     /// Entry of the second and third axis.
     YZ,
     /// Entry of the first and third axis.
     XZ,
-    /// The stress of von Mises.
+    /// The von Mises stress.
     VonMises,
 }
 
@@ -122,12 +122,12 @@ impl Reading {
         What::Position(nodes.into()).into()
     }
 
-    /// How far they are from their undeformed positions (m).
+    /// How far nodes are from their undeformed positions (m).
     pub fn displacement(nodes: impl Into<Selection>) -> Self {
         What::Displacement(nodes.into()).into()
     }
 
-    /// How fast they move (m/s).
+    /// How fast nodes move (m/s).
     pub fn velocity(nodes: impl Into<Selection>) -> Self {
         What::Velocity(nodes.into()).into()
     }
@@ -138,15 +138,18 @@ impl Reading {
         What::ConstraintForce(nodes.into()).into()
     }
 
-    /// Moment (N m) of the constraints on nodes together about the point `about` (m) of space, which does not move: the sum of
-    /// (x - about) x f over the nodes, x being where they are and f what holds or moves them. In the plane a number,
-    /// counter-clockwise; on a line there is none.
+    /// Moment (N m) of the constraints on nodes together about the point `about` (m), fixed in space.
+    ///
+    /// It is the sum of (x - about) x f over the nodes, with x their present positions and f the constraint
+    /// forces. In the plane it is a number, counter-clockwise; on a line there is none.
     pub fn constraint_moment(nodes: impl Into<Selection>, about: impl Into<Vec<f64>>) -> Self {
         What::ConstraintMoment(nodes.into(), Lever { about: about.into(), axis: None }).into()
     }
 
-    /// Its part along an `axis` through that point, of any length above 0, of a body in space: a number, the torque that
-    /// [`Phase::rotate`](crate::Phase::rotate) takes about its axis.
+    /// The component of the constraint moment along an `axis` through `about`, of a body in space.
+    ///
+    /// It is a number: the torque that [`Phase::rotate`](crate::Phase::rotate) requires about its axis. The
+    /// axis may have any length above 0.
     pub fn constraint_torque(
         nodes: impl Into<Selection>,
         about: impl Into<Vec<f64>>,
@@ -161,8 +164,8 @@ impl Reading {
         What::ContactForce(obstacle.into(), None).into()
     }
 
-    /// Force of an obstacle on some nodes together (N), as of one finger of a grip whose forces on the body cancel each
-    /// other: see [`View::contact_force_on`](crate::View::contact_force_on).
+    /// Force of an obstacle on some nodes together (N), such as of one finger of a gripper whose forces on
+    /// the body cancel each other: see [`View::contact_force_on`](crate::View::contact_force_on).
     pub fn contact_force_on(obstacle: impl Into<String>, nodes: impl Into<Selection>) -> Self {
         What::ContactForce(obstacle.into(), Some(nodes.into())).into()
     }
@@ -192,8 +195,8 @@ impl Reading {
         What::Stress(Place::Nodes(nodes.into())).into()
     }
 
-    /// Stress (Pa) at the point of the body whose undeformed position is `x` (m): that at the nodes around it, by their
-    /// shape functions.
+    /// Stress (Pa) at the point of the body whose undeformed position is `x` (m): interpolated from the nodes
+    /// around it by their shape functions.
     pub fn stress_at(x: impl Into<Vec<f64>>) -> Self {
         What::Stress(Place::Point(x.into())).into()
     }
@@ -216,11 +219,12 @@ impl Reading {
     /// Angle (rad) from one line to another, each from its first node (or middle of a set) to its second: in the plane
     /// counter-clockwise, in space without sign, between 0 and pi.
     ///
-    /// In the plane it begins between -pi and pi, and goes on over whole turns from there: the run follows it from step to
-    /// step of the integrator, whenever samples are taken, and checkpoints and forks take it along. What turns by half a
-    /// turn or more within one step, or one load step of statics, is not told from what turns the other way.
-    /// [`Simulation::record`](crate::Simulation::record) in the middle of a run begins anew between -pi and pi, but for
-    /// sensors of the name and kind that were read until then.
+    /// In the plane it begins between -pi and pi and is continuous over whole turns from there: the run
+    /// follows it from step to step of the integrator, whenever samples are taken, and checkpoints and forks
+    /// keep it. A rotation by half a turn or more within one step, or one load step of statics, cannot be
+    /// distinguished from one in the other direction. [`Simulation::record`](crate::Simulation::record) in
+    /// the middle of a run starts again between -pi and pi, except for sensors of the name and kind that were
+    /// read until then.
     pub fn angle<S: Into<Selection>>(from: [S; 2], to: [S; 2]) -> Self {
         What::Angle([from, to].map(|line| line.map(Into::into))).into()
     }
@@ -230,9 +234,10 @@ impl Reading {
         What::CentreOfMass.into()
     }
 
-    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole: that of
-    /// [`Trajectory::rotation`](crate::Trajectory::rotation), but that it goes on over whole turns as [`angle`](Self::angle)
-    /// does.
+    /// Angle (rad, counter-clockwise) by which a body in the plane has turned as a whole.
+    ///
+    /// It is that of [`Trajectory::rotation`](crate::Trajectory::rotation), but continuous over whole turns
+    /// like [`angle`](Self::angle).
     pub fn rotation() -> Self {
         What::Rotation.into()
     }
@@ -265,12 +270,12 @@ impl Reading {
         }
     }
 
-    /// What a full turn is in the unit of an angle.
+    /// A full turn in the unit of an angle.
     pub(super) fn full_turn(&self) -> f64 {
         if self.in_degrees { 360.0 } else { TAU }
     }
 
-    /// Whether it can go on over whole turns, of a body in `dimension` dimensions.
+    /// Whether it is continuous over whole turns, for a body in `dimension` dimensions.
     pub(super) fn turns(&self, dimension: usize) -> bool {
         dimension == 2 && self.is_angle()
     }
@@ -279,17 +284,17 @@ impl Reading {
         matches!(self.what, What::Angle(_) | What::Rotation)
     }
 
-    /// The components that are read of a body in `dimension` dimensions; none of a number.
+    /// The components that are read for a body in `dimension` dimensions; none for a number.
     ///
     /// # Errors
-    /// A component that the quantity does not have; degrees of what is no angle.
+    /// A component that the quantity does not have; degrees for a quantity that is not an angle.
     pub(super) fn components(&self, dimension: usize) -> Result<Vec<Component>, InputError> {
         use Component::*;
         if self.in_degrees && !self.is_angle() {
             let help = format!("angles and rotations alone have it, this is in {}", self.unit());
             return Err(InputError::new("unit", format!("\"{DEGREES}\""), help));
         }
-        // those of all columns, and one more that has to be asked for
+        // the components that are columns by default, and one more that must be requested
         let (all, more): (&[Component], _) = match (&self.what, dimension) {
             (What::Stress(_), 1) => (&[XX], Some(VonMises)),
             (What::Stress(_), 2) => (&[XX, YY, ZZ, XY], Some(VonMises)),

@@ -65,14 +65,14 @@ pub(super) fn energy(system: &System, time: f64, state: &[f64]) -> Energy {
     Energy { dissipated, supplied, ..energy }
 }
 
-/// The internal strains among what a state ends in, which may be multipliers.
+/// The internal strains, if the last part of a state, `others`, consists of them and not of multipliers.
 fn internal<'a>(system: &System, others: &'a [f64]) -> &'a [f64] {
     if system.relaxation_rate() > 0.0 { others } else { &[] }
 }
 
-/// Projects the velocities of `state` on those that the constraints allow, if the phase asks for that or
-/// the method has an equation for velocities, which allows no others. What that takes from the kinetic
-/// energy, or gives to it, is supplied by the constraints.
+/// Projects the velocities of `state` onto those that the constraints allow, if the phase requires that or
+/// the method has an equation for velocities, which allows no others. The change of the kinetic energy counts
+/// as supplied by the constraints.
 pub(super) fn project(
     settings: &Settings,
     phase: &Phase,
@@ -86,7 +86,7 @@ pub(super) fn project(
 }
 
 /// As [`project`] at t = 0, also if velocities were given that the constraints do not allow. (A body at rest
-/// that is suddenly moved is brought to it by the stabilization.)
+/// that is suddenly moved is brought to that velocity by the stabilization.)
 pub(super) fn begin_to_move(
     settings: &Settings,
     phase: &Phase,

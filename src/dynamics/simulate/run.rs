@@ -1,4 +1,4 @@
-//! A scene on its way: phases one after the other, and their intervals.
+//! The run of a scene: phases one after the other, and their intervals.
 
 use std::mem::take;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ use crate::scene::constraint::{PhaseStart, prescribe};
 use crate::scene::settings::{Method, Scales, Settings};
 use crate::scene::timeline::{Phase, Scene};
 
-/// A scene on its way.
+/// The run of a scene.
 pub(super) struct Run {
     pub(super) scene: Arc<Scene>,
     pub(super) settings: Settings,
@@ -37,10 +37,10 @@ pub(super) struct Run {
     pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
     pub(super) sensors: Sensors,
-    /// Where the angles among them are at the present time.
+    /// The angles among them at the present time.
     pub(super) angles: Angles,
     scales: Scales,
-    /// Absolute tolerance of displacements as it was asked for (m).
+    /// Absolute tolerance of displacements as requested (m).
     pub(super) atol_position: f64,
     /// Started with the run.
     clock: Instant,
@@ -61,10 +61,11 @@ pub(super) struct Run {
     /// Steps in a row that did not move time ahead.
     pub(super) standing: usize,
     pub(super) trajectory: Trajectory,
-    /// Where the energy balance last was in order.
+    /// The last state whose energy balance was in order.
     pub(super) rollback_point: RollbackPoint,
-    /// Energy balance (J) that methods are judged by: that of the start or, once a phase has ended with one
-    /// that was not in order, of the next one, which is not to blame for that.
+    /// Reference value (J) of the energy balance by which methods are judged: that at the start or, once a
+    /// phase has ended with one that was not in order, that at the start of the next phase, which did not
+    /// cause the error.
     pub(super) balance: f64,
     /// Energies below this (J) are too small to be watched.
     pub(super) least_energy: f64,
@@ -139,7 +140,7 @@ impl Run {
             rollback_point: RollbackPoint::default(),
             balance,
             trajectory,
-            // that of strains of a thousandth
+            // the energy of strains of a thousandth
             least_energy: 1e-6 * scene.body().material().young * scene.body().volume(),
             pause: None,
             scene: Arc::new(scene.clone()),
@@ -174,7 +175,7 @@ impl Run {
         }
     }
 
-    /// Begins the next interval, if need be that of the next phase; `false` at the end of the scene.
+    /// Begins the next interval, if necessary that of the next phase; `false` at the end of the scene.
     pub(super) fn go_on(&mut self, mut system: System) -> Result<bool, Error> {
         loop {
             match self.phase_run.ended.take() {
@@ -189,7 +190,7 @@ impl Run {
                     None => system = self.next_phase(system)?,
                 },
                 Some(Ending::Event) => self.phase_run.interval.inside = None,
-                // a step that ends within the obstacle feels it
+                // a step that ends inside the obstacle has its force
                 Some(Ending::Passage(t)) => self.phase_run.interval.inside = Some(t),
                 Some(Ending::Better(other)) => {
                     self.phase_run.follow(other);
@@ -206,7 +207,7 @@ impl Run {
             if self.time < self.phase_run.interval.end() {
                 break;
             }
-            // an event, or a look at the method, just where the interval ends
+            // an event, or a review of the method, exactly at the end of the interval
             self.phase_run.ended = Some(Ending::Reached);
         }
         system.forget_counts();
@@ -257,15 +258,15 @@ impl Run {
         let mut u = self.state[..n].to_vec();
         prescribe(system.rows(), self.time, &mut u);
         let next = self.equations(phase, &u)?;
-        // an obstacle that begins or ceases to act with nodes inside it changes what is stored: that comes
-        // from outside
+        // an obstacle that begins or ceases to act with nodes inside it changes the stored energy: the
+        // difference is supplied from outside
         let [before, after] =
             [system, &next].map(|system| energy(system, self.time, &self.state).balance());
         self.supply(after - before);
         Ok(next)
     }
 
-    /// The equations of a phase that begins with the displacements that `u` begins with.
+    /// The equations of a phase that begins with the displacements at the beginning of `u`.
     pub(super) fn equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
         let start = PhaseStart { time: self.time, u };
         let forces = self.scene.forces_in(phase)?;
@@ -337,7 +338,7 @@ impl Run {
     }
 
     /// The error of an integrator that has given up, with the state that the last step led to, unless the
-    /// equations have no meaning there.
+    /// equations are undefined there.
     fn give_up(&mut self, source: Failed) -> Error {
         let Integration::Running(work) = take(&mut self.integration) else {
             return self.failure(source, 0.0);
@@ -355,14 +356,14 @@ impl Run {
         self.failure(source, step)
     }
 
-    /// Adds to a sample what is not of the equations.
+    /// Adds to a sample what does not follow from the equations.
     pub(super) fn complete(&self, sample: &mut Sample) {
         let own = (&*self.scene, &*self.gauges);
         let sensors = (&self.sensors, &self.angles);
         records::complete(sample, sensors, own, &self.phase, self.is_commanded);
     }
 
-    /// Brings the angles of sensors to the present state.
+    /// Updates the angles of sensors to the present state.
     pub(super) fn follow_angles(&mut self) {
         if !self.sensors.have_angles() {
             return;

@@ -20,7 +20,7 @@ pub struct Sampling {
     /// More times (s), ascending.
     also: Vec<f64>,
     sensors: Vec<Sensor>,
-    /// Whether sensors are read within each step, too, for the largest and the least that they come to.
+    /// Whether sensors are also read within each step, to find their largest and least values.
     finds_peaks: bool,
 }
 
@@ -72,7 +72,7 @@ impl Sampling {
         self
     }
 
-    /// Finds the largest and the least that the sensors read, between samples, too: [`Trajectory::peaks`].
+    /// Finds the largest and the least values of the sensors, also between samples: [`Trajectory::peaks`].
     #[cfg(feature = "study")]
     pub(crate) fn finding_peaks(mut self) -> Self {
         self.finds_peaks = true;
@@ -83,14 +83,14 @@ impl Sampling {
         self.finds_peaks
     }
 
-    /// Whether a sample within a phase is there for [`also_at`](Self::also_at) alone.
+    /// Whether a sample within a phase is taken because of [`also_at`](Self::also_at) alone.
     #[cfg(feature = "study")]
     pub(crate) fn is_extra(&self, time: f64) -> bool {
         !self.times.have(time) && self.also.contains(&time)
     }
 
-    /// Adds a sensor: a number that `reading` reads with each sample, beside what samples hold by themselves
-    /// ([`Sample::sensors`], [`Trajectory::sensors`](crate::Trajectory::sensors); a column of tables).
+    /// Adds a sensor: a number that `reading` returns for each sample, in addition to what samples always
+    /// hold ([`Sample::sensors`], [`Trajectory::sensors`](crate::Trajectory::sensors); a column of tables).
     ///
     /// ```
     /// use pliant::{Sampling, Settings, samples};
@@ -196,7 +196,7 @@ impl Sampling {
 
     /// The sampling times after `start` up to `end`, ending with `end`.
     pub(super) fn within(&self, start: f64, end: f64) -> Schedule {
-        // times that round-off alone keeps apart from the ends of the phase are those ends
+        // times that differ from the ends of the phase by round-off only count as those ends
         let apart = 1e-9 * (end - start);
         let (after, before) = (start + apart, end - apart);
         let (inner, count) = match &self.times {
@@ -248,7 +248,7 @@ pub(super) struct Schedule {
 }
 
 enum Inner {
-    /// Multiples of `step`, from `first` times it on.
+    /// Multiples of `step`, from `first * step` on.
     Multiples {
         step: f64,
         first: f64,

@@ -1,4 +1,4 @@
-//! Sensors: numbers with names that are read from the motion with each sample.
+//! Sensors: named numbers that are read from the motion at each sample.
 
 use std::fmt;
 use std::sync::Arc;
@@ -11,20 +11,20 @@ use crate::base::input::InputError;
 use crate::dynamics::trajectory::{Quantity, Sample};
 use crate::scene::timeline::Scene;
 
-/// A sensor as it was asked for.
+/// A sensor as requested.
 #[derive(Clone)]
 pub(super) struct Sensor {
     pub(super) name: String,
     pub(super) source: SensorKind,
 }
 
-/// Reads a number of the user's own.
+/// Reads a user-defined number.
 pub(super) type Own = dyn Fn(&View, &Sample) -> f64 + Send + Sync;
 
 /// What a sensor reads.
 #[derive(Clone)]
 pub(super) enum SensorKind {
-    /// A number of the user's own: its unit, and what reads it.
+    /// A user-defined number: its unit, and the function that reads it.
     Own(String, Arc<Own>),
     /// A quantity that scenes have.
     Named(Reading),
@@ -41,13 +41,13 @@ pub(super) struct Sensors {
     angles: Vec<Angle>,
 }
 
-/// An angle that goes on over whole turns.
+/// An angle that is continuous over whole turns.
 #[derive(Clone)]
 struct Angle {
     /// Number of its column.
     column: usize,
     gauge: AngleGauge,
-    /// What a full turn is in its unit.
+    /// A full turn in its unit.
     full_turn: f64,
 }
 
@@ -107,7 +107,7 @@ impl Sensors {
         self.reads.is_empty()
     }
 
-    /// What they read, with angles near where they were last, at `angles`.
+    /// Their readings, with angles continued from the last ones, `angles`.
     pub(super) fn read(&self, view: &View, sample: &Sample, angles: &Angles) -> Vec<f64> {
         let mut numbers = Vec::with_capacity(self.quantities.len());
         self.reads.iter().for_each(|read| read(view, sample, &mut numbers));
@@ -118,7 +118,7 @@ impl Sensors {
         numbers
     }
 
-    /// Notes where the angles among them are now.
+    /// Notes the present values of the angles among them.
     pub(super) fn follow(&self, view: &View, angles: &mut Angles) {
         for Angle { column, gauge, full_turn } in &self.angles {
             let (name, turns) = (&self.quantities[*column].name, gauge(view) / full_turn);

@@ -1,4 +1,4 @@
-//! A simulation that other programs hold in their hands.
+//! A simulation that other programs control.
 
 use std::fmt;
 use std::mem::take;
@@ -21,8 +21,10 @@ use crate::dynamics::trajectory::{Sample, Trajectory};
 use crate::scene::settings::Settings;
 use crate::scene::timeline::Scene;
 
-/// A scene in motion, which a program drives: it lets time go on, looks, gives commands (pressures, forces,
-/// what is held), and goes back to states that it kept.
+/// A scene in motion that is driven by a program.
+///
+/// The program advances time, reads the motion, gives commands (pressures, forces, what is held), and returns
+/// to states that it kept.
 ///
 /// ```
 /// use pliant::{Settings, samples};
@@ -37,25 +39,25 @@ use crate::scene::timeline::Scene;
 /// # Ok::<(), pliant::Error>(())
 /// ```
 ///
-/// Between commands it moves as [`Scene::simulate`] lets it: by the phases of the scene, with steps as
-/// long as the tolerances allow. [`advance_to`](Self::advance_to) reads the motion between the ends of
-/// steps, so that looking changes nothing. A command takes effect exactly at the present time; from then on
-/// the next look after each command ends a step there.
+/// Between commands it moves as in [`Scene::simulate`]: by the phases of the scene, with steps as long as the
+/// tolerances allow. [`advance_to`](Self::advance_to) interpolates the motion between the ends of steps, so
+/// that reading it changes nothing. A command takes effect exactly at the present time; the first advance
+/// after a command also ends a step at the requested time.
 ///
-/// After an error that is no [`Error::Integration`] the simulation is as it was before the call; after one of
-/// those it rests where the integrator gave up, and after one of an event, where that was looked at. A panic of a function that
-/// was given to the scene or the simulation becomes such an error, too.
+/// After an error other than [`Error::Integration`] the simulation is as it was before the call; after one of
+/// those it remains where the integrator gave up, and after an error of an event, where the event was
+/// evaluated. A panic of a function that was given to the scene or the simulation becomes such an error, too.
 ///
-/// [`Method::Auto`](crate::Method::Auto) goes back where a method has created energy, and on by another one. Time as it is seen
-/// here never runs backwards, and what came before the last command stays; but the motion since, though it was seen, may
-/// have been another one than what goes on.
+/// [`Method::Auto`](crate::Method::Auto) goes back where a method has created energy, and continues with
+/// another one. The time seen here never runs backwards, and the motion before the last command is kept; but
+/// the motion seen since then may differ from the one that is continued.
 pub struct Simulation {
     pub(super) run: Run,
     /// The present: at the end of the last step or within it.
     pub(super) time: f64,
     /// (u, v, energies)
     pub(super) now: Vec<f64>,
-    /// Whether there was a command since time went on.
+    /// Whether there was a command since time last advanced.
     pub(super) commanded: bool,
     pub(super) watches: Vec<WatchedEvent<Self>>,
 }
@@ -81,7 +83,7 @@ impl Scene {
     }
 }
 
-/// Short: where it is.
+/// Short: its time, phase and steps.
 impl fmt::Debug for Simulation {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Simulation")
@@ -113,7 +115,7 @@ impl Simulation {
     /// A sample of the present: displacements, velocities, constraint forces, energies.
     ///
     /// # Errors
-    /// [`Error::Integration`] if the forces have no meaning.
+    /// [`Error::Integration`] if the forces are undefined.
     pub fn sample(&mut self) -> Result<Sample, Error> {
         self.run.sample(self.time, &self.now)
     }
@@ -159,7 +161,7 @@ impl Simulation {
         self.run.into_trajectory()
     }
 
-    /// Lets one step of the integrator pass. `false` at the end of the scene, where nothing is left.
+    /// Takes one step of the integrator. `false` at the end of the scene, where nothing is left.
     ///
     /// # Errors
     /// [`Error::Integration`] if the integrator gives up.
@@ -174,8 +176,10 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Lets the rest of the scene pass. After each step `observer` looks on, and stops it by
-    /// [`ControlFlow::Break`]. Gives the samples that were asked for by [`record`](Self::record), with the report.
+    /// Runs the rest of the scene.
+    ///
+    /// `observer` is called after each step and stops the run by [`ControlFlow::Break`]. Returns the samples
+    /// requested by [`record`](Self::record), with the report.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -205,7 +209,7 @@ impl Simulation {
     ) -> Result<Trajectory, Error> {
         let end = self.run.scene.end();
         while self.step()? {
-            // the last step leaves nothing to be stopped
+            // after the last step there is nothing left to stop
             if observer(&self).is_break() && self.time < end {
                 return Err(self.run.interrupted());
             }
@@ -223,7 +227,7 @@ impl Simulation {
         self.run.last_step()
     }
 
-    /// Lets time go on to `t` (s). Returns whether it came so far: an action of [`when`](Self::when) may have
+    /// Advances time to `t` (s). Returns whether `t` was reached: an action of [`when`](Self::when) may have
     /// stopped it before.
     ///
     /// # Errors
@@ -244,7 +248,7 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Lets a time `dt` (s) pass. Returns whether it has passed.
+    /// Advances time by `dt` (s). Returns whether all of it has passed.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
@@ -252,11 +256,13 @@ impl Simulation {
         self.advance_to(self.time + dt)
     }
 
-    /// Lets time go on to `t` (s), but at most until the sign of `event` changes. Returns whether it did: then
-    /// the present is that time, to the round-off of the step that it lies in.
+    /// Advances time to `t` (s), but at most until the sign of `event` changes.
     ///
-    /// Signs are compared eight times in each step, evenly spread: two changes in between are none. An event that is
-    /// 0 at the start is one when its sign changes later.
+    /// Returns whether the sign changed: then the present is that time, to the round-off of the step that it
+    /// lies in.
+    ///
+    /// Signs are compared eight times in each step, evenly spread: two changes in between are not noticed. An
+    /// event that is 0 at the start counts when its sign changes later.
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to).
@@ -270,8 +276,10 @@ impl Simulation {
         Ok(self.advance_watched(t, Some(&mut event), commanded)? == Arrival::Event)
     }
 
-    /// Calls `controller` now and after each `period` (s), until time `t` (s): it looks and gives commands. Returns
-    /// whether it came so far, as [`advance_to`](Self::advance_to).
+    /// Calls `controller` now and after each `period` (s), until time `t` (s).
+    ///
+    /// The controller reads the motion and gives commands. Returns whether `t` was reached, as
+    /// [`advance_to`](Self::advance_to).
     ///
     /// # Errors
     /// A period that is not above 0; what the controller returns; otherwise as
@@ -295,8 +303,9 @@ impl Simulation {
         Ok(true)
     }
 
-    /// Changes displacements (m) and velocities (m/s), as by an impact; what that adds to the energies
-    /// counts as supplied from outside.
+    /// Changes displacements (m) and velocities (m/s), as by an impact.
+    ///
+    /// The change of the energies counts as supplied from outside.
     ///
     /// # Errors
     /// Numbers that are not finite: the state stays as it was. A scene that has ended.
@@ -317,15 +326,15 @@ impl Simulation {
         Ok(())
     }
 
-    /// Keeps the present state, to come [back](Self::restore) to it.
+    /// Keeps the present state, to [return](Self::restore) to it.
     pub fn checkpoint(&self) -> Checkpoint {
         self.run.checkpoint(self.time, &self.now)
     }
 
-    /// Comes back to a state that was kept, with the commands in force then. Samples taken after it are
-    /// forgotten.
+    /// Returns to a state that was kept, with the commands in force then. Samples taken after it are
+    /// discarded.
     ///
-    /// The motion goes on from there as it did, to within the tolerances.
+    /// The motion continues from there as before, to within the tolerances.
     ///
     /// # Errors
     /// A checkpoint of another simulation, unless one of them is a [`fork`](Self::fork) of the other.
@@ -337,11 +346,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// A simulation of its own that begins with the present state and the commands in force: to try what would
-    /// happen, on another thread if need be. Body, matrices and their orderings are shared.
+    /// An independent simulation that begins with the present state and the commands in force.
+    ///
+    /// It serves to try what would happen, on another thread if needed. Body, matrices and their orderings
+    /// are shared.
     ///
     /// # Errors
-    /// None that the start would not have given.
+    /// Only those that the start would also have returned.
     pub fn fork(&self) -> Result<Self, Error> {
         let run = self.run.fork(self.time, &self.now)?;
         let (time, now, commanded) = (self.time, self.now.clone(), self.commanded);

@@ -1,4 +1,4 @@
-//! The integrator of a phase: made by the settings, and used behind one face, whatever form of the
+//! The integrator of a phase: created from the settings and used through one interface, whatever form of the
 //! equations it takes.
 
 use crate::dynamics::report::Counts;
@@ -25,7 +25,7 @@ pub(super) trait Stepper: Send {
     /// Lets the steps end at time `t` (s), exactly.
     fn stop_at(&mut self, t: f64) -> Result<(), Failed>;
 
-    /// Goes on from `state` at time `t` (s) after a change of the forces; `false` if that needs a new
+    /// Continues from `state` at time `t` (s) after a change of the forces; `false` if that needs a new
     /// integrator.
     fn resume(&mut self, t: f64, state: &[f64]) -> Result<bool, Failed>;
 
@@ -35,7 +35,7 @@ pub(super) trait Stepper: Send {
     /// Order of the last step.
     fn last_order(&self) -> u32;
 
-    /// Size of the next step (s), as far as it is known.
+    /// Size of the next step (s), if it is known.
     fn next_step(&self) -> f64;
 
     /// The state at the end of the last step: (u, v, energies, ...).
@@ -45,7 +45,7 @@ pub(super) trait Stepper: Send {
 
     fn system_mut(&mut self) -> &mut System;
 
-    /// The equations, back from the integrator.
+    /// Ends the integrator and returns the equations.
     fn into_system(self: Box<Self>) -> System;
 
     /// What the integration has cost so far, and what it noticed.
@@ -125,8 +125,8 @@ fn compression(indefinite: usize) -> Option<String> {
     })
 }
 
-/// Starts the integrator that the settings name at `t` with `state` = (u, v, energies), if known with a step of the
-/// size `first` (s); it will stop at `end`.
+/// Starts the integrator that the settings name at `t` with `state` = (u, v, energies) and, if it is known,
+/// the first step size `first` (s); it will stop at `end`.
 pub(super) fn start(
     mut system: System,
     settings: &Settings,
@@ -143,7 +143,7 @@ pub(super) fn start(
     tolerances.resize(system.unknowns(), atol.strain);
     system.expect_iteration(iterates(settings.method, &system));
     match settings.method {
-        // a plan names a method of its own
+        // a plan never has `Auto`
         Method::Auto | Method::CvodeBdf | Method::CvodeAdams => {
             let options = cvode_options(settings, tolerances).max_step(longest);
             until(end, Cvode::new(system, t, state, &options)?)
@@ -188,7 +188,7 @@ pub(super) fn start(
     }
 }
 
-/// Whether a method solves its Newton systems more than once, until their residuals are small enough.
+/// Whether a method iterates with its Newton systems until residuals are small enough.
 fn iterates(method: Method, system: &System) -> bool {
     match method {
         Method::Arkode => !system.is_linear(),
@@ -221,8 +221,8 @@ fn cvode_options(settings: &Settings, tolerances: Vec<f64>) -> CvodeOptions {
     }
 }
 
-/// Steps after which ARKODE has a new Newton matrix, with new tangents, in any case: few enough that
-/// iterations converge in one or two, which is the fastest on all of Hirai's scenes.
+/// Steps after which ARKODE gets a new Newton matrix with new tangents in any case: few enough that Newton's
+/// method converges in one or two iterations, which is fastest on all of Hirai's scenes.
 const STEPS_BETWEEN_SETUPS: u32 = 2;
 
 fn arkode_options(

@@ -1,4 +1,4 @@
-//! The steps of a interval: how far they go, what casts doubt on them, and the samples within them.
+//! The steps of an interval: how far they go, what makes them doubtful, and the samples within them.
 
 use super::auto::{LONG, TRIAL};
 use super::events::Met;
@@ -14,19 +14,19 @@ use crate::dynamics::system::System;
 use crate::dynamics::trajectory::Interrupted;
 use crate::integrators::ode::Failure;
 
-/// Steps between looks at the energy balance, each of which costs about one evaluation of the forces.
+/// Steps between checks of the energy balance, each of which costs about one evaluation of the forces.
 const WATCH: usize = 32;
 
 /// Times within a step at which peaks of sensors are sought: a period that takes ten steps has 40, which miss its peak by 0.3 % at most.
 const PARTS: usize = 4;
 
-/// Part of the largest energy that methods may have created in a state that others go on from.
+/// Part of the largest energy that methods may have created in a state from which others continue.
 const CLEAN: f64 = 0.001;
 
 impl Run {
-    /// Takes one step of a interval; gives how the interval ended, if it did.
+    /// Takes one step of an interval; returns how the interval ended, if it did.
     ///
-    /// The energy balance is looked at now and then, and may cast doubt on a method that can be exchanged.
+    /// The energy balance is checked now and then, and may make a method doubtful that can be replaced.
     pub(super) fn try_step(
         &mut self,
         work: &mut Running,
@@ -55,7 +55,7 @@ impl Run {
                 let trouble = creation(created, scale);
                 match trouble.and_then(|trouble| self.phase_run.plan.instead(&trouble)) {
                     Some(instead) => return Ok(Some(Ending::Doubtful { instead })),
-                    // what another method would begin with
+                    // the state that another method would begin with
                     None if created < CLEAN * scale => self.remember(),
                     None => {}
                 }
@@ -115,7 +115,7 @@ impl Run {
         self.trajectory.go_back(samples, energies);
     }
 
-    /// Takes one step, up to the first contact event within it, and the samples there are.
+    /// Takes one step, up to the first contact event within it, and the samples within it.
     fn step(&mut self, work: &mut Running) -> Result<Outcome, Failed> {
         let (n, length) = (self.scene.body().dofs(), self.state.len());
         let Running { stepper, stop, sample, .. } = work;
@@ -163,7 +163,7 @@ impl Run {
         Ok(if event.is_some() { Outcome::CutOff(step) } else { Outcome::Taken(step) })
     }
 
-    /// Reads the sensors at a few times within a step up to `time`, for the largest and the least that they come to.
+    /// Reads the sensors at a few times within a step up to `time`, to find their largest and least values.
     fn find_peaks(
         &mut self,
         stepper: &mut dyn Stepper,
@@ -184,18 +184,18 @@ impl Run {
         Ok(())
     }
 
-    /// Shows the observer how far the run has come.
+    /// Reports to the observer how far the run has come.
     fn report_progress(&self, step: f64, order: u32, observer: Observer) -> Result<(), Failed> {
         let Self { time, steps, number, .. } = *self;
         let name = &self.phase.name;
         let (phase, trajectory) = (number, &self.trajectory);
         let answer = observer(&Progress { time, phase, name, steps, step, order, trajectory });
-        // the last step leaves nothing to be stopped
+        // after the last step there is nothing left to stop
         if answer.is_break() && time < self.scene.end() { Err(Interrupted.into()) } else { Ok(()) }
     }
 }
 
-/// Where a step has led, by its event or else by itself.
+/// The state that a step has led to: at its event, or else at its end.
 fn arrival<'s>(
     stepper: &'s mut dyn Stepper,
     event: Option<f64>,

@@ -1,4 +1,4 @@
-//! What is seen of a simulation at one time.
+//! What can be read from a simulation at one time.
 
 use std::fmt;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ pub struct View<'a> {
     pub(super) state: State<'a>,
 }
 
-/// What measures chambers and springs, in the order of the scene.
+/// The forces by which chambers and springs are measured, in the order of the scene.
 pub(super) struct Gauges {
     chambers: Vec<Arc<ChamberForce>>,
     springs: Vec<SpringForce>,
@@ -48,7 +48,7 @@ impl Gauges {
     }
 }
 
-/// Short: where it is.
+/// Short: its time and phase.
 impl fmt::Debug for View<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("View")
@@ -79,7 +79,7 @@ impl<'a> View<'a> {
         self.state.v
     }
 
-    /// Where the nodes of `selection` are (m), in the mean over them: one component per dimension.
+    /// Mean position (m) of the nodes of `selection`, one component per dimension.
     ///
     /// # Errors
     /// An unknown set, a number out of range, a selection without nodes.
@@ -90,7 +90,7 @@ impl<'a> View<'a> {
         Ok(natural.iter().zip(moved).map(|(x, u)| x + u).collect())
     }
 
-    /// How fast they move (m/s), in the mean over them.
+    /// Mean velocity (m/s) of the nodes of `selection`.
     ///
     /// # Errors
     /// As [`position`](Self::position).
@@ -141,8 +141,9 @@ impl<'a> View<'a> {
         Ok(of_spring.sum())
     }
 
-    /// Force (N) on each of the nodes of `selection`, in the mean over them, one component per dimension, by the
-    /// loads given for this very selection; 0 without one.
+    /// Force (N) on each of the nodes of `selection`, as the mean over them, one component per dimension.
+    ///
+    /// Only loads given for exactly this selection count; 0 without one.
     ///
     /// # Errors
     /// Nodes that do not exist.
@@ -159,8 +160,8 @@ impl<'a> View<'a> {
         self.scene.load_on(self.phase, selection, kind, self.time)
     }
 
-    /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping, less that of its
-    /// actuator.
+    /// Force (N) with which a spring pulls its ends together: that of its stiffness and damping minus that of
+    /// its actuator.
     ///
     /// # Errors
     /// A name that no spring has.
@@ -173,15 +174,16 @@ impl<'a> View<'a> {
     /// Force (N) of an obstacle on the body, one component per dimension; 0 where it does not act.
     ///
     /// # Errors
-    /// A name that no obstacle has; a distance function of your own that has no meaning.
+    /// A name that no obstacle has; a distance function of your own that is undefined there.
     pub fn contact_force(&self, obstacle: &str) -> Result<Vec<f64>, InputError> {
         let (forces, d) = (self.contact_forces(obstacle)?, self.body().dimension());
         let along = |axis| forces.iter().skip(axis).step_by(d).sum();
         Ok((0..d).map(along).collect())
     }
 
-    /// The part of it on the nodes of `selection` (N). A stiffness per area acts between the nodes: its forces are shared out
-    /// to them.
+    /// The part of the contact force on the nodes of `selection` (N).
+    ///
+    /// A stiffness per area acts between the nodes: its forces are distributed to them.
     ///
     /// # Errors
     /// As [`contact_force`](Self::contact_force) and [`position`](Self::position).
@@ -215,9 +217,12 @@ impl<'a> View<'a> {
         Ok(forces)
     }
 
-    /// Angle (rad, counter-clockwise, between -pi and pi) by which a two-dimensional body has turned as a whole: that of the rotation
-    /// which, in the mean over its mass, brings the undeformed shape nearest to the present one. `None` in other
-    /// dimensions. The sensor [`Reading::rotation`](crate::dynamics::simulate::Reading::rotation) goes on over whole turns.
+    /// Angle (rad, counter-clockwise, between -pi and pi) by which a two-dimensional body has turned as a
+    /// whole.
+    ///
+    /// It is that of the rotation that brings the undeformed shape nearest to the present one, weighted by
+    /// mass. `None` in other dimensions. The sensor
+    /// [`Reading::rotation`](crate::dynamics::simulate::Reading::rotation) is continuous over whole turns.
     pub fn rotation(&self) -> Option<f64> {
         self.body().rotation(self.state.u)
     }

@@ -1,4 +1,4 @@
-//! Events: functions of the motion whose changes of sign are met exactly.
+//! Events: functions of the motion whose changes of sign are located exactly.
 
 use std::ops::ControlFlow;
 
@@ -43,8 +43,8 @@ pub(super) struct WatchedEvent<S> {
     pub(super) turns: Turns,
 }
 
-/// Events in a row that gave commands, each sooner after the last one than that after the one before: an impact law that leaves a
-/// part of the speed has infinitely many of them in a finite time.
+/// Events in a row that gave commands, with shorter and shorter pauses between them: an impact law that
+/// restores a part of the speed has infinitely many of them in a finite time.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Turns {
     count: usize,
@@ -55,15 +55,16 @@ pub(super) struct Turns {
     pauses: [f64; 2],
 }
 
-/// Turns of which at least is known whether they accumulate: the pauses between them have shrunk twice.
+/// Least number of turns of which it is known whether they accumulate: the pauses between them have shrunk
+/// twice.
 const ENOUGH: usize = 4;
 
-/// Part of the time since the first turn within which all those to come would lie when they accumulate. A bounce is then
-/// a millionth as long as the first one and 1e-12 as high, which round-off still tells from none.
+/// Turns accumulate if all those to come would lie within this part of the time since the first one. A bounce
+/// is then a millionth as long as the first one and 1e-12 as high, which is still above round-off.
 const LEFT: f64 = 1e-6;
 
 impl Turns {
-    /// Adds an event at time `t` (s), after which the motion goes on by commands or not.
+    /// Adds an event at time `t` (s); `turns` is whether its commands have turned the motion back.
     pub(super) fn add(&mut self, t: f64, turns: bool) {
         let pause = t - self.last;
         let Self { count, first, last, pauses: [before, _] } = *self;
@@ -79,14 +80,14 @@ impl Turns {
         };
     }
 
-    /// Whether those to come, each sooner by the ratio of the last two pauses, lie within no time.
+    /// Whether all turns to come, with pauses that shrink by the ratio of the last two, take next to no time.
     pub(super) fn accumulate(&self) -> bool {
         let [pause, before] = self.pauses;
         let left = pause * pause / (before - pause);
         self.count >= ENOUGH && left < LEFT * (self.last - self.first)
     }
 
-    /// The error of event `number`, which they lead no further than.
+    /// The error of event `number`, beyond which time cannot advance.
     pub(super) fn error(&self, number: usize) -> InputError {
         let Self { count, last, .. } = self;
         let input = format!("number of times that event {} of `when` was met", number + 1);
@@ -98,13 +99,13 @@ impl Turns {
     }
 }
 
-/// What an advance ended with.
+/// How an advance ended.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Arrival {
-    /// The time that it was to go on to.
+    /// At the requested time.
     Time,
-    /// The event that it was to go on to.
+    /// At the requested event.
     Event,
-    /// An action that stopped it.
+    /// By an action that stopped it.
     Stopped,
 }

@@ -1,4 +1,4 @@
-//! A simulation that watches for events on its way.
+//! A simulation that watches for events while time advances.
 
 use std::mem::take;
 use std::ops::ControlFlow;
@@ -11,47 +11,52 @@ use crate::base::vector::largest;
 use crate::dynamics::error::{Error, guarded};
 use crate::dynamics::state::State;
 
-/// An event on the way to some time.
+/// An event that may be met while time advances.
 struct Pending<'a> {
-    /// Its number among those that are watched; none of that which an advance goes on to.
+    /// Its number among those that are watched; none for that of `advance_until`.
     number: Option<usize>,
     event: &'a mut dyn FnMut(&View) -> f64,
     direction: Direction,
-    /// Its value at the last look; 0 if it had just been met. And that at the next one.
+    /// Its value at the last check (0 if it had just been met), and that at the next one.
     value: f64,
     after: f64,
     is_met: bool,
-    /// How it begins to change after commands at which it had just been met: by its sign alone. 0 if that is not known.
+    /// How it begins to change after commands given when it had just been met: only the sign counts. 0 if
+    /// that is not known.
     tendency: f64,
     turns: Turns,
 }
 
-/// Times that events are looked at in each step: an implicit method takes the flight between two impacts in one.
+/// How often events are checked in each step: an implicit method takes the whole flight between two impacts
+/// in one.
 const LOOKS: u32 = 8;
 
-/// How often the way to the next look is halved to see whether an action has turned an event back.
+/// How often the time to the next check is halved to see whether an action has turned an event back.
 const HALVES: u32 = 20;
 
-/// Part of the way between two looks within which events are met at one time.
+/// Part of the time between two checks within which events count as simultaneous.
 const AT_ONE_TIME: f64 = 1e-10;
 
-/// How far nodes go, in sizes of the body, to see which way an event turns.
+/// How far nodes are moved, relative to the size of the body, to see in which direction an event changes.
 const AHEAD: f64 = 1e-6;
 
 impl Simulation {
-    /// Watches an `event`: whenever its sign changes in the given direction while time goes on, `action` is
-    /// called at that very time, to the round-off of the step that it lies in. It looks, gives commands, changes
-    /// the state; [`ControlFlow::Break`] stops the advance there.
+    /// Watches an `event`: whenever its sign changes in the given direction, `action` is called.
     ///
-    /// Signs are compared eight times in each step, as by [`advance_until`](Self::advance_until). Of events that are met at
-    /// one time, to round-off, all actions are called, in the order in which they were given, before the advance stops. While
-    /// an action is at work nothing is watched, and a [`fork`](Self::fork) watches nothing.
+    /// It is called at exactly that time, to the round-off of the step that it lies in. It may read the
+    /// motion, give commands and change the state; [`ControlFlow::Break`] stops the advance there.
     ///
-    /// An advance on which the function of an event gives NaN ends there with an error. So does one on which an event
-    /// accumulates: its action turns the motion back each time, as an impact that leaves a part of the speed, and the events
-    /// still to come would all lie within a millionth of the time since the first, or the motion goes back by less than the
-    /// tolerances tell from nothing. No time leads past them. So an action brings such a motion to rest by itself: below
-    /// some speed it [holds](Self::hold) what has landed, lets an obstacle [act](Self::contact), or stops the advance.
+    /// Signs are compared eight times in each step, as by [`advance_until`](Self::advance_until). If several
+    /// events are met at one time, to round-off, all their actions are called, in the order in which they
+    /// were given, before the advance stops. While an action runs nothing is watched, and a
+    /// [`fork`](Self::fork) watches nothing.
+    ///
+    /// An advance ends with an error where the function of an event returns NaN, and where an event
+    /// accumulates: its action turns the motion back each time, as an impact that restores a part of the
+    /// speed, and the events still to come would all lie within a millionth of the time since the first, or
+    /// the motion goes back by less than the tolerances can resolve. Time cannot advance beyond them.
+    /// Therefore the action itself has to bring such a motion to rest: below some speed it
+    /// [holds](Self::hold) what has landed, lets an obstacle [act](Self::contact), or stops the advance.
     ///
     /// ```
     /// use std::ops::ControlFlow;
@@ -94,7 +99,8 @@ impl Simulation {
         });
     }
 
-    /// Lets time go on to `t` (s), but at most until `until` changes its sign. Commands may have been given before.
+    /// Advances time to `t` (s), but at most until `until` changes its sign. `commanded` is whether commands
+    /// were given before.
     pub(super) fn advance_watched(
         &mut self,
         t: f64,
@@ -144,11 +150,11 @@ impl Simulation {
             let mut is_stopped = false;
             commanded = false;
             for (number, watch) in met {
-                // once gone back, the simulation has before it what is left
+                // if an action went back in time, the remaining events are still to come
                 if self.time >= time {
                     self.commanded = false;
                     let flow = guarded(|| (watch.action)(self));
-                    // what is held where it is does not turn back
+                    // an event of nodes that are now held in place does not turn back
                     let turns =
                         self.commanded && self.tendency(Some(number), &mut watch.event)? != 0.0;
                     watch.turns.add(time, turns);
@@ -169,8 +175,8 @@ impl Simulation {
         }
     }
 
-    /// Lets time go on to `t` (s), but at most to the first of the events, and marks those that are met there; whether
-    /// there are any.
+    /// Advances time to `t` (s), but at most to the first of the events, and marks those that are met there;
+    /// returns whether there are any.
     fn meet(&mut self, t: f64, events: &mut [Pending], commanded: bool) -> Result<bool, Error> {
         while self.time < t {
             if self.run.time <= self.time && !self.advance()? {
@@ -189,8 +195,9 @@ impl Simulation {
         Ok(false)
     }
 
-    /// Looks at time `to` (s), or at the first of the events since time `from`, and marks those that are met there;
-    /// whether there are any. Commands may have turned back what is 0 since it was met.
+    /// Makes `to` (s) the present, or the time of the first event since `from`, and marks the events that are
+    /// met there; returns whether there are any. Commands may have turned back an event that is 0 because it
+    /// was just met.
     fn first(
         &mut self,
         events: &mut [Pending],
@@ -244,8 +251,8 @@ impl Simulation {
         Ok(count)
     }
 
-    /// Looks for a time between `from` and the present at which an event, 0 at `from`, has gone the other way before it
-    /// came to be what it is at present, and makes that its value at the last look.
+    /// Looks for a time between `from` and the present at which an event, 0 at `from`, had the opposite sign
+    /// of its present value, and makes its value there that of the last check.
     fn turn(&mut self, event: &mut Pending, from: f64) -> Result<Option<f64>, Error> {
         let present = self.time;
         let mut found = None;
@@ -262,7 +269,8 @@ impl Simulation {
         Ok(found)
     }
 
-    /// Moves the present to where `event`, which has the sign of its last value at the start, has lost it.
+    /// Moves the present to the time at which `event`, which has the sign of its last value at the start,
+    /// loses that sign.
     fn bisect(&mut self, [mut start, mut end]: [f64; 2], event: &mut Pending) -> Result<(), Error> {
         loop {
             let middle = 0.5 * (start + end);
@@ -277,7 +285,7 @@ impl Simulation {
         }
     }
 
-    /// How an event changes, by its sign alone, as all nodes go on at their velocities.
+    /// How an event changes as all nodes move on with their velocities; only the sign counts.
     fn tendency(
         &self,
         number: Option<usize>,

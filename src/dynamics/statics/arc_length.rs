@@ -1,19 +1,19 @@
 //! The path of equilibria by arc length: Riks' method (Int. J. Solids Struct. 15, 1979) in the form that Crisfield
 //! (Comput. Struct. 13, 1981) calls linearized.
 //!
-//! A step goes along the tangent of the path, x_q with K x_q - A mu = df/dlambda, A^T x_q = db/dlambda, as far as its norm,
-//! that of M, is the length of the step. Newton's method comes back to the path within the plane across the tangent, with
-//! the load factor lambda as one more unknown:
+//! A step goes along the tangent of the path, x_q with K x_q - A mu = df/dlambda, A^T x_q = db/dlambda, until
+//! its norm, that of M, is the length of the step. Newton's method returns to the path within the plane
+//! normal to the tangent, with the load factor lambda as one more unknown:
 //!
 //! ```text
 //! x = x_r + dlambda x_q,   dlambda = -(n . x_r)/(n . x_q),   n = M x_q at the start of the step
 //! ```
 //!
-//! where x_r is the Newton step at constant load. Both come from the factors of K, by LU where K is indefinite.
-//! The path goes on to the side to which it came (n . last step > 0), at limit points, too.
+//! where x_r is the Newton step at constant load. Both come from the factors of K, by LU where K is
+//! indefinite. The path is followed in the same sense as before (n . last step > 0), also at limit points.
 //!
-//! Other branches meet the plane across the tangent as well. A step that ends far beside the tangent, or where the path runs
-//! another way, is taken again, half as long.
+//! Other branches intersect the plane normal to the tangent as well. A step that ends far from the tangent,
+//! or where the path has another direction, is repeated with half the length.
 
 use super::newton::{Search, Stuck, reason};
 use crate::base::vector::{dot, largest};
@@ -21,7 +21,8 @@ use crate::base::vector::{dot, largest};
 /// Newton iterations of one step.
 const MOST_ITERATIONS: usize = 12;
 
-/// How much longer than along the tangent a step may become on its way back to the path: 25 degrees off the tangent.
+/// How much longer than along the tangent a step may become when it returns to the path: 25 degrees off the
+/// tangent.
 const LONGER: f64 = 1.1;
 
 /// Up to here the path is straight enough for the next step to be longer.
@@ -36,7 +37,7 @@ struct Tangent {
     along: Vec<f64>,
     /// n = M x_q
     normal: Vec<f64>,
-    /// Change of the load factor along it per length of x, that is M's norm of x: below 0 where the load falls.
+    /// Change of the load factor along it per length of x in the norm of M: below 0 where the load falls.
     rate: f64,
 }
 
@@ -91,8 +92,8 @@ impl Search<'_> {
         )))
     }
 
-    /// Takes a step of that `length` along the path, `from` the displacements that it has come to. Gives the tangent there, none
-    /// where the whole load has been reached, and how much longer the step has become.
+    /// Takes a step of `length` along the path, `from` the last displacements on it. Returns the tangent at
+    /// its end, none where the whole load has been reached, and how much longer the step has become.
     fn advance(
         &mut self,
         tangent: &Tangent,
@@ -138,7 +139,7 @@ impl Search<'_> {
         dot(&self.x, &self.work).sqrt()
     }
 
-    /// The tangent along x_q, to where the load rises.
+    /// The tangent along x_q, in the direction of rising load.
     fn tangent(&self, along: Vec<f64>) -> Result<Tangent, Stuck> {
         let mut normal = vec![0.0; along.len()];
         self.rest.weigh(&along, &mut normal);
@@ -149,7 +150,8 @@ impl Search<'_> {
         Ok(Tangent { along, normal, rate: 1.0 / speed })
     }
 
-    /// Takes a step along the tangent of the path, by `advance` in the load, and comes back to the path. Gives x_q there.
+    /// Takes a step along the tangent of the path, by `advance` in the load, and iterates back to the path.
+    /// Returns x_q there.
     fn step(&mut self, advance: f64, along: &[f64], normal: &[f64]) -> Result<Vec<f64>, Stuck> {
         self.tried = self.fraction + advance;
         self.u.iter_mut().zip(along).for_each(|(u, x)| *u += advance * x);
@@ -209,6 +211,6 @@ impl Search<'_> {
     }
 }
 
-/// Step of the load factor in the difference that gives its direction: loads are linear in it, and paths of constraints
-/// smooth.
+/// Step of the load factor in the finite difference for the direction of the load: loads are linear in it,
+/// and paths of constraints smooth.
 const STEP: f64 = 1e-4;

@@ -1,9 +1,10 @@
-//! The search with a body that the constraints leave free to move as a whole.
+//! The search for an equilibrium of a body that the constraints leave free to move as a whole.
 //!
-//! K + floor M of the search is definite, and its steps leave the body where it is. Two things remain to be done. Loads of
-//! constant direction (dead loads) may have to turn a body far before they balance each other. Straight steps would strain
-//! it as it turns, so it turns along circles, rigidly: Newton's method on the angles, downhill. And in
-//! equilibrium, motions against which nothing acts are taken out of the displacements.
+//! K + floor M of the search is definite, and its steps leave the body where it is. Two things remain to be
+//! done. Loads of constant direction (dead loads) may have to turn a body far before they balance each other.
+//! Straight steps would strain it as it turns, so it is turned rigidly, along circles: by Newton's method on
+//! the angles, with falling energy. And in equilibrium, motions that no force resists are removed from the
+//! displacements.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,20 +12,20 @@ use super::newton::{Search, Stuck};
 use crate::base::vector::{dot, largest};
 use crate::dynamics::system::rigid::{self, RigidMotion, Shape};
 
-/// Turns before each step of Newton's method: ten do from anywhere.
+/// Largest number of turns before each step of Newton's method: ten are enough from any position.
 const MOST_TURNS: usize = 20;
 
-/// Largest turn (rad): a part of the quarter after which a moment decreases.
+/// Largest turn (rad): a part of the quarter turn after which a moment decreases.
 const LARGEST_TURN: f64 = 0.5;
 
-/// Rounds in which finite turns are taken out of displacements.
+/// Largest number of iterations that remove finite turns from displacements.
 const MOST_ROUNDS: usize = 20;
 
 /// Part of |K| |R| that is round-off in K R.
 const ROUND_OFF: f64 = 1e-12;
 
 impl Search<'_> {
-    /// Turns the body as far as the energy falls, from where the forces are known.
+    /// Turns the body as long as the energy falls, from displacements at which the forces are known.
     pub(super) fn turn(&mut self) {
         if !self.is_loose || !self.turns_in_circles() {
             return;
@@ -58,7 +59,8 @@ impl Search<'_> {
         }
     }
 
-    /// Whether the energy is lower at other displacements, where constraints are met no worse; `trial` are the forces there.
+    /// Whether the energy is lower at other displacements, where constraints are met no worse; `trial` then
+    /// holds the forces there.
     fn is_lower(&mut self, other: &[f64]) -> bool {
         self.rest.lacking(self.tried, &self.u, &mut self.d);
         let lacking = largest(&self.d);
@@ -73,7 +75,8 @@ impl Search<'_> {
         rise <= self.trial.round_off(&self.u) + self.at.round_off(&self.u)
     }
 
-    /// Takes the motions against which nothing acts out of the step x: what round-off and the small floor have made of them.
+    /// Removes the motions that no force resists from the step x: they come from round-off and the small
+    /// floor.
     pub(super) fn keep_place(&mut self) {
         if self.is_loose && !self.is_linear {
             let mut motions = self.free_motions(&self.u);
@@ -82,7 +85,7 @@ impl Search<'_> {
         }
     }
 
-    /// Takes the motions against which nothing acts out of the equilibrium that was found.
+    /// Removes the motions that no force resists from the equilibrium that was found.
     pub(super) fn place(&mut self) -> Result<(), Stuck> {
         if !self.is_loose {
             return Ok(());
@@ -114,7 +117,8 @@ impl Search<'_> {
         self.balance()
     }
 
-    /// What the loads come to along the motions that nothing holds, where the search has come to.
+    /// Resultants of the loads, in words, along the motions that nothing restrains, where the search has
+    /// arrived.
     pub(super) fn resultants(&self) -> Vec<String> {
         let motions = self.free_motions(&self.u);
         motions.iter().filter_map(|motion| motion.resultant(&self.at.total)).collect()
@@ -131,13 +135,14 @@ impl Search<'_> {
         rigid::free_motions(shape, self.body.inertia().pattern(), self.rest.system().rows())
     }
 
-    /// Whether a turn along circles strains nothing; under linear strain, that along straight lines does not.
+    /// Whether a turn along circles causes no strain; with linear strain, one along straight lines causes
+    /// none.
     fn turns_in_circles(&self) -> bool {
         self.body.constant_stiffness().is_none()
     }
 
-    /// Moments that `turns` by a unit angle bring about against each other (N m), where the forces and K are known: R^T K R
-    /// and, for the forces keep their directions as their points turn, less f . W R.
+    /// Moments (N m) that `turns` by a unit angle cause along each other, where the forces and K are known:
+    /// R^T K R minus f . W R, the latter as the forces keep their directions while their points turn.
     fn stiffness_against(&self, turns: &[RigidMotion]) -> DMatrix<f64> {
         let stiffness = DMatrix::from_fn(turns.len(), turns.len(), |i, j| {
             let [one, other] = [&turns[i], &turns[j]];
@@ -154,7 +159,7 @@ impl Search<'_> {
         forces
     }
 
-    /// Whether no force changes along a motion, where K is known, but for round-off and a `residual` (N).
+    /// Whether no force changes along a motion, where K is known, apart from round-off and a `residual` (N).
     pub(super) fn is_neutral(&self, motion: &RigidMotion, residual: f64) -> bool {
         let sizes: Vec<f64> = motion.values.iter().map(|r| r.abs()).collect();
         let most = (0..sizes.len())

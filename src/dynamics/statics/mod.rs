@@ -1,25 +1,25 @@
 //! Statics: the shape in which a scene is in equilibrium.
 //!
-//! What holds the body and what loads it is that of one phase, at its end:
+//! The constraints and loads are those of one phase, at its end:
 //!
 //! | forces | equations | solved by |
 //! | --- | --- | --- |
 //! | Cauchy strain, constant loads | K u - A lambda = f, A^T u = b | one saddle-point solve |
-//! | Green strain, contact, springs, ... | least U - W under A^T u = b | Newton's method with the exact tangent and a line search on the energy |
+//! | Green strain, contact, springs, ... | minimum of U - W under A^T u = b | Newton's method with the exact tangent and a line search on the energy |
 //!
-//! Where the tangent is indefinite, a multiple of M is added to it until it is not, so that the
-//! search goes on downhill. If it does not converge, what moves and loads the body is brought on in smaller
-//! and smaller steps: constraints and obstacles along their way; gravity, loads, pressure and the forces
-//! of actuators by a factor. Obstacles in motion count as standing where they are: nothing is dragged
-//! along. Nor does friction act, for how it acts depends on how the body came there.
+//! Where the tangent is indefinite, a multiple of M is added to it until it is positive definite, so that the
+//! energy falls in the search. If the search does not converge, constraints and loads are applied in smaller
+//! and smaller steps: constraints and obstacles along their paths; gravity, loads, pressure and the forces of
+//! actuators by a factor. Obstacles in motion count as standing where they are: nothing is dragged along.
+//! Friction does not act either, as it depends on how the body came there.
 //!
-//! A body that nothing holds is in equilibrium if its loads balance each other. Of all its places that
-//! one is taken in which it has not moved as a whole: the displacements have no part in any rigid motion R, R^T M u = 0.
-//! With Green's strain a body turns to where loads of constant direction balance each other, and is free only for motions against
-//! which no force acts: all of them if it is under pressure all around.
+//! A body that nothing holds is in equilibrium if its loads balance each other. Of all its positions the one
+//! is taken in which it has not moved as a whole: the displacements have no component along any rigid motion
+//! R, R^T M u = 0. With Green's strain a body turns to where loads of constant direction balance each other,
+//! and is free only for motions that no force resists: all of them if it is under pressure all around.
 //!
-//! By arc length the load is no longer given, but found with the displacements, along the path of equilibria: it falls
-//! where the body snaps through.
+//! With arc length the load is not given, but found together with the displacements, along the path of
+//! equilibria: it falls where the body snaps through.
 
 mod arc_length;
 mod free;
@@ -44,8 +44,10 @@ use crate::scene::constraint::{ConstraintRow, PhaseStart, prescribe};
 use crate::scene::timeline::{Phase, Scene};
 
 impl Scene {
-    /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first
-    /// phase at its end, without motion: what the body would come to rest in if they stayed.
+    /// The equilibrium under the constraints, gravity, loads, obstacles and springs of the first phase at its
+    /// end, without motion.
+    ///
+    /// The body would come to rest in it if they stayed in force.
     ///
     /// ```
     /// use pliant::{Body, Cells, Material, Mesh, Phase, Scene, Statics, Strain};
@@ -60,17 +62,19 @@ impl Scene {
     /// ```
     ///
     /// # Errors
-    /// Bad input; [`Error::Input`] if the body is held so that it can still move as a
-    /// whole, and its loads move it; [`Error::Statics`] with the last equilibrium on the way if the search gives up.
+    /// Bad input; [`Error::Input`] if the body is held so that it can still move as a whole, and its loads
+    /// move it; [`Error::Statics`] with the last equilibrium found for part of the load if the search gives
+    /// up.
     pub fn equilibrium(&self, statics: &Statics) -> Result<Equilibrium, Error> {
         self.equilibrium_in(0, statics)
     }
 
-    /// As [`equilibrium`](Self::equilibrium), of the phase of that name (`"phase 2"`, say, if it was given none): under what acts
-    /// at its end.
+    /// As [`equilibrium`](Self::equilibrium), of the phase of that name, at its end (`"phase 2"`, say, if it
+    /// was given none).
     ///
-    /// What earlier phases held or moved, and this one holds, stays where it was left; nodes that were free until
-    /// then are held in their natural place, for where a motion would have brought them, statics does not know.
+    /// Nodes that earlier phases held or moved, and this one holds, stay where they were left; nodes that
+    /// were free until then are held in their undeformed positions, as statics does not know where a motion
+    /// would have brought them.
     ///
     /// # Errors
     /// As [`equilibrium`](Self::equilibrium); no phase of that name.
@@ -106,7 +110,7 @@ impl Scene {
             Error::from(InputError::new(input, value, help))
         };
         let linear = rest.is_linear();
-        // rows of several nodes hold nothing while K is factorized
+        // rows of several nodes do not act in the factorization of K
         let (of_nodes, sums): (Vec<ConstraintRow>, Vec<ConstraintRow>) = rest
             .system()
             .rows()
@@ -122,9 +126,9 @@ impl Scene {
         };
         let mut search = Search::new(rest, statics, self.body(), hold);
         if !free.is_empty() && search.rest.is_under_dead_loads() {
-            // forces in the undeformed shape have a meaning
+            // forces are defined in the undeformed shape
             let _ = search.rest.evaluate(1.0, &search.u, &mut search.at);
-            // what a moment does, a turn may balance
+            // a turn may balance a moment
             let is_lost = |motion: &&RigidMotion| !motion.is_turn && search.is_neutral(motion, 0.0);
             let mut lost = free.iter().filter(|motion| linear || is_lost(motion));
             if let Some(resultant) = lost.find_map(|motion| motion.resultant(&search.at.total)) {
@@ -184,8 +188,8 @@ impl Scene {
         })
     }
 
-    /// When the phase of that `number` begins (s), and the displacements (m) that the constraints of those before it
-    /// have left.
+    /// The start (s) of the phase of that `number`, and the displacements (m) left by the constraints of
+    /// those before it.
     fn left_by_phases_before(&self, number: usize) -> Result<(f64, Vec<f64>), InputError> {
         let (mut time, mut u) = (0.0, vec![0.0; self.body().dofs()]);
         for phase in &self.phases()[..number] {

@@ -1,4 +1,4 @@
-//! The search for an equilibrium: Newton's method downhill, load step by load step.
+//! The search for an equilibrium: Newton's method with falling energy, load step by load step.
 
 use super::options::Statics;
 use crate::base::vector::{dot, largest};
@@ -13,7 +13,7 @@ pub(super) struct Stuck {
     pub(super) residual: f64,
 }
 
-/// An equilibrium on the way.
+/// An equilibrium found for a part of the load.
 pub(super) struct Point {
     /// Part of constraints and loads.
     pub(super) fraction: f64,
@@ -31,18 +31,18 @@ impl Point {
     }
 }
 
-/// What the constraints leave of the freedom of the body to move as a whole.
+/// How much freedom to move as a whole the constraints leave to the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Hold {
-    /// Nothing, by those on single nodes alone.
+    /// None, by constraints on single nodes alone.
     Whole,
-    /// Nothing, but only together with those that tie several nodes.
+    /// None, but only together with constraints that couple several nodes.
     BySums,
-    /// Something.
+    /// Some.
     Loose,
 }
 
-/// A search on its way.
+/// The state of a search.
 pub(super) struct Search<'a> {
     pub(super) rest: AtRest,
     pub(super) statics: &'a Statics,
@@ -54,7 +54,7 @@ pub(super) struct Search<'a> {
     /// Multiples of M that are added to K: the least one, and the present one (1/s^2).
     floor: f64,
     shift: f64,
-    /// Order of the largest eigenvalue of K x = eigenvalue M x.
+    /// Order of magnitude of the largest eigenvalue of K x = eigenvalue M x.
     highest: f64,
     /// K is constant, and has been factorized.
     is_done: bool,
@@ -73,7 +73,7 @@ pub(super) struct Search<'a> {
     pub(super) failed_steps: usize,
     /// The equilibria found: those of a load curve, or else the last one.
     pub(super) curve: Vec<Point>,
-    /// Rigid motions, in words, that were taken out of the last one.
+    /// Rigid motions, in words, that were removed from the last one.
     pub(super) removed: Vec<String>,
     pub(super) trial: ForceBalance,
     pub(super) x: Vec<f64>,
@@ -81,13 +81,13 @@ pub(super) struct Search<'a> {
     pub(super) work: Vec<f64>,
 }
 
-/// Iterations of Newton's method to an equilibrium that is near, stable or not, and what is near, as a part of the size of
-/// the body.
+/// Largest number of Newton iterations to an equilibrium that is near, stable or not, and the distance that
+/// counts as near, relative to the size of the body.
 const MOST_CLIMBING: usize = 20;
 const NEAR: f64 = 0.5;
 
-/// Parts of the highest eigenvalue: the smallest shift that is tried (and the one that stays on if
-/// rigid motions are free, or held by rows of several nodes), and the largest.
+/// Parts of the highest eigenvalue: the smallest shift that is tried (which also stays if rigid motions are
+/// free, or held by rows of several nodes), and the largest.
 const SHIFTS: [f64; 2] = [1e-10, 1e3];
 
 impl<'a> Search<'a> {
@@ -127,12 +127,12 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Brings on the whole load.
+    /// Applies the whole load.
     pub(super) fn all(&mut self) -> Result<(), Stuck> {
         let largest = 1.0 / self.statics.load_steps as f64;
         let mut step = largest;
         while self.fraction < 1.0 {
-            // what round-off alone keeps apart from the whole load is the whole load
+            // a part that differs from the whole load by round-off only is the whole load
             let target = self.fraction + step;
             self.tried = if target > 1.0 - 1e-9 { 1.0 } else { target };
             let (u, mu) = (self.u.clone(), self.mu.clone());
@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Takes note of the equilibrium that was found.
+    /// Records the equilibrium that was found.
     pub(super) fn arrive(&mut self) {
         self.fraction = self.tried;
         self.load_steps += 1;
@@ -166,7 +166,7 @@ impl<'a> Search<'a> {
         self.curve.push(Point { fraction: self.fraction, u, mu, drift });
     }
 
-    /// Time (s) of the equilibrium of that `number`, of `count`, for a part of the load.
+    /// Time (s) of equilibrium `number` of `count`, which is that for a `fraction` of the load.
     pub(super) fn time(&self, number: usize, count: usize, fraction: f64) -> f64 {
         let part = match self.statics.arc_steps {
             0 => fraction,
@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
                 return Err(self.stuck("the displacements grow without bound".into()));
             }
             if lacking > 1e-12 * self.size && iteration < 2 {
-                // the constraints are met first, whatever it costs
+                // the constraints are met first, even if the energy rises
                 self.u.iter_mut().zip(&self.x).for_each(|(u, x)| *u += x);
                 self.evaluate()?;
                 continue;
@@ -223,8 +223,8 @@ impl<'a> Search<'a> {
         )))
     }
 
-    /// Goes on from where the search began by Newton's method without regard to the energy, to an equilibrium that may be
-    /// unstable. Returns whether there is one near; if not, all is as it was.
+    /// Continues from where the search began with Newton's method, regardless of the energy, to an
+    /// equilibrium that may be unstable. Returns whether there is one near; if not, the state is restored.
     fn climb(&mut self, from: &[f64]) -> bool {
         let before = (self.u.clone(), self.mu.clone(), self.at.clone(), self.residual);
         let rtol = self.statics.rtol;
@@ -246,7 +246,7 @@ impl<'a> Search<'a> {
             if lacking <= 1e-12 * self.size
                 && (self.residual <= rtol * self.at.scale || is_round_off)
             {
-                // what stability is told by
+                // the factorization that determines stability
                 self.shift = self.floor;
                 return self.prepare().is_ok();
             }
@@ -261,8 +261,9 @@ impl<'a> Search<'a> {
         false
     }
 
-    /// Whether round-off is all that is left of the forces, and iterations no longer make it less than it was `before`: in a nearly
-    /// incompressible body what nodes pull at each other is so much larger than what is left of it that the tolerance is out of reach.
+    /// Whether the unbalanced forces are only round-off, and iterations no longer reduce them much from what
+    /// they were `before`: in a nearly incompressible body the forces between nodes are so much larger than
+    /// their sums that the tolerance cannot be reached.
     fn is_exhausted(&mut self, before: f64) -> bool {
         if self.residual < 0.5 * before {
             return false;
@@ -276,7 +277,7 @@ impl<'a> Search<'a> {
         result.map_err(|failure| self.stuck(reason(failure)))
     }
 
-    /// Factorizes K, shifted just so far that it is positive definite.
+    /// Factorizes K, shifted just enough to be positive definite.
     fn prepare(&mut self) -> Result<(), Stuck> {
         if self.is_linear && self.is_done {
             return Ok(());
@@ -295,7 +296,7 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Goes along x as far as the energy falls, `factor` times its length at most.
+    /// Line search: goes along x, `factor` times its length at most, so far that the energy falls.
     fn descend(&mut self, mut factor: f64) -> Result<(), Stuck> {
         let slope = -dot(&self.at.total, &self.x);
         let mut refused = None;
@@ -311,7 +312,7 @@ impl<'a> Search<'a> {
                         std::mem::swap(&mut self.u, &mut self.work);
                         return Ok(());
                     }
-                    // lowest point of the parabola through what is known
+                    // minimum of the parabola through the known values
                     -0.5 * slope * factor / (rise / factor - slope)
                 }
                 Err(Failure::Recoverable(message)) => {
@@ -320,7 +321,7 @@ impl<'a> Search<'a> {
                 }
                 Err(fatal) => return Err(self.stuck(reason(fatal))),
             };
-            // not a number, say: half
+            // if it is NaN, for example: half
             let shorter = if shorter.is_finite() { shorter } else { 0.5 * factor };
             factor = shorter.clamp(0.1 * factor, 0.5 * factor);
         }
@@ -329,7 +330,7 @@ impl<'a> Search<'a> {
         Err(self.stuck(refused.unwrap_or_else(|| stalled.into())))
     }
 
-    /// What a small push does to the equilibrium at `u`, by the last factorization: that of K there.
+    /// Stability of the equilibrium at `u`, by the last factorization: that of K there.
     pub(super) fn stability(&mut self) -> Stability {
         let eigenvalue = self.rest.lowest_eigenvalue(self.shift);
         let omega = eigenvalue.abs().sqrt();
@@ -370,7 +371,7 @@ mod tests {
     use crate::scene::timeline::{Phase, Scene};
     use crate::studies::samples::BEAM_MATERIAL;
 
-    /// A direction downhill, a hundred times too long: the bar is stretched no further than the
+    /// A direction of falling energy, a hundred times too long: the bar is stretched no further than the
     /// energy falls.
     #[test]
     fn no_step_goes_uphill() {

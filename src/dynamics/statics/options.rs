@@ -6,26 +6,30 @@ use crate::base::input::InputError;
 
 /// How an equilibrium is sought.
 ///
-/// All forces act as they do at rest: dampers, friction and obstacles in motion drag nothing along. Where a body would
-/// stick to an obstacle depends on how it came there; [`Scene::simulate`](crate::Scene::simulate) knows.
+/// All forces act as they do at rest: dampers, friction and obstacles in motion drag nothing along. Where a
+/// body would stick to an obstacle depends on how it came there; [`Scene::simulate`](crate::Scene::simulate)
+/// follows that.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statics {
-    /// Forces are in balance when none is left that is larger than this part of the largest one.
-    /// Default: 1e-10, some orders above round-off; 1e-14 to 1e-2.
+    /// Forces are in balance when no unbalanced one is larger than this part of the largest one. Default:
+    /// 1e-10, some orders above round-off; allowed: 1e-14 to 1e-2.
     pub rtol: f64,
-    /// Newton iterations in one load step. Default: 100; ten do unless the body has to move far.
+    /// Newton iterations in one load step. Default: 100; ten are enough unless the body has to move far.
     pub max_iterations: usize,
-    /// Steps in which constraints and loads are brought on. Default: 1, everything at once; more
-    /// of them when it converges to an equilibrium other than the one that a slow loading reaches.
+    /// Steps in which constraints and loads are applied. Default: 1, everything at once; take more if the
+    /// search converges to an equilibrium other than the one that slow loading reaches.
     ///
-    /// With more than one, the trajectory is a load curve: it has the equilibrium of each step, the time of which is that part
-    /// of the end of the phase, and a sensor `load factor` tells the part.
+    /// With more than one, the trajectory is a load curve: it has the equilibrium of each step, whose time is
+    /// that part of the end of the phase, and a sensor `load factor` for the part.
     pub load_steps: usize,
-    /// Most steps by arc length; default: 0, the load is given. With them the load rises and falls as the path of
-    /// equilibria has it, stable or not, past limit points in load or displacement (snap-through, snap-back), until it
-    /// reaches 1 for the first time. The first step is that of a `load_steps`th of the load, and no later one
-    /// moves the body further by more than a tenth, nor turns by more than 60 degrees: such steps are halved. The trajectory is the load curve, its samples evenly spread over the phase.
-    /// Of what the equilibria look like between steps nothing is known: take enough `load_steps`.
+    /// Largest number of steps by arc length; default: 0, the load is given.
+    ///
+    /// With arc length the load rises and falls along the path of equilibria, stable or not, past limit
+    /// points in load or displacement (snap-through, snap-back), until it reaches 1 for the first time. The
+    /// first step is that of a `load_steps`th of the load. No later one moves the body more than a tenth
+    /// farther than that, or turns by more than 60 degrees: such steps are halved. The trajectory is the load
+    /// curve, its samples evenly spread over the phase. Nothing is known about the equilibria between steps:
+    /// take enough `load_steps`.
     pub arc_steps: usize,
     /// Smallest load step, as a part of the whole load, at most 1 (by arc length, as a part of the first step). Default: 1e-3.
     pub min_load_step: f64,
@@ -37,11 +41,11 @@ impl Default for Statics {
     }
 }
 
-/// Relative tolerances that can be meant: with larger ones a body that has not moved at all passes for one
+/// Relative tolerances that make sense: with larger ones a body that has not moved at all would count as one
 /// in balance.
 const RTOL: RangeInclusive<f64> = 1e-14..=1e-2;
 
-/// Most steps of a load curve: so that no slip of the keyboard fills the memory.
+/// Most steps of a load curve: so that a typing error does not fill the memory.
 const MOST_STEPS: usize = 100_000;
 
 impl Statics {

@@ -5,9 +5,9 @@
 //! [ -A^T 0 ] [ mu ] = [ -d ]
 //! ```
 //!
-//! with K = -df/du. What acts from outside is brought on little by little: gravity, loads, pressure and
-//! the forces of actuators by a fraction of their strength, obstacles in motion along their way. The
-//! body and its springs are what they are.
+//! with K = -df/du. What acts from outside is applied gradually: gravity, loads, pressure and the forces of
+//! actuators by a fraction of their strength, obstacles in motion along their paths. The body and its springs
+//! do not change.
 
 #[cfg(feature = "study")]
 mod dual;
@@ -32,7 +32,7 @@ pub(crate) struct AtRest {
     time: f64,
     still: Vec<f64>,
     /// Velocities of the nodes for each of the forces: those of an obstacle in motion, so that it drags
-    /// nothing along and no damper acts, as if it stood where it is. Empty for others.
+    /// nothing along and no damper acts, as if it stood still. Empty for others.
     velocities: Vec<Vec<f64>>,
     nodal: NodalForces,
     factorizations: usize,
@@ -41,13 +41,13 @@ pub(crate) struct AtRest {
 /// Forces and energy at some displacements.
 #[derive(Clone)]
 pub(crate) struct ForceBalance {
-    /// Sum of all nodal forces but those of the constraints (N).
+    /// Sum of all nodal forces except those of the constraints (N).
     pub(crate) total: Vec<f64>,
     /// Those among them that have no potential.
     unbound: Vec<f64>,
     /// Potential energy of the others (J).
     potential: f64,
-    /// Sum of the absolute values that add up to `potential`: what its round-off compares to.
+    /// Sum of the absolute values of the terms of `potential`: the scale of its round-off.
     terms: f64,
     /// Largest nodal force of any one kind (N): the scale of the forces in balance.
     pub(crate) scale: f64,
@@ -59,14 +59,15 @@ impl ForceBalance {
         Self { total: zeros.clone(), unbound: zeros, potential: 0.0, terms: 0.0, scale: 0.0 }
     }
 
-    /// Energy (J) at `self` less that at `from`, a step of `factor` `x` before. The work of forces
+    /// Energy (J) at `self` minus that at `from`, a step of `factor` times `x` before. The work of forces
     /// without a potential is that of their mean: exact for constant ones.
     pub(crate) fn energy_since(&self, from: &ForceBalance, factor: f64, x: &[f64]) -> f64 {
         let work = 0.5 * factor * (dot(&self.unbound, x) + dot(&from.unbound, x));
         self.potential - from.potential - work
     }
 
-    /// Size of the round-off in differences of energy (J) at displacements near `u`, of which the work has the digits.
+    /// Size of the round-off in differences of energy (J) at displacements near `u`; the work is known to the
+    /// precision of `u`.
     pub(crate) fn round_off(&self, u: &[f64]) -> f64 {
         let work: f64 = self.unbound.iter().zip(u).map(|(f, u)| (f * u).abs()).sum();
         f64::EPSILON * (8.0 * self.terms + work)
@@ -153,14 +154,14 @@ impl AtRest {
         forces.all(|force| !force.is_nonlinear() || force.reservoir() == Reservoir::Strain)
     }
 
-    /// Potential energies with a fraction of gravity and of the way of obstacles.
+    /// Potential energies with a fraction of gravity, and of the paths of obstacles.
     pub(crate) fn energy(&self, fraction: f64, u: &[f64]) -> Energy {
         let energy = self.system.energy(fraction * self.time, u, &self.still, &[]);
         Energy { gravity: fraction * energy.gravity, ..energy }
     }
 
-    /// What the constraints lack, b - A^T u, with b for a fraction of the way: a path that begins in
-    /// the undeformed shape is followed, another one is shortened.
+    /// Residual of the constraints, b - A^T u, with b for a fraction of the path: a path that begins in the
+    /// undeformed shape is followed, another one is scaled.
     pub(crate) fn lacking(&self, fraction: f64, u: &[f64], d: &mut [f64]) {
         for (d, row) in d.iter_mut().zip(&self.system.rows) {
             let b = |t: f64| row.prescribed(t).displacement;
@@ -202,7 +203,7 @@ impl AtRest {
         Ok(())
     }
 
-    /// Lets the nodes move along with each obstacle, where that is at a fraction of its way.
+    /// Gives the nodes the velocity of each obstacle at a fraction of its path.
     fn stand_still(&mut self, fraction: f64) {
         let dimension = self.system.model.dimension;
         for (force, v) in self.system.forces.iter().zip(&mut self.velocities) {
@@ -213,7 +214,7 @@ impl AtRest {
         }
     }
 
-    /// Brings K to `u`. A linear phase has it at once.
+    /// Updates K to `u`. In a linear phase it is constant.
     pub(crate) fn update_tangent(&mut self, fraction: f64, u: &[f64]) {
         self.stand_still(fraction);
         let NewtonMatrix { stiffness, damping, differences, .. } = &mut self.system.newton;
@@ -237,7 +238,7 @@ impl AtRest {
         }
     }
 
-    /// K as it was last brought to some displacements.
+    /// K as it was last updated.
     pub(crate) fn tangent(&self) -> &BlockMatrix {
         self.system.tangents().0
     }
@@ -259,14 +260,15 @@ impl AtRest {
         newton.solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
     }
 
-    /// Factorizes the symmetric part of K, definite or not. Returns whether it could.
+    /// Factorizes the symmetric part of K, definite or not. Returns whether this succeeded.
     pub(crate) fn factorize_any(&mut self) -> bool {
         self.factorize(0.0) || self.system.newton.solver.factorize_indefinite().is_ok()
     }
 
-    /// Solves the saddle-point system above, K shifted as in the last factorization. `mu` are the multipliers known so far, and
-    /// become those that balance `f` where the rows act: those of an equilibrium once x vanishes. Those of general rows are
-    /// found by their change, so that iterations leave round-off of what is not balanced yet alone.
+    /// Solves the saddle-point system above, with K shifted as in the last factorization. `mu` holds the
+    /// multipliers known so far, and then those that balance `f` where the rows act: those of an equilibrium
+    /// once x vanishes. Those of general rows are computed by their change, so that after iterations only the
+    /// round-off of the unbalanced forces remains.
     pub(crate) fn solve(&mut self, f: &[f64], d: &[f64], x: &mut [f64], mu: &mut [f64]) {
         let System { rows, newton, .. } = &mut self.system;
         let NewtonMatrix { solver, right, mu: change, .. } = newton;
@@ -284,8 +286,9 @@ impl AtRest {
         nodal_multipliers(rows, mu, |dof| -f[dof]);
     }
 
-    /// Size of the round-off in nodal forces (N) at displacements of these `sizes` (m): some of the last digits of the terms of K u, of which
-    /// forces are what is left. K is that of the last [`update_tangent`](Self::update_tangent).
+    /// Size of the round-off in nodal forces (N) at displacements of these `sizes` (m): some of the last
+    /// digits of the terms of K u, which largely cancel in the forces. K is that of the last
+    /// [`update_tangent`](Self::update_tangent).
     pub(crate) fn round_off(&self, sizes: &[f64]) -> f64 {
         let k = self.tangent();
         let terms = (0..sizes.len()).map(|dof| k.absolute_row_product(dof, sizes));
@@ -301,9 +304,9 @@ impl AtRest {
         largest(work)
     }
 
-    /// Lowest eigenvalue (1/s^2) of K x = eigenvalue M x among the motions that the constraints
-    /// allow, by inverse iteration with the last factorization, that of K + `shift` M: from above,
-    /// so that a value below zero is a proof. Infinite if nothing can move.
+    /// Lowest eigenvalue (1/s^2) of K x = eigenvalue M x among the motions that the constraints allow, by
+    /// inverse iteration with the last factorization, that of K + `shift` M. It converges from above, so that
+    /// a value below zero is a proof. Infinite if nothing can move.
     pub(crate) fn lowest_eigenvalue(&mut self, shift: f64) -> f64 {
         let (dofs, count) = (self.system.dofs(), self.system.rows.len());
         let noise = |i: usize| (12.9898 * (i as f64 + 1.0)).sin().mul_add(43.758, 0.3).sin();
@@ -347,13 +350,13 @@ pub(super) fn shifted(
 /// Bound on inverse iterations: enough for six digits even of close pairs of eigenvalues.
 const ITERATIONS: usize = 300;
 
-/// The time (s) up to the end `time` at which a force acts at a `fraction` of the load: an obstacle in
-/// motion has come so far on its way.
+/// The time (s) at which a force is evaluated for a `fraction` of the load, up to the end `time`: an obstacle
+/// in motion is at that fraction of its path.
 fn when(force: &dyn Force, fraction: f64, time: f64) -> f64 {
     if force.reservoir() == Reservoir::Contact { fraction * time } else { time }
 }
 
-/// Whether a force is brought on by fractions of its strength.
+/// Whether a force is applied by fractions of its strength.
 fn is_load(force: &dyn Force) -> bool {
     matches!(force.reservoir(), Reservoir::Gravity | Reservoir::None)
 }

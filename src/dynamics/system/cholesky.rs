@@ -15,26 +15,26 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 /// A symmetric matrix, given by its lower triangle, and its factor: Cholesky's where the matrix is
 /// positive definite, an LU factor where it is not.
 ///
-/// The fill-reducing order and the pattern of Cholesky's factor are found once, in
-/// [`Cholesky::new`], and everything is allocated there. LU is the way out for states that few
-/// motions pass through; it finds its pattern when it is first needed, and allocates as it goes.
+/// The fill-reducing order and the pattern of Cholesky's factor are found once, in [`Cholesky::new`], and
+/// everything is allocated there. LU is the fallback for states that few motions pass through; its pattern is
+/// found when it is first needed, and it allocates at each factorization.
 pub(super) struct Cholesky {
     pattern: SymbolicSparseColMat<usize>,
     symbolic: SymbolicCholesky<usize>,
-    /// The factor; of a diagonal matrix its inverse.
+    /// The factor; for a diagonal matrix its inverse.
     factor: Vec<f64>,
     is_diagonal: bool,
     memory: MemBuffer,
     /// Threads of the factorization.
     par: Par,
-    /// In force if the last factorization was LU.
+    /// Used if the last factorization was LU.
     lu: Option<Lu<usize, f64>>,
     full: Option<Full>,
     /// Factorizations by LU so far.
     pub(super) indefinite: usize,
 }
 
-/// The whole of the matrix whose lower triangle is known.
+/// The full matrix whose lower triangle is known.
 struct Full {
     pattern: SymbolicSparseColMat<usize>,
     symbolic: SymbolicLu<usize>,
@@ -96,7 +96,7 @@ impl Cholesky {
         self.factor.len()
     }
 
-    /// Operations of a factorization: the squares of the lengths of the factor's columns.
+    /// Operations of a factorization: the sum of the squares of the lengths of the factor's columns.
     pub(super) fn work(&self) -> f64 {
         let square = |length: usize| (length as f64).powi(2);
         match self.symbolic.raw() {
@@ -147,7 +147,7 @@ impl Cholesky {
         let matrix = SparseColMatRef::new(full.pattern.as_ref(), &values);
         self.lu = Lu::try_new_with_symbolic(full.symbolic.clone(), matrix).ok();
         self.full = Some(full);
-        // a pivot of 0 is not refused, but gives no numbers
+        // a pivot of 0 is not rejected, but gives values that are not finite
         let mut probe = vec![1.0; self.pattern.nrows()];
         self.solve(&mut probe);
         let is_regular = self.lu.is_some() && probe.iter().all(|x| x.is_finite());

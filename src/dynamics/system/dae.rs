@@ -25,7 +25,7 @@ use crate::dynamics::state::{self, State, StateMut};
 use crate::integrators::ode::{Dae, Failure};
 use crate::scene::constraint::Prescribed;
 
-/// What the constraints enter as.
+/// The form in which the constraints enter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Index {
     /// Stabilized accelerations.
@@ -64,8 +64,7 @@ impl DaeForm {
         state::length(self.system.dofs()) + multipliers
     }
 
-    /// y and y' with which the residual vanishes, from (u, v) and the energies in the front of
-    /// `state`.
+    /// y and y' with which the residual vanishes, from (u, v) and the energies at the beginning of `state`.
     pub(crate) fn consistent(
         &mut self,
         t: f64,

@@ -1,4 +1,4 @@
-//! Tangents of forces that do not tell theirs, by finite differences, many columns at a time.
+//! Tangents of forces that do not compute them, by finite differences, many columns at a time.
 //!
 //! A column of -df/du is the change of the force when one displacement is shifted. Nodes that never act on the
 //! same node are shifted together: they have one colour, and dimension times colours evaluations give the whole
@@ -6,16 +6,17 @@
 //! that acts on each node by itself has one colour; one that couples the nodes of cells has 9 on triangles and
 //! rectangles, 27 on hexahedra.
 //!
-//! Before that, everything is shifted at once, each component by a part of its own. If that changes nothing, there is
-//! nothing to find (by v, for most forces). Otherwise the columns have to explain it: first those of nodes by
-//! themselves and of the pairs that [`Force::couplings`] names, which are the fewest, then those of all that
-//! the Newton matrix has room for. So no force is taken for simpler than it is, in any state.
+//! Before that, all components are shifted at once, each by a different amount. If that does not change the
+//! force, the tangent is 0 (by v, for most forces). Otherwise the columns have to explain the change: first
+//! those of single nodes and of the pairs that [`Force::couplings`] names, which are the fewest, then those
+//! of all pairs of the Newton matrix. So no force is treated as simpler than it is, in any state.
 //!
-//! Differences are one-sided: Newton's method converges by the error of its matrix from one iteration to the next, and
-//! anything below a hundredth is as good as exact. The shift is sqrt(epsilon) times a hundredth of the body's size, or of
-//! the speed of waves: 1.5e-10 of these. Forces that change over a length l of 1e-4 of the size (a layer at a contact) are then
-//! off by h/l = 1e-6; round-off of positions by epsilon size/h = 1e-6, too. Both sides of a state would cost twice as
-//! much for nothing; the other one is for forces that have no meaning on the first. A column without any is left 0.
+//! Differences are one-sided: each Newton iteration reduces the error by about the relative error of its
+//! matrix, and anything below a hundredth is as good as exact. The shift is sqrt(epsilon) times a hundredth
+//! of the body's size, or of the speed of waves: 1.5e-10 of these. Forces that change over a length l of 1e-4
+//! of the size (a layer at a contact) are then off by h/l = 1e-6; round-off of positions by epsilon size/h =
+//! 1e-6, too. Two-sided differences would cost twice as much for nothing; the other side is for forces that
+//! are undefined on the first. A column that is undefined on both is left 0.
 
 use std::sync::Arc;
 
@@ -36,9 +37,9 @@ pub(super) struct Differences {
 struct Own {
     force: Arc<dyn Force>,
     named: Columns,
-    /// With all pairs of the Newton matrix, once those named did not suffice.
+    /// With all pairs of the Newton matrix, if those named did not suffice.
     all: Option<Columns>,
-    /// Whether they did explain what those named did not.
+    /// Whether these did explain what those named did not.
     is_wide: bool,
 }
 
@@ -52,21 +53,21 @@ struct Room {
     /// u and v, as they are shifted.
     state: [Vec<f64>; 2],
     nodal: NodalForces,
-    /// The force where the tangents are wanted, and elsewhere.
+    /// The force where the tangents are wanted, and at the shifted state.
     force: Vec<f64>,
     shifted: Vec<f64>,
-    /// The parts by which components are shifted, and how the force changes for each part of 1.
+    /// The direction of a shift, component by component, and the slope of the force along it.
     direction: Vec<f64>,
     slope: Vec<f64>,
-    /// The same of a shift of everything.
+    /// The same for a shift of everything.
     noise: Vec<f64>,
     noise_slope: Vec<f64>,
     unexplained: Vec<f64>,
     evaluations: usize,
 }
 
-/// Part of the change of a force that columns may leave unexplained: more than the error of
-/// differences, less than what a coupling does that matters.
+/// Part of the change of a force that columns may leave unexplained: more than the error of differences, less
+/// than the effect of a coupling that matters.
 const UNEXPLAINED: f64 = 1e-3;
 
 impl Differences {
@@ -152,7 +153,7 @@ impl Own {
         let new = || Columns::new(matrix.pattern(), matrix.dimension());
         let all = self.all.get_or_insert_with(new);
         all.fill(shift, room);
-        // at a kink of the force nothing explains anything
+        // at a kink of the force no columns explain its change
         self.is_wide = self.is_wide || room.is_explained(all, shift);
         all.add_to(matrix);
     }
@@ -185,7 +186,7 @@ impl Columns {
         Self { matrix: BlockMatrix::zeros(pattern, dimension), colours }
     }
 
-    /// Fills the columns, those without a meaning by 0; tells whether all have one.
+    /// Fills the columns, undefined ones with 0; returns whether all are defined.
     fn fill(&mut self, shift: &Shift, room: &mut Room) -> bool {
         let Self { matrix, colours } = self;
         let (d, pattern) = (matrix.dimension(), matrix.pattern().clone());
@@ -237,7 +238,7 @@ impl Room {
         }
     }
 
-    /// Evaluates `force` where its tangents are wanted, if it has a meaning there.
+    /// Evaluates `force` where its tangents are wanted; returns whether it is defined there.
     fn begin(&mut self, force: &Arc<dyn Force>, t: f64, at: [&[f64]; 2]) -> bool {
         self.state.iter_mut().zip(at).for_each(|(state, at)| state.copy_from_slice(at));
         let has_meaning = self.evaluate(force, t);
@@ -254,7 +255,7 @@ impl Room {
         evaluated.is_ok() && self.shifted.iter().all(|f| f.is_finite())
     }
 
-    /// Writes the slope of the force along the direction, if the force has a meaning on one side.
+    /// Writes the slope of the force along the direction; returns whether the force is defined on one side.
     fn change(&mut self, shift: &Shift) -> bool {
         let &Shift { force, t, kind, at, by } = shift;
         let mut has_meaning = false;

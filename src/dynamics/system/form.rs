@@ -4,8 +4,8 @@ use super::System;
 use super::dae::DaeForm;
 use super::second_order::SecondOrderForm;
 
-/// The equations of a phase in the form that an integrator takes: as ODE, or within something that makes
-/// another form of them.
+/// The equations of a phase in the form that an integrator takes: as an ODE, or wrapped in a type that gives
+/// them another form.
 pub(crate) trait Form {
     fn system(&self) -> &System;
 

@@ -1,7 +1,7 @@
 //! Conjugate gradients for the matrices of large solids.
 //!
-//! The matrix is whole, as blocks of the pattern of nodes, so that each row of a product is summed up by one thread: results
-//! are the same to the last bit on any number of threads.
+//! The matrix is stored in full, as blocks on the pattern of nodes, so that each row of a product is summed
+//! up by one thread: results are the same to the last bit on any number of threads.
 
 use super::source::{Coupling, EntrySource};
 use crate::base::simd::{Formula, each};
@@ -11,8 +11,8 @@ use crate::base::vector::dot;
 use crate::dynamics::matrices::Matrices;
 use crate::scene::constraint::ConstraintRow;
 
-/// A symmetric positive definite matrix X, fixed degrees of freedom left out, and its iteration, preconditioned by the
-/// diagonal.
+/// A symmetric positive definite matrix X without the fixed degrees of freedom, and the iteration with it,
+/// preconditioned by the diagonal.
 pub(super) struct Gradients {
     matrix: Matrix,
     /// Degrees of freedom that are left out.
@@ -39,7 +39,7 @@ pub(super) struct Ended {
 }
 
 impl Gradients {
-    /// For an X on the pattern of the model; the nodal ones of the `rows` fix degrees of freedom.
+    /// For an X on the pattern of the matrices; the nodal ones of the `rows` fix degrees of freedom.
     pub(super) fn new(model: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
         let (pattern, dimension) = (model.pattern(), model.dimension);
         let zeros = || vec![0.0; model.dofs()];
@@ -57,7 +57,8 @@ impl Gradients {
         }
     }
 
-    /// Takes the matrix whose entries `value` gives. Returns whether its diagonal is that of a positive definite one.
+    /// Stores the matrix whose entries `value` returns. Returns whether its diagonal is positive, as in a
+    /// positive definite one.
     pub(super) fn take(&mut self, value: impl Fn(EntrySource) -> f64) -> bool {
         self.matrix.fill(value);
         self.matrix.diagonal(&mut self.inverse);
@@ -72,8 +73,9 @@ impl Gradients {
         self.matrix.entry(source)
     }
 
-    /// Replaces `x`, at the `free` degrees of freedom, by the solution of X x' = x to a residual of `accuracy` times |x|, in
-    /// `most` iterations at most; if it takes more, or X turns out not to be positive definite, `x` stays what it is.
+    /// Replaces `x`, at the `free` degrees of freedom, by the solution of X x' = x to a residual of
+    /// `accuracy` times |x|, in `most` iterations at most; if it takes more, or X turns out not to be
+    /// positive definite, `x` is unchanged.
     ///
     /// M. R. Hestenes, E. Stiefel, J. Res. Nat. Bur. Standards 49 (1952) 409-436.
     pub(super) fn solve(
@@ -114,7 +116,8 @@ impl Gradients {
     }
 }
 
-/// Along a direction to the smallest error; the squares of the residual, as it is and preconditioned.
+/// A step along a direction to the smallest error; sums the squares of the residual, as it is and
+/// preconditioned.
 struct Advance {
     step: f64,
 }
@@ -127,7 +130,8 @@ impl Formula<3, 2, 2> for Advance {
     }
 }
 
-/// The next direction: the preconditioned residual and a share of the direction before; the square of that residual.
+/// The next direction: the preconditioned residual plus a share of the direction before; sums the square of
+/// that residual.
 struct Turn {
     share: f64,
 }

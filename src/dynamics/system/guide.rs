@@ -1,4 +1,4 @@
-//! Where the constraints lead.
+//! The motion that the constraints prescribe.
 //!
 //! Their stabilized equation R'' + 2 alpha R' + alpha^2 R = 0 for R = A^T u - b has the solution
 //!
@@ -6,8 +6,8 @@
 //! R(t) = (R_0 + (R_0' + alpha R_0) (t - t_0)) exp(-alpha (t - t_0))
 //! ```
 //!
-//! so that A^T u is known beforehand and can be prescribed as it is: no alpha, however large, bounds
-//! the step, and nothing drifts.
+//! so that A^T u is known beforehand and can be prescribed directly: no alpha, however large, bounds the
+//! step, and nothing drifts.
 
 use super::System;
 use crate::integrators::ode::Failure;
@@ -18,9 +18,9 @@ pub(super) struct Guide {
     since: f64,
     /// R_0 and R_0' + alpha R_0, row by row.
     remainders: Vec<(f64, f64)>,
-    /// Whether all of them are 0: nothing fades that would have to be computed.
+    /// Whether all of them are 0, so that no decay has to be computed.
     is_on_path: bool,
-    /// A^T v that kicks lead to, row by row.
+    /// A^T v after kicks, row by row.
     pub(super) rates: Vec<f64>,
 }
 
@@ -31,7 +31,7 @@ impl Guide {
         Self { since: 0.0, remainders, is_on_path: true, rates: vec![0.0; rows] }
     }
 
-    /// Leads on from (t, u, v).
+    /// Starts the motion from (t, u, v).
     pub(super) fn start(
         &mut self,
         system: &System,
@@ -49,7 +49,7 @@ impl Guide {
         Ok(())
     }
 
-    /// Aims at the mean rates from `t` on over a time `h`, free of the round-off in differences of
+    /// Sets the rates to their means over a time `h` from `t` on, without the round-off in differences of
     /// positions.
     pub(super) fn aim_at_mean_rates(
         &mut self,
@@ -75,8 +75,8 @@ impl Guide {
         Ok(())
     }
 
-    /// Puts the components that nodal rows prescribe where they are at time `t`, and aims at the rates
-    /// of all rows there.
+    /// Sets the components that nodal rows prescribe to their values at time `t`, and the rates to those of
+    /// all rows there.
     pub(super) fn prescribe(
         &mut self,
         system: &System,

@@ -13,7 +13,7 @@ use crate::integrators::ode::Kick;
 use crate::scene::constraint::ConstraintRow;
 
 pub(super) enum Mobility {
-    /// Lumped inertia, one component per row: nothing is to be solved.
+    /// Lumped inertia, one component per row: nothing has to be solved.
     Diagonal {
         /// 1/M_ii (1/kg); 0 where a row prescribes.
         inverse: Vec<f64>,
@@ -48,7 +48,7 @@ impl Mobility {
         Self::Diagonal { inverse, rows: rows.into_iter().map(row).collect() }
     }
 
-    /// Whether accelerations are those of the force alone, whatever the velocities.
+    /// Whether accelerations depend on the force alone, not on the velocities.
     pub(super) fn is_diagonal(&self) -> bool {
         matches!(self, Self::Diagonal { .. })
     }
@@ -79,8 +79,8 @@ impl Mobility {
         }
     }
 
-    /// Leads the velocities `after` the kick last asked about, which are v + tau a so far, where nodal
-    /// rows prescribe. Returns the work of the constraint forces (J).
+    /// Sets the components that nodal rows prescribe in the velocities `after` the last kick, which are v +
+    /// tau a so far. Returns the work of the constraint forces (J).
     pub(super) fn lead(
         &self,
         system: &System,

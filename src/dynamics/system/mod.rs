@@ -9,14 +9,14 @@
 //! [ -A^T 0 ] [ lambda ] = [ C ],   C = -b'' + 2 alpha (A^T v - b') + alpha^2 (A^T u - b)
 //! ```
 //!
-//! [`System`] is the ODE form, in which v' and lambda are solved for; [`DaeForm`] the
-//! differential-algebraic forms, in which lambda is an unknown, and [`SecondOrderForm`] the form in
-//! which the constraints are motion that is known. The first two solve their Newton systems with
-//! the one symmetric matrix of [`newton`], half as large as the state.
+//! [`System`] is the ODE form, in which v' and lambda are solved for; [`DaeForm`] the differential-algebraic
+//! forms, in which lambda is an unknown, and [`SecondOrderForm`] the form in which the constraints are known
+//! motion. The first two solve their Newton systems with the one symmetric matrix of [`newton`], half as
+//! large as the state.
 //!
-//! Two more unknowns are integrated: the energy dissipated and the energy supplied since the phase
-//! began. They cost two dot products, nothing depends on them, and the error control leaves them
-//! out; they make the energy balance as accurate as the integration itself.
+//! Two more unknowns are integrated: the energy dissipated and the energy supplied since t = 0. They cost two
+//! dot products, nothing depends on them, and the error control leaves them out; they make the energy balance
+//! as accurate as the integration itself.
 
 mod at_rest;
 mod cholesky;
@@ -73,11 +73,11 @@ pub(crate) struct System {
     inertia: Reduced,
     newton: NewtonMatrix,
     at: Evaluation,
-    /// Why a force had no meaning, the last time that one had none.
+    /// Why a force was undefined, the last time that one was.
     refusal: String,
 }
 
-/// What the last evaluation of the equations found.
+/// Results of the last evaluation of the equations.
 struct Evaluation {
     nodal: NodalForces,
     /// f, the sum of all nodal forces.
@@ -88,7 +88,7 @@ struct Evaluation {
     multipliers: Vec<f64>,
     /// A^T v, one per row.
     rates: Vec<f64>,
-    /// A^T v' as the stabilization wants it, one per row.
+    /// A^T v' as the stabilization requires it, one per row.
     demands: Vec<f64>,
     /// Rates (1/s) of the internal strains, and the power (W) that they dissipate.
     relaxing: Vec<f64>,
@@ -179,7 +179,8 @@ impl System {
         self.model.dofs()
     }
 
-    /// Replaces the forces, if the Newton matrix has room for their tangents; all else stays as it is.
+    /// Replaces the forces, if the Newton matrix has room for their tangents; all else is unchanged. Returns
+    /// whether it has.
     pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
         if follows(&self.model, &forces) != self.newton.follows {
             return false;
@@ -189,7 +190,7 @@ impl System {
         true
     }
 
-    /// The tangents are no longer those of the forces.
+    /// Marks the tangents as out of date.
     pub(crate) fn forget_tangents(&mut self) {
         self.newton.is_set = false;
     }
@@ -214,13 +215,13 @@ impl System {
         self.newton.tangent_evaluations()
     }
 
-    /// Of the Newton matrices so far: how many were never factorized, iterations for them and others, and how many were found
-    /// not to be positive definite.
+    /// Counts so far: Newton matrices that were never factorized, iterations for them and others, and Newton
+    /// matrices found not to be positive definite.
     pub(crate) fn newton_counts(&self) -> [usize; 3] {
         self.newton.solver.counts()
     }
 
-    /// Number of evaluations of forces that do not tell their tangents, for the tangents.
+    /// Number of evaluations for the tangents of forces that do not compute them.
     pub(crate) fn difference_evaluations(&self) -> usize {
         self.newton.difference_evaluations()
     }
@@ -250,8 +251,7 @@ impl System {
         self.inertia.solve(&self.rows, total, demands, v, multipliers);
     }
 
-    /// Why a force had no meaning at a trial point, the last time that one had none; empty if all
-    /// always had.
+    /// Why a force was undefined at a trial point, the last time that one was; empty if none ever was.
     pub(crate) fn refusal(&self) -> &str {
         &self.refusal
     }
@@ -266,7 +266,7 @@ impl System {
         self.forces.iter().map(|force| force.switches()).sum()
     }
 
-    /// Writes their values.
+    /// Writes the values of the switches.
     pub(crate) fn switch_values(&self, t: f64, u: &[f64], v: &[f64], mut values: &mut [f64]) {
         for force in &self.forces {
             let (own, rest) = values.split_at_mut(force.switches());
@@ -275,7 +275,7 @@ impl System {
         }
     }
 
-    /// A time (s) within a step at which a force acts that its ends do not show, if any.
+    /// A time (s) within a step at which a force acts that is not seen at the ends of the step, if any.
     pub(crate) fn passage(
         &self,
         step: &Step,
@@ -293,7 +293,7 @@ impl System {
         first
     }
 
-    /// Keeps each of them on or off, or lets all of them act by their values again.
+    /// Holds each of the switches on or off, or lets all of them follow their values again.
     pub(crate) fn hold_switches(&self, on: Option<&[bool]>) {
         let mut start = 0;
         for force in &self.forces {
@@ -303,7 +303,8 @@ impl System {
         }
     }
 
-    /// What the body rubs against, force by force, and [whether it slides](crate::elements::force::Force::slides) there.
+    /// For each force, what the body rubs against, and [whether it
+    /// slides](crate::elements::force::Force::slides) there.
     pub(crate) fn slides(&self) -> impl Iterator<Item = Option<(&str, Option<bool>)>> {
         self.forces.iter().map(|force| force.slides())
     }
@@ -423,7 +424,7 @@ impl System {
         state::length(self.dofs()) + self.at.relaxing.len()
     }
 
-    /// The internal strains with which nothing pulls at the displacements `u`.
+    /// The internal strains with which Maxwell branches are free of stress at the displacements `u`.
     pub(crate) fn relaxed(&self, u: &[f64]) -> Vec<f64> {
         let mut internal = vec![0.0; self.at.relaxing.len()];
         if let Some(branches) = &self.model.branches {

@@ -10,9 +10,10 @@
 //! xu = ru + gamma xv
 //! ```
 //!
-//! One sparse symmetric matrix N of half the size; alpha costs nothing, however large.
+//! This needs one sparse symmetric matrix N of half the size; alpha costs nothing, however large.
 //!
-//! Maxwell branches are eliminated point by point (`body/branches.rs`), so that Kt is what they leave in a step of gamma.
+//! Maxwell branches are eliminated point by point (`elements/body/branches.rs`), so that Kt includes their
+//! effect in a step of gamma.
 //!
 //! Of r = c + gamma (v, M^-1 (f + A lambda)) the integrators are given only c + gamma (v, 0): then
 //! M rv is M cv + gamma f, and no iteration solves a system with M.
@@ -32,7 +33,8 @@ impl System {
         !self.newton.follows
     }
 
-    /// Tells whether residuals of the Newton systems are looked at again, and solutions corrected, as in Newton's iteration.
+    /// Sets whether residuals of the Newton systems are evaluated again and solutions corrected, as in
+    /// Newton's method.
     pub(crate) fn expect_iteration(&mut self, iterates: bool) {
         self.newton.accuracy = if iterates { ITERATED } else { SOLVED_ONCE };
     }
@@ -47,8 +49,7 @@ impl System {
         (self.newton.stiffness.get(), self.newton.damping.get())
     }
 
-    /// Brings Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are
-    /// current.
+    /// Updates Kt and D to (t, u, v), unless `reuse` allows older ones. Returns whether they are current.
     pub(crate) fn update_tangents(&mut self, t: f64, u: &[f64], v: &[f64], reuse: bool) -> bool {
         let NewtonMatrix {
             stiffness,
@@ -78,8 +79,8 @@ impl System {
         true
     }
 
-    /// Adds to Kt, just renewed, what Maxwell branches exert in a step of the parameter `gamma`: at once if that is 0, and
-    /// without stress if there are no `internal` strains.
+    /// Adds to Kt, just updated, the tangent of Maxwell branches in a step of the parameter `gamma`: the
+    /// instantaneous one if that is 0, and that without stress if there are no `internal` strains.
     pub(crate) fn add_branch_tangents(&mut self, gamma: f64, u: &[f64], internal: &[f64]) {
         let Some(branches) = &self.model.branches else { return };
         let NewtonMatrix { stiffness, place, .. } = &mut self.newton;
@@ -92,7 +93,7 @@ impl System {
         }
     }
 
-    /// Brings N = M + gamma D + gamma^2 Kt into force.
+    /// Sets N = M + gamma D + gamma^2 Kt, for the solves from now on.
     pub(crate) fn factorize_newton(&mut self, gamma: f64) -> Result<(), Failure> {
         self.newton.gamma = gamma;
         let NewtonMatrix { solver, stiffness, damping, is_damped, accuracy, .. } = &mut self.newton;
@@ -117,9 +118,9 @@ impl System {
         })
     }
 
-    /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds
-    /// M rv - gamma Kt ru and `self.newton.demands` what A^T xv is to be. Leaves xv and, complete with
-    /// those of nodal rows, mu.
+    /// Solves the system above. `ru` holds ru and becomes xu; `self.newton.right` holds M rv - gamma Kt ru
+    /// and `self.newton.demands` the required A^T xv. Leaves xv and mu there, the latter including those of
+    /// nodal rows.
     fn solve_newton(&mut self, ru: &mut [f64]) {
         let gamma = self.newton.gamma;
         let NewtonMatrix { solver, stiffness, damping, right, xv, demands, mu, .. } =
@@ -143,9 +144,9 @@ impl System {
         }
     }
 
-    /// The Newton system of the ODE form: `ru`, `rv` become xu, xv. `share` times the accelerations that
-    /// follow from the forces and demands last evaluated is added to `rv` first. Leaves in mu
-    /// gamma times the change of lambda, or with those accelerations all of `share` times lambda. `internal` are the
+    /// The Newton system of the ODE form: `ru`, `rv` become xu, xv. First, `share` times the accelerations
+    /// that follow from the forces and demands last evaluated is added to `rv`. Leaves in mu gamma times the
+    /// change of lambda or, with those accelerations, `share` times the whole lambda. `internal` are the
     /// residuals of the internal strains.
     pub(crate) fn solve_newton_ode(
         &mut self,
@@ -163,7 +164,7 @@ impl System {
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
             *demand = row.apply(rv) + share * of_forces;
         }
-        // u' = v is linear: from the second iteration on, round-off is all that ru holds
+        // u' = v is linear: from the second iteration on, ru holds only round-off
         if largest(ru) > 1e-12 * *gamma * largest(rv) {
             stiffness.get().add_product(-*gamma, ru, right);
         }
@@ -172,8 +173,8 @@ impl System {
         rv.copy_from_slice(&self.newton.xv);
     }
 
-    /// Makes of the residuals `x` of the internal strains their changes, with those of the displacements, `xu`. Gives how the
-    /// power that they dissipate changes (W).
+    /// Turns the residuals `x` of the internal strains into their changes, by those of the displacements,
+    /// `xu`. Returns the change of the power that they dissipate (W).
     pub(super) fn solve_branches(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
         let (NewtonMatrix { place, gamma, .. }, rates) = (&self.newton, &self.at.relaxing);
         let branches = self.model.branches.as_ref();
@@ -201,8 +202,8 @@ impl System {
         r3.iter_mut().zip(&self.newton.mu).for_each(|(x, mu)| *x = mu / gamma);
     }
 
-    /// The Newton system of the form of index 2 likewise; `r4` becomes the change of eta. With
-    /// xu = s + gamma xv it falls into
+    /// The Newton system of the form of index 2 likewise; `r4` becomes the change of eta. With xu = s + gamma
+    /// xv it splits into
     ///
     /// ```text
     /// M s - gamma A xeta = gamma r1,   A^T s = r4 - gamma r3
@@ -234,9 +235,9 @@ impl System {
         r4.iter_mut().for_each(|x| *x /= gamma);
     }
 
-    /// How the powers dissipated and supplied change along the last solution of the Newton
-    /// system: where forces are linear, exactly, for powers are quadratic then. So one iteration
-    /// settles the energies, too. Multipliers that the evaluation left at 0 are all in mu.
+    /// Changes of the powers dissipated and supplied along the last solution of the Newton system: exact
+    /// where forces are linear, as powers are quadratic then. So one iteration is enough for the energies,
+    /// too. Multipliers that the evaluation left at 0 are entirely in mu.
     pub(super) fn power_changes(&mut self) -> (f64, f64) {
         let NewtonMatrix { damping, is_damped, right, xv, mu, gamma, .. } = &mut self.newton;
         let (mut dissipated, mut supplied) = self.at.nodal.work(xv);

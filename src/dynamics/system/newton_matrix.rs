@@ -9,8 +9,9 @@ use crate::base::sparse::BlockMatrix;
 use crate::dynamics::matrices::Matrices;
 use crate::scene::constraint::ConstraintRow;
 
-/// Residuals, relative to the right-hand side, that systems may be solved to where that saves work: far below what a
-/// Newton iteration leaves, and below what any integrator sees that solves each system once.
+/// Residuals, relative to the right-hand side, to which systems may be solved where that saves work: the
+/// first far below what a Newton iteration leaves, the second below what matters to any integrator that
+/// solves each system once.
 pub(super) const ITERATED: f64 = 1e-5;
 pub(super) const SOLVED_ONCE: f64 = 1e-11;
 
@@ -19,7 +20,7 @@ pub(super) struct NewtonMatrix {
     pub(super) stiffness: Tangent,
     pub(super) damping: Tangent,
     pub(super) differences: Differences,
-    /// Whether the tangents follow the state, and have been evaluated.
+    /// Whether the tangents depend on the state, and whether they have been evaluated.
     pub(super) follows: bool,
     pub(super) is_set: bool,
     /// Whether D is not all zeros.
@@ -39,9 +40,9 @@ pub(super) struct NewtonMatrix {
 
 /// Kt or D.
 pub(super) enum Tangent {
-    /// The constant matrix of the model, in a phase without forces that change it.
+    /// The constant matrix of the scene, in a phase without forces that change it.
     Constant(Arc<BlockMatrix>),
-    /// A matrix of its own.
+    /// A separate matrix.
     Own(BlockMatrix),
 }
 
@@ -60,7 +61,7 @@ impl Tangent {
         }
     }
 
-    /// Its own matrix, as it is.
+    /// The separate matrix, as it is.
     pub(super) fn own(&mut self) -> Option<&mut BlockMatrix> {
         match self {
             Self::Own(matrix) => Some(matrix),
@@ -68,7 +69,7 @@ impl Tangent {
         }
     }
 
-    /// Its own matrix, set back to the constant part.
+    /// The separate matrix, reset to the constant part.
     pub(super) fn begin(
         &mut self,
         constant: &Option<Arc<BlockMatrix>>,

@@ -17,7 +17,7 @@ impl Ode for System {
     }
 
     fn integrals(&self) -> usize {
-        // those that nothing depends on are the last ones
+        // integrals must be the last unknowns: internal strains come after the energies
         if self.at.relaxing.is_empty() { ENERGIES } else { 0 }
     }
 

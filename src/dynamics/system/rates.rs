@@ -1,15 +1,15 @@
 //! Bounds on how fast the stiffest motions of a phase are.
 //!
-//! No eigenvalue of D^-1 K, with D diagonal and above 0, exceeds in size
+//! No eigenvalue of D^-1 K, with D diagonal and above 0, exceeds in absolute value
 //!
 //! ```text
 //! max_i (|K| x)_i / (D_ii x_i)
 //! ```
 //!
-//! for any x > 0, |K| being K with all entries taken by their size (L. Collatz, Math. Z. 48 (1942)
-//! 221-226). With x = 1 that is Gershgorin's bound; the power method makes it smaller from step to
-//! step. On meshes of linear triangles it comes within 5 % of the highest frequency, on rectangles within
-//! 14 %. Inertia that is not lumped is brought in by
+//! for any x > 0, with |K| the absolute values of all entries of K (L. Collatz, Math. Z. 48 (1942) 221-226).
+//! With x = 1 that is Gershgorin's bound; the power method reduces it from iteration to iteration. On meshes
+//! of linear triangles it comes within 5 % of the highest frequency, on rectangles within 14 %. Inertia that
+//! is not lumped is included by
 //!
 //! ```text
 //! lambda(M^-1 K) <= lambda(M^-1 D) lambda(D^-1 K),   D = diag(M),
@@ -27,10 +27,10 @@ use crate::integrators::ode::Rates;
 /// Iterations for the first bound, and for those after it, which begin where the last one ended.
 const FIRST: usize = 30;
 const NEXT: usize = 4;
-/// What keeps x above 0.
+/// Least x, so that it stays above 0.
 const SMALLEST: f64 = 1e-6;
 
-/// Room to bound them in, again and again.
+/// Workspace for bounding the rates repeatedly.
 pub(super) struct RatesBound {
     /// Diagonal of M over lambda(M^-1 diag(M)) (kg).
     masses: Vec<f64>,
@@ -68,8 +68,8 @@ impl RatesBound {
 }
 
 impl System {
-    /// The rates at (t, u, v), contacts that do not touch counted as if they did, and what slides as if it
-    /// stuck.
+    /// The rates at (t, u, v). Contacts that do not touch are counted as if they did, and sliding ones as if
+    /// they stuck.
     pub(super) fn rates(&mut self, t: f64, u: &[f64], v: &[f64], bound: &mut RatesBound) -> Rates {
         self.update_tangents(t, u, v, false);
         let RatesBound { masses, free, stiffness, damping } = bound;

@@ -1,13 +1,14 @@
 //! The linear systems of a phase, [X -A; -A^T 0] [x; mu] = [f; -d], with X the inertia matrix or
 //! the Newton matrix.
 //!
-//! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is
-//! a Cholesky solve with the free part of X. General rows, few of them, are met by a Schur
-//! complement as large as their number.
+//! Nodal rows of A^T are eliminated: their components of x are known at once, and what remains is a Cholesky
+//! solve with the free part of X. General rows, of which there are few, are satisfied by a Schur complement
+//! of the size of their number.
 //!
-//! X may be singular without the general rows: planes of symmetry off the axes may be all that holds a body. So where X is
-//! factorized as it is, springs of its own stiffness rho act along the rows g of single nodes, which have room in its
-//! pattern: X + rho g g^T has the same solution where g.x = d, with a multiplier that is rho d larger.
+//! X may be singular without the general rows: oblique planes of symmetry may be all that holds a body. So
+//! where X itself is factorized, springs with the stiffness rho of its diagonal are added along the rows g of
+//! single nodes, which fit into its pattern: X + rho g g^T has the same solution where g.x = d, with a
+//! multiplier that is rho d larger.
 
 #[cfg(test)]
 mod tests;
@@ -39,7 +40,7 @@ pub(super) struct Reduced {
     border_values: Vec<f64>,
     general: GeneralRows,
     springs: Vec<Spring>,
-    /// What they add, to which entries of the free part.
+    /// Entries of the free part, and what the springs add to them.
     stiffening: Vec<(usize, f64)>,
     /// Right-hand side and solution at the free degrees of freedom.
     work: Vec<f64>,
@@ -132,7 +133,7 @@ impl Reduced {
                 }
             }
         };
-        // a diagonal fills in no order
+        // a diagonal matrix has no fill in any order
         let dissection = model.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
         let order = dissection.map(of_nodes);
         let gradients = || Gradients::new(model, rows, coupling);
@@ -147,14 +148,15 @@ impl Reduced {
         }
     }
 
-    /// Brings X, positive definite, into force, whose entries `value` gives. That it is not positive definite may be found later;
-    /// on large solids systems are solved to an `accuracy` relative to their right-hand sides.
+    /// Sets X, positive definite, whose entries `value` returns. That it is not positive definite may be
+    /// found only later; on large solids systems are solved to an `accuracy` relative to their right-hand
+    /// sides.
     pub(super) fn begin(
         &mut self,
         accuracy: f64,
         value: impl Fn(EntrySource) -> f64,
     ) -> Result<(), Indefinite> {
-        // prescribed components are as exact as the systems are
+        // prescribed components are only as accurate as the solutions of the systems
         let accuracy = if self.general.rows.is_empty() { accuracy } else { EXACT };
         self.assemble_border(&value);
         self.general.rows.iter_mut().for_each(|row| row.spring = 0.0);
@@ -162,7 +164,8 @@ impl Reduced {
         self.general.factorize(&mut self.symmetric)
     }
 
-    /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value` gives.
+    /// Factorizes X, positive definite where the general rows of single nodes hold, whose entries `value`
+    /// returns.
     pub(super) fn factorize(
         &mut self,
         value: impl Fn(EntrySource) -> f64,
@@ -216,7 +219,8 @@ impl Reduced {
         self.work.iter().zip(self.symmetric.free()).for_each(|(work, &dof)| x[dof] = *work);
     }
 
-    /// Has iterations tried before a factor, for so many more than solves with it would cost, however small the body is.
+    /// Has iterations tried before a factor, up to so many more than solves with the factor would cost,
+    /// however small the body is.
     #[cfg(test)]
     fn rent(
         mut self,

@@ -1,4 +1,4 @@
-//! Rigid motions that constraints leave free, of a body as it is.
+//! Rigid motions that constraints leave free, of a body in some shape.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -13,7 +13,7 @@ const NOTHING: f64 = 1e-12;
 /// Resultants of loads below this, relative to the sum of their absolute values, are round-off.
 const BALANCED: f64 = 1e-12;
 
-/// A body as it is.
+/// The shape of a body.
 #[derive(Clone, Copy)]
 pub(crate) struct Shape<'a> {
     pub(crate) dimension: usize,
@@ -47,8 +47,8 @@ pub(crate) struct RigidMotion {
 }
 
 impl RigidMotion {
-    /// Carries nodes, of undeformed positions `natural`, on by `size` (rad or m) of this motion, turns along circles: what that adds
-    /// to the displacements `u`.
+    /// Moves nodes, with undeformed positions `natural`, by `size` (rad or m) of this motion, turns along
+    /// circles, and adds that to the displacements `u`.
     pub(crate) fn carry(&self, size: f64, natural: &[f64], u: &mut [f64]) {
         let order = self.generator.nrows();
         let motion = (&self.generator * size).exp() - DMatrix::identity(order, order);
@@ -59,7 +59,7 @@ impl RigidMotion {
         }
     }
 
-    /// Makes this motion that of the body with displacements `u`.
+    /// Updates this motion to that of the body with displacements `u`.
     pub(crate) fn move_to(&mut self, natural: &[f64], u: &[f64]) {
         let order = self.generator.nrows();
         for &node in &self.nodes {
@@ -81,7 +81,7 @@ impl RigidMotion {
         self.nodes.iter().map(work).sum()
     }
 
-    /// What the nodal `loads` (N) that are not in balance come to along the motion, in words.
+    /// The resultant along the motion, in words, of the nodal `loads` (N) if they are not in balance.
     pub(crate) fn resultant(&self, loads: &[f64]) -> Option<String> {
         let sum = dot(&self.values, loads);
         let terms: f64 = self.values.iter().zip(loads).map(|(r, f)| (r * f).abs()).sum();
@@ -98,14 +98,14 @@ fn at(natural: &[f64], u: &[f64]) -> DVector<f64> {
     DVector::from_iterator(u.len() + 1, position.chain([1.0]))
 }
 
-/// Takes the small `motions` out of the displacements `u`: R^T M u = 0 after that. `inertia` is M.
+/// Removes the small `motions` from the displacements `u`: R^T M u = 0 after that. `inertia` is M.
 pub(crate) fn remove(motions: &[RigidMotion], inertia: &NodeMatrix, u: &mut [f64]) {
     for (motion, part) in motions.iter().zip(parts(motions, inertia, u)) {
         u.iter_mut().zip(&motion.values).for_each(|(u, r)| *u -= part * r);
     }
 }
 
-/// The parts c of the `motions` R in the displacements `u`, R^T M (u - R c) = 0. `inertia` is M.
+/// The coefficients c of the `motions` R in the displacements `u`: R^T M (u - R c) = 0. `inertia` is M.
 pub(crate) fn parts(motions: &[RigidMotion], inertia: &NodeMatrix, u: &[f64]) -> Vec<f64> {
     let Some(first) = motions.first() else { return Vec::new() };
     let dimension = first.values.len() / inertia.pattern().nodes();
@@ -198,7 +198,7 @@ impl Modes {
         }
     }
 
-    /// Coefficients of the modes that move nothing of `rows`, reduced to echelon form.
+    /// Coefficients of the modes that `rows` leave free, reduced to echelon form.
     fn free(
         &self,
         shape: Shape,
@@ -218,7 +218,7 @@ impl Modes {
             }
             add_square(&mut hold, &values);
         }
-        // some modes move nothing: the turn of a single node, or of a straight line about itself
+        // some modes move nothing: the turn of a single node, or of a straight line about its own axis
         let moving = eigenvectors(&self.products, |value, largest| value > NOTHING * largest);
         let held = moving.transpose() * hold * &moving;
         let free = &moving * eigenvectors(&held, |value, largest| value <= NOTHING * largest);

@@ -10,7 +10,7 @@ use crate::scene::constraint::PhaseStart;
 use crate::scene::timeline::{Phase, Scene};
 
 impl Scene {
-    /// The constant numbers of the scene under the forces of its phases.
+    /// The matrices of the scene under the forces of its phases.
     pub(crate) fn model(&self, forces: &[Forces]) -> Arc<Matrices> {
         let all = forces.iter().flatten().map(|force| &**force);
         Arc::new(Matrices::new(self.body(), all))
@@ -28,8 +28,9 @@ impl Scene {
         System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
     }
 
-    /// How fast the body can move in each phase, in its undeformed shape and at rest: what makes a scene
-    /// stiff, and which method is the right one for it.
+    /// How fast the body can move in each phase, in its undeformed shape and at rest.
+    ///
+    /// It shows what makes a scene stiff, and which method is suitable for it.
     ///
     /// ```
     /// let scene = pliant::samples::square_jump(4)?;

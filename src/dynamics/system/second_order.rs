@@ -1,4 +1,4 @@
-//! The second-order form, M u'' = f(t, u, u'), whose constraints are followed as known motion.
+//! The second-order form, M u'' = f(t, u, u'), whose constraints are known motion.
 
 #[cfg(test)]
 mod tests;
@@ -76,7 +76,7 @@ impl SecondOrder for SecondOrderForm {
 }
 
 impl System {
-    /// The sum of all forces at (t, u, v), but those of the constraints.
+    /// The sum of all forces at (t, u, v) except those of the constraints.
     pub(crate) fn forces(
         &mut self,
         t: f64,

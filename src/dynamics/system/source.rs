@@ -1,6 +1,7 @@
 //! Where the entries of the matrices of a phase come from.
 
-/// Which entry of the matrices of the body an entry of X comes from. There are as many as X has entries, so they are small.
+/// Which entry of the matrices of the body an entry of X comes from. There is one for each entry of X, so it
+/// is kept small.
 #[derive(Clone, Copy)]
 pub(super) struct EntrySource {
     entry: u32,
@@ -34,9 +35,9 @@ impl EntrySource {
 /// Which entries X has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Coupling {
-    /// Nothing but itself, as lumped inertia.
+    /// The diagonal only, as for lumped inertia.
     Diagonal,
-    /// Equal axes only, as the inertia matrix.
+    /// Equal axes only, as for the inertia matrix.
     SameAxis,
     /// All axes of coupled nodes.
     AllAxes,

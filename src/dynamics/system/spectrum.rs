@@ -1,4 +1,4 @@
-//! How fast the motions of a phase are: the numbers that choose a method.
+//! How fast the motions of a phase are: the numbers by which a method is chosen.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
@@ -11,9 +11,10 @@ use crate::base::sparse::{BlockMatrix, NodeMatrix};
 use crate::base::vector::{dot, noise};
 use crate::dynamics::matrices::Matrices;
 
-/// How fast a body can move in a phase, by its tangents M, Kt, D in one state and the motions that
-/// the constraints allow. Contacts and springs count as far as they act in that state, Maxwell branches as springs, without
-/// their damping.
+/// How fast a body can move in a phase.
+///
+/// It follows from the tangents M, Kt, D in one state and the motions that the constraints allow. Contacts
+/// and springs count as far as they act in that state, Maxwell branches as springs, without their damping.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
     /// Highest angular frequency (rad/s), of Kt x = omega^2 M x: an estimate from below, good to a
@@ -26,7 +27,8 @@ pub struct Spectrum {
     pub damping_rate: f64,
     /// Damping ratio of the lowest vibration, x.D x / (2 omega x.M x) of its shape x.
     pub lowest_damping_ratio: f64,
-    /// What of it is [mass damping](crate::Substance::mass_damping), which damps fast vibrations less.
+    /// The part of it that is due to [mass damping](crate::Substance::mass_damping), which damps fast
+    /// vibrations less.
     pub mass_damping_ratio: f64,
 }
 
@@ -36,16 +38,19 @@ impl Spectrum {
         self.lowest_frequency.map(|omega| std::f64::consts::TAU / omega)
     }
 
-    /// Largest |eigenvalue| (1/s) of the equations of motion, those of the constraints' stabilization
-    /// left out: what bounds the step of an explicit method. The fastest decay and the fastest
-    /// vibration are taken to have the same shape, as they have in a body of one material.
+    /// Largest |eigenvalue| (1/s) of the equations of motion, without those of the constraint stabilization.
+    ///
+    /// It bounds the step of an explicit method. The fastest decay and the fastest vibration are assumed to
+    /// have the same shape, as they have in a body of one material.
     pub fn stiffest_rate(&self) -> f64 {
         let (omega, half) = (self.highest_frequency, 0.5 * self.damping_rate);
         if half > omega { half + (half * half - omega * omega).sqrt() } else { omega }
     }
 
-    /// Twice the damping ratio over the angular frequency of the lowest vibration (s): c/E where
-    /// viscosity alone damps. The damping ratio of other vibrations is about half of it times theirs.
+    /// Twice the damping ratio over the angular frequency of the lowest vibration (s).
+    ///
+    /// It is c/E where viscosity alone damps. The damping ratio of other vibrations is about half of it times
+    /// their angular frequency.
     pub fn retardation_time(&self) -> f64 {
         self.lowest_frequency.map_or(0.0, |omega| 2.0 * self.lowest_damping_ratio / omega)
     }
@@ -56,11 +61,11 @@ impl Spectrum {
 const POWER_ITERATIONS: usize = 40;
 const SUBSPACE_ITERATIONS: usize = 12;
 
-/// Parts of the highest eigenvalue: those below the first are of motions without stiffness; the second is the
-/// shift that makes Kt + shift M definite and leaves the solves their digits.
+/// Parts of the highest eigenvalue: those below the first belong to motions without stiffness; the second is
+/// the shift that makes Kt + shift M definite without loss of accuracy in the solves.
 const RIGID: f64 = 1e-12;
 const SHIFT: f64 = 1e-8;
-/// Part of the lowest eigenvalue that the shift is lowered to where it is above that: slender bodies are so soft.
+/// A shift above the lowest eigenvalue is lowered to this part of it: slender bodies are so soft.
 const LOWER_SHIFT: f64 = 0.1;
 
 impl System {
@@ -97,7 +102,7 @@ impl System {
         let (nowhere, mut mu) = (vec![0.0; count], vec![0.0; count]);
         let mut highest = 0.0;
         for iteration in 0..=POWER_ITERATIONS {
-            // the constraints take their part out of the first guess as out of all others
+            // the constraints are applied to the first guess as to all others
             image.fill(0.0);
             match iteration {
                 0 => self.model.inertia.add_product(self.model.dimension, 1.0, &x, &mut image),
@@ -121,7 +126,7 @@ impl System {
     fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
         let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.model;
         let mut positions = positions.clone();
-        // under linear strain turns along straight lines strain nothing
+        // with linear strain, turns along straight lines cause no strain
         if stiffness.is_none() {
             positions.iter_mut().zip(u).for_each(|(x, u)| *x += u);
         }
@@ -138,8 +143,9 @@ impl System {
         unresisted.map(|(motion, _)| motion).collect()
     }
 
-    /// Lowest eigenvalue of Kt x = eigenvalue M x above those of motions without stiffness, and its x of length 1
-    /// in the norm of M, by subspace iteration across the `rigid` motions, which are orthonormal by M.
+    /// Lowest eigenvalue of Kt x = eigenvalue M x above those of motions without stiffness, and its x of
+    /// length 1 in the norm of M, by subspace iteration orthogonal to the `rigid` motions, which are
+    /// orthonormal by M.
     fn lowest(&mut self, highest: f64, rigid: &[Vec<f64>]) -> Option<(f64, Vec<f64>)> {
         let (dofs, d) = (self.dofs(), self.model.dimension);
         if highest == 0.0 {
@@ -175,7 +181,7 @@ impl System {
                 if basis.len() < block || block == dofs {
                     return None;
                 }
-                // mechanisms fill it
+                // the block is full of mechanisms
                 let filled = block;
                 block = (2 * block).min(dofs);
                 basis.extend((filled..block).map(|k| noise(dofs, k)));
@@ -202,14 +208,14 @@ impl System {
         found
     }
 
-    /// Has `solver` solve with Kt + `shift` M. Returns whether that is positive definite.
+    /// Factorizes Kt + `shift` M in `solver`. Returns whether it is positive definite.
     fn shift(&self, solver: &mut Reduced, shift: f64) -> bool {
         let (inertia, stiffness) = (&self.model.inertia, self.tangents().0);
         solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
     }
 
-    /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are orthonormal; what
-    /// follows from others is dropped.
+    /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are
+    /// orthonormal; vectors that depend linearly on others are dropped.
     fn orthonormalize(&self, others: &[Vec<f64>], basis: &mut Vec<Vec<f64>>) {
         let Self { model, .. } = self;
         let with_image = |x: Vec<f64>| {
@@ -220,7 +226,7 @@ impl System {
         let mut done: Vec<(Vec<f64>, Vec<f64>)> = others.iter().cloned().map(with_image).collect();
         for mut x in basis.drain(..) {
             let before = self.length(&x);
-            // twice is enough: the first round leaves round-off of the part it takes out
+            // twice is enough: the first round leaves round-off of the part that it removes
             for _ in 0..2 {
                 for (other, image) in &done {
                     let part = dot(image, &x);
@@ -236,8 +242,8 @@ impl System {
         basis.extend(done.into_iter().skip(others.len()).map(|(x, _)| x));
     }
 
-    /// Turns a basis that is orthonormal by M into one that is orthogonal by Kt as well, and tells
-    /// its eigenvalues, ascending.
+    /// Turns a basis that is orthonormal by M into one that is orthogonal by Kt as well, and returns its
+    /// eigenvalues, ascending.
     fn ritz(&self, basis: &mut Vec<Vec<f64>>) -> Vec<f64> {
         let dofs = self.dofs();
         let image = |x: &Vec<f64>| {

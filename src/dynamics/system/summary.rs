@@ -15,7 +15,7 @@ pub struct PhaseSummary {
     pub start: f64,
     /// When it ends (s).
     pub end: f64,
-    /// Acceleration of gravity (m/s^2), if it is another one than the scene's.
+    /// Acceleration of gravity (m/s^2), if it differs from the scene's.
     pub gravity: Option<Vec<f64>>,
     /// Number of rows of its constraints: one for each component of a node that is held or moved.
     pub constraints: usize,
@@ -25,7 +25,7 @@ pub struct PhaseSummary {
     pub actuated: Vec<String>,
     /// Names of the chambers that are under pressure.
     pub pressurized: Vec<String>,
-    /// Names of the obstacles that it meets.
+    /// Names of the obstacles that act.
     pub obstacles: Vec<String>,
     /// How fast the body can move, in its undeformed shape and at rest.
     pub spectrum: Spectrum,

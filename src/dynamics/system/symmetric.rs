@@ -1,9 +1,9 @@
-//! Symmetric systems by the way that costs less: conjugate gradients or a factor.
+//! Symmetric systems, solved by what costs less: conjugate gradients or a factor.
 //!
-//! On large solids a factor takes the work of hundreds of iterations, while a Newton matrix M + gamma D + gamma^2 K
-//! with the small gamma of a step that follows the motion needs ten to a hundred of them. How many is not known
-//! beforehand, so they are rented until they have cost what a factor costs; then it is bought. Work is
-//! counted, not timed: a run does the same whatever else the machine does.
+//! On large solids a factor costs as much as hundreds of iterations, while a Newton matrix M + gamma D +
+//! gamma^2 K with the small gamma of a step that follows the motion needs ten to a hundred of them. How many
+//! is not known beforehand, so iterations are "rented" until they have cost as much as a factor; then the
+//! factor is "bought". Work is counted, not timed: a run does the same whatever else the machine does.
 
 use faer::sparse::SymbolicSparseColMat;
 
@@ -11,10 +11,10 @@ use super::cholesky::{Cholesky, Indefinite};
 use super::gradients::Gradients;
 use super::source::EntrySource;
 
-/// Operations of a factorization in the time of one of an iteration: it computes with dense blocks.
+/// Operations of a factorization, which uses dense blocks, in the time of one operation of an iteration.
 const DENSE_SPEED: f64 = 4.0;
-/// Iterations in the time of a factorization from which they are tried: solids of some 9000 unknowns, plane bodies of more than
-/// a million.
+/// Iterations are tried where a factorization takes the time of at least so many: solids of some 9000
+/// unknowns, plane bodies of more than a million.
 const WORTH_ITERATING: f64 = 400.0;
 
 /// Part of the rent that is always risked.
@@ -24,7 +24,7 @@ const LEAST_TRUST: f64 = 0.1;
 pub(super) struct Symmetric {
     /// Free degrees of freedom, ascending.
     free: Vec<usize>,
-    /// Where the lower triangle comes from.
+    /// Sources of the entries of the lower triangle.
     sources: Vec<EntrySource>,
     values: Vec<f64>,
     cholesky: Cholesky,
@@ -35,10 +35,10 @@ pub(super) struct Symmetric {
 /// Iterations instead of a factor.
 struct Rented {
     gradients: Gradients,
-    /// Whether they solve the matrix in force.
+    /// Whether systems with the matrix in force are solved by them.
     is_open: bool,
-    /// What they may cost for one matrix, the part of it that is risked, and what they may cost yet for the one in force, in
-    /// iterations.
+    /// The number of iterations allowed for one matrix, the part of it that is risked, and the number left
+    /// for the matrix in force.
     rent: f64,
     trust: f64,
     left: f64,
@@ -51,7 +51,8 @@ struct Rented {
 }
 
 impl Symmetric {
-    /// For the lower triangle `pattern`, which is analysed as in [`Cholesky::new`]. `gradients` makes what iterates, if that may pay.
+    /// For the lower triangle `pattern`, which is analysed as in [`Cholesky::new`]. `gradients` creates the
+    /// iterative solver, if that may pay.
     pub(super) fn new(
         free: Vec<usize>,
         sources: Vec<EntrySource>,
@@ -70,15 +71,15 @@ impl Symmetric {
         Self { free, sources, values, cholesky, rented }
     }
 
-    /// Has iterations tried before a factor, for so many more than solves with it would cost.
+    /// Has iterations tried before a factor, up to so many more than solves with the factor would cost.
     #[cfg(test)]
     pub(super) fn rent(&mut self, gradients: Gradients, iterations: f64) {
         self.rented = Some(Rented::new(gradients, iterations, 0.0));
     }
 
-    /// Brings a positive definite matrix into force, factorized only where that is cheap or turns out to be needed. That
-    /// it is not positive definite may be found later: then it is factorized as it is. Iterations end at a residual of
-    /// `accuracy` times the right-hand side.
+    /// Sets a positive definite matrix, which is factorized only where that is cheap or turns out to be
+    /// needed. That it is not positive definite may be found only later: then it is factorized as an
+    /// indefinite one. Iterations end at a residual of `accuracy` times the right-hand side.
     pub(super) fn begin(
         &mut self,
         accuracy: f64,
@@ -89,7 +90,8 @@ impl Symmetric {
         if rented.gradients.take(value) { Ok(()) } else { Err(Indefinite) }
     }
 
-    /// Factorizes the positive definite matrix whose entries `value` gives, `more` added to some of them.
+    /// Factorizes the positive definite matrix whose entries `value` returns, with `more` added to some of
+    /// them.
     pub(super) fn factorize(
         &mut self,
         value: impl Fn(EntrySource) -> f64,
@@ -107,7 +109,7 @@ impl Symmetric {
         self.cholesky.factorize_indefinite(&self.values)
     }
 
-    /// Has the matrix in force where factors are made of it.
+    /// Ends iterations, and copies the matrix in force to where it is factorized.
     fn end_iterations(&mut self) {
         if let Some(Rented { is_open, matrices, gradients, .. }) = &mut self.rented
             && std::mem::take(is_open)
@@ -118,7 +120,7 @@ impl Symmetric {
         }
     }
 
-    /// Replaces `x` by the solution of X x' = x; by what is no number if X turns out to be singular.
+    /// Replaces `x` by the solution of X x' = x; by NaN if X turns out to be singular.
     pub(super) fn solve(&mut self, x: &mut [f64]) {
         if let Some(rented) = &mut self.rented
             && rented.is_open
@@ -172,7 +174,7 @@ impl Rented {
         }
     }
 
-    /// Begins with a matrix. As long as the last ones needed factors all the same, less is risked.
+    /// Begins with a new matrix. As long as the last ones needed factors in the end, less is risked.
     fn begin(&mut self, accuracy: f64) {
         if self.is_open {
             self.trust = 1.0;
@@ -181,7 +183,7 @@ impl Rented {
         self.matrices += 1;
     }
 
-    /// Whether iterations have solved the system for what they may cost; if not, `x` is what it was.
+    /// Returns whether iterations have solved the system within their number; if not, `x` is unchanged.
     fn solve(&mut self, free: &[usize], x: &mut [f64]) -> bool {
         let most = (self.left + self.saved).max(0.0) as usize;
         let ended = self.gradients.solve(free, x, self.accuracy, most);

@@ -1,4 +1,4 @@
-//! The structured solves against the equations themselves, by finite differences.
+//! Tests of the structured solves against finite differences of the equations themselves.
 
 use faer::Mat;
 use faer::prelude::Solve;
@@ -104,15 +104,16 @@ fn structured_solve_is_that_of_the_ode_jacobian() {
     solves_by_the_ode_jacobian(system, &y, 1e-5, 1e-6);
 }
 
-/// Two branches in one part of a body and one in another, strained beside what they have relaxed to; some of them flow, and some do not.
+/// Two branches in one part of a body and one in another, strained away from their relaxed state; some of
+/// them flow, and some do not.
 #[test]
 fn internal_strains_are_eliminated() {
     let triangles = Mesh::rectangle([0.3, 0.2], [4, 3], Cells::Triangles).unwrap();
     let triangles6 = Mesh::rectangle([0.3, 0.2], [3, 2], Cells::Triangles6).unwrap();
     let hexahedra = Mesh::cuboid([0.3, 0.2, 0.1], [3, 2, 2], SolidCells::Hexahedra).unwrap();
     let (points, mean) = (Dilatation::AtPoints, Dilatation::Mean);
-    // components, points and cells, half of which have two branches; and what the dense solve loses (measured: 2e-5 of the
-    // energies of triangles of 6 nodes, less than 3e-5 of all)
+    // components, points and cells, half of which have two branches; and the accuracy that the dense solve
+    // loses (measured: 2e-5 of the energies of triangles of 6 nodes, less than 3e-5 of all)
     for (mesh, dilatation, plane, yield_stress, internal, tolerance) in [
         (&triangles, points, Plane::Strain, 0.0, 3 * (2 * 6 + 6), 1e-5),
         (&triangles6, mean, Plane::Strain, 0.0, 3 * 3 * (2 * 2 + 2), 1e-4),
@@ -131,7 +132,7 @@ fn internal_strains_are_eliminated() {
     }
 }
 
-/// A body with another substance at its right.
+/// A body with another substance on its right.
 fn eliminates(body: BodyBuilder, right: Substance, internal: usize, tolerance: f64) {
     let (d, yields) = (body.own_mesh().dimension(), right.branches[0].yield_stress > 0.0);
     let cells = CellSelection::inside(&[0.15, 0.0, 0.0][..d], &[0.3, 0.2, 0.1][..d]);
@@ -152,7 +153,7 @@ fn eliminates(body: BodyBuilder, right: Substance, internal: usize, tolerance: f
     y[..system.dofs()].iter_mut().for_each(|u| *u *= size);
     y.extend(noise(internal, 4).iter().map(|g| 0.1 * size * g));
     assert_eq!(y.len(), system.unknowns());
-    // steps that are short beside what is above the yield stress
+    // steps that are small compared with the excess over the yield stress
     solves_by_the_ode_jacobian(system, &y, if yields { 1e-7 } else { 1e-5 }, tolerance);
 }
 
@@ -177,7 +178,7 @@ fn solves_by_the_ode_jacobian(mut system: System, y: &[f64], step: f64, toleranc
             system.newton_solve(gamma, &mut x).unwrap();
             x
         };
-        // the squares in the powers, which the solve knows, cancel out
+        // the squares in the powers, which the solve includes, cancel out
         let (x, opposite) = (solved(1.0), solved(-1.0));
         let x: Vec<f64> = x.iter().zip(&opposite).map(|(a, b)| 0.5 * (a - b)).collect();
         // The dense solve loses some digits to the condition number of its matrix.
@@ -274,8 +275,8 @@ fn consistent_start_satisfies_the_residual() {
     }
 }
 
-/// The accelerations minimise (a - M^-1 f).M (a - M^-1 f) among those the constraints allow
-/// (Gauss): the multipliers do no work on allowed changes. Their demands are met.
+/// The accelerations minimise (a - M^-1 f).M (a - M^-1 f) among those the constraints allow (Gauss): the
+/// multipliers do no work on allowed changes. The demands of the constraints are met.
 #[test]
 fn accelerations_meet_the_demands_of_the_constraints() {
     let mut system = system();

@@ -1,4 +1,4 @@
-//! Forces that a sample does not carry but that follow from it.
+//! Forces that are not stored in a sample but follow from it.
 
 use super::{Sample, Trajectory};
 use crate::base::input::InputError;
@@ -10,17 +10,18 @@ use crate::scene::forces::Contact;
 use crate::scene::timeline::Phase;
 
 impl Trajectory {
-    /// Forces (N) of all obstacles on the nodes, dimension components per node; 0 where there is no
-    /// contact. A stiffness per area acts between the nodes: its forces are shared out to them.
+    /// Forces (N) of all obstacles on the nodes, dimension components per node; 0 where there is no contact.
+    ///
+    /// A stiffness per area acts between the nodes: its forces are distributed to them.
     ///
     /// # Errors
-    /// A sample that is not of this trajectory; a distance function of your own that has changed
-    /// since the run and has no meaning any more.
+    /// A sample that is not of this trajectory; a distance function of your own that has changed since the
+    /// run and is now undefined.
     pub fn contact_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
         self.forces_of(&self.scene.contacts(self.phase_of(sample)?)?, sample)
     }
 
-    /// The same of `contacts` alone.
+    /// The same for `contacts` alone.
     pub(crate) fn forces_of<'a>(
         &self,
         contacts: impl IntoIterator<Item = &'a Contact>,
@@ -44,7 +45,7 @@ impl Trajectory {
     pub fn constraint_forces(&self, sample: &Sample) -> Result<Vec<f64>, InputError> {
         let phase = self.phase_of(sample)?;
         let mut forces = vec![0.0; self.body().dofs()];
-        // where the rows start from tells what they prescribe, not which components they tie
+        // where the rows start from affects what they prescribe, not which components they couple
         let before = self.scene.phases()[..sample.phase].last();
         let start = PhaseStart { time: before.map_or(0.0, Phase::end), u: &forces };
         let rows = self.scene.rows(phase, &start)?;
@@ -59,8 +60,10 @@ impl Trajectory {
         Ok(forces)
     }
 
-    /// The force (N), one component per dimension, with which constraints act on the nodes of
-    /// `selection` together: what a probe that holds or moves them reads, with the opposite sign.
+    /// The force (N), one component per dimension, with which constraints act on the nodes of `selection`
+    /// together.
+    ///
+    /// A probe that holds or moves them reads it with the opposite sign.
     ///
     /// ```
     /// # use pliant::{Body, Material, Mesh, Phase, Sampling, Scene, Settings};

@@ -1,20 +1,21 @@
-//! The saddle-point system of statics and its dual, the tangent as it is: what forces left unbalanced do to the equilibrium, and to
-//! a number of it.
+//! The saddle-point system of statics and its dual, with the tangent as it is, symmetric or not: the effect
+//! of unbalanced forces on the equilibrium, and on a quantity of it.
 
 use super::AtRest;
 use crate::base::sparse::BlockMatrix;
 use crate::base::vector::largest;
 
-/// Refinements of a solution, the factors being those of the symmetric part of K: each takes off a share as large as the part
-/// that is not symmetric.
+/// Largest number of refinements of a solution with the factors of the symmetric part of K: each multiplies
+/// the error by about the relative size of the part that is not symmetric.
 const MOST_REFINEMENTS: usize = 100;
 
-/// Where they end, as a part of the solution: no estimate of an error has more digits.
+/// Size of a refinement relative to the solution at which they end: no estimate of an error has more digits.
 const ENOUGH: f64 = 1e-9;
 
 impl AtRest {
-    /// Solves K x - A mu = f, A^T x = d by the last factorization, which has to be that of K without a shift, K symmetric or not: a
-    /// step of Newton's method with its constraint forces. Returns whether it could.
+    /// Solves K x - A mu = f, A^T x = d by the last factorization, which must be that of K without a shift; K
+    /// need not be symmetric. This is a step of Newton's method with its constraint forces. Returns whether
+    /// it succeeded.
     pub(crate) fn solve_exactly(
         &mut self,
         [f, d]: [&[f64]; 2],
@@ -35,7 +36,7 @@ impl AtRest {
         self.refine([j, &demands], z, nu, BlockMatrix::add_transposed_product)
     }
 
-    /// Solves with K or K^T, as `add_product` has it.
+    /// Solves with K or K^T, depending on `add_product`.
     fn refine(
         &mut self,
         [f, d]: [&[f64]; 2],

@@ -1,4 +1,4 @@
-//! Statics against the energies and forces of dynamics.
+//! Tests of statics against the energies and forces of dynamics.
 
 use std::sync::Arc;
 
@@ -80,13 +80,13 @@ fn partial_loads_have_partial_tangents() {
     }
 }
 
-/// A square between a spring, a chamber and an obstacle on its way, with everything from outside by a
-/// factor; the equations of its only phase.
+/// A square with a spring, a chamber and a moving obstacle, with everything from outside times a factor;
+/// returns the equations of its only phase at rest.
 fn all_at_once(factor: f64) -> AtRest {
     let mesh = Mesh::rectangle([0.3, 0.3], [4, 4], Cells::Triangles).unwrap();
     let body = Body::new(mesh, SQUARE_MATERIAL).thickness(0.01).strain(Strain::Green);
     let body = body.point_mass("bob", [0.5, 0.4], 0.1).build().unwrap();
-    // it comes down by 3 cm, by a factor less than that
+    // it comes down by 3 cm times the factor
     let disc = Obstacle::disc([0.1, 0.38], 0.1).velocity([0.01 * factor, -0.03 * factor]);
     let phase = Phase::until(1.0)
         .hold("bottom")
@@ -111,8 +111,8 @@ fn all_at_once(factor: f64) -> AtRest {
     AtRest::new(system, 1.0, "test").unwrap()
 }
 
-/// A part of the load is what one gets who makes all of it smaller by hand: forces, their energy and
-/// their tangents, which are the derivatives of the forces.
+/// A part of the load equals the load with all its inputs made smaller: forces, their energy and their
+/// tangents, which are the derivatives of the forces.
 #[test]
 fn a_part_of_the_load_is_the_load_made_smaller() {
     let part = 0.3;
@@ -151,8 +151,8 @@ fn a_part_of_the_load_is_the_load_made_smaller() {
     }
 }
 
-/// The dual of a tangent that is not symmetric (pressure on a face that others do not close), of nodes that are held and of those
-/// on a plane askew: its equations, row by row, by the dense matrix.
+/// The dual system for a tangent that is not symmetric (pressure on a surface that is not closed), with nodes
+/// that are held and others on an oblique plane: its equations are checked row by row with the dense matrix.
 #[cfg(feature = "study")]
 #[test]
 fn duals_solve_the_transposed_system() {

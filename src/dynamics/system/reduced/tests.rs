@@ -1,4 +1,4 @@
-//! The reduced solves against dense ones of the whole saddle-point system.
+//! Tests of the reduced solves against dense ones of the whole saddle-point system.
 
 use faer::Mat;
 use faer::prelude::Solve;
@@ -35,8 +35,8 @@ fn wave(length: usize, seed: f64) -> Vec<f64> {
     (0..length).map(|i| (12.9898 * (i as f64 + seed)).sin()).collect()
 }
 
-/// X = `mass` M + `stiffness` K by the reduced solver and by a dense one, for some f and d. Returns whether
-/// X was positive definite.
+/// Compares solutions with X = `mass` M + `stiffness` K by the reduced solver and by a dense one, for some f
+/// and d. Returns whether X was positive definite.
 fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bool {
     let forces = scene.forces().unwrap();
     let model = scene.model(&forces);
@@ -122,8 +122,8 @@ fn each_coupling_is_that_of_its_matrix() {
     }
 }
 
-/// M - s K has eigenvalues of both signs: it takes LU. (General rows are met by a Schur complement, which has
-/// to be positive definite.)
+/// M - s K has eigenvalues of both signs: it requires LU. (General rows are satisfied by a Schur complement,
+/// which has to be positive definite.)
 #[test]
 fn what_is_not_definite_is_solved_all_the_same() {
     let held = scene(Inertia::Consistent, Phase::until(1.0).hold([1, 5, 10]));
@@ -137,7 +137,7 @@ fn all_may_be_held() {
     assert!(compare(&held, Coupling::AllAxes, [1.0, 1e-4]));
 }
 
-/// A row that the others imply is told by its number, whichever way it is hidden.
+/// A row that follows from the others is reported by its number, however it is hidden.
 #[test]
 fn rows_that_follow_from_others_are_found() {
     let twice = |factor: f64| [(14, Axis::X, factor), (15, Axis::Y, 2.0 * factor)];
@@ -157,7 +157,7 @@ fn rows_that_follow_from_others_are_found() {
     }
 }
 
-/// An indefinite matrix whose diagonal does not tell is found out by the iterations.
+/// An indefinite matrix with a positive diagonal is detected by the iterations.
 #[test]
 fn iterations_meet_directions_of_negative_curvature() {
     let held = scene(Inertia::Consistent, Phase::until(1.0).hold([1, 5, 10]));
@@ -166,7 +166,7 @@ fn iterations_meet_directions_of_negative_curvature() {
     let natural = vec![0.0; held.body().dofs()];
     let start = PhaseStart { time: 0.0, u: &natural };
     let rows = held.rows(&held.phases()[0], &start).unwrap();
-    // K less a part of its diagonal: modes softer than that part are turned over
+    // K minus a part of its diagonal: modes softer than that part get negative eigenvalues
     let value = |source: EntrySource| {
         let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
         let k = held.body().stiffness().symmetric(entry, transposed, axes);

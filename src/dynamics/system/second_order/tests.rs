@@ -1,4 +1,4 @@
-//! Central differences on bodies, at fixed steps, against what is known of the scheme in closed form.
+//! Central differences on bodies, at fixed steps, against known closed forms for the scheme.
 
 use std::f64::consts::PI;
 
@@ -11,7 +11,7 @@ use crate::{
     Scene, Settings, Strain, Viscosity,
 };
 
-/// So fast that a held node told to move does so within the first step.
+/// So fast that a held node that is set in motion follows within the first step.
 const ALPHA: f64 = 1e12;
 
 fn form(scene: &Scene) -> SecondOrderForm {
@@ -57,7 +57,7 @@ fn frequency(cells: usize, k: usize) -> f64 {
     2.0 * cells as f64 * ((2 * k - 1) as f64 * PI / (4 * cells) as f64).sin()
 }
 
-/// The bounds on the rates of a bar, free of shear and of waves across, are sharp.
+/// The bounds on the rates of a bar, without shear and transverse waves, are sharp.
 #[test]
 fn rates_of_a_bar() {
     for cells in [1, 2, 10, 100] {
@@ -72,7 +72,7 @@ fn rates_of_a_bar() {
     }
 }
 
-/// kinetic + potential + dissipated - supplied, less h^2 a.M a/8.
+/// kinetic + potential + dissipated - supplied, minus h^2 a.M a/8.
 fn balance(central: &mut CentralDifference<SecondOrderForm>, h: f64) -> f64 {
     let (t, y) = (central.t(), central.y().to_vec());
     let (n, form) = (y.len() / 2 - 1, central.system_mut());
@@ -92,8 +92,8 @@ fn square(strain: Strain, viscosity: f64, phase: Phase) -> Scene {
     Scene::new(body.build().unwrap()).phase(phase.hold("bottom"))
 }
 
-/// Under linear forces the balance of the scheme is constant to round-off, whatever the step, and
-/// though held nodes jump into motion.
+/// Under linear forces the balance of the scheme is constant to round-off, whatever the step, even if held
+/// nodes are suddenly set in motion.
 #[test]
 fn linear_forces_keep_the_energy_of_the_scheme() {
     let phase = Phase::until(1e9).move_nodes([13, 14], [0.02, -0.05]);
@@ -113,7 +113,7 @@ fn linear_forces_keep_the_energy_of_the_scheme() {
     }
 }
 
-/// The heat of natural and of objective viscosity is booked to second order.
+/// The heat of natural and of objective viscosity is accounted for to second order.
 #[test]
 fn heat_is_second_order() {
     for strain in [Strain::Cauchy, Strain::Green] {
@@ -134,7 +134,7 @@ fn heat_is_second_order() {
     }
 }
 
-/// Without damping the energy of a beam that swings far out does not drift in 100,000 steps.
+/// Without damping the energy of a beam that swings with large amplitude does not drift in 100,000 steps.
 #[test]
 fn energy_does_not_drift() {
     let material = Material { density: 1000.0, young: 1e6, poisson: 0.3, viscosity: 0.0 };
@@ -164,7 +164,7 @@ fn energy_does_not_drift() {
     assert!(stretches[9] < 2.0 * stretches[0], "{stretches:?}");
 }
 
-/// A node held by nothing but a stiff floor: the step is stable before it touches.
+/// A node held only by a stiff floor: the step is stable even before the node touches it.
 #[test]
 fn contacts_count_before_they_touch() {
     let body = Body::new(
@@ -179,13 +179,13 @@ fn contacts_count_before_they_touch() {
     let (mut form, still) = (form(&scene), [0.0; 2]);
     let far = form.rates(0.0, &still, &still);
     let touching = form.rates(0.0, &[-1.5, -2.5], &still);
-    // on half a kilogramme, beside springs of 1 N/m
+    // on half a kilogramme, in addition to springs of 1 N/m
     assert!((far.frequency / 2e4f64.sqrt() - 1.0).abs() < 1e-3, "{far:?}");
     assert!((far.decay / 60.0 - 1.0).abs() < 1e-3, "{far:?}");
     assert!((touching.frequency / far.frequency - 1.0).abs() < 1e-3, "{touching:?}");
 }
 
-/// The work of a force that leads a node along a path is that of the mean rates: energies balance to
+/// The work of a force that moves a node along a path is computed with the mean rates: energies balance to
 /// the order of the method.
 #[test]
 fn work_along_a_path_is_booked() {
@@ -204,7 +204,7 @@ fn work_along_a_path_is_booked() {
     let report = motion.report();
     let supplied = motion.last().energy.supplied;
     println!("{:e} of {:e}, {supplied:e} J supplied", report.energy_error, report.energy_scale);
-    // 80 steps per period: (2 pi / 80)^2 / 12 of the largest energy, and twice that for room
+    // 80 steps per period: (2 pi / 80)^2 / 12 of the largest energy, with a factor of two as margin
     assert!(supplied > 0.1 * report.energy_scale);
     assert!(report.energy_error < 1e-3 * report.energy_scale, "{:e}", report.energy_error);
 }
