@@ -29,7 +29,7 @@ enum Times {
     #[default]
     PhaseEnds,
     Every(f64),
-    Integration(Vec<f64>),
+    At(Vec<f64>),
 }
 
 impl Times {
@@ -38,7 +38,7 @@ impl Times {
         match self {
             Self::PhaseEnds => false,
             Self::Every(step) => (time / step).round() * step == time,
-            Self::Integration(times) => times.contains(&time),
+            Self::At(times) => times.contains(&time),
         }
     }
 }
@@ -56,7 +56,7 @@ impl Sampling {
 
     /// At the given times (s), in any order.
     pub fn at(times: impl Into<Vec<f64>>) -> Self {
-        Self { times: Times::Integration(times.into()), ..Self::default() }
+        Self { times: Times::At(times.into()), ..Self::default() }
     }
 
     /// Whether a run of `scene` takes a sample at this `time` (s), to the last digit.
@@ -184,7 +184,7 @@ impl Sampling {
                 let bytes = (end / step) * (dofs as f64) * SAMPLE_BYTES;
                 check_memory("sampling step", format!("{step:e} s"), bytes, "sample less often")
             }
-            Times::Integration(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
+            Times::At(times) => match times.iter().find(|t| !(0.0..=end).contains(*t)) {
                 Some(t) => {
                     let help = format!("samples lie between 0 and the end of the scene, {end} s");
                     Err(InputError::new("sampling time", t, help))
@@ -206,7 +206,7 @@ impl Sampling {
                 let count = ((before / step).ceil() - first).max(0.0) as usize;
                 (Inner::Multiples { step: *step, first }, count)
             }
-            Times::Integration(times) => {
+            Times::At(times) => {
                 let inside = times.iter().copied().filter(|&t| t > after && t < before);
                 let mut times: Vec<f64> = inside.collect();
                 times.sort_by(f64::total_cmp);

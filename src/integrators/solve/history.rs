@@ -139,14 +139,7 @@ pub(super) fn follow(
             let crosses = timed_by.is_none_or(|i| !touched.contains(&i));
             let before = group[0].1.clone();
             let ends = false;
-            parts.push(HistoryPart::Jump(Passage {
-                timed_by,
-                crosses,
-                acts,
-                before,
-                after,
-                ends,
-            }));
+            parts.push(HistoryPart::Jump(Passage { timed_by, crosses, acts, before, after, ends }));
         }
         from = here;
     }
