@@ -41,7 +41,7 @@ impl Scene {
     /// the wrong number; constraints that tie several components together; Maxwell branches.
     pub fn equations(&self, phase: usize, u: &[f64]) -> Result<Equations, InputError> {
         let forces = self.forces()?;
-        let model = self.model(&forces);
+        let matrices = self.matrices(&forces);
         let (Some(own), Some(forces)) = (self.phases().get(phase), forces.into_iter().nth(phase))
         else {
             let help = format!("the scene has {}, counted from 0", self.phases().len());
@@ -55,13 +55,13 @@ impl Scene {
                 help,
             ));
         }
-        if model.branches.is_some() {
+        if matrices.branches.is_some() {
             let help = "equations are given for bodies without Maxwell branches: leave them out";
             return Err(InputError::new("material.branches", "some", help));
         }
         let time = phase.checked_sub(1).map_or(0.0, |before| self.phases()[before].end());
         // positions follow b(t) exactly here, so that no stabilization is needed
-        let system = self.system(&model, own, forces, &PhaseStart { time, u }, 0.0)?;
+        let system = self.system(&matrices, own, forces, &PhaseStart { time, u }, 0.0)?;
         match system.rows().iter().find(|row| row.nodal().is_none()) {
             None => Ok(Equations { system }),
             Some(row) => Err(InputError::new(

@@ -74,6 +74,6 @@ impl Kept {
         let mut rows = run.scene.rows(&self.phase, &start)?;
         rows.iter_mut().zip(&self.origins).for_each(|(row, origin)| row.set_origin(*origin));
         let forces = run.scene.forces_in(&self.phase)?;
-        System::new(run.model.clone(), forces, rows, run.settings.alpha, &self.phase.name)
+        System::new(run.matrices.clone(), forces, rows, run.settings.alpha, &self.phase.name)
     }
 }

@@ -116,10 +116,11 @@ impl Scene {
         settings.validate()?;
         let forces = self.forces_from_start()?;
         let sensors = sampling.sensors(self)?;
-        let model = self.model(&forces);
+        let matrices = self.matrices(&forces);
         let first = forces.into_iter().next().unwrap_or_default();
         let gauges = Gauges::new(self)?;
-        let mut run = Run::new(self, settings, (sampling, sensors), clock, (model, gauges), first)?;
+        let mut run =
+            Run::new(self, settings, (sampling, sensors), clock, (matrices, gauges), first)?;
         while run.advance(&mut observer)? {}
         Ok(run.into_trajectory())
     }

@@ -33,7 +33,7 @@ use crate::scene::timeline::{Phase, Scene};
 pub(super) struct Run {
     pub(super) scene: Arc<Scene>,
     pub(super) settings: Settings,
-    pub(super) model: Arc<Matrices>,
+    pub(super) matrices: Arc<Matrices>,
     pub(super) gauges: Arc<Gauges>,
     pub(super) sampling: Sampling,
     pub(super) sensors: Sensors,
@@ -80,13 +80,13 @@ impl Run {
         settings: &Settings,
         (sampling, sensors): (&Sampling, Sensors),
         clock: Instant,
-        (model, gauges): (Arc<Matrices>, Gauges),
+        (matrices, gauges): (Arc<Matrices>, Gauges),
         forces: Forces,
     ) -> Result<Self, Error> {
         let phase = scene.first_phase()?;
         let (u, v) = (scene.initial_displacements(), scene.initial_velocities()?);
         let start = PhaseStart { time: 0.0, u };
-        let mut system = scene.system(&model, phase, forces, &start, settings.alpha)?;
+        let mut system = scene.system(&matrices, phase, forces, &start, settings.alpha)?;
         if system.relaxation_rate() > 0.0 && !settings.method.takes_branches() {
             let takes = Method::ALL.into_iter().filter(|method| method.takes_branches());
             let takes: Vec<&str> = takes.map(Method::name).collect();
@@ -125,7 +125,7 @@ impl Run {
             constraints: Arc::new(()),
             integration: Integration::Absent,
             settings: settings.clone(),
-            model,
+            matrices,
             gauges: Arc::new(gauges),
             sampling: sampling.clone(),
             sensors,
@@ -270,7 +270,7 @@ impl Run {
     pub(super) fn equations(&self, phase: &Phase, u: &[f64]) -> Result<System, InputError> {
         let start = PhaseStart { time: self.time, u };
         let forces = self.scene.forces_in(phase)?;
-        self.scene.system(&self.model, phase, forces, &start, self.settings.alpha)
+        self.scene.system(&self.matrices, phase, forces, &start, self.settings.alpha)
     }
 
     /// Begins the phase in force, whose equations are `system`.
@@ -294,7 +294,7 @@ impl Run {
         Self {
             scene: self.scene.clone(),
             settings: self.settings.clone(),
-            model: self.model.clone(),
+            matrices: self.matrices.clone(),
             gauges: self.gauges.clone(),
             sampling: self.sampling.clone(),
             sensors: self.sensors.clone(),

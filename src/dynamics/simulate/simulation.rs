@@ -75,7 +75,7 @@ impl Scene {
         // matrices have room for chambers that no phase fills
         let gauges = Gauges::new(self)?;
         all.push(gauges.chambers());
-        let own = (self.model(&all), gauges);
+        let own = (self.matrices(&all), gauges);
         let sampling = (&Sampling::phase_ends(), Sensors::default());
         let run = Run::new(self, settings, sampling, clock, own, first)?;
         let (time, now) = (run.time, run.state.clone());

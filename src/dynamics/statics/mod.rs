@@ -86,11 +86,11 @@ impl Scene {
     /// The phase of that `number` (from 0) at rest.
     pub(crate) fn at_rest_in(&self, number: usize) -> Result<AtRest, InputError> {
         let mut forces = self.forces()?;
-        let model = self.model(&forces);
+        let matrices = self.matrices(&forces);
         let phase = &self.phases()[number]; // `forces` makes sure that there is one
         let (time, u) = self.left_by_phases_before(number)?;
         let start = PhaseStart { time, u: &u };
-        let system = self.system(&model, phase, forces.swap_remove(number), &start, 0.0)?;
+        let system = self.system(&matrices, phase, forces.swap_remove(number), &start, 0.0)?;
         AtRest::new(system, phase.end(), phase.name())
     }
 

@@ -381,8 +381,8 @@ mod tests {
         let scene = Scene::new(body).phase(phase.clone());
         let start = PhaseStart { time: 0.0, u: &[0.0; 3] };
         let mut forces = scene.forces().unwrap();
-        let model = scene.model(&forces);
-        let system = scene.system(&model, &phase, forces.remove(0), &start, 0.0).unwrap();
+        let matrices = scene.matrices(&forces);
+        let system = scene.system(&matrices, &phase, forces.remove(0), &start, 0.0).unwrap();
         let rest = AtRest::new(system, 1.0, "test").unwrap();
         let statics = Statics::default();
         let mut search = Search::new(rest, &statics, scene.body(), Hold::Whole);

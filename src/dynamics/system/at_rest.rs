@@ -105,7 +105,7 @@ impl AtRest {
         let lost = |prescribed: Prescribed| !prescribed.displacement.is_finite();
         if let Some(row) = system.rows.iter().find(|row| lost(row.prescribed(time))) {
             return Err(InputError::new(
-                format!("path of {} in phase \"{phase}\"", row.label(system.model.dimension)),
+                format!("path of {} in phase \"{phase}\"", row.label(system.matrices.dimension)),
                 format!("{} m at t = {time} s", row.prescribed(time).displacement),
                 "it must give finite numbers",
             ));
@@ -134,8 +134,8 @@ impl AtRest {
     /// M x
     pub(crate) fn weigh(&self, x: &[f64], product: &mut [f64]) {
         product.fill(0.0);
-        let model = &self.system.model;
-        model.inertia.add_product(model.dimension, 1.0, x, product);
+        let matrices = &self.system.matrices;
+        matrices.inertia.add_product(matrices.dimension, 1.0, x, product);
     }
 
     /// Number of factorizations so far.
@@ -182,7 +182,7 @@ impl AtRest {
     ) -> Result<(), Failure> {
         at.clear();
         self.stand_still(fraction);
-        if let Some(stiffness) = &self.system.model.stiffness {
+        if let Some(stiffness) = &self.system.matrices.stiffness {
             self.nodal.clear();
             stiffness.add_product(-1.0, u, &mut self.nodal.conservative);
             at.add(&self.nodal, 1.0, true);
@@ -205,7 +205,7 @@ impl AtRest {
 
     /// Gives the nodes the velocity of each obstacle at a fraction of its path.
     fn stand_still(&mut self, fraction: f64) {
-        let dimension = self.system.model.dimension;
+        let dimension = self.system.matrices.dimension;
         for (force, v) in self.system.forces.iter().zip(&mut self.velocities) {
             if let Some(w) = force.velocity(when(&**force, fraction, self.time)) {
                 v.resize(self.still.len(), 0.0);
@@ -233,7 +233,7 @@ impl AtRest {
         add(true, stiffness);
         stiffness.values.iter_mut().for_each(|k| *k *= fraction);
         add(false, stiffness);
-        if let Some(constant) = &self.system.model.stiffness {
+        if let Some(constant) = &self.system.matrices.stiffness {
             stiffness.values.iter_mut().zip(&constant.values).for_each(|(k, c)| *k += c);
         }
     }
@@ -246,7 +246,7 @@ impl AtRest {
     /// Largest K_ii / M_ii (1/s^2): of the order of the square of the highest frequency.
     pub(crate) fn highest(&self) -> f64 {
         let (k, _) = self.system.tangents();
-        let (m, d) = (&self.system.model.inertia, self.system.model.dimension);
+        let (m, d) = (&self.system.matrices.inertia, self.system.matrices.dimension);
         let ratio = |dof: usize| k.get(dof, dof).abs() / m.get(dof / d, dof / d);
         (0..self.system.dofs()).map(ratio).fold(0.0, f64::max)
     }
@@ -255,8 +255,8 @@ impl AtRest {
     /// at the free degrees of freedom.
     pub(crate) fn factorize(&mut self, shift: f64) -> bool {
         self.factorizations += 1;
-        let System { model, newton, .. } = &mut self.system;
-        let (inertia, stiffness) = (&model.inertia, newton.stiffness.get());
+        let System { matrices, newton, .. } = &mut self.system;
+        let (inertia, stiffness) = (&matrices.inertia, newton.stiffness.get());
         newton.solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
     }
 
@@ -317,9 +317,9 @@ impl AtRest {
         for _ in 0..ITERATIONS {
             let System { rows, newton, .. } = &mut self.system;
             newton.solver.solve(rows, &right, &nowhere, &mut x, &mut mu);
-            let System { model, newton, .. } = &self.system;
+            let System { matrices, newton, .. } = &self.system;
             right.fill(0.0);
-            model.inertia.add_product(model.dimension, 1.0, &x, &mut right);
+            matrices.inertia.add_product(matrices.dimension, 1.0, &x, &mut right);
             let square = dot(&x, &right);
             if square == 0.0 {
                 break;

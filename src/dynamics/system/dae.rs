@@ -83,10 +83,10 @@ impl DaeForm {
     /// Visits all entries of dF/dy + cj dF/dy' of the form of index 1 as (row, column, value), column by column, rows
     /// ascending; the same entries at every call.
     pub(crate) fn visit_jacobian(&self, cj: f64, mut visit: impl FnMut(usize, usize, f64)) {
-        let System { model, rows, alpha, .. } = &self.system;
-        let (n, d) = (self.system.dofs(), model.dimension);
+        let System { matrices, rows, alpha, .. } = &self.system;
+        let (n, d) = (self.system.dofs(), matrices.dimension);
         let (stiffness, damping) = self.system.tangents();
-        let (inertia, pattern) = (&model.inertia, model.pattern());
+        let (inertia, pattern) = (&matrices.inertia, matrices.pattern());
         let lambda = state::length(n);
         // entry (column, row) of the pattern; the one that is wanted is (row, column)
         let block = |matrix: &[f64], entry: usize, row_axis: usize, column_axis: usize| {
@@ -137,7 +137,7 @@ impl Dae for DaeForm {
         self.system.evaluate_forces(t, u, v, &[])?;
         self.system.evaluate_rows(t, u, v)?;
         let (dissipated, supplied) = self.system.powers(v, multipliers);
-        let System { model, rows, at, .. } = &mut self.system;
+        let System { matrices, rows, at, .. } = &mut self.system;
         at.multipliers.copy_from_slice(multipliers);
 
         let subtract_pull = |multipliers: &[f64], momentum: &mut [f64]| {
@@ -151,12 +151,12 @@ impl Dae for DaeForm {
             kinematic[i] = rates.u[i] - v[i];
             dynamic[i] = -at.total[i];
         }
-        model.inertia.add_product(model.dimension, 1.0, rates.v, dynamic);
+        matrices.inertia.add_product(matrices.dimension, 1.0, rates.v, dynamic);
         subtract_pull(multipliers, dynamic);
         if self.index == Index::Two {
             self.mismatch.copy_from_slice(kinematic);
             kinematic.fill(0.0);
-            model.inertia.add_product(model.dimension, 1.0, &self.mismatch, kinematic);
+            matrices.inertia.add_product(matrices.dimension, 1.0, &self.mismatch, kinematic);
             subtract_pull(eta, kinematic);
         }
         *residual.dissipated = rates.dissipated - dissipated;

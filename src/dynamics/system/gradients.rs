@@ -40,9 +40,9 @@ pub(super) struct Ended {
 
 impl Gradients {
     /// For an X on the pattern of the matrices; the nodal ones of the `rows` fix degrees of freedom.
-    pub(super) fn new(model: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
-        let (pattern, dimension) = (model.pattern(), model.dimension);
-        let zeros = || vec![0.0; model.dofs()];
+    pub(super) fn new(matrices: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
+        let (pattern, dimension) = (matrices.pattern(), matrices.dimension);
+        let zeros = || vec![0.0; matrices.dofs()];
         Self {
             matrix: match coupling {
                 Coupling::AllAxes => Matrix::Blocks(BlockMatrix::zeros(pattern, dimension)),

@@ -35,7 +35,7 @@ pub(super) struct NodalRow {
 
 impl Mobility {
     pub(super) fn new(system: &System) -> Self {
-        let Matrices { inertia, dimension, .. } = &*system.model;
+        let Matrices { inertia, dimension, .. } = &*system.matrices;
         let rows: Option<Vec<_>> = system.rows.iter().map(ConstraintRow::nodal).collect();
         let Some(rows) = rows.filter(|_| system.is_lumped()) else {
             let none = vec![0.0; system.rows.len()];
@@ -125,7 +125,7 @@ impl System {
     /// Accelerations a and multipliers lambda with M a - A lambda = f, A^T a = d.
     fn accelerations(&mut self, f: &[f64], d: &[f64], a: &mut [f64], multipliers: &mut [f64]) {
         self.inertia.solve(&self.rows, f, d, a, multipliers);
-        let Matrices { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.matrices;
         nodal_multipliers(&self.rows, multipliers, |dof| {
             inertia.row_product(*dimension, dof, a) - f[dof]
         });

@@ -65,7 +65,7 @@ use crate::scene::constraint::{ConstraintRow, Prescribed};
 
 /// Equations of one phase, with everything that evaluating and solving them needs.
 pub(crate) struct System {
-    model: Arc<Matrices>,
+    matrices: Arc<Matrices>,
     forces: Forces,
     rows: Vec<ConstraintRow>,
     /// Stabilization rate alpha (1/s).
@@ -132,19 +132,19 @@ impl System {
     /// # Errors
     /// General constraint rows that follow from others.
     pub(crate) fn new(
-        model: Arc<Matrices>,
+        matrices: Arc<Matrices>,
         forces: Forces,
         rows: Vec<ConstraintRow>,
         alpha: f64,
         phase: &str,
     ) -> Result<Self, InputError> {
-        let (dimension, dofs) = (model.dimension, model.dofs());
-        let coupling = match model.inertia.is_diagonal() {
+        let (dimension, dofs) = (matrices.dimension, matrices.dofs());
+        let coupling = match matrices.inertia.is_diagonal() {
             true => Coupling::Diagonal,
             false => Coupling::SameAxis,
         };
-        let mut inertia = Reduced::new(&model, &rows, coupling);
-        let values = &model.inertia.values;
+        let mut inertia = Reduced::new(&matrices, &rows, coupling);
+        let values = &matrices.inertia.values;
         if inertia.begin(EXACT, |source| values[source.entry()]).is_err() {
             return Err(match inertia.dependent_row() {
                 Some(row) => InputError::new(
@@ -154,13 +154,13 @@ impl System {
                 ),
                 None => InputError::new(
                     "material.density",
-                    format!("giving {:e} kg on node 1", model.inertia.get(0, 0)),
+                    format!("giving {:e} kg on node 1", matrices.inertia.get(0, 0)),
                     "with this mesh the masses are beyond the range of double precision",
                 ),
             });
         }
-        let newton = NewtonMatrix::new(&model, &rows, follows(&model, &forces));
-        let internal = model.branches.as_ref().map_or(0, Branches::unknowns);
+        let newton = NewtonMatrix::new(&matrices, &rows, follows(&matrices, &forces));
+        let internal = matrices.branches.as_ref().map_or(0, Branches::unknowns);
         let at = Evaluation {
             nodal: NodalForces::zeros(dofs),
             total: vec![0.0; dofs],
@@ -171,18 +171,18 @@ impl System {
             relaxing: vec![0.0; internal],
             relaxed: 0.0,
         };
-        Ok(Self { model, forces, rows, alpha, inertia, newton, at, refusal: String::new() })
+        Ok(Self { matrices, forces, rows, alpha, inertia, newton, at, refusal: String::new() })
     }
 
     /// Number of displacement components.
     pub(crate) fn dofs(&self) -> usize {
-        self.model.dofs()
+        self.matrices.dofs()
     }
 
     /// Replaces the forces, if the Newton matrix has room for their tangents; all else is unchanged. Returns
     /// whether it has.
     pub(crate) fn change_forces(&mut self, forces: Forces) -> bool {
-        if follows(&self.model, &forces) != self.newton.follows {
+        if follows(&self.matrices, &forces) != self.newton.follows {
             return false;
         }
         self.forces = forces;
@@ -197,7 +197,7 @@ impl System {
 
     /// The inertia matrix.
     pub(crate) fn inertia(&self) -> &NodeMatrix {
-        &self.model.inertia
+        &self.matrices.inertia
     }
 
     /// The constraints, row by row.
@@ -242,7 +242,7 @@ impl System {
     /// at time `t`.
     pub(crate) fn project(&mut self, t: f64, v: &mut [f64]) {
         self.at.total.fill(0.0);
-        let Matrices { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.matrices;
         inertia.add_product(*dimension, 1.0, v, &mut self.at.total);
         for (demand, row) in self.at.demands.iter_mut().zip(&self.rows) {
             *demand = row.prescribed(t).velocity;
@@ -319,7 +319,7 @@ impl System {
     /// Maxwell branches have relaxed.
     pub(crate) fn energy(&self, t: f64, u: &[f64], v: &[f64], internal: &[f64]) -> Energy {
         let Matrices { inertia, stiffness, linear_by_cells, dimension, branches, .. } =
-            &*self.model;
+            &*self.matrices;
         let mut energy = Energy {
             kinetic: 0.5 * inertia.quadratic_form(*dimension, v),
             strain: match linear_by_cells {
@@ -350,7 +350,7 @@ impl System {
         self.evaluate_rows(t, u, v)?;
         let Evaluation { total, demands, acceleration, multipliers, .. } = &mut self.at;
         self.inertia.solve(&self.rows, total, demands, acceleration, multipliers);
-        let Matrices { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.matrices;
         nodal_multipliers(&self.rows, multipliers, |dof| {
             inertia.row_product(*dimension, dof, acceleration) - total[dof]
         });
@@ -365,7 +365,7 @@ impl System {
         internal: &[f64],
     ) -> Result<(), Failure> {
         self.collect_forces(t, u, v)?;
-        if let (Some(branches), [_, ..]) = (&self.model.branches, internal) {
+        if let (Some(branches), [_, ..]) = (&self.matrices.branches, internal) {
             let Evaluation { nodal, relaxing, relaxed, .. } = &mut self.at;
             *relaxed = branches.add_forces(u, internal, &mut nodal.conservative, relaxing);
         }
@@ -376,15 +376,17 @@ impl System {
     fn collect_forces(&mut self, t: f64, u: &[f64], v: &[f64]) -> Result<(), Failure> {
         let nodal = &mut self.at.nodal;
         nodal.clear();
-        let model = &*self.model;
-        match (&model.linear_by_cells, &model.stiffness) {
+        let matrices = &*self.matrices;
+        match (&matrices.linear_by_cells, &matrices.stiffness) {
             (Some(cells), _) => cells.add_forces(u, v, nodal)?,
             (None, Some(k)) => k.add_product(-1.0, u, &mut nodal.conservative),
             (None, None) => {}
         }
-        match (&model.damping, &model.mass_damping) {
-            (Some(b), _) if model.damps_by_matrix => b.add_product(-1.0, v, &mut nodal.dissipative),
-            (_, Some(m)) => m.add_product(model.dimension, -1.0, v, &mut nodal.dissipative),
+        match (&matrices.damping, &matrices.mass_damping) {
+            (Some(b), _) if matrices.damps_by_matrix => {
+                b.add_product(-1.0, v, &mut nodal.dissipative)
+            }
+            (_, Some(m)) => m.add_product(matrices.dimension, -1.0, v, &mut nodal.dissipative),
             (_, None) => {}
         }
         for force in &self.forces {
@@ -427,7 +429,7 @@ impl System {
     /// The internal strains with which Maxwell branches are free of stress at the displacements `u`.
     pub(crate) fn relaxed(&self, u: &[f64]) -> Vec<f64> {
         let mut internal = vec![0.0; self.at.relaxing.len()];
-        if let Some(branches) = &self.model.branches {
+        if let Some(branches) = &self.matrices.branches {
             branches.relax(u, &mut internal);
         }
         internal
@@ -435,12 +437,12 @@ impl System {
 
     /// Largest rate (1/s) at which Maxwell branches relax; 0 without any.
     pub(crate) fn relaxation_rate(&self) -> f64 {
-        self.model.branches.as_ref().map_or(0.0, Branches::fastest)
+        self.matrices.branches.as_ref().map_or(0.0, Branches::fastest)
     }
 
     fn not_finite(&self, row: &ConstraintRow, t: f64) -> Failure {
         let Prescribed { displacement, velocity, acceleration } = row.prescribed(t);
-        let label = row.label(self.model.dimension);
+        let label = row.label(self.matrices.dimension);
         Failure::Fatal(
             format!(
                 "the path of {label} gives b = {displacement}, b' = {velocity}, \
@@ -452,6 +454,6 @@ impl System {
 }
 
 /// Whether the Newton matrix depends on more than M, K and B: on the state, or on the step in another way.
-fn follows(model: &Matrices, forces: &Forces) -> bool {
-    model.branches.is_some() || forces.iter().any(|force| force.is_nonlinear())
+fn follows(matrices: &Matrices, forces: &Forces) -> bool {
+    matrices.branches.is_some() || forces.iter().any(|force| force.is_nonlinear())
 }

@@ -67,7 +67,7 @@ impl System {
         if reuse && *is_set {
             return false;
         }
-        let Matrices { stiffness: k, damping: b, .. } = &*self.model;
+        let Matrices { stiffness: k, damping: b, .. } = &*self.matrices;
         if let (Some(stiffness), Some(damping)) = (stiffness.begin(k), damping.begin(b)) {
             for force in &self.forces {
                 differences.add_tangents(force, t, [u, v], [stiffness, damping]);
@@ -82,7 +82,7 @@ impl System {
     /// Adds to Kt, just updated, the tangent of Maxwell branches in a step of the parameter `gamma`: the
     /// instantaneous one if that is 0, and that without stress if there are no `internal` strains.
     pub(crate) fn add_branch_tangents(&mut self, gamma: f64, u: &[f64], internal: &[f64]) {
-        let Some(branches) = &self.model.branches else { return };
+        let Some(branches) = &self.matrices.branches else { return };
         let NewtonMatrix { stiffness, place, .. } = &mut self.newton;
         if let Some(stiffness) = stiffness.own() {
             branches.add_tangents(gamma, u, internal, stiffness);
@@ -98,7 +98,7 @@ impl System {
         self.newton.gamma = gamma;
         let NewtonMatrix { solver, stiffness, damping, is_damped, accuracy, .. } = &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
-        let inertia = &self.model.inertia;
+        let inertia = &self.matrices.inertia;
         let factorized = solver.begin(*accuracy, |source: EntrySource| {
             let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
             let mass = if axes[0] == axes[1] { inertia.values[entry] } else { 0.0 };
@@ -127,7 +127,7 @@ impl System {
             &mut self.newton;
         let (stiffness, damping) = (stiffness.get(), damping.get());
         solver.solve(&self.rows, right, demands, xv, mu);
-        let (inertia, dimension) = (&self.model.inertia, self.model.dimension);
+        let (inertia, dimension) = (&self.matrices.inertia, self.matrices.dimension);
         nodal_multipliers(&self.rows, mu, |dof| {
             let damped = damping.row_product(dof, xv) + gamma * stiffness.row_product(dof, xv);
             inertia.row_product(dimension, dof, xv) + gamma * damped - right[dof]
@@ -157,10 +157,10 @@ impl System {
     ) {
         let NewtonMatrix { stiffness, right, demands, gamma, place, .. } = &mut self.newton;
         right.iter_mut().zip(&self.at.total).for_each(|(right, f)| *right = share * f);
-        if let (Some(branches), [_, ..]) = (&self.model.branches, internal) {
+        if let (Some(branches), [_, ..]) = (&self.matrices.branches, internal) {
             branches.add_residuals(*gamma, place.each_ref().map(|at| &at[..]), internal, right);
         }
-        self.model.inertia.add_product(self.model.dimension, 1.0, rv, right);
+        self.matrices.inertia.add_product(self.matrices.dimension, 1.0, rv, right);
         for ((demand, row), of_forces) in demands.iter_mut().zip(&self.rows).zip(&self.at.demands) {
             *demand = row.apply(rv) + share * of_forces;
         }
@@ -177,7 +177,7 @@ impl System {
     /// `xu`. Returns the change of the power that they dissipate (W).
     pub(super) fn solve_branches(&mut self, xu: &[f64], x: &mut [f64]) -> f64 {
         let (NewtonMatrix { place, gamma, .. }, rates) = (&self.newton, &self.at.relaxing);
-        let branches = self.model.branches.as_ref();
+        let branches = self.matrices.branches.as_ref();
         let place = place.each_ref().map(|at| &at[..]);
         branches.map_or(0.0, |branches| branches.solve(*gamma, place, rates, xu, x))
     }
@@ -222,7 +222,7 @@ impl System {
         let of_slip = r4.iter().zip(&*r3).map(|(r4, r3)| r4 - gamma * r3);
         demands.iter_mut().zip(of_slip).for_each(|(d, of_slip)| *d = of_slip);
         self.inertia.solve(&self.rows, right, demands, r1, r4);
-        let Matrices { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.matrices;
         nodal_multipliers(&self.rows, r4, |dof| {
             inertia.row_product(*dimension, dof, r1) - right[dof]
         });

@@ -47,10 +47,10 @@ pub(super) enum Tangent {
 }
 
 impl Tangent {
-    fn new(model: &Matrices, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
+    fn new(matrices: &Matrices, constant: &Option<Arc<BlockMatrix>>, follows: bool) -> Self {
         match constant {
             Some(constant) if !follows => Self::Constant(constant.clone()),
-            _ => Self::Own(BlockMatrix::zeros(model.pattern(), model.dimension)),
+            _ => Self::Own(BlockMatrix::zeros(matrices.pattern(), matrices.dimension)),
         }
     }
 
@@ -84,18 +84,18 @@ impl Tangent {
 }
 
 impl NewtonMatrix {
-    pub(super) fn new(model: &Matrices, rows: &[ConstraintRow], follows: bool) -> Self {
-        let dofs = model.dofs();
+    pub(super) fn new(matrices: &Matrices, rows: &[ConstraintRow], follows: bool) -> Self {
+        let dofs = matrices.dofs();
         Self {
-            solver: Reduced::new(model, rows, Coupling::AllAxes),
-            stiffness: Tangent::new(model, &model.stiffness, follows),
-            damping: Tangent::new(model, &model.damping, follows),
-            differences: Differences::new(model.scales),
+            solver: Reduced::new(matrices, rows, Coupling::AllAxes),
+            stiffness: Tangent::new(matrices, &matrices.stiffness, follows),
+            damping: Tangent::new(matrices, &matrices.damping, follows),
+            differences: Differences::new(matrices.scales),
             follows,
             is_set: false,
-            is_damped: model.damping.is_some(),
+            is_damped: matrices.damping.is_some(),
             gamma: f64::NAN,
-            place: match &model.branches {
+            place: match &matrices.branches {
                 Some(branches) => [vec![0.0; dofs], vec![0.0; branches.unknowns()]],
                 None => [Vec::new(), Vec::new()],
             },

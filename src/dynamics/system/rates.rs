@@ -50,14 +50,14 @@ struct Bound {
 
 impl RatesBound {
     pub(super) fn new(system: &mut System) -> Self {
-        let Matrices { inertia, dimension, .. } = &*system.model.clone();
+        let Matrices { inertia, dimension, .. } = &*system.matrices.clone();
         let factor = if system.is_lumped() { 1.0 } else { system.inertia_factor() };
         let dofs = system.dofs();
         let mass = |dof: usize| inertia.get(dof / dimension, dof / dimension) / factor;
         let mut free = vec![1.0; dofs];
         system.rows.iter().filter_map(|row| row.nodal()).for_each(|(dof, _)| free[dof] = 0.0);
         let bound = || Bound {
-            reserve: vec![0.0; system.model.pattern().nodes()],
+            reserve: vec![0.0; system.matrices.pattern().nodes()],
             x: free.clone(),
             image: vec![0.0; dofs],
             iterations: FIRST,
@@ -87,7 +87,7 @@ impl System {
 
     /// Largest eigenvalue of M^-1 diag(M), by the power method.
     fn inertia_factor(&mut self) -> f64 {
-        let Matrices { inertia, dimension, .. } = &*self.model;
+        let Matrices { inertia, dimension, .. } = &*self.matrices;
         let (dofs, rows) = (self.dofs(), self.rows.len());
         let (nowhere, mut multipliers) = (vec![0.0; rows], vec![0.0; rows]);
         let mut x: Vec<f64> = (0..dofs).map(|i| (12.9898 * (i as f64 + 1.0)).sin()).collect();

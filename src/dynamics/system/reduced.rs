@@ -57,8 +57,8 @@ struct Spring {
 }
 
 impl Reduced {
-    pub(super) fn new(model: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
-        let (pattern, dimension) = (model.pattern(), model.dimension);
+    pub(super) fn new(matrices: &Matrices, rows: &[ConstraintRow], coupling: Coupling) -> Self {
+        let (pattern, dimension) = (matrices.pattern(), matrices.dimension);
         let dofs = pattern.nodes() * dimension;
         let mut position: Vec<Option<usize>> = vec![Some(0); dofs];
         rows.iter().filter_map(ConstraintRow::nodal).for_each(|(dof, _)| position[dof] = None);
@@ -134,9 +134,9 @@ impl Reduced {
             }
         };
         // a diagonal matrix has no fill in any order
-        let dissection = model.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
+        let dissection = matrices.dissection.as_ref().filter(|_| coupling != Coupling::Diagonal);
         let order = dissection.map(of_nodes);
-        let gradients = || Gradients::new(model, rows, coupling);
+        let gradients = || Gradients::new(matrices, rows, coupling);
         Self {
             border_values: vec![0.0; border.len()],
             general,
@@ -224,12 +224,12 @@ impl Reduced {
     #[cfg(test)]
     fn rent(
         mut self,
-        model: &Matrices,
+        matrices: &Matrices,
         rows: &[ConstraintRow],
         coupling: Coupling,
         iterations: f64,
     ) -> Self {
-        self.symmetric.rent(Gradients::new(model, rows, coupling), iterations);
+        self.symmetric.rent(Gradients::new(matrices, rows, coupling), iterations);
         self
     }
 

@@ -11,7 +11,7 @@ use crate::scene::timeline::{Phase, Scene};
 
 impl Scene {
     /// The matrices of the scene under the forces of its phases.
-    pub(crate) fn model(&self, forces: &[Forces]) -> Arc<Matrices> {
+    pub(crate) fn matrices(&self, forces: &[Forces]) -> Arc<Matrices> {
         let all = forces.iter().flatten().map(|force| &**force);
         Arc::new(Matrices::new(self.body(), all))
     }
@@ -19,13 +19,13 @@ impl Scene {
     /// The equations of one phase under its forces.
     pub(crate) fn system(
         &self,
-        model: &Arc<Matrices>,
+        matrices: &Arc<Matrices>,
         phase: &Phase,
         forces: Forces,
         start: &PhaseStart,
         alpha: f64,
     ) -> Result<System, InputError> {
-        System::new(model.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
+        System::new(matrices.clone(), forces, self.rows(phase, start)?, alpha, &phase.name)
     }
 
     /// How fast the body can move in each phase, in its undeformed shape and at rest.
@@ -43,12 +43,12 @@ impl Scene {
     /// As [`validate`](Self::validate).
     pub fn spectrum(&self) -> Result<Vec<Spectrum>, InputError> {
         let forces = self.forces()?;
-        let model = self.model(&forces);
+        let matrices = self.matrices(&forces);
         let rest = vec![0.0; self.body().dofs()];
         let mut time = 0.0;
         let spectra = self.phases().iter().zip(forces).map(|(phase, forces)| {
             let start = PhaseStart { time, u: &rest };
-            let mut system = self.system(&model, phase, forces, &start, 0.0)?;
+            let mut system = self.system(&matrices, phase, forces, &start, 0.0)?;
             let spectrum = system.spectrum(time, &rest, &rest);
             time = phase.until;
             Ok(spectrum)

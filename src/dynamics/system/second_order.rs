@@ -91,7 +91,7 @@ impl System {
 
     /// Whether M is diagonal.
     pub(crate) fn is_lumped(&self) -> bool {
-        self.model.inertia.is_diagonal()
+        self.matrices.inertia.is_diagonal()
     }
 
     /// What a row prescribes at time `t`.

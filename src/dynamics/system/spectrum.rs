@@ -87,9 +87,9 @@ impl System {
             let omega = eigenvalue.sqrt();
             spectrum.lowest_frequency = Some(omega);
             spectrum.lowest_damping_ratio = self.tangents().1.quadratic_form(&x) / (2.0 * omega);
-            let by_mass = |m: &NodeMatrix| m.quadratic_form(self.model.dimension, &x);
+            let by_mass = |m: &NodeMatrix| m.quadratic_form(self.matrices.dimension, &x);
             spectrum.mass_damping_ratio =
-                self.model.mass_damping.as_deref().map_or(0.0, by_mass) / (2.0 * omega);
+                self.matrices.mass_damping.as_deref().map_or(0.0, by_mass) / (2.0 * omega);
         }
         spectrum
     }
@@ -105,7 +105,9 @@ impl System {
             // the constraints are applied to the first guess as to all others
             image.fill(0.0);
             match iteration {
-                0 => self.model.inertia.add_product(self.model.dimension, 1.0, &x, &mut image),
+                0 => {
+                    self.matrices.inertia.add_product(self.matrices.dimension, 1.0, &x, &mut image)
+                }
                 _ => matrix(self).add_product(1.0, &x, &mut image),
             }
             if iteration > 0 {
@@ -124,7 +126,7 @@ impl System {
 
     /// The rigid motions of the body with displacements `u` that neither rows nor stiffness resist, orthonormal by M.
     fn rigid_motions(&self, u: &[f64], highest: f64) -> Vec<Vec<f64>> {
-        let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.model;
+        let Matrices { positions, size, stiffness, dimension, inertia, .. } = &*self.matrices;
         let mut positions = positions.clone();
         // with linear strain, turns along straight lines cause no strain
         if stiffness.is_none() {
@@ -147,11 +149,11 @@ impl System {
     /// length 1 in the norm of M, by subspace iteration orthogonal to the `rigid` motions, which are
     /// orthonormal by M.
     fn lowest(&mut self, highest: f64, rigid: &[Vec<f64>]) -> Option<(f64, Vec<f64>)> {
-        let (dofs, d) = (self.dofs(), self.model.dimension);
+        let (dofs, d) = (self.dofs(), self.matrices.dimension);
         if highest == 0.0 {
             return None;
         }
-        let mut solver = Reduced::new(&self.model, &self.rows, Coupling::AllAxes);
+        let mut solver = Reduced::new(&self.matrices, &self.rows, Coupling::AllAxes);
         let mut shift = SHIFT * highest;
         // Kt may have become indefinite by compression
         while !self.shift(&mut solver, shift) {
@@ -169,7 +171,7 @@ impl System {
         while iterations < SUBSPACE_ITERATIONS {
             for x in &mut basis {
                 let mut image = vec![0.0; dofs];
-                self.model.inertia.add_product(d, 1.0, x, &mut image);
+                self.matrices.inertia.add_product(d, 1.0, x, &mut image);
                 solver.solve(&self.rows, &image, &nowhere, x, &mut mu);
             }
             self.orthonormalize(rigid, &mut basis);
@@ -210,17 +212,17 @@ impl System {
 
     /// Factorizes Kt + `shift` M in `solver`. Returns whether it is positive definite.
     fn shift(&self, solver: &mut Reduced, shift: f64) -> bool {
-        let (inertia, stiffness) = (&self.model.inertia, self.tangents().0);
+        let (inertia, stiffness) = (&self.matrices.inertia, self.tangents().0);
         solver.factorize(|source| shifted(inertia, stiffness, shift, source)).is_ok()
     }
 
     /// Makes `basis` orthonormal by M, one vector after the other, and orthogonal to `others`, which are
     /// orthonormal; vectors that depend linearly on others are dropped.
     fn orthonormalize(&self, others: &[Vec<f64>], basis: &mut Vec<Vec<f64>>) {
-        let Self { model, .. } = self;
+        let Self { matrices, .. } = self;
         let with_image = |x: Vec<f64>| {
             let mut image = vec![0.0; x.len()];
-            model.inertia.add_product(model.dimension, 1.0, &x, &mut image);
+            matrices.inertia.add_product(matrices.dimension, 1.0, &x, &mut image);
             (x, image)
         };
         let mut done: Vec<(Vec<f64>, Vec<f64>)> = others.iter().cloned().map(with_image).collect();
@@ -272,6 +274,6 @@ impl System {
 
     /// sqrt(x.M x)
     fn length(&self, x: &[f64]) -> f64 {
-        self.model.inertia.quadratic_form(self.model.dimension, x).sqrt()
+        self.matrices.inertia.quadratic_form(self.matrices.dimension, x).sqrt()
     }
 }

@@ -40,8 +40,8 @@ fn system() -> System {
 
 fn first_phase(scene: &Scene, start: &PhaseStart) -> Result<System, InputError> {
     let mut forces = scene.forces()?;
-    let model = scene.model(&forces);
-    scene.system(&model, &scene.phases()[0], forces.remove(0), start, ALPHA)
+    let matrices = scene.matrices(&forces);
+    scene.system(&matrices, &scene.phases()[0], forces.remove(0), start, ALPHA)
 }
 
 /// Numbers between -1 and 1 without a pattern (a linear congruential generator).

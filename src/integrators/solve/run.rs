@@ -17,7 +17,7 @@ use super::{
     problem::{Break, Equations, Observer, Problem},
     saved::Saved,
     sensitivities::Carried,
-    solution::{End, Occurrence, Record},
+    solution::{End, Occurrence, SavedPoint},
     watch::EventTracker,
 };
 use crate::base::input::InputError;
@@ -310,9 +310,9 @@ impl<'a> Run<'a> {
     }
 
     /// State, sensitivities and integrals at the present time, after any jump.
-    pub(super) fn row(&self) -> Record<'_> {
+    pub(super) fn row(&self) -> SavedPoint<'_> {
         let s = self.carried.as_ref().map_or(&[][..], |carried| &carried.s);
-        Record { y: &self.y, s, q: self.quadratures() }
+        SavedPoint { y: &self.y, s, q: self.quadratures() }
     }
 
     /// The sensitivities that belong to the states of the last step: before its jump, or at its end if there

@@ -76,7 +76,7 @@ impl fmt::Debug for Solution {
 
 /// What is kept of one time: state, sensitivities (one column after the other) and integrals.
 #[derive(Clone, Copy)]
-pub(super) struct Record<'r> {
+pub(super) struct SavedPoint<'r> {
     pub(super) y: &'r [f64],
     pub(super) s: &'r [f64],
     pub(super) q: &'r [f64],
@@ -93,7 +93,7 @@ fn node(k: usize, degree: usize) -> f64 {
 }
 
 impl Solution {
-    pub(super) fn new(t: f64, row: Record<'_>, dense: bool) -> Self {
+    pub(super) fn new(t: f64, row: SavedPoint<'_>, dense: bool) -> Self {
         Self {
             n: row.y.len(),
             t: vec![t],
@@ -114,7 +114,7 @@ impl Solution {
     pub(super) fn push<E>(
         &mut self,
         t: f64,
-        row: Record<'_>,
+        row: SavedPoint<'_>,
         degree: u32,
         mut at: impl FnMut(f64, &mut [f64]) -> Result<(), E>,
     ) -> Result<(), E> {
@@ -135,7 +135,7 @@ impl Solution {
         Ok(())
     }
 
-    fn add(&mut self, t: f64, row: Record<'_>) {
+    fn add(&mut self, t: f64, row: SavedPoint<'_>) {
         self.t.push(t);
         self.states.extend_from_slice(row.y);
         self.sensitivities.extend_from_slice(row.s);
@@ -143,7 +143,7 @@ impl Solution {
     }
 
     /// Adds the state after a jump.
-    pub(super) fn push_jump(&mut self, t: f64, row: Record<'_>) {
+    pub(super) fn push_jump(&mut self, t: f64, row: SavedPoint<'_>) {
         if let Some(inner) = &mut self.inner {
             inner.push(self.nodes.len());
         }

@@ -6,7 +6,7 @@ use super::{
     options::{Options, Output},
     problem::Problem,
     run::Run,
-    solution::{End, Record, Solution},
+    solution::{End, SavedPoint, Solution},
 };
 
 /// Integrates `problem` by `method` over `span`, from its start to its end, which may lie before it.
@@ -29,7 +29,7 @@ pub fn solve(
         Ok(run) => run,
         Err(Reason::Input(error)) => return Err(Error::Input(error)),
         Err(reason) => {
-            let solution = Solution::new(span.0, Record { y: &start, s: &[], q: &[] }, dense);
+            let solution = Solution::new(span.0, SavedPoint { y: &start, s: &[], q: &[] }, dense);
             return Err(Error::Stopped(Box::new(Stopped { reason, solution })));
         }
     };
@@ -83,7 +83,7 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
             }
             let degree = run.interpolant_degree();
             let (s, q) = (run.sensitivities_before().to_vec(), run.quadratures().to_vec());
-            let row = Record { y: &y, s: &s, q: &q };
+            let row = SavedPoint { y: &y, s: &s, q: &q };
             solution.push(t, row, degree, |at, out| run.interpolate(at, out))?;
             if jumped {
                 solution.push_jump(t, run.row());
@@ -98,7 +98,7 @@ fn integrate(run: &mut Run<'_>, solution: &mut Solution, output: &Output) -> Res
             } else {
                 run.interpolate(*first, &mut y)?;
                 let (s, q) = (run.sensitivities_at(*first)?, run.quadratures_at(*first)?);
-                solution.push_jump(*first, Record { y: &y, s: &s, q: &q });
+                solution.push_jump(*first, SavedPoint { y: &y, s: &s, q: &q });
             }
             times = rest;
         }

@@ -43,11 +43,11 @@ fn add_text(hasher: &mut DefaultHasher, text: fmt::Arguments<'_>) {
 fn add_accelerations(hasher: &mut DefaultHasher, scene: &Scene) -> Result<(), Error> {
     let rest = vec![0.0; scene.body().dofs()];
     let forces = scene.forces()?;
-    let model = scene.model(&forces);
+    let matrices = scene.matrices(&forces);
     let mut time = 0.0;
     for (phase, forces) in scene.phases().iter().zip(forces) {
         let start = PhaseStart { time, u: &rest };
-        let mut system = scene.system(&model, phase, forces, &start, 1.0)?;
+        let mut system = scene.system(&matrices, phase, forces, &start, 1.0)?;
         let state = vec![0.0; system.unknowns()];
         let mut change = state.clone();
         for k in 0..=4 {

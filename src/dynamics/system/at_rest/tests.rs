@@ -51,8 +51,8 @@ fn partial_loads_have_partial_tangents() {
         if let Some(elastic) = body.elastic() {
             forces.push(Arc::new(elastic));
         }
-        let model = Arc::new(Matrices::new(&body, forces.iter().map(|force| &**force)));
-        let system = System::new(model, forces, Vec::new(), 0.0, "test").unwrap();
+        let matrices = Arc::new(Matrices::new(&body, forces.iter().map(|force| &**force)));
+        let system = System::new(matrices, forces, Vec::new(), 0.0, "test").unwrap();
         let mut rest = AtRest::new(system, 1.0, "test").unwrap();
         let (u, part) = ([0.001, 0.004, 0.01], 0.3);
         rest.update_tangent(part, &u);
@@ -104,10 +104,10 @@ fn all_at_once(factor: f64) -> AtRest {
         .obstacle(disc.stiffness(100.0).damping(50.0).tangential_damping(20.0))
         .phase(phase.clone());
     let forces = scene.forces().unwrap();
-    let (model, start) = (scene.model(&forces), vec![0.0; scene.body().dofs()]);
+    let (matrices, start) = (scene.matrices(&forces), vec![0.0; scene.body().dofs()]);
     let start = PhaseStart { time: 0.0, u: &start };
     let forces = forces.into_iter().next().unwrap();
-    let system = scene.system(&model, &phase, forces, &start, 0.0).unwrap();
+    let system = scene.system(&matrices, &phase, forces, &start, 0.0).unwrap();
     AtRest::new(system, 1.0, "test").unwrap()
 }
 

@@ -39,15 +39,15 @@ fn wave(length: usize, seed: f64) -> Vec<f64> {
 /// and d. Returns whether X was positive definite.
 fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bool {
     let forces = scene.forces().unwrap();
-    let model = scene.model(&forces);
+    let matrices = scene.matrices(&forces);
     let (body, n) = (scene.body(), scene.body().dofs());
     let natural = vec![0.0; n];
     let rows: Vec<ConstraintRow> =
         scene.rows(&scene.phases()[0], &PhaseStart { time: 0.0, u: &natural }).unwrap();
-    let mut reduced = Reduced::new(&model, &rows, coupling);
+    let mut reduced = Reduced::new(&matrices, &rows, coupling);
     let value = |source: EntrySource| {
         let (entry, transposed, axes) = (source.entry(), source.transposed(), source.axes());
-        let own = if axes[0] == axes[1] { mass * model.inertia.values[entry] } else { 0.0 };
+        let own = if axes[0] == axes[1] { mass * matrices.inertia.values[entry] } else { 0.0 };
         match stiffness {
             0.0 => own,
             factor => own + factor * body.stiffness().symmetric(entry, transposed, axes),
@@ -58,7 +58,7 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
         assert!(reduced.factorize_indefinite().is_ok());
     }
     let x_matrix = |i: usize, j: usize| {
-        let same = if i % 2 == j % 2 { mass * model.inertia.get(i / 2, j / 2) } else { 0.0 };
+        let same = if i % 2 == j % 2 { mass * matrices.inertia.get(i / 2, j / 2) } else { 0.0 };
         same + stiffness * body.stiffness().get(i, j)
     };
     let a = |i: usize, k: usize| {
@@ -92,8 +92,8 @@ fn compare(scene: &Scene, coupling: Coupling, [mass, stiffness]: [f64; 2]) -> bo
 
     // and by iterations, in place of a factor or before it
     for iterations in [1e4, 2.0] {
-        let new = Reduced::new(&model, &rows, coupling);
-        let mut iterating = new.rent(&model, &rows, coupling, iterations);
+        let new = Reduced::new(&matrices, &rows, coupling);
+        let mut iterating = new.rent(&matrices, &rows, coupling, iterations);
         for _ in 0..2 {
             if iterating.begin(EXACT, value).is_err() {
                 assert!(!is_definite && iterating.factorize_indefinite().is_ok());
@@ -147,12 +147,12 @@ fn rows_that_follow_from_others_are_found() {
     ] {
         let scene = scene(Inertia::Consistent, phase);
         let forces = scene.forces().unwrap();
-        let model = scene.model(&forces);
+        let matrices = scene.matrices(&forces);
         let natural = vec![0.0; scene.body().dofs()];
         let start = PhaseStart { time: 0.0, u: &natural };
         let rows = scene.rows(&scene.phases()[0], &start).unwrap();
-        let mut reduced = Reduced::new(&model, &rows, Coupling::SameAxis);
-        assert!(reduced.factorize(|source| model.inertia.values[source.entry()]).is_err());
+        let mut reduced = Reduced::new(&matrices, &rows, Coupling::SameAxis);
+        assert!(reduced.factorize(|source| matrices.inertia.values[source.entry()]).is_err());
         assert_eq!(reduced.dependent_row(), Some(expected));
     }
 }
@@ -162,7 +162,7 @@ fn rows_that_follow_from_others_are_found() {
 fn iterations_meet_directions_of_negative_curvature() {
     let held = scene(Inertia::Consistent, Phase::until(1.0).hold([1, 5, 10]));
     let forces = held.forces().unwrap();
-    let model = held.model(&forces);
+    let matrices = held.matrices(&forces);
     let natural = vec![0.0; held.body().dofs()];
     let start = PhaseStart { time: 0.0, u: &natural };
     let rows = held.rows(&held.phases()[0], &start).unwrap();
@@ -178,11 +178,15 @@ fn iterations_meet_directions_of_negative_curvature() {
         solver.solve(&rows, &f, &vec![0.0; rows.len()], &mut x, &mut mu);
         (x, solver.counts())
     };
-    let mut direct = Reduced::new(&model, &rows, Coupling::AllAxes);
+    let mut direct = Reduced::new(&matrices, &rows, Coupling::AllAxes);
     assert!(direct.factorize(value).is_err());
     direct.factorize_indefinite().unwrap();
-    let mut iterating =
-        Reduced::new(&model, &rows, Coupling::AllAxes).rent(&model, &rows, Coupling::AllAxes, 1e4);
+    let mut iterating = Reduced::new(&matrices, &rows, Coupling::AllAxes).rent(
+        &matrices,
+        &rows,
+        Coupling::AllAxes,
+        1e4,
+    );
     iterating.begin(1e-6, value).unwrap();
     let ((direct, _), (found, counts)) = (solution(direct), solution(iterating));
     assert_eq!(direct, found, "LU of the same matrix");

@@ -18,9 +18,11 @@ fn form(scene: &Scene) -> SecondOrderForm {
     let natural = vec![0.0; scene.body().dofs()];
     let start = PhaseStart { time: 0.0, u: &natural };
     let forces = scene.forces().unwrap();
-    let model = scene.model(&forces);
+    let matrices = scene.matrices(&forces);
     let of_phase = forces.into_iter().next().unwrap();
-    SecondOrderForm::new(scene.system(&model, &scene.phases()[0], of_phase, &start, ALPHA).unwrap())
+    SecondOrderForm::new(
+        scene.system(&matrices, &scene.phases()[0], of_phase, &start, ALPHA).unwrap(),
+    )
 }
 
 /// The method on the first phase of a scene, with steps of a given size: no error test, no
