@@ -96,8 +96,12 @@ pub use scene::constraint;
 #[cfg(feature = "fit")]
 pub use studies::fit;
 pub use studies::samples;
+/// Speed charted against accuracy, and the adviser.
 #[cfg(feature = "study")]
-pub use studies::work_precision as study;
+pub mod study {
+    pub use crate::studies::advise::*;
+    pub use crate::studies::work_precision::*;
+}
 
 /// Compiles the code blocks of the README.
 #[doc = include_str!("../README.md")]

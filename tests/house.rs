@@ -290,6 +290,21 @@ fn reach<'a>(arrows: &BTreeMap<&'a str, BTreeSet<&'a str>>, file: &'a str) -> BT
     reached
 }
 
+/// Files that the page names are there: `mesh/cell.rs` is one whose path ends so.
+#[test]
+fn files_named_by_the_page_exist() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = fs::read_to_string(root.join("docs/architecture.md")).unwrap();
+    let files: Vec<String> =
+        rust_files(&root.join("src")).iter().map(|path| format!("/{}", path.display())).collect();
+    let named = text.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs"));
+    let named: BTreeSet<&str> = named.filter(|name| !root.join(name).exists()).collect();
+    assert!(named.len() > 50, "{}: does this test still see the names?", named.len());
+    let is_gone = |name: &&&str| !files.iter().any(|file| file.ends_with(&format!("/{name}")));
+    let gone: Vec<_> = named.iter().filter(is_gone).collect();
+    assert!(gone.is_empty(), "docs/architecture.md names {gone:?}");
+}
+
 /// What integrators call of a system and its output: `ode/call.rs` clears that.
 const CALLS: [&str; 14] = [
     "rhs",

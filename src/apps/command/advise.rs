@@ -9,7 +9,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use indicatif::ProgressBar;
-use pliant::study::{Advice, Adviser, Candidate, Quantity};
+use pliant::studies::{
+    advise::{Advice, Adviser, Candidate},
+    work_precision::Quantity,
+};
 use pliant::{Fraction, Sampling};
 
 use crate::failure::{Failure, print};

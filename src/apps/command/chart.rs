@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pliant::ContactEvents;
-use pliant::study::{Scenes, Stage, Study, all_methods};
+use pliant::studies::work_precision::{Scenes, Stage, Study, all_methods};
 use pliant::{Method, SceneFile, Settings};
 
 use crate::failure::{Failure, print};

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use pliant::scene_file::Format;
-use pliant::study::Look;
+use pliant::studies::work_precision::Look;
 use pliant::{Dilatation, Lame, Law, PhaseSummary, Scene, SceneFile, Settings, Strain, Substance};
 
 use crate::failure::{Failure, print};

@@ -3,7 +3,7 @@
 use clap::Args;
 use pliant::output::write_static_report;
 use pliant::scene_file::Format;
-use pliant::study::Quantity;
+use pliant::studies::work_precision::Quantity;
 use pliant::{Error, MeshEstimate, OutputRequest, SceneFile};
 
 use crate::failure::{Failure, print};

@@ -10,7 +10,7 @@ use crate::scene::timeline::Scene;
 
 /// A hash of all data of a scene, of what its functions of time do at a few
 /// times, and of the version of this library.
-pub(super) fn of_scene(scene: &Scene) -> u64 {
+pub(crate) fn of_scene(scene: &Scene) -> u64 {
     let mut hasher = DefaultHasher::new();
     hasher.write(env!("CARGO_PKG_VERSION").as_bytes());
     add_text(&mut hasher, format_args!("{scene:?}"));
@@ -20,7 +20,7 @@ pub(super) fn of_scene(scene: &Scene) -> u64 {
 }
 
 /// A hash of `text` and of other hashes.
-pub(super) fn of_text(text: fmt::Arguments<'_>, others: &[u64]) -> u64 {
+pub(crate) fn of_text(text: fmt::Arguments<'_>, others: &[u64]) -> u64 {
     let mut hasher = DefaultHasher::new();
     add_text(&mut hasher, text);
     others.iter().for_each(|other| hasher.write_u64(*other));

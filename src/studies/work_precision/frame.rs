@@ -12,11 +12,11 @@ const LABELS: usize = 30;
 
 /// Where errors and times are on a page, in pixels.
 #[derive(Debug)]
-pub(super) struct Frame(Field);
+pub(crate) struct Frame(Field);
 
 impl Frame {
     /// A field with room for all `times` (s) and `errors`, which are positive; one of each at least.
-    pub(super) fn new(
+    pub(crate) fn new(
         edges: [f64; 4],
         colours: [&'static str; 3],
         times: impl Iterator<Item = f64>,
@@ -28,13 +28,13 @@ impl Frame {
     }
 
     /// The place of a run: an error that is too small for the field is drawn at its bottom.
-    pub(super) fn place(&self, error: f64, time: f64) -> Point {
+    pub(crate) fn place(&self, error: f64, time: f64) -> Point {
         let [x, y] = self.0.place(time, error.min(WORST));
         [x, y.min(self.0.edges[3])]
     }
 
     /// Axes, and lines across the field; `time` says which time it is.
-    pub(super) fn axes(&self, time: &str) -> Group {
+    pub(crate) fn axes(&self, time: &str) -> Group {
         let names = Group::new().set("font-size", 13).add(self.0.side("relative error", 60.0));
         self.0.grid().add(self.0.outline()).add(self.0.floor(time)).add(names)
     }

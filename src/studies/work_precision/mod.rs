@@ -42,26 +42,24 @@
 //! as long as the fastest at the same tolerance, is a row with its reason. Each row has the error of the
 //! energy balance, which shows most answers that are wrong and do not say so.
 
-mod advise;
 mod chart;
-mod fastest;
+pub(super) mod fastest;
 mod findings;
-mod fingerprint;
-mod frame;
+pub(super) mod fingerprint;
+pub(super) mod frame;
 mod general;
-mod look;
+pub(super) mod look;
 mod mesh_estimate;
-mod quantity;
+pub(super) mod quantity;
 mod row;
 mod runner;
 mod scenes;
 mod standard;
-mod tightening;
-mod timing;
-mod truth;
+pub(super) mod tightening;
+pub(super) mod timing;
+pub(super) mod truth;
 mod verification;
 
-pub use advise::{Advice, Adviser, Candidate, Choice, Parts};
 pub use fastest::{Accuracy, Fastest, time_text};
 pub use findings::{Findings, LineFindings};
 pub use general::{EndState, General, Goal};

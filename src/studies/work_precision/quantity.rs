@@ -119,7 +119,7 @@ impl Quantity {
 
     /// # Errors
     /// A reading that `scene` does not have, or a part of one that has several components.
-    pub(super) fn check(&self, scene: &Scene) -> Result<(), InputError> {
+    pub(crate) fn check(&self, scene: &Scene) -> Result<(), InputError> {
         if self.columns(scene)? > 1 && !self.is_over_time() {
             let help = "it has several components: choose one, as in tip.y:end";
             return Err(InputError::new("quantity", format!("\"{self}\""), help));
@@ -132,7 +132,7 @@ impl Quantity {
     /// # Errors
     /// Anything else: a motion, a part that equilibria do not have, several components, a reading without a
     /// known derivative.
-    pub(super) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
+    pub(crate) fn of_equilibrium(&self, scene: &Scene) -> Result<&Reading, InputError> {
         let refused =
             |help: &str| InputError::new("quantity of an equilibrium", format!("\"{self}\""), help);
         let Some(reading) = &self.reading else {
@@ -158,7 +158,7 @@ impl Quantity {
     ///
     /// # Errors
     /// As [`of_equilibrium`](Self::of_equilibrium).
-    pub(super) fn seen_at_rest(&self, found: &Equilibrium) -> Result<Seen, InputError> {
+    pub(crate) fn seen_at_rest(&self, found: &Equilibrium) -> Result<Seen, InputError> {
         let scene = found.trajectory().scene();
         let reading = self.of_equilibrium(scene)?;
         let value = reading.at(scene, found.sample())?;
@@ -167,12 +167,12 @@ impl Quantity {
     }
 
     /// Whether an equilibrium may give it: whether it is a number at the end.
-    pub(super) fn is_at_end(&self) -> bool {
+    pub(crate) fn is_at_end(&self) -> bool {
         self.part == Part::End
     }
 
     /// Reads it in addition to what `sampling` reads.
-    pub(super) fn read_by(&self, sampling: Sampling) -> Sampling {
+    pub(crate) fn read_by(&self, sampling: Sampling) -> Sampling {
         match &self.reading {
             Some(reading) if self.is_peak() => {
                 sampling.read(SENSOR, reading.clone()).finding_peaks()
@@ -183,7 +183,7 @@ impl Quantity {
     }
 
     /// How many numbers a sample has of it, after those of other sensors; 0 for the whole motion.
-    pub(super) fn columns(&self, scene: &Scene) -> Result<usize, InputError> {
+    pub(crate) fn columns(&self, scene: &Scene) -> Result<usize, InputError> {
         match &self.reading {
             Some(_) => self.read_by(Sampling::phase_ends()).columns(scene).map(|own| own.len()),
             None => Ok(0),
@@ -192,7 +192,7 @@ impl Quantity {
 
     /// Its values in a trajectory that was sampled [for it](Self::read_by), at the `samples`. For the whole
     /// motion the `nodes` (from 0) count.
-    pub(super) fn seen<'a>(
+    pub(crate) fn seen<'a>(
         &self,
         trajectory: &'a Trajectory,
         nodes: &[usize],
@@ -262,12 +262,12 @@ impl Quantity {
     }
 
     /// Whether all times count, and not one number.
-    pub(super) fn is_over_time(&self) -> bool {
+    pub(crate) fn is_over_time(&self) -> bool {
         self.part == Part::OverTime
     }
 
     /// Its unit.
-    pub(super) fn unit(&self) -> &'static str {
+    pub(crate) fn unit(&self) -> &'static str {
         match (&self.reading, self.part) {
             (_, Part::Frequency) => "Hz",
             (_, Part::Damping) => "1",
@@ -277,7 +277,7 @@ impl Quantity {
     }
 
     /// Number of times at which a motion has to be seen.
-    pub(super) fn times(&self) -> usize {
+    pub(crate) fn times(&self) -> usize {
         if self.is_over_time() { FEW_TIMES } else { MANY_TIMES }
     }
 }
@@ -367,37 +367,37 @@ fn swings(times: &[f64], values: impl Iterator<Item = f64>) -> Option<(f64, f64)
 
 /// A quantity as it was in a motion.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Seen {
+pub(crate) struct Seen {
     /// Components of a point.
     dimension: usize,
     /// Time by time; point by point.
     values: Vec<Vec<f64>>,
     /// What errors are relative to.
-    pub(super) scale: f64,
+    pub(crate) scale: f64,
 }
 
 /// Distances between two motions.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Distance {
+pub(crate) struct Distance {
     /// Root mean square over points and times.
-    pub(super) mean: f64,
+    pub(crate) mean: f64,
     /// Largest.
-    pub(super) largest: f64,
+    pub(crate) largest: f64,
 }
 
 impl Seen {
-    pub(super) fn distance(&self, other: &Self) -> Distance {
+    pub(crate) fn distance(&self, other: &Self) -> Distance {
         self.size(|time, k, x| x - other.values[time][k])
     }
 
     /// Distances of another motion from this one, relative to its scale.
-    pub(super) fn error(&self, of: &Self) -> Distance {
+    pub(crate) fn error(&self, of: &Self) -> Distance {
         let Distance { mean, largest } = self.distance(of);
         Distance { mean: mean / self.scale, largest: largest / self.scale }
     }
 
     /// Root mean square distance at each time.
-    pub(super) fn distances(&self, other: &Self) -> Vec<f64> {
+    pub(crate) fn distances(&self, other: &Self) -> Vec<f64> {
         let at = |(one, other): (&Vec<f64>, &Vec<f64>)| {
             let squares: f64 = one.iter().zip(other).map(|(a, b)| (a - b).powi(2)).sum();
             (squares / (one.len() / self.dimension) as f64).sqrt()

@@ -10,16 +10,16 @@ const TIGHTER: f64 = 0.1;
 const TIGHTEST: f64 = 1e-11;
 
 /// The relative tolerance of the first of the runs that are to agree to `accuracy`.
-pub(super) fn first(accuracy: f64) -> f64 {
+pub(crate) fn first(accuracy: f64) -> f64 {
     (FIRST * accuracy).clamp(TIGHTEST, LOOSEST)
 }
 
 /// The tolerance of the run after one with `rtol`.
-pub(super) fn tighter(rtol: f64) -> f64 {
+pub(crate) fn tighter(rtol: f64) -> f64 {
     (TIGHTER * rtol).max(TIGHTEST)
 }
 
 /// Whether there is no tighter tolerance after `rtol`.
-pub(super) fn is_tightest(rtol: f64) -> bool {
+pub(crate) fn is_tightest(rtol: f64) -> bool {
     rtol < 2.0 * TIGHTEST
 }

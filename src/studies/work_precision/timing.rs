@@ -13,17 +13,17 @@ const LONG: f64 = 0.5;
 
 /// A fixed piece of arithmetic, timed again and again to see how fast the machine is.
 #[derive(Debug)]
-pub(super) struct Yardstick {
+pub(crate) struct Yardstick {
     least: f64,
 }
 
 impl Yardstick {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { least: (0..5).map(|_| arithmetic()).fold(f64::INFINITY, f64::min) }
     }
 
     /// How many times slower than at its best the machine is now.
-    pub(super) fn slowdown(&mut self) -> f64 {
+    pub(crate) fn slowdown(&mut self) -> f64 {
         let seconds = arithmetic();
         self.least = self.least.min(seconds);
         seconds / self.least
@@ -43,16 +43,16 @@ fn arithmetic() -> f64 {
 
 /// How long a run took (s).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Time {
+pub(crate) struct Time {
     /// Wall-clock time.
-    pub(super) wall: f64,
+    pub(crate) wall: f64,
     /// Processor time, in which other programs do not count.
-    pub(super) processor: f64,
+    pub(crate) processor: f64,
 }
 
 impl Time {
     /// What `run` returns, and its times; `wall` takes the wall-clock time from that.
-    pub(super) fn of<T>(
+    pub(crate) fn of<T>(
         run: impl FnOnce() -> Result<T, Failed>,
         wall: impl FnOnce(&T) -> f64,
     ) -> Result<(T, Self), Failed> {
@@ -71,25 +71,25 @@ fn processor_time() -> f64 {
 
 /// The processor time that a run may take: other programs on the machine do not use it up.
 #[derive(Debug)]
-pub(super) struct Budget {
+pub(crate) struct Budget {
     start: f64,
     limit: f64,
     asked: u64,
 }
 
 impl Budget {
-    pub(super) fn new(limit: Duration) -> Self {
+    pub(crate) fn new(limit: Duration) -> Self {
         Self { start: processor_time(), limit: limit.as_secs_f64(), asked: 0 }
     }
 
     /// Processor time (s) so far.
-    pub(super) fn spent(&self) -> f64 {
+    pub(crate) fn spent(&self) -> f64 {
         processor_time() - self.start
     }
 
     /// Whether too much was spent. To be asked after each step; reads the clock only now and then, as steps
     /// may be shorter than a reading.
-    pub(super) fn is_spent(&mut self) -> bool {
+    pub(crate) fn is_spent(&mut self) -> bool {
         self.asked += 1;
         self.asked.is_multiple_of(16) && self.spent() > self.limit
     }
@@ -97,7 +97,7 @@ impl Budget {
 
 /// Repetitions of one run.
 #[derive(Debug)]
-pub(super) struct Repetitions {
+pub(crate) struct Repetitions {
     /// Wall-clock times (s), ascending.
     wall: Vec<f64>,
     /// Processor times (s), ascending.
@@ -106,7 +106,7 @@ pub(super) struct Repetitions {
 
 impl Repetitions {
     /// `count` times of a run, by `time`; of a run whose first time was long, that one alone.
-    pub(super) fn of(
+    pub(crate) fn of(
         first: Time,
         count: usize,
         time: impl FnMut() -> Result<Time, Failed>,
@@ -123,17 +123,17 @@ impl Repetitions {
         Ok(Self { wall: sorted(|time| time.wall), processor: sorted(|time| time.processor) })
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.wall.len()
     }
 
     /// Medians.
-    pub(super) fn median(&self) -> Time {
+    pub(crate) fn median(&self) -> Time {
         Time { wall: median(&self.wall), processor: median(&self.processor) }
     }
 
     /// Slowest less fastest wall-clock time, relative to the median.
-    pub(super) fn spread(&self) -> f64 {
+    pub(crate) fn spread(&self) -> f64 {
         (self.wall[self.wall.len() - 1] - self.wall[0]) / median(&self.wall)
     }
 }

@@ -25,7 +25,7 @@ const LEAST_RTOL: f64 = 1e-13;
 
 /// What is observed, and when.
 #[derive(Debug, Clone)]
-pub(super) struct Probe {
+pub(crate) struct Probe {
     quantity: Quantity,
     /// The nodes that count for the whole motion, from 0.
     nodes: Vec<usize>,
@@ -33,14 +33,14 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    pub(super) fn new(scene: &Scene, quantity: Quantity, nodes: Vec<usize>) -> Self {
+    pub(crate) fn new(scene: &Scene, quantity: Quantity, nodes: Vec<usize>) -> Self {
         let count = quantity.times();
         let times = (1..=count).map(|k| scene.end() * (k as f64 / count as f64)).collect();
         Self { quantity, nodes, times }
     }
 
     /// Runs `scene` to its end, for a processor time of `limit` at most.
-    pub(super) fn run(
+    pub(crate) fn run(
         &self,
         scene: &Scene,
         settings: &Settings,
@@ -56,12 +56,12 @@ impl Probe {
     }
 
     /// When a run has to be sampled, and what it has to read.
-    pub(super) fn sampling(&self) -> Sampling {
+    pub(crate) fn sampling(&self) -> Sampling {
         self.quantity.read_by(Sampling::at(self.times.clone()))
     }
 
     /// What is seen in a run that was sampled so.
-    pub(super) fn seen(&self, trajectory: &Trajectory) -> Seen {
+    pub(crate) fn seen(&self, trajectory: &Trajectory) -> Seen {
         self.quantity.seen(trajectory, &self.nodes, self.samples(trajectory))
     }
 
@@ -79,16 +79,16 @@ impl Probe {
 
 /// A motion that stands for the exact one, and how far it can be trusted.
 #[derive(Debug)]
-pub(super) struct Truth {
+pub(crate) struct Truth {
     seen: Seen,
     /// Relative error that the motion itself may have.
-    pub(super) resolution: f64,
+    pub(crate) resolution: f64,
 }
 
 impl Truth {
     /// Solves `scene` in two ways, more and more precisely until they agree to `target`. A `check` is, for
     /// example, the same scene on a mesh half as fine: the distance to it counts, too.
-    pub(super) fn find(
+    pub(crate) fn find(
         scene: &Scene,
         probe: &Probe,
         check: Option<(&Scene, &Probe)>,
@@ -149,7 +149,7 @@ impl Truth {
     }
 
     /// Distances from the true motion, relative to it.
-    pub(super) fn error(&self, seen: &Seen) -> Distance {
+    pub(crate) fn error(&self, seen: &Seen) -> Distance {
         self.seen.error(seen)
     }
 }
@@ -221,7 +221,7 @@ fn fastest_two(
 ///
 /// # Errors
 /// Scenes whose meshes share none.
-pub(super) fn shared_nodes(scenes: &[&Scene]) -> Result<Vec<Vec<usize>>, Error> {
+pub(crate) fn shared_nodes(scenes: &[&Scene]) -> Result<Vec<Vec<usize>>, Error> {
     let meshes: Vec<_> = scenes.iter().map(|scene| scene.body().mesh()).collect();
     let Some(first) = meshes.first() else { return Ok(Vec::new()) };
     let mut shared = vec![Vec::new(); meshes.len()];
@@ -252,7 +252,7 @@ pub(super) fn shared_nodes(scenes: &[&Scene]) -> Result<Vec<Vec<usize>>, Error> 
 }
 
 /// An error of a run as the reason of its failure.
-pub(super) fn reason(error: Error) -> Failed {
+pub(crate) fn reason(error: Error) -> Failed {
     match error {
         Error::Integration(failure) if failure.is_interruption() => {
             let report = failure.trajectory.report();

@@ -129,8 +129,8 @@ mod tests {
 
     use super::*;
     use crate::scene::settings::Settings;
+    use crate::studies::advise::Choice;
     use crate::studies::samples::beam_jump;
-    use crate::studies::work_precision::advise::Choice;
 
     /// Meshes on which a number is off by `errors` of its scale.
     fn meshes(errors: &[(bool, f64)]) -> Found {
