@@ -34,6 +34,8 @@ pub(crate) struct Constraint {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
 pub(crate) enum Constrained {
     /// Components of nodes, one row for each.
     Nodes(Selection, Axes),
@@ -44,6 +46,8 @@ pub(crate) enum Constrained {
 }
 
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(untagged))]
 pub(crate) enum Axes {
     All,
     These(Vec<Axis>),

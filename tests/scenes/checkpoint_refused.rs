@@ -133,8 +133,8 @@ fn files_that_are_not_what_they_should_be_are_refused() {
         (&|file| file["what"] = json!("poem"), &["does not say \"pliant checkpoint\""]),
         (&|file| *file = json!([1, 2]), &["does not say \"pliant checkpoint\""]),
         (
-            &|file| (file["format"], file["version"]) = (json!(5), json!("0.3.0")),
-            &["format 5 of pliant 0.3.0: this version", "reads format 4"],
+            &|file| (file["format"], file["version"]) = (json!(6), json!("0.3.0")),
+            &["format 6 of pliant 0.3.0: this version", "reads format 5"],
         ),
         (&|file| file["more"] = json!(1), &["damaged", "more"]),
         (&|file| _ = file.as_object_mut().unwrap().remove("steps"), &["damaged", "steps"]),

@@ -10,6 +10,8 @@ use crate::base::input::{InputError, unknown_among};
 /// Strings, arrays and vectors of numbers convert into it:
 /// `body.hold("bottom")`, `body.hold([14, 15])`.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
 pub enum Selection {
     /// A named set of the mesh (`bottom`, `top`, `left`, `right`, `front`, `back`, `inner`, `outer`
     /// where the mesh has them, `boundary`, `all`, or a set that you named).
@@ -19,11 +21,39 @@ pub enum Selection {
     /// All nodes in the closed box between `min` and `max` (m).
     Box {
         /// Lower corner.
+        #[cfg_attr(feature = "checkpoint", serde(with = "lower_corner"))]
         min: Vec<f64>,
         /// Upper corner.
+        #[cfg_attr(feature = "checkpoint", serde(with = "upper_corner"))]
         max: Vec<f64>,
     },
 }
+
+/// Corners of boxes in files; infinite coordinates, which JSON lacks, are `null` there.
+#[cfg(feature = "checkpoint")]
+macro_rules! corner {
+    ($corner:ident, $infinite:expr) => {
+        mod $corner {
+            use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+            pub(super) fn serialize<S: Serializer>(x: &[f64], to: S) -> Result<S::Ok, S::Error> {
+                let finite = |x: &f64| Some(*x).filter(|x| x.is_finite());
+                x.iter().map(finite).collect::<Vec<_>>().serialize(to)
+            }
+
+            pub(super) fn deserialize<'de, D: Deserializer<'de>>(
+                from: D,
+            ) -> Result<Vec<f64>, D::Error> {
+                let corner = Vec::<Option<f64>>::deserialize(from)?;
+                Ok(corner.into_iter().map(|x| x.unwrap_or($infinite)).collect())
+            }
+        }
+    };
+}
+#[cfg(feature = "checkpoint")]
+corner!(lower_corner, f64::NEG_INFINITY);
+#[cfg(feature = "checkpoint")]
+corner!(upper_corner, f64::INFINITY);
 
 impl fmt::Display for Selection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -1,7 +1,6 @@
 //! The phase in force, as commands have changed it: numbers and names as they are, and functions by their
 //! place in the scene.
 
-use std::fmt::Display;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -9,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::base::formula::Formula;
 use crate::base::input::InputError;
 use crate::elements::mesh::Selection;
-use crate::scene::constraint::{Axes, Axis, Constrained, Constraint, Motion, Spline, Turn};
+use crate::scene::constraint::{Constrained, Constraint, Motion, Spline, Turn};
 use crate::scene::forces::{Signal, SignalKind, TimeTable, VectorSignal};
 use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 
@@ -17,9 +16,8 @@ use crate::scene::timeline::{ContactWith, Load, LoadKind, Phase, Scene};
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct InForce {
-    constraints: Vec<(What, How)>,
-    /// Nodes, word of the kind of load, value.
-    loads: Vec<(Nodes, String, Vector)>,
+    constraints: Vec<(Constrained, How)>,
+    loads: Vec<(Selection, LoadKind, Vector)>,
     /// Names of springs, force.
     actuations: Vec<(Vec<String>, Number)>,
     /// Name of a chamber, pressure.
@@ -30,24 +28,6 @@ pub(super) struct InForce {
     /// Obstacles that commands have set in motion: name, offset from where its velocity or path would have
     /// brought it, and velocity; without one: its path in the scene.
     moving: Vec<(String, [f64; 3], Option<[f64; 3]>)>,
-}
-
-/// A [`Selection`]; infinite coordinates of the corners of boxes are `null`.
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Nodes {
-    Set(String),
-    Numbers(Vec<usize>),
-    Box { min: Vec<Option<f64>>, max: Vec<Option<f64>> },
-}
-
-/// A [`Constrained`]; without axes: all.
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum What {
-    Nodes(Nodes, Option<Vec<char>>),
-    Row(Vec<(usize, char, f64)>),
-    Along(Nodes, Vec<f64>),
 }
 
 /// A [`Motion`].
@@ -108,12 +88,12 @@ impl InForce {
     pub(super) fn of(phase: &Phase, own: &Phase) -> Result<Self, InputError> {
         let constraints = phase.constraints.iter().map(|Constraint { what, how }| {
             let how = How::of(how, own).ok_or_else(|| is_function(format!("path of {what:?}")))?;
-            Ok((What::of(what), how))
+            Ok((what.clone(), how))
         });
         let loads = phase.loads.iter().map(|(nodes, load)| {
             let value = Vector::of(&load.value, own);
             let value = value.ok_or_else(|| is_function(format!("load on {nodes}")))?;
-            Ok((Nodes::of(nodes), load.kind.word().into(), value))
+            Ok((nodes.clone(), load.kind, value))
         });
         let actuations = phase.actuations.iter().map(|(springs, force)| {
             let force = Number::of(force, own.actuations.iter().map(|(_, force)| force));
@@ -150,17 +130,14 @@ impl InForce {
     /// The phase in force; `own` is what the scene has.
     ///
     /// # Errors
-    /// Axes and functions that do not exist. All else is [checked](Phase) by the scene.
+    /// Functions that do not exist. All else is [checked](Phase) by the scene.
     pub(super) fn read(self, own: &Phase, scene: &Scene) -> Result<Phase, String> {
         let constraints = self.constraints.into_iter();
-        let constraints = constraints
-            .map(|(what, how)| Ok(Constraint { what: what.read()?, how: how.read(own)? }));
+        let constraints =
+            constraints.map(|(what, how)| Ok(Constraint { what, how: how.read(own)? }));
         let loads = self.loads.into_iter();
-        let loads = loads.map(|(nodes, word, value)| {
-            let kind = LoadKind::ALL.into_iter().find(|kind| kind.word() == word);
-            let kind = kind.ok_or_else(|| format!("no load is a \"{word}\": write it anew"))?;
-            Ok((nodes.read(), Load { kind, value: value.read(own)? }))
-        });
+        let loads =
+            loads.map(|(nodes, kind, value)| Ok((nodes, Load { kind, value: value.read(own)? })));
         let actuations = self.actuations.into_iter().map(|(springs, force)| {
             let own = own.actuations.iter().map(|(_, force)| force);
             Ok((springs, force.read("actuation", own)?))
@@ -204,79 +181,6 @@ fn own<T: Clone>(
 ) -> Result<T, String> {
     let item = items.nth(place);
     item.ok_or_else(|| format!("{what} {place} is none of the phase in the scene: write it anew"))
-}
-
-impl Nodes {
-    fn of(selection: &Selection) -> Self {
-        let corner = |corner: &[f64]| {
-            corner.iter().map(|x| Some(*x).filter(|x| x.is_finite())).collect::<Vec<_>>()
-        };
-        match selection {
-            Selection::Set(name) => Self::Set(name.clone()),
-            Selection::Numbers(numbers) => Self::Numbers(numbers.clone()),
-            Selection::Box { min, max } => Self::Box { min: corner(min), max: corner(max) },
-        }
-    }
-
-    fn read(self) -> Selection {
-        let corner = |corner: Vec<Option<f64>>, nowhere: f64| {
-            corner.into_iter().map(|x| x.unwrap_or(nowhere)).collect()
-        };
-        match self {
-            Self::Set(name) => Selection::Set(name),
-            Self::Numbers(numbers) => Selection::Numbers(numbers),
-            Self::Box { min, max } => Selection::Box {
-                min: corner(min, f64::NEG_INFINITY),
-                max: corner(max, f64::INFINITY),
-            },
-        }
-    }
-}
-
-const AXES: [(char, Axis); 3] = [('x', Axis::X), ('y', Axis::Y), ('z', Axis::Z)];
-
-fn letter(axis: Axis) -> char {
-    AXES[axis.index()].0
-}
-
-fn axis(letter: char) -> Result<Axis, String> {
-    let found = AXES.into_iter().find(|(known, _)| *known == letter);
-    found.map(|(_, axis)| axis).ok_or_else(|| unknown("axis", letter))
-}
-
-fn unknown(what: &str, name: impl Display) -> String {
-    format!("{what} \"{name}\" is none of x, y, z: write it anew")
-}
-
-impl What {
-    fn of(what: &Constrained) -> Self {
-        match what {
-            Constrained::Nodes(nodes, Axes::All) => Self::Nodes(Nodes::of(nodes), None),
-            Constrained::Nodes(nodes, Axes::These(axes)) => {
-                Self::Nodes(Nodes::of(nodes), Some(axes.iter().map(|axis| letter(*axis)).collect()))
-            }
-            Constrained::Row(terms) => {
-                Self::Row(terms.iter().map(|&(node, axis, x)| (node, letter(axis), x)).collect())
-            }
-            Constrained::Along(nodes, normal) => Self::Along(Nodes::of(nodes), normal.clone()),
-        }
-    }
-
-    fn read(self) -> Result<Constrained, String> {
-        Ok(match self {
-            Self::Nodes(nodes, None) => Constrained::Nodes(nodes.read(), Axes::All),
-            Self::Nodes(nodes, Some(letters)) => {
-                let axes = letters.into_iter().map(axis).collect::<Result<_, _>>()?;
-                Constrained::Nodes(nodes.read(), Axes::These(axes))
-            }
-            Self::Row(terms) => {
-                let terms = terms.into_iter();
-                let terms = terms.map(|(node, letter, x)| Ok((node, axis(letter)?, x)));
-                Constrained::Row(terms.collect::<Result<_, String>>()?)
-            }
-            Self::Along(nodes, normal) => Constrained::Along(nodes.read(), normal),
-        })
-    }
 }
 
 impl How {

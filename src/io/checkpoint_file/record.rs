@@ -11,7 +11,7 @@ use crate::scene::settings::Method;
 use crate::scene::timeline::Scene;
 
 /// Format of the files that this version writes and reads.
-const FORMAT: u32 = 4;
+const FORMAT: u32 = 5;
 
 /// What a file says it is.
 pub(super) const WHAT: &str = "pliant checkpoint";

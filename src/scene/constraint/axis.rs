@@ -2,6 +2,8 @@
 
 /// An axis of space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
 pub enum Axis {
     /// First coordinate.
     X,

@@ -12,8 +12,11 @@ pub(crate) struct Load {
 
 /// What the value of a load refers to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "checkpoint", serde(rename_all = "snake_case"))]
 pub(crate) enum LoadKind {
     /// A force (N) on each node.
+    #[cfg_attr(feature = "checkpoint", serde(rename = "force"))]
     Each,
     /// A force (N) on all nodes together.
     Total,
@@ -21,7 +24,7 @@ pub(crate) enum LoadKind {
     Traction,
 }
 
-#[cfg(any(feature = "checkpoint", feature = "scene-file"))]
+#[cfg(feature = "scene-file")]
 impl LoadKind {
     pub(crate) const ALL: [Self; 3] = [Self::Each, Self::Total, Self::Traction];
 
