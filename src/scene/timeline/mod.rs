@@ -1,6 +1,7 @@
 //! Scenes: a body, what surrounds it, and a timeline of phases.
 
 mod body_state;
+mod changed;
 mod finer;
 mod forces;
 mod initial;
