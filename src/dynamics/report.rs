@@ -126,7 +126,8 @@ pub struct SlipEvent {
 }
 
 impl Report {
-    /// What all phases cost together; steps and notices are those of the last one and the first one that has any.
+    /// What all phases cost together. Size and order of the last step are those of the last phase, the notice is
+    /// the first that there is.
     #[cfg(feature = "output")]
     pub(crate) fn counts(&self) -> Counts {
         let mut counts = Counts::default();

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use svg::Document;
-use svg::node::element::{Circle, Group, Path as Outline};
+use svg::node::element::Group;
 
 use super::COLOURS;
 use super::figure::{
-    Axis, Field, Line, SWATCH, legend_places, page, power_text, round, text, write_figure,
+    Axis, Field, Line, SWATCH, dots, legend_places, page, power_text, text, write_figure,
 };
 use crate::base::input::InputError;
 use crate::dynamics::error::Error;
@@ -18,6 +18,8 @@ const SIZE: [f64; 2] = [800.0, 440.0];
 const ROOM: [f64; 3] = [84.0, 24.0, 52.0];
 /// Left and right end of the legend, and where its first line stands, below the title (px).
 const LEGEND: [f64; 3] = [20.0, 780.0, 52.0];
+/// Radius of a dot (px).
+const RADIUS: f64 = 3.0;
 /// Approximate number of lines across the field.
 const LINES: usize = 9;
 const GREY: &str = "#777777";
@@ -174,7 +176,7 @@ impl Chart {
                 Style::Reference => GREY,
                 Style::Line | Style::Marked => colours.next().unwrap_or(&GREY),
             };
-            let swatch = Line::through([[x, y], [x + SWATCH - 8.0, y]].into_iter());
+            let dashes = if series.style == Style::Reference { "6 5" } else { "none" };
             let mut marks = Vec::new();
             if series.style == Style::Marked {
                 marks = series.points.iter().map(|(x, y)| field.place(*x, *y)).collect();
@@ -182,13 +184,9 @@ impl Chart {
             }
             let line = field.line(series.points.iter().copied());
             chart = chart
-                .add(series.style.draw(&line, colour))
-                .add(series.style.draw(&swatch, colour))
-                .add(
-                    marks
-                        .into_iter()
-                        .fold(Group::new(), |group, place| group.add(dot(place, colour))),
-                )
+                .add(line.draw(colour, 2.0, RADIUS, dashes))
+                .add(Line::swatch([x, y]).draw(colour, 2.0, RADIUS, dashes))
+                .add(dots(Group::new(), marks, RADIUS, colour))
                 .add(text(&series.name, [x + SWATCH, y + 4.0]).set("font-size", 13));
         }
         chart
@@ -208,22 +206,4 @@ impl Chart {
         let edges = [left, top, SIZE[0] - right, SIZE[1] - below];
         Field { edges, x, y, colours: [super::INK, GRID, "#f3f3f3"] }
     }
-}
-
-impl Style {
-    fn draw(self, line: &Line, colour: &str) -> Group {
-        let (data, alone) = line.drawn();
-        let path = Outline::new()
-            .set("d", data)
-            .set("fill", "none")
-            .set("stroke", colour)
-            .set("stroke-width", 2)
-            .set("stroke-linejoin", "round")
-            .set("stroke-dasharray", if self == Self::Reference { "6 5" } else { "none" });
-        alone.into_iter().fold(Group::new().add(path), |group, place| group.add(dot(place, colour)))
-    }
-}
-
-fn dot([x, y]: [f64; 2], colour: &str) -> Circle {
-    Circle::new().set("cx", round(x)).set("cy", round(y)).set("r", 3).set("fill", colour)
 }

@@ -90,7 +90,7 @@ impl Line {
     }
 
     /// The data of a path through the stretches, and the points that stand alone.
-    pub(crate) fn drawn(&self) -> (String, Vec<[f64; 2]>) {
+    pub(super) fn drawn(&self) -> (String, Vec<[f64; 2]>) {
         let (mut data, mut alone) = (String::new(), Vec::new());
         for stretch in &self.stretches {
             if let [point] = stretch[..] {

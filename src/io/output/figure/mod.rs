@@ -7,7 +7,7 @@ use std::io;
 use std::path::Path;
 
 use svg::Document;
-use svg::node::element::{Group, Line as Segment, Rectangle, Text};
+use svg::node::element::{Circle, Group, Line as Segment, Path as Outline, Rectangle, Text};
 
 pub(crate) use axis::{Axis, power_text};
 pub(crate) use line::Line;
@@ -92,6 +92,39 @@ impl Field {
         let [left, top, right, bottom] = self.edges;
         rectangle([left, top], [right, bottom]).set("fill", "none").set("stroke", self.colours[0])
     }
+}
+
+impl Line {
+    /// The line that a legend shows for a name at a place.
+    pub(crate) fn swatch([x, y]: Point) -> Self {
+        Self::through([[x, y], [x + SWATCH - 8.0, y]].into_iter())
+    }
+
+    /// The line in a colour, with the width of its stroke, the radius of points that stand alone (px), and dashes.
+    pub(crate) fn draw(&self, colour: &str, width: f64, radius: f64, dashes: &str) -> Group {
+        let (data, alone) = self.drawn();
+        let path = Outline::new()
+            .set("d", data)
+            .set("fill", "none")
+            .set("stroke", colour)
+            .set("stroke-width", width)
+            .set("stroke-linejoin", "round")
+            .set("stroke-dasharray", dashes);
+        dots(Group::new().add(path), alone, radius, colour)
+    }
+}
+
+/// A group with dots at some points added to it.
+pub(crate) fn dots(
+    group: Group,
+    points: impl IntoIterator<Item = Point>,
+    radius: f64,
+    colour: &str,
+) -> Group {
+    points.into_iter().fold(group, |group, [x, y]| {
+        let dot = Circle::new().set("cx", round(x)).set("cy", round(y));
+        group.add(dot.set("r", radius).set("fill", colour))
+    })
 }
 
 /// A white page of a width and a height (px).

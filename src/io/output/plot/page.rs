@@ -1,12 +1,12 @@
 //! The page of a plot: panels one below the other, over one axis of time.
 
 use svg::Document;
-use svg::node::element::{Circle, Group, Path};
+use svg::node::element::{Group, Path};
 
 use super::table::{Column, Table};
 use crate::io::output::columns::EXCHANGED;
 use crate::io::output::figure::{
-    Axis, CHARACTER, Field, LEGEND, Line, SWATCH, legend_places, page, round, stroke, text,
+    Axis, CHARACTER, Field, LEGEND, Line, SWATCH, legend_places, page, stroke, text,
 };
 use crate::io::output::{COLOURS, DASHES, INK};
 
@@ -132,7 +132,7 @@ impl<'a> Page<'a> {
             let line = line(&mut column.values.iter().copied());
             group = group.add(series(&line, column, number));
             if let Some([x, y]) = panel.legend.get(number) {
-                let swatch = Line::through([[*x, *y], [x + SWATCH - 8.0, *y]].into_iter());
+                let swatch = Line::swatch([*x, *y]);
                 let name = text(&column.quantity.name, [x + SWATCH, y + 4.0]);
                 group = group.add(series(&swatch, column, number)).add(name);
             }
@@ -216,18 +216,5 @@ fn series(line: &Line, column: &Column, number: usize) -> Group {
     let colour = COLOURS[number % COLOURS.len()];
     let is_exchanged = EXCHANGED.contains(&&column.quantity.name[..]);
     let dashes = DASHES[(number / COLOURS.len() + usize::from(is_exchanged)) % DASHES.len()];
-    let (data, alone) = line.drawn();
-    let path = Path::new()
-        .set("d", data)
-        .set("fill", "none")
-        .set("stroke", colour)
-        .set("stroke-width", 1.6)
-        .set("stroke-linejoin", "round")
-        .set("stroke-dasharray", dashes);
-    let mut group = Group::new().set("class", "series").add(path);
-    for [x, y] in alone {
-        let dot = Circle::new().set("cx", round(x)).set("cy", round(y));
-        group = group.add(dot.set("r", 2.4).set("fill", colour));
-    }
-    group
+    line.draw(colour, 1.6, 2.4, dashes).set("class", "series")
 }
