@@ -10,12 +10,12 @@ use rayon::ThreadPoolBuilder;
 fn block() -> Scene {
     let mesh = Mesh::cuboid([0.1; 3], [15; 3], SolidCells::Tetrahedra).unwrap();
     let body = Body::new(mesh, SQUARE_MATERIAL).strain(Strain::Green).build().unwrap();
-    Scene::new(body).gravity([3.0, 0.0, -9.8]).phase(Phase::until(0.002).hold("bottom"))
+    Scene::new(body).gravity([3.0, 0.0, -9.8]).phase(Phase::until(0.001).hold("bottom"))
 }
 
 fn motion(scene: &Scene, method: Method, rtol: f64) -> Trajectory {
     let settings = Settings { method, rtol, ..Settings::default() };
-    scene.simulate(&settings, &Sampling::every(0.001)).unwrap()
+    scene.simulate(&settings, &Sampling::every(0.0005)).unwrap()
 }
 
 /// Largest distance of a displacement from another method's, relative to the largest displacement.

@@ -24,6 +24,7 @@ mod observer;
 mod oscillating;
 mod overlaps;
 mod planes;
+mod random_scenes;
 mod readings;
 mod relaxing;
 mod ring;

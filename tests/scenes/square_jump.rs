@@ -17,12 +17,12 @@ fn jump(scene: &Scene, method: Method, rtol: f64, alpha: f64) -> Trajectory {
 /// matter of luck how a step meets the kink of the penalty force; the worst of all methods falls with
 /// rtol as it does without contact (`square_press.rs`). Tolerances are tight enough that accuracy and
 /// not stability bounds the explicit steps: at rtol 1e-5 their error is far below what was asked for.
-/// The truth is the explicit method at rtol 1e-11 up to alpha = 1e4 (it would need 300,000 steps a
-/// second at 1e6), beyond that IDA.
+/// The truth is the explicit method at rtol 1e-11 at a small alpha, and IDA at 1e6, where that would need
+/// 300,000 steps a second.
 #[test]
 fn methods_agree() {
     let scene = square_jump(4).unwrap();
-    for alpha in [10.0, 1e4, 1e6] {
+    for alpha in [10.0, 1e6] {
         let too_stiff_for = |method| alpha > 1e5 && method == Method::Rk;
         let judge = if too_stiff_for(Method::Rk) { Method::Ida } else { Method::Rk };
         let truth = jump(&scene, judge, 1e-11, alpha);

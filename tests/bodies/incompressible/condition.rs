@@ -23,7 +23,7 @@ fn linear_bodies_come_to_rest() {
                 if dilatation == Dilatation::Mean && !kind.can_be_mean() {
                     continue;
                 }
-                let cells = if matches!(kind, Kind::Plane(_)) { 16 } else { 6 };
+                let cells = if matches!(kind, Kind::Plane(_)) { 12 } else { 4 };
                 let body = body(kind.mesh(cells), material(poisson), dilatation);
                 let body = body.strain(Strain::Cauchy).build().unwrap();
                 let mut load = vec![0.0; body.dimension()];
@@ -63,7 +63,7 @@ fn condition(body: &Body) -> f64 {
 fn conditions_and_steps() {
     for cells in [Cells::Rectangles, Cells::Triangles6] {
         let mut first = None;
-        for poisson in [0.3, 0.45, 0.49, 0.499, 0.4999] {
+        for poisson in [0.3, 0.49, 0.4999] {
             let body = cantilever(poisson, cells, Dilatation::Mean);
             let condition = condition(&body);
             let swings = Phase::until(0.2).hold("left").traction("right", [0.0, -2e3]);

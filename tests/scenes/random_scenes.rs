@@ -2,7 +2,7 @@
 //! agree on at fine tolerances, or a warning says that it may not.
 //!
 //! The first seeds run with all tests. More of them, in a release build:
-//! `PLIANT_SEEDS=0..300 cargo test --release --test random_scenes -- --nocapture`
+//! `PLIANT_SEEDS=0..300 cargo test --release --test scenes random_scenes -- --nocapture`
 
 use pliant::{
     Body, Cells, Inertia, Material, Mesh, Method, Obstacle, Phase, Sampling, Scene, Settings,
